@@ -1,0 +1,18 @@
+"""Heat conduction in heterogeneous solids by the discrete element method, and what it is worth.
+
+Importing this package loads NumPy only; the engine and its compiled kernels load with the first `solve`.
+"""
+
+from demheat.field import Field, Samples
+from demheat.scene import Flux, Layer, Material, Scene, Sphere
+
+__all__ = ["Field", "Flux", "Layer", "Material", "Samples", "Scene", "Sphere", "solve"]
+__version__ = "0.1.0"
+
+
+def __getattr__(name):
+    if name == "solve":
+        from demheat.dem import solve
+
+        return solve
+    raise AttributeError(f"module 'demheat' has no attribute {name!r}")

@@ -1,0 +1,97 @@
+"""What every method returns: temperatures, fluxes and the effective conductivity, without saying how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Scene
+
+
+class Samples(NamedTuple):
+    """A method's own values at its own points (particles, quadrature points, voxels).
+
+    Attributes
+    ----------
+    points : (n, 3) float array, m
+    volumes : (n,) float array, m3
+        Sum to the volume of the body.
+    temperature : (n,) float array, K or degrees Celsius
+    phase : (n,) int array
+        Phase number as the method saw it.
+    flux : (n, 3) float array, W/m2
+        Along Fourier's direction (down the gradient).
+    """
+
+    points: np.ndarray
+    volumes: np.ndarray
+    temperature: np.ndarray
+    phase: np.ndarray
+    flux: np.ndarray
+
+
+@dataclass(frozen=True)
+class Field:
+    """A solution of one scene by one method.
+
+    What is costly is made only when asked for: `samples`, `temperature_at`, `flux_at`.
+
+    Parameters
+    ----------
+    scene : Scene
+    mean_flux : (3,) float array, W/m2
+        Volume-averaged flux density, computed the method's own way.
+    fractions : (1 + number of inclusions,) float array
+        Volume fraction of each phase as the method saw it.
+    sampler : callable () -> Samples
+    temperature_at : callable (n, 3) float array, m -> (n,) float array, K
+    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
+    wall_temperature : mapping of str to float, K
+        Area-averaged temperature of each loaded wall; empty in a periodic cell.
+    wall_heat : mapping of str to float, W
+        Heat that enters the body through each loaded wall; empty in a periodic cell.
+    stats : mapping
+        `unknowns`, `iterations`, `residual` (relative, recomputed after the solve) and what else the method knows.
+    time : float, s, optional
+    """
+
+    scene: Scene
+    mean_flux: np.ndarray
+    fractions: np.ndarray
+    sampler: Callable[[], Samples]
+    temperature_at: Callable[[np.ndarray], np.ndarray]
+    flux_at: Callable[[np.ndarray], np.ndarray]
+    wall_temperature: Mapping[str, float] = field(default_factory=dict)
+    wall_heat: Mapping[str, float] = field(default_factory=dict)
+    stats: Mapping[str, object] = field(default_factory=dict)
+    time: float | None = None
+
+    @cached_property
+    def samples(self) -> Samples:
+        """The method's own values at its own points."""
+        return self.sampler()
+
+    @property
+    def conductivity(self) -> float:
+        """Effective conductivity along the load, W/(m K).
+
+        In a periodic cell -<q>.g/|g|^2; between two opposite walls mean flux times length over the difference of the
+        walls' mean temperatures.
+
+        Raises
+        ------
+        ValueError
+            If the scene's walls are not one opposite pair, or have no temperature difference.
+        """
+        if self.scene.periodic:
+            gradient = np.array(self.scene.gradient)
+            return float(-self.mean_flux @ gradient / (gradient @ gradient))
+        axis = self.scene.axis
+        low, high = (self.wall_temperature["xyz"[axis] + side] for side in "-+")
+        if high == low:
+            raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
+        return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low))

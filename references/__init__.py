@@ -1,0 +1,1 @@
+"""Witnesses beside the DEM: finite elements, FFT homogenisation, exact solutions and bounds."""
