@@ -1,0 +1,1 @@
+"""Transmission surfaces, interface rules and the network they make."""

@@ -1,0 +1,88 @@
+"""The geometry and the conductances of a network of particles, as arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Facets(NamedTuple):
+    """Surfaces between particles and towards walls, in compressed rows (each link stands in both of its rows).
+
+    Attributes
+    ----------
+    indptr : (n + 1,) int64 array
+        Row pointers.
+    indices : (m,) uint32 array
+        The other particle of each link.
+    image : (m,) uint8 array
+        Which periodic image of it: 9 (sx + 1) + 3 (sy + 1) + sz + 1 with shifts s in -1, 0, 1 boxes.
+    area : (m,) float array, m2
+        Transmission surface S_pq, the same from both ends.
+    distance : (m,) float array, m
+        From the row's centre to the facet's plane along the link (negative beyond a facet that has passed it).
+    wall_particle, wall_side : (w,) int arrays
+        Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+) of each wall facet.
+    wall_area, wall_distance : (w,) float arrays, m2 and m
+    volumes : (n,) float array, m3
+        Cell volumes.
+    """
+
+    indptr: np.ndarray
+    indices: np.ndarray
+    image: np.ndarray
+    area: np.ndarray
+    distance: np.ndarray
+    wall_particle: np.ndarray
+    wall_side: np.ndarray
+    wall_area: np.ndarray
+    wall_distance: np.ndarray
+    volumes: np.ndarray
+
+
+class Network(NamedTuple):
+    """Conductances between particles and towards walls.
+
+    Attributes
+    ----------
+    centers : (n, 3) float array, m
+    size : (3,) float array, m
+    indptr, indices, image
+        As in `Facets`.
+    conductance : (m,) float array, W/K
+        H_pq = k S_pq / d_pq, symmetric.
+    wall_particle, wall_side : (w,) int arrays
+    wall_conductance : (w,) float array, W/K
+    wall_area, wall_distance : (w,) float arrays, m2 and m
+    volumes : (n,) float array, m3
+    phase : (n,) int array
+    """
+
+    centers: np.ndarray
+    size: np.ndarray
+    indptr: np.ndarray
+    indices: np.ndarray
+    image: np.ndarray
+    conductance: np.ndarray
+    wall_particle: np.ndarray
+    wall_side: np.ndarray
+    wall_conductance: np.ndarray
+    wall_area: np.ndarray
+    wall_distance: np.ndarray
+    volumes: np.ndarray
+    phase: np.ndarray
+
+
+def image_shifts(image, size):
+    """Offsets of periodic images, (m,) uint8 codes and (3,) size in metres -> (m, 3) float array, m."""
+    code = np.asarray(image, dtype=np.int16)
+    return np.stack([code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1], axis=1) * np.asarray(size)
+
+
+def row_numbers(indptr):
+    """Row of each entry of a compressed-row structure, (m,) int64 array."""
+    return np.repeat(np.arange(len(indptr) - 1), np.diff(indptr))
+
+
+def branches(centers, size, indptr, indices, image):
+    """Vectors from each row's centre to the centre (image) of its neighbour, (m, 3) float array, m."""
+    return centers[indices] + image_shifts(image, size) - np.repeat(centers, np.diff(indptr), axis=0)

@@ -1,0 +1,85 @@
+"""Conductances of links, with the rule for links that join two materials."""
+
+import numpy as np
+
+from demheat.network.base import Network, row_numbers
+
+RULES = ("harmonic", "arithmetic")
+
+
+def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
+    """Conductivity of links between two materials.
+
+    Parameters
+    ----------
+    k_here, k_there : (m,) float arrays, W/(m K)
+        At the two ends.
+    share : (m,) float array
+        Part of the link that lies on this side of the facet, 0 to 1; one half gives the papers' harmonic mean
+        (Haddad et al. 2021, eq. 24).
+    rule : {"harmonic", "arithmetic"}
+        Harmonic: the two parts in series, exact where the interface is the facet.
+
+    Returns
+    -------
+    (m,) float array, W/(m K)
+    """
+    if rule not in RULES:
+        raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
+    share = np.clip(share, 0.0, 1.0)
+    if rule == "arithmetic":
+        return share * k_here + (1.0 - share) * k_there
+    least = np.minimum(k_here, k_there)
+    series = share * k_there + (1.0 - share) * k_here
+    return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
+
+
+def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
+    """Conductances H = k S / d of facets between particles of given phases.
+
+    Parameters
+    ----------
+    facets : Facets
+    centers : (n, 3) float array, m
+    size : (3,) float array, m
+    phase : (n,) int array
+    conductivities : (number of phases,) float array, W/(m K)
+    rule : {"harmonic", "arithmetic"}
+
+    Returns
+    -------
+    Network
+        Wall facets conduct k S / h with h the distance from the centre to the wall, exact for linear fields.
+    """
+    conductivity = conductivities[phase]
+    here = np.repeat(conductivity, np.diff(facets.indptr))
+    there = conductivity[facets.indices]
+    length = link_lengths(facets, centers, size)
+    k = link_conductivity(here, there, facets.distance / length, rule=rule)
+    wall = conductivity[facets.wall_particle] * facets.wall_area / facets.wall_distance
+    return Network(
+        centers,
+        np.asarray(size, dtype=float),
+        facets.indptr,
+        facets.indices,
+        facets.image,
+        k * facets.area / length,
+        facets.wall_particle,
+        facets.wall_side,
+        wall,
+        facets.wall_area,
+        facets.wall_distance,
+        facets.volumes,
+        phase,
+    )
+
+
+def link_lengths(facets, centers, size):
+    """Distance between the centres of each link, (m,) float array, m."""
+    total = np.zeros(len(facets.area))
+    row = row_numbers(facets.indptr)
+    code = facets.image.astype(np.int16)
+    for k, shift in enumerate((code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1)):
+        x = centers[:, k]
+        total += (x[facets.indices] - x[row] + shift * size[k]) ** 2
+    return np.sqrt(total)
