@@ -1,0 +1,141 @@
+"""Command line of the studies: list, run, render, row, report."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import pkgutil
+import sys
+from pathlib import Path
+
+import studies
+from studies import harness
+from studies.provenance import row_environment
+
+DEFAULT_OUT = "out"
+
+
+def main(words=None):
+    """Do what the command line says and return the exit status: 0 only if no claim failed."""
+    arguments = _parser().parse_args(words)
+    try:
+        return arguments.action(arguments)
+    except ValueError as error:
+        print(f"studies: {error}", file=sys.stderr)
+        return 2
+
+
+def _parser():
+    parser = argparse.ArgumentParser(prog="python -m studies", description=__doc__)
+    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | report")
+    actions.add_parser("list", help="name the studies").set_defaults(action=_list)
+    run = actions.add_parser("run", help="bring studies up to date (all, if none is named) and judge their claims")
+    run.add_argument("names", nargs="*", metavar="NAME")
+    run.add_argument("--quick", action="store_true", help="only the quick rows")
+    run.add_argument("--force", action="store_true", help="repeat rows that could be reused")
+    run.set_defaults(action=_run)
+    render = actions.add_parser("render", help="write table, claims and figure again from the CSV")
+    render.add_argument("names", nargs=1, metavar="NAME")
+    render.set_defaults(action=_render)
+    row = actions.add_parser("row", help="compute one row here and print it")
+    row.add_argument("name", metavar="NAME")
+    row.add_argument("case", metavar="CASE", help="key as in the column 'case', or number in CASES")
+    row.add_argument("--json", metavar="FILE", help=argparse.SUPPRESS)
+    row.set_defaults(action=_row)
+    report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
+    report.set_defaults(action=_report)
+    for each in (run, render, report):
+        each.add_argument("--out", default=DEFAULT_OUT, metavar="DIR", type=Path)
+    return parser
+
+
+def study_names():
+    """Names of all studies: the modules of this package that have CASES."""
+    names = sorted(module.name for module in pkgutil.iter_modules(studies.__path__) if module.name != "__main__")
+    return [name for name in names if "CASES" in (Path(studies.__path__[0]) / f"{name}.py").read_text().split()]
+
+
+def _list(arguments):
+    for name in study_names():
+        study = harness.load(name)
+        quick = sum(bool(study.QUICK(case)) for case in study.CASES)
+        title = study.__doc__.splitlines()[0]
+        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick   {title}")
+    return 0
+
+
+def _run(arguments):
+    chosen = arguments.names or study_names()
+    for name in chosen:
+        harness.load(name)  # a misspelt name must not cost the studies before it
+    status = 0
+    for name in chosen:
+        path = harness.run_study(name, arguments.out, quick=arguments.quick, force=arguments.force, say=_say)
+        status |= _show(name, path)
+    return status
+
+
+def _render(arguments):
+    name = arguments.names[0]
+    harness.load(name)
+    path = arguments.out / f"{name}.csv"
+    if not path.exists():
+        raise ValueError(f"no {path}; run the study first")
+    return _show(name, path)
+
+
+def _show(name, path):
+    """Render a study, print its page and say where the figure is; 1 if a claim failed."""
+    from studies.table import render
+
+    claims, text = render(harness.load(name), path)
+    print(text)
+    failed = [claim for claim in claims if not claim.ok]
+    print(f"{name}: {len(claims) - len(failed)} of {len(claims)} claims hold")
+    print(f"figure {path.with_suffix('.png')}, rows {path}")
+    for claim in failed:
+        print(f"FAIL: {claim.sentence}: {claim.value:.4g}, limit {claim.limit}", file=sys.stderr)
+    return 1 if failed else 0
+
+
+def _row(arguments):
+    # Before any library that reads these is loaded.
+    os.environ.update(row_environment())
+    if arguments.json:
+        harness.die_with_parent()
+    study = harness.load(arguments.name)
+    row = harness.compute_row(study, harness.find_case(study, arguments.case))
+    if arguments.json:
+        harness.write_json(row, arguments.json)
+        return 0
+    for name, value in row.items():
+        print(f"{name:20} {value}")
+    return 0 if row["status"] in harness.KEPT else 1
+
+
+def _report(arguments):
+    from studies.store import replaced
+    from studies.table import render
+
+    status, pages = 0, []
+    for name in study_names():
+        path = arguments.out / f"{name}.csv"
+        if path.exists():
+            claims, text = render(harness.load(name), path)
+            pages.append(text)
+            status |= any(not claim.ok for claim in claims)
+    if not pages:
+        raise ValueError(f"no results in {arguments.out}; run a study first")
+    target = arguments.out / "README.md"
+    with replaced(target) as temporary:
+        temporary.write_text("\n".join(pages))
+    print(f"{len(pages)} studies in {target}; " + ("a claim FAILED" if status else "every claim holds"))
+    return int(status)
+
+
+def _say(line):
+    print(line, flush=True)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,110 @@
+"""What a solve costs: wall and processor seconds, peak memory; and what the machine's memory can deliver."""
+
+from __future__ import annotations
+
+import ctypes
+import gc
+import os
+import resource
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+MIB = 2**20
+
+
+def measured(function, /, *args, **knobs):
+    """Call a function and say what the call cost.
+
+    Returns
+    -------
+    value : whatever `function` returns
+    cost : dict
+        `wall_s`, `cpu_s` (all threads and finished child processes, s), `peak_mib` (growth of the process's resident
+        memory during the call, at its peak, MiB), `base_mib` (resident before the call, MiB) and `peak_by` (how the
+        peak was read: "VmHWM" is of the call alone, "ru_maxrss" of the whole life of the process).
+    """
+    gc.collect()
+    _give_back_freed_memory()
+    peak_by = "VmHWM" if _reset_peak() else "ru_maxrss"
+    base = _resident_mib()
+    wall, cpu = time.perf_counter(), _cpu_seconds()
+    value = function(*args, **knobs)
+    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": _cpu_seconds() - cpu}
+    peak = _status_mib("VmHWM") if peak_by == "VmHWM" else _max_rss_mib()
+    return value, {**cost, "peak_mib": max(peak - base, 0.0), "base_mib": base, "peak_by": peak_by}
+
+
+def triad_gbs(*, threads=None, elements=8_000_000, repeats=5):
+    """Memory bandwidth of a = b + s c, best of a few, GB/s, counted as STREAM counts it (24 bytes per element).
+
+    Parameters
+    ----------
+    threads : int, optional
+        Default: every processor this process may use.
+    elements : int
+        Per array; three arrays of 64 MB at the default, well beyond the caches.
+    """
+    import numpy as np
+
+    threads = threads or len(os.sched_getaffinity(0))
+    a, b, c = (np.full(elements, value) for value in (0.0, 1.0, 2.0))
+    # A block's product stays in the second-level cache, so that only b, c and a cross the memory bus.
+    block = 16_384
+
+    def sweep(part):
+        product = np.empty(block)
+        for start in range(part * elements // threads, (part + 1) * elements // threads, block):
+            stop = min(start + block, (part + 1) * elements // threads)
+            np.multiply(c[start:stop], 3.0, out=product[: stop - start])
+            np.add(b[start:stop], product[: stop - start], out=a[start:stop])
+
+    best = float("inf")
+    with ThreadPoolExecutor(threads) as pool:
+        for _ in range(repeats):
+            start = time.perf_counter()
+            list(pool.map(sweep, range(threads)))
+            best = min(best, time.perf_counter() - start)
+    return 24e-9 * elements / best
+
+
+def _cpu_seconds():
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return time.process_time() + children.ru_utime + children.ru_stime
+
+
+def _reset_peak():
+    """Set VmHWM back to the present resident size (Linux); True if the kernel did so."""
+    try:
+        Path("/proc/self/clear_refs").write_text("5")
+    except OSError:
+        return False
+    return True
+
+
+def _give_back_freed_memory():
+    """Return freed heap to the system: what a warm-up freed would otherwise hide as much of the call's own use."""
+    try:
+        ctypes.CDLL(None).malloc_trim(0)
+    except (OSError, AttributeError):
+        pass
+
+
+def _status_mib(name):
+    for line in Path("/proc/self/status").read_text().splitlines():
+        if line.startswith(name + ":"):
+            return int(line.split()[1]) * 1024 / MIB
+    raise OSError(f"/proc/self/status has no {name}")
+
+
+def _resident_mib():
+    try:
+        return _status_mib("VmRSS")
+    except OSError:
+        return 0.0
+
+
+def _max_rss_mib():
+    # Kilobytes on Linux, bytes on macOS.
+    unit = 1 if os.uname().sysname == "Darwin" else 1024
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * unit / MIB
