@@ -1,0 +1,119 @@
+"""Packing: spheres in a box, as plain arrays."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+# Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
+MORTON_BITS = 21
+
+
+class Packing(NamedTuple):
+    """Spheres in the box [0, size], stored so that neighbours in space are near in memory.
+
+    Attributes
+    ----------
+    centers : (n, 3) float array, m
+        Inside the box; on a periodic axis 0 <= x < size.
+    radii : (n,) float array, m
+    size : (3,) float array, m
+    periodic : (3,) bool array
+        Axis by axis: True for a periodic axis, False for a hard wall at both ends.
+    provenance : dict
+        How it was made (algorithm, seed, number, phi, ...) and what was reached (iterations, mean_overlap, ...).
+    """
+
+    centers: np.ndarray
+    radii: np.ndarray
+    size: np.ndarray
+    periodic: np.ndarray
+    provenance: dict
+
+    @property
+    def number(self) -> int:
+        """Number of particles."""
+        return len(self.radii)
+
+    @property
+    def phi(self) -> float:
+        """Sum of the sphere volumes over the volume of the box (overlaps counted twice)."""
+        return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / np.prod(self.size))
+
+    def scaled(self, factor) -> Packing:
+        """The same packing with every length multiplied by `factor`."""
+        return self._replace(centers=self.centers * factor, radii=self.radii * factor, size=self.size * factor)
+
+
+def make_packing(centers, radii, size, periodic, provenance) -> Packing:
+    """Check, cast and sort the arrays of a packing.
+
+    Parameters
+    ----------
+    centers : (n, 3) array_like, m
+        Wrapped into the box on periodic axes; must lie inside it on walled ones.
+    radii : (n,) array_like, m
+    size : (3,) array_like, m
+    periodic : bool or (3,) array_like of bool
+    provenance : dict
+
+    Raises
+    ------
+    ValueError
+        If a shape, a sign or a value is not as described.
+    """
+    size, periodic = check_box(size, periodic)
+    centers = np.array(centers, dtype=float)
+    radii = np.array(radii, dtype=float)
+    if centers.ndim != 2 or centers.shape[1] != 3 or len(centers) == 0 or not np.all(np.isfinite(centers)):
+        raise ValueError(f"centers of shape {centers.shape}: must be (n, 3) finite numbers, n > 0")
+    if radii.shape != (len(centers),) or not np.all(np.isfinite(radii)) or np.any(radii <= 0):
+        raise ValueError(f"radii of shape {radii.shape}: must be {len(centers)} finite numbers > 0")
+    outside = ~periodic & ((centers < 0) | (centers > size))
+    if outside.any():
+        which = int(np.flatnonzero(outside.any(axis=1))[0])
+        raise ValueError(
+            f"centers[{which}] = {centers[which].tolist()}: lies outside the walls of the box, 0 to {size}"
+        )
+    centers = wrap(centers, size, periodic)
+    order = morton_order(centers, size)
+    return Packing(centers[order], radii[order], size, periodic, dict(provenance))
+
+
+def check_box(size, periodic):
+    """Cast the sides and the periodicity of a box to (3,) arrays, or raise ValueError."""
+    sides = np.array(size, dtype=float)
+    if sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0):
+        raise ValueError(f"size = {size!r}: must be three finite lengths > 0")
+    flags = np.asarray(periodic)
+    if flags.dtype != bool or flags.shape not in ((), (3,)):
+        raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")
+    return sides, np.broadcast_to(flags, 3).copy()
+
+
+def wrap(centers, size, periodic):
+    """Centres moved into 0 <= x < size on the periodic axes, (n, 3) float array, m."""
+    wrapped = centers - np.where(periodic, np.floor(centers / size) * size, 0.0)
+    # A tiny negative x wraps to exactly `size` by rounding: that is 0.
+    return np.where(periodic & (wrapped >= size), 0.0, wrapped)
+
+
+def morton_order(centers, size):
+    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps."""
+    steps = np.clip(centers / np.max(size), 0.0, 1.0) * (2**MORTON_BITS - 1)
+    x, y, z = (_spread_bits(column) for column in steps.astype(np.uint64).T)
+    return np.argsort(x | (y << np.uint64(1)) | (z << np.uint64(2)), kind="stable")
+
+
+def _spread_bits(bits):
+    """Put two zero bits between the 21 low bits of each number."""
+    for shift, mask in (
+        (32, 0x1F00000000FFFF),
+        (16, 0x1F0000FF0000FF),
+        (8, 0x100F00F00F00F00F),
+        (4, 0x10C30C30C30C30C3),
+        (2, 0x1249249249249249),
+    ):
+        bits = (bits | (bits << np.uint64(shift))) & np.uint64(mask)
+    return bits

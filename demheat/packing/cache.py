@@ -1,0 +1,129 @@
+"""Packings kept on disk, so that each is made once."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib.util
+import json
+import os
+import tempfile
+import warnings
+import zipfile
+from pathlib import Path
+
+import numpy as np
+
+from demheat.packing.base import Packing, check_box
+from demheat.packing.radii import Gaussian
+from demheat.packing.relax import relax
+
+# Layout of the files. Raise it when the arrays stored or their meaning change.
+FORMAT = 1
+MAKERS = tuple(
+    f"demheat.packing.{name}" for name in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")
+)
+
+
+def cache_folder() -> Path:
+    """Folder of the packings: DEMHEAT_CACHE, else demheat/packings in XDG_CACHE_HOME, else in ~/.cache."""
+    if os.environ.get("DEMHEAT_CACHE"):
+        return Path(os.environ["DEMHEAT_CACHE"]).expanduser()
+    return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "demheat" / "packings"
+
+
+def code_hash(*modules) -> str:
+    """Digest of the source of modules, given by dotted name: as part of a key, it retires what older code has made."""
+    digest = hashlib.sha256()
+    for module in modules:
+        digest.update(Path(importlib.util.find_spec(module).origin).read_bytes())
+    return digest.hexdigest()
+
+
+def cached(make, key, *, folder=None) -> Packing:
+    """Return the packing stored under `key`, or make and store it.
+
+    Parameters
+    ----------
+    make : callable () -> Packing
+        Its provenance must survive JSON.
+    key : dict
+        Everything the packing depends on, code included (see `code_hash`); only what JSON can hold.
+    folder : path, optional
+        Default `cache_folder()`. If it cannot be written, a warning says so and the packing is returned all the same.
+
+    Returns
+    -------
+    Packing
+        provenance["cached"] says whether it came from the folder.
+    """
+    text = json.dumps({"format": FORMAT} | dict(key), sort_keys=True)
+    path = Path(folder or cache_folder()) / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+    packing = _load(path, text)
+    if packing is not None:
+        return packing._replace(provenance=packing.provenance | {"cached": True})
+    packing = make()
+    try:
+        _store(path, text, packing)
+    except OSError as error:
+        warnings.warn(f"packing not cached in {path.parent}: {error}; set DEMHEAT_CACHE", stacklevel=2)
+    return packing._replace(provenance=packing.provenance | {"cached": False})
+
+
+def relaxed(
+    number, *, size=(1.0, 1.0, 1.0), phi=0.64, radii=None, periodic=True, seed=0, folder=None, **knobs
+) -> Packing:
+    """`relax` with a memory: boxes of one shape share one packing, scaled.
+
+    Parameters
+    ----------
+    number, size, phi, radii, periodic, seed, knobs
+        As in `demheat.packing.relax.relax`.
+    folder : path, optional
+        Default `cache_folder()`.
+    """
+    sides, periodic = check_box(size, periodic)
+    # 12 digits: sides such as 0.1 and 0.3 are rounded already, and so are their ratios.
+    shape = np.round(sides / sides.max(), 12)
+    radii = Gaussian() if radii is None else radii
+    request = {"phi": phi, "seed": seed} | knobs
+    key = {"algorithm": "relax", "code": code_hash(*MAKERS), "number": number, "shape": shape.tolist()}
+    key |= {"radii": repr(radii), "periodic": periodic.tolist()} | {k: v for k, v in request.items() if k != "progress"}
+
+    def make():
+        return relax(number, size=shape, radii=radii, periodic=periodic, **request)
+
+    unit = cached(make, key, folder=folder)
+    # Stretched by the 1e-12 that rounding the shape took, so that the box is met exactly; volumes keep phi.
+    stretch = sides / shape
+    return unit._replace(
+        centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * np.cbrt(np.prod(stretch)), size=sides
+    )
+
+
+def _load(path, text):
+    """Load the packing at `path` if it is whole and its key is `text`, else None."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            if str(stored["key"]) != text:
+                return None
+            arrays = (stored[name] for name in ("centers", "radii", "size", "periodic"))
+            return Packing(*arrays, json.loads(str(stored["provenance"])))
+    except FileNotFoundError:
+        return None
+    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
+        warnings.warn(f"cached packing {path} cannot be read and is made again: {error}", stacklevel=3)
+        return None
+
+
+def _store(path, text, packing):
+    """Write under a temporary name, then rename: a reader sees a whole file or none."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=path.parent, suffix=".tmp")
+    try:
+        with os.fdopen(handle, "wb") as file:
+            arrays = packing._asdict() | {"provenance": json.dumps(packing.provenance), "key": text}
+            np.savez(file, **arrays)
+        os.replace(name, path)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

@@ -1,0 +1,136 @@
+"""Radius distributions: small frozen objects that draw radii of mean 1."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtr, ndtri
+
+
+@dataclass(frozen=True)
+class Gaussian:
+    """Gaussian radii cut on both sides, as in Haddad et al. (2021), who do not print their cut.
+
+    Parameters
+    ----------
+    spread : float
+        Standard deviation over mean before the cut; 0 gives equal spheres.
+    cut : float
+        Kept range in standard deviations. At 2.5 the standard deviation that remains is 0.955 of `spread`.
+    """
+
+    spread: float = 0.3
+    cut: float = 2.5
+
+    def __post_init__(self):
+        _check("Gaussian.cut", self.cut, self.cut > 0, "a finite number > 0")
+        valid = f">= 0 and < 1/cut = {1 / self.cut:.3g}, else some radii are not positive"
+        _check("Gaussian.spread", self.spread, 0 <= self.spread * self.cut < 1, valid)
+
+    def draw(self, number, rng):
+        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+        return 1.0 + self.spread * _cut_normal(number, self.cut, rng)
+
+
+@dataclass(frozen=True)
+class Uniform:
+    """Uniform radii in 1 - half_width to 1 + half_width; Terreros et al. (2013) use 0.075."""
+
+    half_width: float = 0.075
+
+    def __post_init__(self):
+        _check("Uniform.half_width", self.half_width, 0 <= self.half_width < 1, ">= 0 and < 1")
+
+    def draw(self, number, rng):
+        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+        return rng.uniform(1.0 - self.half_width, 1.0 + self.half_width, number)
+
+
+@dataclass(frozen=True)
+class Lognormal:
+    """Lognormal radii, cut on both sides.
+
+    Parameters
+    ----------
+    spread : float
+        Standard deviation of the logarithm of the radius, before the cut.
+    cut : float
+        Kept range of the logarithm in standard deviations.
+    """
+
+    spread: float = 0.3
+    cut: float = 2.5
+
+    def __post_init__(self):
+        _check("Lognormal.spread", self.spread, self.spread >= 0, "a finite number >= 0")
+        _check("Lognormal.cut", self.cut, self.cut > 0, "a finite number > 0")
+
+    def draw(self, number, rng):
+        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+        s, c = self.spread, self.cut
+        # E[exp(s z)] over |z| < c is exp(s^2/2) [ndtr(c - s) - ndtr(-c - s)] / [ndtr(c) - ndtr(-c)].
+        mean = math.exp(s * s / 2) * (ndtr(c - s) - ndtr(-c - s)) / (ndtr(c) - ndtr(-c))
+        return np.exp(s * _cut_normal(number, c, rng)) / mean
+
+
+@dataclass(frozen=True)
+class Bidisperse:
+    """Two sizes.
+
+    Parameters
+    ----------
+    ratio : float
+        Large radius over small radius, >= 1.
+    fraction : float
+        Fraction of the particles, by number, that are large. Each draw has exactly round(fraction * number).
+    """
+
+    ratio: float = 1.4
+    fraction: float = 0.5
+
+    def __post_init__(self):
+        _check("Bidisperse.ratio", self.ratio, self.ratio >= 1, ">= 1")
+        _check("Bidisperse.fraction", self.fraction, 0 <= self.fraction <= 1, "between 0 and 1")
+
+    def draw(self, number, rng):
+        """Draw `number` radii of mean 1 (within the rounding of the fraction), (number,) float array."""
+        radii = np.ones(number)
+        radii[: round(self.fraction * number)] = self.ratio
+        return rng.permutation(radii) / (1.0 + self.fraction * (self.ratio - 1.0))
+
+
+@dataclass(frozen=True, repr=False)
+class Listed:
+    """Radii given one by one, used in random order; only their ratios count."""
+
+    values: tuple[float, ...]
+
+    def __post_init__(self):
+        values = np.array(self.values, dtype=float)
+        if values.ndim != 1 or len(values) == 0 or not np.all(np.isfinite(values)) or np.any(values <= 0):
+            raise ValueError(f"Listed.values of shape {values.shape}: must be a list of finite numbers > 0")
+        object.__setattr__(self, "values", tuple(values.tolist()))
+
+    def __repr__(self):
+        """Name the list by a digest: a million numbers are no name."""
+        digest = hashlib.sha256(np.array(self.values).tobytes()).hexdigest()
+        return f"Listed({len(self.values)} values, sha256={digest})"
+
+    def draw(self, number, rng):
+        """Put the listed radii, divided by their mean, in random order; `number` must be their number."""
+        if number != len(self.values):
+            raise ValueError(f"Listed.values: {len(self.values)} radii for {number} particles; must be one each")
+        return rng.permutation(np.array(self.values) / np.mean(self.values))
+
+
+def _cut_normal(number, cut, rng):
+    """Standard normal numbers given that they lie within +-cut, by inversion."""
+    return ndtri(rng.uniform(ndtr(-cut), ndtr(cut), number))
+
+
+def _check(name, value, good, valid):
+    if not (math.isfinite(value) and good):
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
