@@ -1,10 +1,13 @@
-"""Packings of spheres: how they are made, kept and searched."""
+"""Packings of spheres: how they are made, kept and searched.
+
+`relax` and `neighbours` are modules here; their functions are imported from them.
+"""
 
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.cache import cached, relaxed
-from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal, Uniform
-from demheat.packing.relax import relax, settle
+from demheat.packing.relax import settle
 
 __all__ = [
     "Bidisperse",
@@ -16,8 +19,6 @@ __all__ = [
     "cached",
     "contacts",
     "make_packing",
-    "neighbours",
-    "relax",
     "relaxed",
     "settle",
 ]
