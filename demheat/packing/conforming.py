@@ -20,6 +20,7 @@ OFFSET = 0.8
 SPACING = 1.8
 CLEARANCE = 0.4
 LEAST_OFFSET = 0.05
+EXCESS = 0.36
 
 
 class _Twins(NamedTuple):
@@ -194,7 +195,7 @@ def _twin_points(twins, scene, radius):
         margin = 0.3 * twins.offsets[:, None]
         for side in (inner, outer):
             good &= np.all((side > margin) & (side < scene.size - margin), axis=1)
-    weights = twins.offsets[good] ** 2 + (1.0 - OFFSET**2) * radius**2
+    weights = twins.offsets[good] ** 2 + EXCESS * radius**2
     return np.concatenate([inner[good], outer[good]]), np.tile(weights, 2), good
 
 

@@ -49,7 +49,11 @@ def forces(points, velocity, mobility, indptr, indices, size, period, force, sum
                 dz -= bz * np.rint(dz * iz)
                 reach = r + points[j, 3]
                 d2 = dx * dx + dy * dy + dz * dz
-                if d2 < reach * reach and d2 > 0.0:
+                if d2 < reach * reach:
+                    if d2 == 0.0:
+                        # Same place: any direction will do, if the two get opposite ones.
+                        dx = 1e-6 * reach if i > j else -1e-6 * reach
+                        d2 = dx * dx
                     d = np.sqrt(d2)
                     overlap = reach - d
                     fx += overlap / d * dx
