@@ -1,4 +1,4 @@
-"""Near-neighbour search on one grid per size level (factor 2), compiled.
+"""Near-neighbour search on one grid per size level (factor 4), compiled.
 
 A particle looks into the grid of every level, in the box that its own reach to the largest sphere of that level spans,
 so the cost per particle does not grow with the width of the size distribution. Cells are numbered along z first: the
@@ -85,6 +85,14 @@ def _span(x, reach, cell, count, period):
 
 
 @njit(cache=True)
+def _wrapped(c, count):
+    """Cell number of an unwrapped one; a span shorter than the period leaves the box by less than one period."""
+    if c < 0:
+        return c + count
+    return c - count if c >= count else c
+
+
+@njit(cache=True)
 def _distance_to_cell(x, c, cell, count, period, whole):
     """Least distance along one axis from x to anything filed under cell c."""
     # Outer cells of a walled axis also file what lies beyond the wall; a whole span has lost its images.
@@ -94,24 +102,21 @@ def _distance_to_cell(x, c, cell, count, period, whole):
 
 
 @njit(cache=True)
-def _scan(i, p, begin, end, grid, scale, skin, out, k):
+def _scan(i, p, begin, end, order, slots, box, inverse, scale, skin, out, k):
     """Append the particles of slots begin..end that are near particle i; counts on when `out` is full."""
     last = len(out) - 1
-    bx, by, bz = grid.box[0], grid.box[1], grid.box[2]
-    ix = 1.0 / bx if bx > 0.0 else 0.0
-    iy = 1.0 / by if by > 0.0 else 0.0
-    iz = 1.0 / bz if bz > 0.0 else 0.0
-    for t in range(begin, end):
-        dx = grid.slots[t, 0] - p[0]
-        dy = grid.slots[t, 1] - p[1]
-        dz = grid.slots[t, 2] - p[2]
-        dx -= bx * np.rint(dx * ix)
-        dy -= by * np.rint(dy * iy)
-        dz -= bz * np.rint(dz * iz)
-        reach = scale * (p[3] + grid.slots[t, 3]) + skin
-        j = grid.order[t]
+    # Unsigned: a signed index is tested for counting from the end.
+    for t in range(np.uint64(begin), np.uint64(end)):
+        dx = slots[t, 0] - p[0]
+        dy = slots[t, 1] - p[1]
+        dz = slots[t, 2] - p[2]
+        dx -= box[0] * np.rint(dx * inverse[0])
+        dy -= box[1] * np.rint(dy * inverse[1])
+        dz -= box[2] * np.rint(dz * inverse[2])
+        reach = scale * (p[3] + slots[t, 3]) + skin
+        j = order[t]
         # Always written, kept only if near: no branch to mispredict.
-        out[min(k, last)] = j
+        out[np.uint64(min(k, last))] = j
         k += (dx * dx + dy * dy + dz * dz < reach * reach) & (j != i)
     return k
 
@@ -119,31 +124,51 @@ def _scan(i, p, begin, end, grid, scale, skin, out, k):
 @njit(cache=True)
 def _row(i, p, grid, scale, skin, out, k):
     """Append all near neighbours of the particle i at p = (x, y, z, radius)."""
+    box, start = grid.box, grid.start
+    inverse = (
+        1.0 / box[0] if box[0] > 0.0 else 0.0,
+        1.0 / box[1] if box[1] > 0.0 else 0.0,
+        1.0 / box[2] if box[2] > 0.0 else 0.0,
+    )
     for lev in range(len(grid.largest)):
         # A hair more than the reach: cell edges are rounded, the comparison of distances is not.
         reach = (scale * (p[3] + grid.largest[lev]) + skin) * (1.0 + 1e-9)
         nx, ny, nz = grid.dims[lev, 0], grid.dims[lev, 1], grid.dims[lev, 2]
         hx, hy, hz = grid.cell[lev, 0], grid.cell[lev, 1], grid.cell[lev, 2]
-        bx, by, bz = grid.box[0], grid.box[1], grid.box[2]
-        x0, x1, all_x = _span(p[0], reach, hx, nx, bx)
-        y0, y1, all_y = _span(p[1], reach, hy, ny, by)
+        x0, x1, all_x = _span(p[0], reach, hx, nx, box[0])
+        y0, y1, all_y = _span(p[1], reach, hy, ny, box[1])
         for cx in range(x0, x1 + 1):
-            gap = _distance_to_cell(p[0], cx, hx, nx, bx, all_x)
+            gap = _distance_to_cell(p[0], cx, hx, nx, box[0], all_x)
             left_x = reach * reach - gap * gap
+            slab = grid.first[lev] + _wrapped(cx, nx) * ny * nz
             for cy in range(y0, y1 + 1):
-                gap = _distance_to_cell(p[1], cy, hy, ny, by, all_y)
+                gap = _distance_to_cell(p[1], cy, hy, ny, box[1], all_y)
                 left = left_x - gap * gap
                 if left < 0.0:
                     continue
-                z0, z1, _ = _span(p[2], np.sqrt(left), hz, nz, bz)
-                row = grid.first[lev] + ((cx % nx) * ny + cy % ny) * nz
-                if z0 < 0:
-                    k = _scan(i, p, grid.start[row + z0 + nz], grid.start[row + nz], grid, scale, skin, out, k)
-                    z0 = np.int64(0)
-                if z1 >= nz:
-                    k = _scan(i, p, grid.start[row], grid.start[row + z1 - nz + 1], grid, scale, skin, out, k)
-                    z1 = nz - 1
-                k = _scan(i, p, grid.start[row + z0], grid.start[row + z1 + 1], grid, scale, skin, out, k)
+                z0, z1, _ = _span(p[2], np.sqrt(left), hz, nz, box[2])
+                row = slab + _wrapped(cy, ny) * nz
+                # One run of cells, or two when it crosses the period.
+                a, b = (z0 + nz, nz - 1) if z0 < 0 else (z0, min(z1, nz - 1))
+                k = _scan(
+                    i, p, start[row + a], start[row + b + 1], grid.order, grid.slots, box, inverse, scale, skin, out, k
+                )
+                if z0 < 0 or z1 >= nz:
+                    a, b = (np.int64(0), z1) if z0 < 0 else (np.int64(0), z1 - nz)
+                    k = _scan(
+                        i,
+                        p,
+                        start[row + a],
+                        start[row + b + 1],
+                        grid.order,
+                        grid.slots,
+                        box,
+                        inverse,
+                        scale,
+                        skin,
+                        out,
+                        k,
+                    )
     return k
 
 

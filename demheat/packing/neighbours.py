@@ -11,9 +11,10 @@ from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
-PER_CELL = 1.0
-# Level k holds the radii between 2**-(k+1) and 2**-k of the largest; anything smaller still goes to the last level.
-MAX_LEVELS = 24
+PER_CELL = 4.0
+# Level k holds the radii between 4**-(k+1) and 4**-k of the largest; anything smaller still goes to the last level.
+# Factor 2 was 20 % slower at a size ratio of 7 and no faster at 40.
+FACTOR, MAX_LEVELS = 4.0, 12
 # First guess of a gap that holds enough contacts: 7.5 of them were found within 0.07 at phi = 0.64.
 FIRST_GAP = 0.12
 
@@ -158,7 +159,7 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
 def build_grid(points, size, periodic, *, scale, skin):
     """File wrapped points, (n, 4), under the cells of one grid per size level."""
     radii = points[:, 3]
-    raw = np.minimum(np.floor(np.log2(radii.max() / radii)).astype(np.int64), MAX_LEVELS - 1)
+    raw = np.minimum(np.floor(np.log(radii.max() / radii) / np.log(FACTOR)).astype(np.int64), MAX_LEVELS - 1)
     used, level, count = np.unique(raw, return_inverse=True, return_counts=True)
     largest = np.zeros(len(used))
     np.maximum.at(largest, level, radii)
