@@ -102,17 +102,20 @@ def _distance_to_cell(x, c, cell, count, period, whole):
 
 
 @njit(cache=True)
-def _scan(i, p, begin, end, order, slots, box, inverse, scale, skin, out, k):
+def _scan(i, p, begin, end, order, slots, box, scale, skin, out, k):
     """Append the particles of slots begin..end that are near particle i; counts on when `out` is full."""
     last = len(out) - 1
+    ix = 1.0 / box[0] if box[0] > 0.0 else 0.0
+    iy = 1.0 / box[1] if box[1] > 0.0 else 0.0
+    iz = 1.0 / box[2] if box[2] > 0.0 else 0.0
     # Unsigned: a signed index is tested for counting from the end.
     for t in range(np.uint64(begin), np.uint64(end)):
         dx = slots[t, 0] - p[0]
         dy = slots[t, 1] - p[1]
         dz = slots[t, 2] - p[2]
-        dx -= box[0] * np.rint(dx * inverse[0])
-        dy -= box[1] * np.rint(dy * inverse[1])
-        dz -= box[2] * np.rint(dz * inverse[2])
+        dx -= box[0] * np.rint(dx * ix)
+        dy -= box[1] * np.rint(dy * iy)
+        dz -= box[2] * np.rint(dz * iz)
         reach = scale * (p[3] + slots[t, 3]) + skin
         j = order[t]
         # Always written, kept only if near: no branch to mispredict.
@@ -124,12 +127,7 @@ def _scan(i, p, begin, end, order, slots, box, inverse, scale, skin, out, k):
 @njit(cache=True)
 def _row(i, p, grid, scale, skin, out, k):
     """Append all near neighbours of the particle i at p = (x, y, z, radius)."""
-    box, start = grid.box, grid.start
-    inverse = (
-        1.0 / box[0] if box[0] > 0.0 else 0.0,
-        1.0 / box[1] if box[1] > 0.0 else 0.0,
-        1.0 / box[2] if box[2] > 0.0 else 0.0,
-    )
+    box, start, order, slots = grid.box, grid.start, grid.order, grid.slots
     for lev in range(len(grid.largest)):
         # A hair more than the reach: cell edges are rounded, the comparison of distances is not.
         reach = (scale * (p[3] + grid.largest[lev]) + skin) * (1.0 + 1e-9)
@@ -149,26 +147,13 @@ def _row(i, p, grid, scale, skin, out, k):
                 z0, z1, _ = _span(p[2], np.sqrt(left), hz, nz, box[2])
                 row = slab + _wrapped(cy, ny) * nz
                 # One run of cells, or two when it crosses the period.
-                a, b = (z0 + nz, nz - 1) if z0 < 0 else (z0, min(z1, nz - 1))
-                k = _scan(
-                    i, p, start[row + a], start[row + b + 1], grid.order, grid.slots, box, inverse, scale, skin, out, k
-                )
-                if z0 < 0 or z1 >= nz:
-                    a, b = (np.int64(0), z1) if z0 < 0 else (np.int64(0), z1 - nz)
-                    k = _scan(
-                        i,
-                        p,
-                        start[row + a],
-                        start[row + b + 1],
-                        grid.order,
-                        grid.slots,
-                        box,
-                        inverse,
-                        scale,
-                        skin,
-                        out,
-                        k,
-                    )
+                if z0 < 0:
+                    k = _scan(i, p, start[row + z0 + nz], start[row + nz], order, slots, box, scale, skin, out, k)
+                    z0 = np.int64(0)
+                if z1 >= nz:
+                    k = _scan(i, p, start[row], start[row + z1 - nz + 1], order, slots, box, scale, skin, out, k)
+                    z1 = nz - 1
+                k = _scan(i, p, start[row + z0], start[row + z1 + 1], order, slots, box, scale, skin, out, k)
     return k
 
 
