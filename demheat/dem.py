@@ -7,7 +7,7 @@ import numpy as np
 from demheat.evaluate import field_of
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre
+from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.scene import Material, Scene
@@ -77,6 +77,7 @@ def solve(
         packing = conform(packing, scene, seed=seed)
     if law == "laguerre":
         facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
+        packing, facets = without_hidden(packing, facets)
     else:
         facets = contact_facets(packing)
     clock.append(time.perf_counter())

@@ -5,8 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 from scipy.sparse import csgraph
+from scipy.sparse.linalg import cg
 
 from demheat import steady_kernels as kernels
+from demheat.network.base import Network, row_numbers
 from demheat.scene import WALLS
 
 SOLVERS = ("auto", "cg", "amg")
@@ -41,11 +43,15 @@ class Solution(NamedTuple):
 
 
 class _System(NamedTuple):
-    network: object
+    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty."""
+
+    network: Network
     diagonal: np.ndarray
     heat: np.ndarray
-    scale: float
-    start: np.ndarray
+    gradient: np.ndarray
+    ties: np.ndarray  # (w,) conductance to held walls, W/K
+    held: np.ndarray  # (w,) their temperature above the level, K
+    level: float  # temperatures are solved for relative to it, which spares digits, K
 
 
 def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
@@ -60,8 +66,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         Jacobi-preconditioned conjugate gradients, or conjugate gradients preconditioned by algebraic multigrid
         (Ruge-Stueben, pyamg); "auto" picks by size and contrast.
     tolerance : float
-        On the norm of the residual heat relative to that of the heat passing through the particles in the mean
-        gradient.
+        On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
 
     Returns
@@ -80,20 +85,18 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     if not 1e-15 < tolerance < 1e-2:
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
     scene.check_steady()
-    gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
     reached = _reached(network, scene)
-    system, held = _system(network, scene, gradient, reached)
+    system = _system(network, scene, reached)
     chosen = _choose(int(reached.sum()), scene) if solver == "auto" else solver
-    x, iterations = _iterate(system, chosen, tolerance, max_iterations)
-    size = _residual(system, x)
-    if not size <= 1.01 * tolerance:  # 1 %: rounding between the recursive and the recomputed residual
+    x, iterations, size = _iterate(system, _start(network, scene, reached), chosen, tolerance, max_iterations)
+    if not size <= tolerance:
         raise RuntimeError(
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
             f"asked for {tolerance:.1e}"
         )
     if scene.periodic:
         x -= np.average(x, weights=network.volumes)
-    x[~reached] = np.nan
+    x = np.where(reached, x + system.level, np.nan)
     stats = {
         "unknowns": int(reached.sum()),
         "iterations": int(iterations),
@@ -101,7 +104,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         "solver": chosen,
         "islands": int((~reached).sum()),
     }
-    return Solution(x, gradient, *_at_walls(network, scene, held, x), stats)
+    return Solution(x, system.gradient, *_at_walls(system, scene, x), stats)
 
 
 def _reached(network, scene):
@@ -111,61 +114,57 @@ def _reached(network, scene):
         conducts = np.zeros(n, dtype=bool)
         conducts[np.repeat(np.arange(n), np.diff(network.indptr))[network.conductance > 0]] = True
         return conducts
-    graph = sparse.csr_matrix((network.conductance, network.indices.astype(np.int32), network.indptr), shape=(n, n))
-    graph.eliminate_zeros()
+    conducts = network.conductance > 0
+    rows = row_numbers(network.indptr)[conducts]
+    graph = sparse.csr_matrix((np.ones(len(rows), np.int8), (rows, network.indices[conducts])), shape=(n, n))
     _, label = csgraph.connected_components(graph, directed=False)
     held = [WALLS.index(name) for name in scene.wall_temperatures]
     anchors = network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]
     return np.isin(label, np.unique(label[anchors]))
 
 
-def _system(network, scene, gradient, reached):
-    """Diagonal, heat sources, scale of the residual and start vector of A x = heat."""
+def _system(network, scene, reached):
     n = len(network.volumes)
-    received, throughput = np.empty(n), np.empty(n)
-    links = (network.centers, network.size, network.indptr, network.indices, network.image, network.conductance)
-    diagonal = np.bincount(np.repeat(np.arange(n), np.diff(network.indptr)), network.conductance, minlength=n)
+    gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
+    diagonal = np.bincount(row_numbers(network.indptr), network.conductance, minlength=n)
     if scene.periodic:
-        kernels.linear_flows(*links, gradient, received, throughput)
-        return _System(network, diagonal, received, float(np.linalg.norm(throughput)), np.zeros(n)), None
-    temperatures, fluxes = scene.wall_temperatures, scene.wall_fluxes
-    held = np.array([temperatures.get(name, np.nan) for name in WALLS])[network.wall_side]
-    is_held = np.isfinite(held)
-    ties = np.where(is_held, network.wall_conductance, 0.0)
-    given = np.array([fluxes.get(name, 0.0) for name in WALLS])[network.wall_side] * network.wall_area
-    level = np.mean(list(temperatures.values()))
-    slope = (np.ptp(list(temperatures.values())) + _flux_rise(network, fluxes)) / network.size.max()
-    kernels.linear_flows(*links, np.full(3, slope), received, throughput)
-    particle = network.wall_particle
-    diagonal += np.bincount(particle, ties, minlength=n)
-    heat = np.bincount(particle, ties * np.where(is_held, held, 0.0) + given, minlength=n)
-    lost = np.bincount(particle, given, minlength=n)[~reached]
-    if np.any(lost != 0):
+        received = np.empty(n)
+        kernels.flows(*_links(network), gradient, np.zeros(n), received, np.empty(n))
+        return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
+    held = np.array([scene.wall_temperatures.get(name, np.nan) for name in WALLS])[network.wall_side]
+    ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
+    level = float(np.mean(list(scene.wall_temperatures.values())))
+    held = np.nan_to_num(held - level)
+    heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
+    diagonal += np.bincount(network.wall_particle, ties, minlength=n)
+    cut_off = np.count_nonzero(heat[~reached])
+    if cut_off:
         raise ValueError(
-            f"Scene.walls: {np.count_nonzero(lost)} particles receive an imposed flux but are cut off from "
-            "every wall temperature; no steady state exists"
+            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every wall temperature; "
+            "no steady state exists"
         )
-    start = _linear_start(network, scene, level)
-    diagonal[~reached], start[~reached] = 0.0, 0.0
-    return _System(network, diagonal, heat, float(np.linalg.norm(throughput)), start), held
+    diagonal[~reached] = 0.0
+    return _System(network, diagonal, heat, gradient, ties, held, level)
 
 
-def _flux_rise(network, fluxes):
-    """Temperature rise that imposed fluxes would make in a bar of the network's mean link conductivity."""
-    if not fluxes:
-        return 0.0
-    k = np.median(network.wall_conductance / network.wall_area) * network.volumes.mean() ** (1 / 3)
-    return max(abs(q) for q in fluxes.values()) * network.size.max() / k if k > 0 else 0.0
+def _links(network):
+    return network.centers, network.size, network.indptr, network.indices, network.image, network.conductance
 
 
-def _linear_start(network, scene, level):
-    """Linear field between two opposite wall temperatures, else their mean."""
-    temperatures = scene.wall_temperatures
-    start = np.full(len(network.volumes), level)
+def _imposed(network, scene):
+    """Heat that imposed fluxes bring in through each wall facet, W."""
+    return np.array([scene.wall_fluxes.get(name, 0.0) for name in WALLS])[network.wall_side] * network.wall_area
+
+
+def _start(network, scene, reached):
+    """Linear field between two opposite wall temperatures, else zero, relative to the level."""
+    temperatures = {} if scene.periodic else scene.wall_temperatures
+    start = np.zeros(len(reached))
     for axis, letter in enumerate("xyz"):
         if {letter + "-", letter + "+"} == set(temperatures):
             low, high = temperatures[letter + "-"], temperatures[letter + "+"]
-            start = low + (high - low) * network.centers[:, axis] / network.size[axis]
+            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
+    start[~reached] = 0.0
     return start
 
 
@@ -176,25 +175,47 @@ def _choose(unknowns, scene):
     return "amg" if unknowns > AMG_UNKNOWNS or (wide and unknowns > 200_000) else "cg"
 
 
-def _iterate(system, solver, tolerance, most):
-    net, x = system.network, system.start.copy()
-    limit = tolerance * system.scale
-    r = np.empty_like(x)
+def _iterate(system, x, solver, tolerance, most):
+    """Solve in rounds: the heat that passes, which sets the limit, is known only once the solution nearly is."""
+    total, solve = 0, _multigrid(system) if solver == "amg" else _jacobi(system)
+    for _ in range(10):
+        r = _residual(system, x)
+        norm, passing = np.linalg.norm(r), _passing(system, x)
+        size = norm / passing if passing > 0 else float(norm > 0)
+        if size <= tolerance or total >= most:
+            break
+        done, x = solve(r, x, 0.9 * tolerance * (passing if passing > 0 else norm), most - total)
+        total += done
+    return x, total, size
+
+
+def _residual(system, x):
+    """Heat that each particle receives in excess; islands, which have no equation, left out."""
+    net, r = system.network, np.empty_like(x)
     kernels.residual(net.indptr, net.indices, net.conductance, system.diagonal, system.heat, x, r)
     r[system.diagonal == 0.0] = 0.0
-    if np.linalg.norm(r) <= limit:
-        return x, 0
-    if solver == "amg":
-        return _multigrid(system, x, r, limit, most)
-    done, total = 0, 0
-    for _ in range(3):  # restart from the recomputed residual where the recursive one has drifted
-        done = kernels.conjugate_gradients(net.indptr, net.indices, net.conductance, system.diagonal, r, x, limit, most)
-        total += abs(done)
-        kernels.residual(net.indptr, net.indices, net.conductance, system.diagonal, system.heat, x, r)
-        r[system.diagonal == 0.0] = 0.0
-        if np.linalg.norm(r) <= limit or total >= most:
-            break
-    return x, total
+    return r
+
+
+def _passing(system, x):
+    """Norm of the heat that passes through the particles."""
+    received, throughput = np.empty_like(x), np.empty_like(x)
+    kernels.flows(*_links(system.network), system.gradient, x, received, throughput)
+    if len(system.ties):
+        particle = system.network.wall_particle
+        throughput += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
+    return float(np.linalg.norm(throughput))
+
+
+def _jacobi(system):
+    net = system.network
+
+    def solve(r, x, limit, most):
+        arrays = (net.indptr, net.indices, net.conductance, system.diagonal)
+        done = kernels.conjugate_gradients(*arrays, r, x, limit, most)
+        return abs(done), x
+
+    return solve
 
 
 def matrix(network, diagonal):
@@ -206,40 +227,42 @@ def matrix(network, diagonal):
     return (off + sparse.diags(np.where(diagonal > 0, diagonal, 1.0))).tocsr()
 
 
-def _multigrid(system, x, r, limit, most):
+def _multigrid(system):
     import pyamg
+    from threadpoolctl import threadpool_limits
 
-    a = matrix(system.network, system.diagonal)
-    hierarchy = pyamg.ruge_stuben_solver(a, max_coarse=500)
-    precondition = hierarchy.aspreconditioner(cycle="V")
-    count = [0]
+    # BLAS threads only spin here: its share is short dot products between compiled sweeps.
+    with threadpool_limits(1, "blas"):
+        a = matrix(system.network, system.diagonal)
+        sweeps = {
+            "presmoother": ("gauss_seidel", {"sweep": "forward"}),
+            "postsmoother": ("gauss_seidel", {"sweep": "backward"}),
+        }
+        hierarchy = pyamg.smoothed_aggregation_solver(a, max_coarse=500, improve_candidates=None, **sweeps)
+        precondition = hierarchy.aspreconditioner(cycle="V")
 
-    def tick(_):
-        count[0] += 1
+    def solve(r, x, limit, most):
+        count = [0]
 
-    dx, _ = sparse.linalg.cg(a, r, rtol=0.0, atol=limit, maxiter=most, M=precondition, callback=tick)
-    return x + dx, count[0]
+        def tick(_):
+            count[0] += 1
 
+        with threadpool_limits(1, "blas"):
+            dx, _ = cg(a, r, rtol=0.0, atol=limit, maxiter=most, M=precondition, callback=tick)
+        return count[0], x + dx
 
-def _residual(system, x):
-    """Recomputed relative residual; islands, which have no equation, left out."""
-    net, r = system.network, np.empty_like(x)
-    kernels.residual(net.indptr, net.indices, net.conductance, system.diagonal, system.heat, x, r)
-    r[system.diagonal == 0.0] = 0.0
-    norm = np.linalg.norm(r)
-    return norm / system.scale if system.scale > 0 else norm
+    return solve
 
 
-def _at_walls(network, scene, held, x):
+def _at_walls(system, scene, x):
     """Temperature and entering heat of each wall facet."""
     if scene.periodic:
         return np.empty(0), np.empty(0)
-    particle, ties = network.wall_particle, network.wall_conductance
-    fluxes = np.array([scene.wall_fluxes.get(name, 0.0) for name in WALLS])[network.wall_side]
-    imposed = fluxes * network.wall_area
-    there = x[particle]
-    rise = np.divide(imposed, ties, out=np.zeros_like(ties), where=ties > 0)
-    is_held = np.isfinite(held)
-    temperature = np.where(is_held, held, there + rise)
-    heat = np.where(is_held, ties * (np.where(is_held, held, 0.0) - there), imposed)
+    network = system.network
+    there, imposed = x[network.wall_particle] - system.level, _imposed(network, scene)
+    conductance = network.wall_conductance
+    rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
+    is_held = np.array([name in scene.wall_temperatures for name in WALLS])[network.wall_side]
+    temperature = system.level + np.where(is_held, system.held, there + rise)
+    heat = np.where(is_held, system.ties * (system.held - there), imposed)
     return temperature, np.where(np.isnan(heat), 0.0, heat)

@@ -99,18 +99,23 @@ def _step(i, e, centers, size, indices, image, branch):
 
 
 @njit(cache=True, parallel=True)
-def linear_flows(centers, size, indptr, indices, image, conductance, gradient, received, throughput):
-    """Heat received by each particle, and the sum of its flows' sizes, in the linear field of a gradient."""
-    for i in prange(len(received)):
+def flows(centers, size, indptr, indices, image, conductance, gradient, x, received, throughput):
+    """Heat received by each particle over its links, and the sum of the sizes of those flows.
+
+    Temperatures are x plus the linear field of the gradient.
+    """
+    for i in prange(len(x)):
         branch = np.empty(3)
-        heat, size_of = 0.0, 0.0
+        heat, passing = 0.0, 0.0
         for e in range(indptr[i], indptr[i + 1]):
             _step(i, e, centers, size, indices, image, branch)
-            w = conductance[e] * (gradient[0] * branch[0] + gradient[1] * branch[1] + gradient[2] * branch[2])
-            heat += w
-            size_of += abs(w)
+            rise = x[indices[e]] - x[i]
+            for k in range(3):
+                rise += gradient[k] * branch[k]
+            heat += conductance[e] * rise
+            passing += abs(conductance[e] * rise)
         received[i] = heat
-        throughput[i] = size_of
+        throughput[i] = passing
 
 
 @njit(cache=True, parallel=True)

@@ -51,6 +51,21 @@ def laguerre(centers, weights, size, *, periodic=True):
     return _compressed(volumes, number, (neighbour, image, area, distance), spacing)
 
 
+def without_hidden(packing, facets):
+    """The packing and its facets without the points that have no cell."""
+    seen = facets.volumes > 0
+    if seen.all():
+        return packing, facets
+    number = np.cumsum(seen) - 1
+    packing = packing._replace(centers=packing.centers[seen], radii=packing.radii[seen])
+    return packing, facets._replace(
+        indptr=np.append(facets.indptr[:-1][seen], facets.indptr[-1]),  # rows of hidden points are empty
+        indices=number[facets.indices].astype(np.uint32),
+        wall_particle=number[facets.wall_particle],
+        volumes=facets.volumes[seen],
+    )
+
+
 def _checked(centers, weights, size, periodic):
     centers = np.ascontiguousarray(centers, dtype=float)
     weights = np.ascontiguousarray(weights, dtype=float)

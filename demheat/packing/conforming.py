@@ -26,6 +26,8 @@ CLEARANCE = 0.4
 LEAST_OFFSET = 0.05
 # Weight of a twin beyond its squared offset: a twin at OFFSET weighs as much as a mean particle.
 EXCESS = 1.0 - OFFSET**2
+# Every point of an interface lies within this many spacings of a twin (a triangular pattern would need 0.58).
+COVER = 0.7
 
 
 class _Twins(NamedTuple):
@@ -48,8 +50,9 @@ def conform(packing, scene, *, seed=0):
     Returns
     -------
     Packing
-        Radii are square roots of the radical weights. Where two interfaces, or an interface and a wall, come closer
-        than a few tenths of a mean radius, twins do not fit and the facets there do not conform.
+        Radii are square roots of the radical weights (up to a constant added to all). Where two interfaces, or an
+        interface and a wall, come closer than a few tenths of a mean radius, twins do not fit and the facets there do
+        not conform.
     """
     if not scene.inclusions:
         return packing
@@ -67,15 +70,22 @@ def conform(packing, scene, *, seed=0):
     twins = _Twins(*(column[good] for column in twins))
     near = np.min([surface.gap(packing.centers) for surface in surfaces], axis=0)
     keep = near > _cleared(packing, twins, radius, near)
-    radii = np.minimum(packing.radii, near)[keep]  # no sphere may reach across an interface and hide a twin
+    kept = np.minimum(packing.radii**2, near**2 - _margin(radius))[keep]
+    # Radical facets do not change when all weights grow alike: make the least one positive.
+    raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
     provenance = {**packing.provenance, "twins": len(centers)}
     return make_packing(
-        np.concatenate([packing.centers[keep], centers]),
-        np.concatenate([radii, np.sqrt(weights)]),
-        packing.size,
-        packing.periodic,
-        provenance,
+        np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
     )
+
+
+def _margin(radius):
+    """What a particle's weight must stay below its squared distance to an interface so that no facet of it reaches it.
+
+    On the interface a twin at lateral distance t has the power t^2 - EXCESS R^2, a particle at distance D and weight w
+    at least D^2 - w; t is at most COVER spacings.
+    """
+    return ((COVER * SPACING) ** 2 - EXCESS) * radius**2
 
 
 class _SphereSurface(NamedTuple):
