@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import combinations, product
+from itertools import product
+from numbers import Integral, Real
 
 import numpy as np
 
@@ -36,10 +37,10 @@ class Material:
     heat_capacity: float | None = None
 
     def __post_init__(self):
-        _check_number("Material.conductivity", self.conductivity, "a finite number >= 0 W/(m K)", lambda v: v >= 0)
+        _number(self, "conductivity", "a finite number >= 0 W/(m K)", lambda v: v >= 0)
         for name in ("density", "heat_capacity"):
             if getattr(self, name) is not None:
-                _check_number(f"Material.{name}", getattr(self, name), "a finite number > 0", lambda v: v > 0)
+                _number(self, name, "a finite number > 0", lambda v: v > 0)
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class Sphere:
 
     def __post_init__(self):
         object.__setattr__(self, "center", _vector("Sphere.center", self.center))
-        _check_number("Sphere.radius", self.radius, "a finite number > 0 m", lambda v: v > 0)
+        _number(self, "radius", "a finite number > 0 m", lambda v: v > 0)
         _check_material("Sphere.material", self.material)
 
     def contains(self, offsets):
@@ -84,10 +85,11 @@ class Layer:
     material: Material
 
     def __post_init__(self):
-        if self.axis not in (0, 1, 2):
+        if not isinstance(self.axis, Integral) or self.axis not in (0, 1, 2):
             raise ValueError(f"Layer.axis = {self.axis!r}: must be 0, 1 or 2")
-        _check_number("Layer.start", self.start, "a finite number of metres")
-        _check_number("Layer.stop", self.stop, f"a finite number > start = {self.start}", lambda v: v > self.start)
+        object.__setattr__(self, "axis", int(self.axis))
+        _number(self, "start", "a finite number of metres")
+        _number(self, "stop", f"a finite number > start = {self.start}", lambda v: v > self.start)
         _check_material("Layer.material", self.material)
 
 
@@ -104,7 +106,7 @@ class Flux:
     value: float
 
     def __post_init__(self):
-        _check_number("Flux.value", self.value, "a finite number of W/m2")
+        _number(self, "value", "a finite number of W/m2")
 
 
 @dataclass(frozen=True)
@@ -236,19 +238,29 @@ class Scene:
 
 
 def _vector(name, value):
-    array = np.asarray(value, dtype=float)
-    if array.shape != (3,) or not np.all(np.isfinite(array)):
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError, OverflowError):
+        array = None
+    if array is None or array.shape != (3,) or not np.all(np.isfinite(array)):
         raise ValueError(f"{name} = {value!r}: must be three finite numbers")
     return tuple(array.tolist())
 
 
-def _check_number(name, value, valid, accept=lambda v: True):
+def _finite(name, value, valid, accept=lambda v: True):
+    """A number as a float, or a ValueError that says what would be valid; no strings, arrays or huge integers."""
     try:
-        good = math.isfinite(value) and accept(value)
-    except TypeError:
+        good = isinstance(value, Real) and math.isfinite(value) and accept(value)
+    except OverflowError:
         good = False
     if not good:
         raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return float(value)
+
+
+def _number(owner, field, valid, accept=lambda v: True):
+    name = f"{type(owner).__name__}.{field}"
+    object.__setattr__(owner, field, _finite(name, getattr(owner, field), valid, accept))
 
 
 def _check_material(name, value):
@@ -285,7 +297,7 @@ def _check_load(scene):
         if name not in WALLS:
             raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(WALLS)}")
         if not isinstance(value, Flux):
-            _check_number(f"Scene.walls[{name!r}]", value, "a finite temperature or a Flux")
+            _finite(f"Scene.walls[{name!r}]", value, "a finite temperature or a Flux")
 
 
 def _meets_box(center, radius, size):
@@ -297,7 +309,7 @@ def _check_geometry(scene):
     for number, inclusion in enumerate(scene.inclusions):
         if isinstance(inclusion, Layer):
             length = scene.size[inclusion.axis]
-            if inclusion.start < 0 or inclusion.stop > length:
+            if inclusion.start < -TOUCH * length or inclusion.stop > length * (1 + TOUCH):
                 raise ValueError(
                     f"Scene.inclusions[{number}]: layer from {inclusion.start} to {inclusion.stop} must "
                     f"lie in the box, 0 to {length}"
@@ -335,38 +347,45 @@ def _check_pairs(scene):
         hidden = (distance + r <= s + tolerance) & ~apart
         for other in np.flatnonzero(hidden | ~(apart | nested)):
             _refuse_pair(numbers[k], numbers[k + 1 + other], hidden[other])
-    layers = [i for i, inclusion in enumerate(scene.inclusions) if isinstance(inclusion, Layer)]
-    for i, j in combinations(range(len(scene.inclusions)), 2):
-        if i in layers or j in layers:
-            _check_layer_pair(scene, i, j, tolerance)
+    for i, inclusion in enumerate(scene.inclusions):
+        if isinstance(inclusion, Layer):
+            for j, other in enumerate(scene.inclusions):
+                if isinstance(other, Sphere) or j > i:
+                    _check_layer_pair(scene, min(i, j), max(i, j), tolerance)
 
 
 def _check_layer_pair(scene, i, j, tolerance):
+    """Refuse a layer and a sphere, or two layers, that overlap partially or of which the later hides the other."""
     first, second = scene.inclusions[i], scene.inclusions[j]
-    layer = first if isinstance(first, Layer) else second
-    spans = []
-    for inclusion in (first, second):
-        if isinstance(inclusion, Layer):
-            if inclusion.axis != layer.axis:
-                raise ValueError(f"Scene.inclusions[{i}], [{j}]: layers along different axes cross each other")
-            spans.append((inclusion.start, inclusion.stop))
-        else:
-            x, length = inclusion.center[layer.axis], scene.size[layer.axis]
-            x = x % length if scene.periodic else x
-            low, high = x - inclusion.radius, x + inclusion.radius
-            spans.append((low, high) if scene.periodic else (max(low, 0.0), min(high, length)))
-    (a, b), (c, d) = spans
-    if isinstance(second, Sphere) and scene.periodic and (c < -tolerance or d > length + tolerance):
-        # An image of the sphere comes in at the far side: it must clear the layer there too.
-        shift = length if c < 0 else -length
-        if c + shift < b - tolerance and d + shift > a + tolerance:
-            _refuse_pair(i, j, False)
-    if d <= a + tolerance or b <= c + tolerance:
+    axis = first.axis if isinstance(first, Layer) else second.axis
+    if isinstance(first, Layer) and isinstance(second, Layer) and first.axis != second.axis:
+        raise ValueError(f"Scene.inclusions[{i}], [{j}]: layers along different axes cross each other")
+    before, after = _spans(scene, first, axis, tolerance), _spans(scene, second, axis, tolerance)
+    if all(d <= a + tolerance or b <= c + tolerance for a, b in before for c, d in after):
         return
-    if isinstance(first, Layer) and a <= c + tolerance and d <= b + tolerance:
-        return
-    hidden = isinstance(second, Layer) and c <= a + tolerance and b <= d + tolerance
-    _refuse_pair(i, j, hidden)
+    if isinstance(second, Layer) and _covers(after, before, tolerance):
+        _refuse_pair(i, j, True)
+    if not (isinstance(first, Layer) and _covers(before, after, tolerance)):
+        _refuse_pair(i, j, False)
+
+
+def _spans(scene, inclusion, axis, tolerance):
+    """Intervals of the box that an inclusion takes along an axis; two if it crosses a periodic face."""
+    if isinstance(inclusion, Layer):
+        return [(inclusion.start, inclusion.stop)]
+    length, x, radius = scene.size[axis], inclusion.center[axis], inclusion.radius
+    x = x % length if scene.periodic else x
+    low, high = x - radius, x + radius
+    spans = [(max(low, 0.0), min(high, length))]
+    if scene.periodic and low < -tolerance:
+        spans.append((low + length, length))
+    if scene.periodic and high > length + tolerance:
+        spans.append((0.0, high - length))
+    return spans
+
+
+def _covers(outer, inner, tolerance):
+    return all(any(a <= c + tolerance and d <= b + tolerance for a, b in outer) for c, d in inner)
 
 
 def _refuse_pair(i, j, hidden):

@@ -1,0 +1,222 @@
+"""Every refusal of the scene, its geometry and its phases."""
+
+import math
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from demheat import Flux, Layer, Material, Scene, Sphere
+
+A, B = Material(1.0), Material(2.0)
+BOX = (1.0, 1.0, 1.0)
+WALLS = {"y-": 0.0, "y+": 1.0}
+PERIODIC = {"gradient": (0, 1, 0)}
+
+
+def scene(*inclusions, size=BOX, **load):
+    return Scene(size, A, inclusions, **(load or {"walls": WALLS}))
+
+
+def ball(x, y, z, radius, material=B):
+    return Sphere((x, y, z), radius, material)
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Material(-1.0), r"Material.conductivity = -1.0: must be a finite number >= 0"),
+        (lambda: Material(math.nan), "Material.conductivity = nan"),
+        (lambda: Material(math.inf), "Material.conductivity = inf"),
+        (lambda: Material("33"), "Material.conductivity = '33'"),
+        (lambda: Material(None), "Material.conductivity = None"),
+        (lambda: Material(1j), "Material.conductivity = 1j"),
+        (lambda: Material(10**400), "Material.conductivity = 1000"),
+        (lambda: Material(np.ones(2)), r"Material.conductivity = array"),
+        (lambda: Material(1.0, density=0.0), "Material.density = 0.0: must be a finite number > 0"),
+        (lambda: Material(1.0, density=1.0, heat_capacity=-1.0), "Material.heat_capacity = -1.0"),
+        (lambda: Sphere((0, 0), 0.1, B), r"Sphere.center = \(0, 0\): must be three finite numbers"),
+        (lambda: Sphere((0, 0, math.nan), 0.1, B), "Sphere.center"),
+        (lambda: Sphere(("a", 0, 0), 0.1, B), r"Sphere.center = \('a', 0, 0\)"),
+        (lambda: Sphere((0, (0, 1), 0), 0.1, B), "Sphere.center"),
+        (lambda: Sphere(None, 0.1, B), "Sphere.center = None"),
+        (lambda: Sphere((0, 0, 0), 0.0, B), "Sphere.radius = 0.0: must be a finite number > 0 m"),
+        (lambda: Sphere((0, 0, 0), -0.1, B), "Sphere.radius = -0.1"),
+        (lambda: Sphere((0, 0, 0), math.inf, B), "Sphere.radius = inf"),
+        (lambda: Sphere((0, 0, 0), 0.1, 2.0), "Sphere.material = 2.0: must be a Material"),
+        (lambda: Layer(3, 0.0, 0.1, B), "Layer.axis = 3: must be 0, 1 or 2"),
+        (lambda: Layer("y", 0.0, 0.1, B), "Layer.axis = 'y'"),
+        (lambda: Layer(1.0, 0.0, 0.1, B), "Layer.axis = 1.0"),
+        (lambda: Layer(0, math.nan, 0.1, B), "Layer.start = nan"),
+        (lambda: Layer(0, 0.2, 0.2, B), "Layer.stop = 0.2: must be a finite number > start = 0.2"),
+        (lambda: Layer(0, 0.2, math.inf, B), "Layer.stop = inf"),
+        (lambda: Layer(0, 0.2, 0.3, None), "Layer.material = None"),
+        (lambda: Flux(math.nan), "Flux.value = nan"),
+        (lambda: Flux("1"), "Flux.value = '1'"),
+    ],
+)
+def test_bad_parts(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("make", "match"),
+    [
+        (lambda: Scene((1.0, 1.0), A, walls=WALLS), r"Scene.size = \(1.0, 1.0\)"),
+        (lambda: Scene(1.0, A, walls=WALLS), "Scene.size = 1.0"),
+        (lambda: Scene((1.0, 0.0, 1.0), A, walls=WALLS), "Scene.size.*all three lengths must be > 0"),
+        (lambda: Scene((1.0, math.nan, 1.0), A, walls=WALLS), "Scene.size"),
+        (lambda: Scene(BOX, 33.0, walls=WALLS), "Scene.matrix = 33.0: must be a Material"),
+        (lambda: Scene(BOX, A, ball(0.5, 0.5, 0.5, 0.1), walls=WALLS), "must be a sequence of Sphere or Layer"),
+        (lambda: Scene(BOX, A, [B], walls=WALLS), r"Scene.inclusions\[0\] = .*must be a Sphere or a Layer"),
+        (lambda: Scene(BOX, A), "neither given; a scene needs exactly one load"),
+        (lambda: Scene(BOX, A, walls=WALLS, gradient=(0, 1, 0)), "both given; a scene needs exactly one load"),
+        (lambda: Scene(BOX, A, gradient=(0, 0, 0)), "Scene.gradient = .*must not be zero"),
+        (lambda: Scene(BOX, A, gradient=(0, math.inf, 0)), "Scene.gradient"),
+        (lambda: Scene(BOX, A, gradient=1.0), "Scene.gradient = 1.0: must be three finite numbers"),
+        (lambda: Scene(BOX, A, walls={}), "Scene.walls = {}: must map at least one of x-"),
+        (lambda: Scene(BOX, A, walls=[25.0, 35.0]), "Scene.walls = .*must map"),
+        (lambda: Scene(BOX, A, walls={"top": 1.0}), "unknown wall 'top'; must be one of x-"),
+        (lambda: Scene(BOX, A, walls={"y-": math.nan}), r"Scene.walls\['y-'\] = nan: must be a finite temperature"),
+        (lambda: Scene(BOX, A, walls={"y-": "hot"}), r"Scene.walls\['y-'\] = 'hot'"),
+        (lambda: Scene(BOX, A, walls={"y-": None}), r"Scene.walls\['y-'\] = None"),
+    ],
+)
+def test_bad_scenes(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()
+
+
+@pytest.mark.parametrize(
+    ("inclusions", "load", "match"),
+    [
+        ([ball(0.5, 0.5, 0.5, 0.51)], PERIODIC, "sphere of diameter 1.02 is larger than the box; must be <= 1.0"),
+        ([ball(0.5, 0.5, 0.5, 0.51)], {}, "sphere of diameter 1.02 is larger than the box"),
+        ([ball(1.2, 0.5, 0.5, 0.1)], {}, "lies outside the box"),
+        ([ball(0.3, 0.5, 0.5, 0.2), ball(0.6, 0.5, 0.5, 0.2)], {}, r"\[0\] and \[1\] overlap partially"),
+        ([ball(0.1, 0.5, 0.5, 0.2), ball(0.8, 0.5, 0.5, 0.2)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
+        ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.2)], {}, r"\[0\] is hidden by inclusions\[1\]"),
+        ([ball(0.5, 0.5, 0.5, 0.1), ball(0.5, 0.5, 0.5, 0.1)], {}, r"\[0\] is hidden by inclusions\[1\]"),
+        ([Layer(0, -0.1, 0.2, B)], {}, "layer from -0.1 to 0.2 must lie in the box, 0 to 1.0"),
+        ([Layer(0, 0.9, 1.1, B)], {}, "layer from 0.9 to 1.1"),
+        ([Layer(0, 0.1, 0.4, B), Layer(0, 0.3, 0.6, B)], {}, r"\[0\] and \[1\] overlap partially"),
+        ([Layer(0, 0.3, 0.6, B), Layer(0, 0.1, 0.4, B)], {}, r"\[0\] and \[1\] overlap partially"),
+        ([Layer(0, 0.2, 0.3, B), Layer(0, 0.1, 0.4, B)], {}, r"\[0\] is hidden by inclusions\[1\]"),
+        ([Layer(0, 0.2, 0.3, B), Layer(0, 0.2, 0.3, B)], {}, r"\[0\] is hidden by inclusions\[1\]"),
+        ([Layer(0, 0.2, 0.3, B), Layer(1, 0.2, 0.3, B)], {}, "layers along different axes cross"),
+        ([Layer(0, 0.2, 0.6, B), ball(0.6, 0.5, 0.5, 0.1)], {}, r"\[0\] and \[1\] overlap partially"),
+        ([ball(0.6, 0.5, 0.5, 0.1), Layer(0, 0.2, 0.6, B)], {}, r"\[0\] and \[1\] overlap partially"),
+        ([ball(0.4, 0.5, 0.5, 0.1), Layer(0, 0.2, 0.6, B)], {}, r"\[0\] is hidden by inclusions\[1\]"),
+        # The image of a sphere across a periodic face counts, whichever of the two comes first.
+        ([ball(0.05, 0.5, 0.5, 0.1), Layer(0, 0.9, 1.0, B)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
+        ([Layer(0, 0.9, 1.0, B), ball(0.05, 0.5, 0.5, 0.1)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
+        ([Layer(0, 0.0, 0.1, B), ball(0.95, 0.5, 0.5, 0.1)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
+        ([Layer(0, 0.0, 0.2, B), ball(0.05, 0.5, 0.5, 0.1)], PERIODIC, r"\[0\] and \[1\] overlap partially"),
+    ],
+)
+def test_bad_geometry(inclusions, load, match):
+    with pytest.raises(ValueError, match=match):
+        scene(*inclusions, **load)
+
+
+@pytest.mark.parametrize(
+    ("inclusions", "load"),
+    [
+        ([ball(0.5, 0.5, 0.5, 0.5)], {}),
+        ([ball(0.0, 0.0, 0.0, 0.5)], PERIODIC),
+        # Touching, within the rounding of 0.1 + 0.2.
+        ([ball(0.2, 0.5, 0.5, 0.1), ball(0.4, 0.5, 0.5, 0.1)], {}),
+        ([ball(0.05, 0.5, 0.5, 0.1), ball(0.85, 0.5, 0.5, 0.1)], PERIODIC),
+        ([ball(0.5, 0.5, 0.5, 0.4), ball(0.5, 0.5, 0.5, 0.2), ball(0.5, 0.5, 0.6, 0.1)], {}),
+        ([ball(0.0, 0.5, 0.5, 0.3), ball(0.95, 0.5, 0.5, 0.1)], PERIODIC),
+        ([ball(-0.05, 0.5, 0.5, 0.1), ball(1.05, 0.5, 0.5, 0.1)], {}),
+        ([Layer(0, 0.0, 0.5, B), Layer(0, 0.5, 1.0, A)], {}),
+        ([Layer(0, 0.2, 1.0 + 1e-15, B)], {}),
+        ([Layer(0, 0.1, 0.9, B), Layer(0, 0.1, 0.3, A), ball(0.6, 0.5, 0.5, 0.2)], {}),
+        ([Layer(0, 0.0, 0.2, B), ball(0.05, 0.5, 0.5, 0.1)], {}),
+        ([Layer(0, 0.0, 0.2, B), ball(0.4, 0.5, 0.5, 0.2), ball(0.9, 0.5, 0.5, 0.1)], PERIODIC),
+        # A layer that fills the cell holds also a sphere that crosses its face.
+        ([Layer(0, 0.0, 1.0, B), ball(0.05, 0.5, 0.5, 0.1, A)], PERIODIC),
+    ],
+)
+def test_good_geometry(inclusions, load):
+    assert len(scene(*inclusions, **load).materials) == len(inclusions) + 1
+
+
+def test_layer_to_a_rounded_face():
+    made = Scene((0.3, 1.0, 1.0), A, [Layer(0, 0.2, 0.1 + 0.2, B)], walls=WALLS)
+    assert_array_equal(made.phase_at([[0.25, 0.5, 0.5], [0.15, 0.5, 0.5]]), [1, 0])
+
+
+def test_phases_are_painted_in_order():
+    made = scene(Layer(2, 0.0, 0.5, B), ball(0.5, 0.5, 0.25, 0.2), ball(0.5, 0.5, 0.25, 0.1, A))
+    points = [[0.5, 0.5, 0.75], [0.1, 0.1, 0.25], [0.5, 0.65, 0.25], [0.5, 0.55, 0.25], [0.5, 0.5, 0.45]]
+    assert_array_equal(made.phase_at(points), [0, 1, 2, 3, 2])
+    assert_array_equal(made.conductivities, [1.0, 2.0, 2.0, 1.0])
+    assert made.phase_at(np.empty((0, 3))).shape == (0,)
+
+
+def test_phases_of_a_periodic_cell_repeat():
+    made = Scene((1.0, 2.0, 3.0), A, [ball(0.05, 1.9, 0.0, 0.3), Layer(2, 1.0, 1.4, B)], gradient=(1, 0, 0))
+    points = np.random.default_rng(0).uniform(0, 1, size=(200, 3)) * made.size
+    phases = made.phase_at(points)
+    assert set(phases) == {0, 1, 2}
+    for shift in ((1, 0, 0), (0, -2, 0), (-1, 2, 6)):
+        assert_array_equal(made.phase_at(points + np.array(shift, dtype=float)), phases)
+    assert_array_equal(made.phase_at([[0.9, 0.1, 2.9], [0.5, 1.0, 0.0]]), [1, 0])
+
+
+def test_images_cover_the_phase():
+    made = Scene(BOX, A, [ball(0.05, 0.95, 0.5, 0.2), ball(0.5, 0.5, 0.5, 0.1), ball(1.3, 2.4, 0.0, 0.1)], **PERIODIC)
+    found = made.images()
+    assert [phase for phase, _ in found].count(1) == 4
+    assert [phase for phase, _ in found].count(2) == 1
+    assert [phase for phase, _ in found].count(3) == 2
+    points = np.random.default_rng(1).uniform(0, 1, size=(3000, 3))
+    painted = np.zeros(len(points), dtype=int)
+    for phase, sphere in found:
+        painted[sphere.contains(points - sphere.center)] = phase
+    assert_array_equal(painted, made.phase_at(points))
+    cut = scene(ball(-0.05, 0.5, 0.5, 0.1))
+    assert_array_equal([phase for phase, _ in cut.images()], [1])
+
+
+def test_load_and_its_axis():
+    made = scene(walls={"z-": 25, "z+": Flux(100.0)})
+    assert not made.periodic
+    assert made.axis == 2
+    assert made.wall_temperatures == {"z-": 25.0}
+    assert made.wall_fluxes == {"z+": 100.0}
+    assert made.volume == 1.0
+    made.check_steady()
+    cell = Scene((1.0, 2.0, 3.0), A, gradient=[0, 1, 2])
+    assert cell.periodic
+    assert cell.gradient == (0.0, 1.0, 2.0)
+    assert_allclose(cell.volume, 6.0)
+    assert cell.wall_temperatures == cell.wall_fluxes == {}
+    cell.check_steady()
+
+
+@pytest.mark.parametrize("walls", [{"x-": 1.0}, {"x-": 1.0, "y+": 2.0}, {"x-": 1.0, "x+": 2.0, "y-": 3.0}])
+def test_other_loads_have_no_axis(walls):
+    with pytest.raises(ValueError, match="only two opposite loaded walls define an axis"):
+        scene(walls=walls).axis  # noqa: B018
+
+
+def test_fluxes_alone_fix_no_temperature():
+    with pytest.raises(ValueError, match="needs at least one wall with a temperature"):
+        scene(walls={"x-": Flux(1.0), "x+": Flux(-1.0)}).check_steady()
+
+
+def test_scenes_are_values():
+    walls = dict(WALLS)
+    made = scene(ball(0.5, 0.5, 0.5, 0.2), walls=walls)
+    walls["x-"] = 3.0
+    assert made.walls == WALLS
+    assert made == scene(Sphere([0.5, 0.5, 0.5], np.float64(0.2), B))
+    assert Material(33) == Material(33.0)
+    assert isinstance(Material(33).conductivity, float)
+    with pytest.raises(FrozenInstanceError):
+        made.matrix = B
