@@ -108,7 +108,7 @@ def _load(path, text):
                 return None
             arrays = (stored[name] for name in ("centers", "radii", "size", "periodic"))
             return Packing(*arrays, json.loads(str(stored["provenance"])))
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
         warnings.warn(f"cached packing {path} cannot be read and is made again: {error}", stacklevel=3)

@@ -1,0 +1,137 @@
+import numba
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from demheat.packing.base import Packing, make_packing
+from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.relax import relax
+
+
+def random_packing(seed, *, most=300, ratio=10.0):
+    """Points anywhere, radii over a ratio, sides from thin to wide, each axis periodic or walled."""
+    rng = np.random.default_rng(seed)
+    number, size, periodic = int(rng.integers(1, most)), rng.uniform(0.2, 2.0, 3), rng.random(3) < 0.5
+    radii = 0.1 * np.exp(-rng.uniform(0, np.log(ratio), number))
+    return make_packing(rng.random((number, 3)) * size, radii, size, periodic, {})
+
+
+def distances(packing):
+    """All nearest-image distances, (n, n): the slow twin."""
+    offsets = packing.centers[None] - packing.centers[:, None]
+    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
+    result = np.sqrt((offsets**2).sum(axis=-1))
+    np.fill_diagonal(result, np.inf)
+    return result
+
+
+def rows(near):
+    """Compressed rows of a boolean matrix."""
+    return np.concatenate(([0], np.cumsum(near.sum(axis=1)))), np.nonzero(near)[1]
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_lists_are_those_of_brute_force(seed):
+    packing = random_packing(seed)
+    rng = np.random.default_rng(1000 + seed)
+    scale, skin = rng.uniform(0, 2), rng.choice([0.0, 0.1, 1.0])  # up to several times the box
+    indptr, indices = neighbours(packing, scale=scale, skin=skin)
+    near = distances(packing) < scale * (packing.radii[:, None] + packing.radii) + skin
+    expected = rows(near)
+    assert_array_equal(indptr, expected[0])
+    assert_array_equal(indices, expected[1])
+    assert indices.dtype == np.uint32
+
+
+def test_size_ratio_1000_and_centres_beyond_a_wall():
+    packing = random_packing(3, ratio=1000.0)
+    # Hand-made: the search must not rely on the gate of make_packing.
+    packing = Packing(packing.centers * 1.5 - 0.2, packing.radii, packing.size, np.zeros(3, dtype=bool), {})
+    indptr, indices = neighbours(packing, scale=1.3)
+    expected = rows(distances(packing) < 1.3 * (packing.radii[:, None] + packing.radii))
+    assert_array_equal(indptr, expected[0])
+    assert_array_equal(indices, expected[1])
+
+
+def test_a_wide_distribution_costs_few_candidates():
+    """Cells visited must follow the size of each level: one large sphere must not coarsen the grid of the others."""
+    from demheat.packing.neighbours import build_grid
+
+    rng = np.random.default_rng(0)
+    points = np.column_stack((rng.random((5000, 3)), np.full(5000, 0.01)))
+    points[0, 3] = 0.2
+    box = np.ones(3)
+    grid = build_grid(points, box, np.ones(3, dtype=bool), scale=1.0, skin=0.0)
+    # 4 particles per cell of the small level; with one grid the cells would be as large as the large sphere.
+    assert grid.dims[1:].prod() >= 5000 / 8
+
+
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
+def test_bits_do_not_depend_on_threads():
+    packing = random_packing(5, most=3000)
+    before = numba.get_num_threads()
+    try:
+        numba.set_num_threads(1)
+        one = neighbours(packing, scale=1.5, skin=0.1)
+        numba.set_num_threads(2)
+        two = neighbours(packing, scale=1.5, skin=0.1)
+    finally:
+        numba.set_num_threads(before)
+    assert_array_equal(one[0], two[0])
+    assert_array_equal(one[1], two[1])
+
+
+@pytest.fixture(scope="module")
+def relaxed():
+    return relax(2000, seed=1)
+
+
+@pytest.mark.parametrize("coordination", [4.0, 7.5, 14.0])
+def test_coordination_is_met(relaxed, coordination):
+    indptr, indices, gap = contacts(relaxed, coordination=coordination)
+    # Exact: one pair more or less changes the mean by 2/2000.
+    assert_allclose(len(indices) / 2000, coordination, atol=2 / 2000)
+    ratio = distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii)
+    expected = rows(ratio <= 1 + gap)
+    assert_array_equal(indptr, expected[0])
+    assert_array_equal(indices, expected[1])
+    matrix = np.zeros((2000, 2000), dtype=bool)
+    matrix[np.repeat(np.arange(2000), np.diff(indptr)), indices] = True
+    assert_array_equal(matrix, matrix.T)
+
+
+def test_gap_given_and_gap_found_agree(relaxed):
+    found = contacts(relaxed, coordination=7.5)
+    given = contacts(relaxed, gap=found[2])
+    for a, b in zip(found, given, strict=True):
+        assert_array_equal(a, b)
+
+
+def test_walled_coordination_counts_the_bulk_only():
+    packing = relax(2000, periodic=False, phi=0.6, seed=1)
+    indptr, _, _ = contacts(packing, coordination=7.5, margin=4.0)
+    depth = np.minimum(packing.centers, packing.size - packing.centers).min(axis=1)
+    bulk = depth >= 4 * packing.radii.mean()
+    assert 50 < bulk.sum() < 1500
+    # One pair more or less.
+    assert_allclose(np.diff(indptr)[bulk].mean(), 7.5, atol=2 / bulk.sum())
+    # A particle at a wall has fewer neighbours: the mean over all must be visibly lower.
+    assert np.diff(indptr).mean() < 7.4
+    everywhere = contacts(packing, coordination=7.5, margin=0.0)
+    assert_allclose(len(everywhere[1]) / 2000, 7.5, atol=2 / 2000)
+
+
+def test_bad_input(relaxed):
+    walled = relaxed._replace(periodic=np.zeros(3, dtype=bool))
+    for call in (
+        lambda: neighbours(relaxed, scale=-1.0),
+        lambda: neighbours(relaxed, skin=np.nan),
+        lambda: contacts(relaxed, coordination=0),
+        lambda: contacts(relaxed, coordination=2000),
+        lambda: contacts(relaxed, coordination=np.nan),
+        lambda: contacts(relaxed, gap=-1.0),
+        lambda: contacts(relaxed, margin=-1.0),
+        lambda: contacts(walled, margin=50.0),
+    ):
+        with pytest.raises(ValueError, match="scale|skin|coordination|gap|margin"):
+            call()

@@ -1,0 +1,257 @@
+import importlib
+import json
+import os
+import subprocess
+import sys
+
+import numba
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from demheat.packing.base import make_packing
+from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal
+from demheat.packing.relax import relax, settle
+from demheat.packing.relax_kernels import forces, move
+
+module = importlib.import_module("demheat.packing.relax")
+
+
+@pytest.fixture(scope="module")
+def packing():
+    return relax(8000, seed=2)
+
+
+def pair_overlaps(packing):
+    """Overlap of each overlapping pair (once), m, by distances that the relaxation had no part in."""
+    indptr, indices = neighbours(packing)
+    rows = np.repeat(np.arange(packing.number), np.diff(indptr))
+    offsets = packing.centers[indices] - packing.centers[rows]
+    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
+    overlaps = packing.radii[rows] + packing.radii[indices] - np.linalg.norm(offsets, axis=1)
+    return overlaps[rows < indices]
+
+
+def test_phi_is_exact_and_overlaps_are_as_reported(packing):
+    assert packing.number == 8000
+    assert_allclose(packing.phi, 0.64, rtol=1e-13)  # rounding of a sum of 8000 cubes
+    reached, overlaps = packing.provenance, pair_overlaps(packing)
+    assert reached["converged"] and reached["mean_overlap"] <= 0.002
+    # Rounding of positions, relative to overlaps of 1e-3.
+    assert_allclose(overlaps.mean() / (2 * packing.radii.mean()), reached["mean_overlap"], rtol=1e-9)
+    assert_allclose(overlaps.max() / (2 * packing.radii.mean()), reached["max_overlap"], rtol=1e-9)
+    # At 0.64 there must be overlapping pairs, several per particle: spheres that vanished would have none.
+    assert len(overlaps) > 8000
+
+
+def test_centres_lie_in_the_cell(packing):
+    assert packing.centers.min() >= 0 and np.all(packing.centers < packing.size)
+
+
+def test_packing_is_isotropic(packing):
+    """Second and fourth moments of the branch vectors within sampling error, no Bragg peak of the starting grid."""
+    indptr, indices, _ = contacts(packing, coordination=7.5)
+    rows = np.repeat(np.arange(8000), np.diff(indptr))
+    normals = packing.centers[indices] - packing.centers[rows]
+    normals -= np.rint(normals)
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    links = len(indices) / 2
+    fabric = normals.T @ normals / len(normals)
+    # Limits are 4 standard deviations of independent links: variance 4/45 of n_x^2, 1/15 of n_x n_y, 16/225 of n_x^4.
+    assert_allclose(np.diag(fabric), 1 / 3, atol=4 * np.sqrt(4 / 45 / links))
+    assert_allclose(fabric[np.triu_indices(3, 1)], 0.0, atol=4 * np.sqrt(1 / 15 / links))
+    assert_allclose((normals**4).mean(axis=0), 1 / 5, atol=4 * np.sqrt(16 / 225 / links))
+    # Structure factor at the wave vectors of the 20^3 grid: exponential of mean below 1 without order, so above 12
+    # once in 1e5; a jitter of 0.15 spacings left 100 to 300 at this number.
+    peaks = np.abs(np.exp(2j * np.pi * 20 * packing.centers).sum(axis=0)) ** 2 / 8000
+    assert peaks.max() < 12
+
+
+@pytest.mark.parametrize("periodic", [False, (True, False, True)])
+def test_walls_hold(periodic):
+    packing = relax(1500, phi=0.58, periodic=periodic, size=(0.02, 0.01, 0.01), seed=4)
+    assert packing.provenance["converged"]
+    depth = np.minimum(packing.centers, packing.size - packing.centers) / packing.radii[:, None]
+    # A particle may sink into a wall as deep as it overlaps others, here a few percent at most of the mean diameter.
+    tolerance = 2 * packing.provenance["max_overlap"] * packing.radii.mean() / packing.radii.min()
+    assert depth[:, ~packing.periodic].min() >= 1 - tolerance
+    assert packing.provenance["max_overlap"] < 0.04
+    # The periodic axes have no such layer.
+    if packing.periodic.any():
+        assert depth[:, packing.periodic].min() < 0.2
+
+
+@pytest.mark.parametrize("radii", [Bidisperse(3.0, 0.1), Lognormal(0.6, 2.0), Gaussian(0.0)])
+def test_wide_and_equal_sizes_converge(radii):
+    packing = relax(1000, radii=radii, phi=0.6, seed=0)
+    assert packing.provenance["converged"]
+    assert_allclose(packing.phi, 0.6, rtol=1e-13)
+
+
+def test_more_than_fits_is_said():
+    packing = relax(300, phi=0.74, seed=0, steps=60)
+    assert not packing.provenance["converged"] and packing.provenance["iterations"] == 60
+    assert packing.provenance["mean_overlap"] > 0.01
+
+
+@pytest.mark.parametrize("number", [1, 2, 7, 101, 997])
+def test_any_number_is_exact(number):
+    packing = relax(number, phi=0.01, size=(1.0, 2.0, 3.0), allow_few=True, steps=20)
+    assert packing.number == number
+
+
+def test_seeds_differ_and_repeat():
+    first, again, other = (relax(200, seed=seed, steps=20) for seed in (0, 0, 1))
+    assert_array_equal(first.centers, again.centers)
+    assert not np.array_equal(first.radii, other.radii)
+
+
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
+def test_bits_do_not_depend_on_threads():
+    before = numba.get_num_threads()
+    try:
+        numba.set_num_threads(1)
+        one = relax(3000, steps=60)
+        numba.set_num_threads(2)
+        two = relax(3000, steps=60)
+    finally:
+        numba.set_num_threads(before)
+    assert_array_equal(one.centers, two.centers)
+    assert one.provenance == two.provenance
+
+
+def test_bits_do_not_depend_on_the_compiler():
+    """The kernels as plain Python do the same: nothing in them leans on undefined behaviour."""
+    code = "from demheat.packing.relax import relax; print(relax(30, steps=3, allow_few=True, phi=.3).centers.tolist())"
+    plain = subprocess.run(
+        [sys.executable, "-c", code],
+        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    compiled = relax(30, steps=3, allow_few=True, phi=0.3).centers
+    # Rounding only: a compiler may fuse a product and a sum.
+    assert_allclose(np.array(json.loads(plain.stdout)), compiled, rtol=0, atol=1e-13)
+
+
+def energy(points, size, period):
+    """Half the squared overlaps of all pairs and walls: the slow twin."""
+    offsets = points[None, :, :3] - points[:, None, :3]
+    offsets -= np.where(period > 0, period * np.rint(offsets / np.where(period > 0, period, 1.0)), 0.0)
+    gaps = points[:, 3] + points[:, None, 3] - np.linalg.norm(offsets, axis=-1)
+    np.fill_diagonal(gaps, 0.0)
+    low, high = points[:, 3:] - points[:, :3], points[:, :3] + points[:, 3:] - size
+    walls = (np.maximum(low, 0) ** 2 + np.maximum(high, 0) ** 2)[:, period == 0]
+    return np.sum(np.maximum(gaps, 0) ** 2) / 4 + np.sum(walls) / 2
+
+
+def test_forces_are_the_slope_of_the_energy():
+    rng = np.random.default_rng(0)
+    n, size, period = 40, np.array([4.0, 5.0, 6.0]), np.array([4.0, 0.0, 6.0])
+    points = np.column_stack((rng.random((n, 3)) * size, rng.uniform(0.3, 1.0, n)))
+    near = ~np.eye(n, dtype=bool)
+    indptr, indices = np.arange(0, n * n, n - 1)[: n + 1], np.nonzero(near)[1].astype(np.uint32)
+    velocity, mobility = rng.standard_normal((n, 3)), rng.uniform(0.5, 2.0, n)
+    mobility[:5] = 0.0
+    force, sums = np.empty((n, 3)), np.empty((1, 6))
+    forces(points, velocity, mobility, indptr, indices, size, period, force, sums)
+    h, slope = 1e-6, np.empty((n, 3))
+    for i in range(n):
+        for axis in range(3):
+            up, down = points.copy(), points.copy()
+            up[i, axis] += h
+            down[i, axis] -= h
+            slope[i, axis] = (energy(up, size, period) - energy(down, size, period)) / (2 * h)
+    # Central differences of an energy of about 10: rounding 1e-15 * 10 / h.
+    assert_allclose(force, -slope * mobility[:, None], atol=1e-7)
+    free = mobility > 0
+    mass = 1 / mobility[free, None]
+    work = (mass * force[free] * velocity[free], mass * force[free] ** 2, mass * velocity[free] ** 2)
+    assert_allclose(sums[0, :3], [part.sum() for part in work], rtol=1e-12)  # order of summation
+
+
+def test_move_and_farthest():
+    rng = np.random.default_rng(1)
+    points, velocity, force = rng.random((600, 4)), rng.random((600, 3)), rng.random((600, 3))
+    start, expected = points[:, :3].copy(), 0.3 * velocity + 0.2 * force
+    farthest, moved = np.empty(3), points.copy()
+    move(moved, start, velocity, force, 0.3, 0.2, 0.5, farthest)
+    assert_allclose(velocity, expected, rtol=1e-14)
+    assert_allclose(moved[:, :3], start + 0.5 * expected, rtol=1e-14)
+    assert_allclose(farthest.max(), ((0.5 * expected) ** 2).sum(axis=1).max(), rtol=1e-12)
+    assert_array_equal(moved[:, 3], points[:, 3])
+
+
+def test_lists_are_renewed_in_time(monkeypatch):
+    """A list in every step gives the same packing as lists with a skin, up to the order of summation."""
+    usual = relax(500, steps=40)
+    monkeypatch.setattr(module, "SKIN", 1e-12)
+    fresh = relax(500, steps=40)
+    assert fresh.provenance["lists"] > 40 > usual.provenance["lists"]
+    # Rounding grows tenfold in about 10 steps of colliding spheres.
+    assert_allclose(fresh.centers, usual.centers, rtol=0, atol=1e-9)
+
+
+def test_settle_moves_only_free_particles():
+    packing = relax(1000, steps=5)
+    fixed = packing.centers[:, 0] < 0.3
+    settled = settle(packing, fixed=fixed, steps=150)
+    assert_array_equal(settled.centers[fixed], packing.centers[fixed])
+    assert_array_equal(settled.radii, packing.radii)
+    # A few free ones touch nothing and stay.
+    assert np.any(settled.centers != packing.centers, axis=1)[~fixed].mean() > 0.95
+    mobile = settled.provenance["settled"]
+    # From 5 steps (about 15 %) to far less; the fixed ones keep their overlaps.
+    assert mobile["mean_overlap"] < 0.3 * packing.provenance["mean_overlap"]
+    assert settle(packing, fixed=np.ones(1000, dtype=bool)).provenance["settled"]["iterations"] == 0
+
+
+def test_settle_parts_twins_at_one_place():
+    centers = np.array([[0.5, 0.5, 0.5], [0.5, 0.5, 0.5]])
+    packing = settle(make_packing(centers, [0.1, 0.1], (1, 1, 1), True, {}), steps=200, overlap=1e-6)
+    # Less the overlap allowed; nothing holds them back when they fly apart.
+    assert 0.2 * (1 - 1e-6) < np.linalg.norm(np.diff(packing.centers, axis=0)) < 0.5
+
+
+def test_progress_is_told():
+    seen = []
+    packing = relax(200, progress=lambda step, mean: seen.append((step, mean)))
+    assert [step for step, _ in seen] == list(range(packing.provenance["iterations"] + 1))
+    assert seen[-1][1] == packing.provenance["mean_overlap"]
+
+
+@pytest.mark.parametrize(
+    "change, name",
+    [
+        ({"number": 99}, "allow_few"),
+        ({"number": 0, "allow_few": True}, "number"),
+        ({"number": 100.0}, "number"),
+        ({"number": True, "allow_few": True}, "number"),
+        ({"size": (1, 1, 0)}, "size"),
+        ({"size": (1, 1, float("nan"))}, "size"),
+        ({"phi": 0.0}, "phi"),
+        ({"phi": 0.75}, "phi"),
+        ({"phi": float("nan")}, "phi"),
+        ({"radii": 0.3}, "radii"),
+        ({"radii": Listed([1.0, 2.0])}, "2 radii for 200"),
+        ({"periodic": 1}, "periodic"),
+        ({"seed": -1}, "seed"),
+        ({"seed": 0.5}, "seed"),
+        ({"overlap": -1.0}, "overlap"),
+        ({"steps": -1}, "steps"),
+        ({"size": (1.0, 1.0, 0.05)}, "side 2 must be"),
+        ({"size": (1.0, 1.0, 0.02), "periodic": False}, "side 2 must be"),
+        ({"radii": Bidisperse(20.0, 0.005)}, "side 0 must be"),
+    ],
+)
+def test_bad_input(change, name):
+    with pytest.raises(ValueError, match=name):
+        relax(**({"number": 200} | change))
+
+
+@pytest.mark.parametrize("change", [{"fixed": np.zeros(3, dtype=bool)}, {"fixed": np.zeros(200)}, {"steps": -1}])
+def test_settle_bad_input(change):
+    with pytest.raises(ValueError, match="fixed|steps"):
+        settle(relax(200, steps=0), **change)
