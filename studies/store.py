@@ -57,3 +57,9 @@ def replaced(path):
         temporary.replace(path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def printed(study):
+    """Numbers that the paper prints for a study, {quantity: value}, from studies/paper/STUDY.csv."""
+    with (Path(__file__).parent / "paper" / f"{study}.csv").open(newline="") as file:
+        return {row["quantity"]: float(row["value"]) for row in csv.DictReader(file)}

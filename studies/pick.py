@@ -1,0 +1,56 @@
+"""Rows of a data frame by their columns, and errors averaged over packings: what claims and figures are made of."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def pick(df, **where):
+    """Rows whose columns have the given values; None means empty, a missing column is empty everywhere."""
+    mask = np.ones(len(df), dtype=bool)
+    for column, value in where.items():
+        if column not in df:
+            mask &= value is None
+        else:
+            mask &= (df[column].isna() if value is None else df[column] == value).to_numpy(dtype=bool)
+    return df[mask]
+
+
+def finest(rows):
+    """Rows of the finest resolution among them: most particles or voxels, or smallest elements."""
+    fineness = rows["particles"].fillna(0) + rows["voxels"].fillna(0) - rows["size"].fillna(0)
+    return rows[fineness == fineness.max()]
+
+
+def mean_errors(df, by="contrast", **where):
+    """Mean error over packings for each value of a column, %, as a Series; not-a-number if a row has none."""
+    groups = pick(df, **where).groupby(by)["error_percent"]
+    return groups.agg(lambda errors: errors.mean(skipna=False))
+
+
+def worst(df, **where):
+    """Largest |mean error over packings| of any contrast, %; None if there are no such rows."""
+    errors = mean_errors(df, **where)
+    return abs(errors).max(skipna=False) if len(errors) else None
+
+
+def extrapolated(df, coarse, fine, **where):
+    """Largest |error| of any contrast after extrapolating two particle numbers at second order, %; None without rows.
+
+    The error falls with the square of the particle size, that is with N^(-2/3).
+    """
+    errors = [mean_errors(df, particles=number, **where) for number in (coarse, fine)]
+    if not len(errors[0]) or not len(errors[1]):
+        return None
+    rest = (errors[0] - errors[1]) / ((fine / coarse) ** (2 / 3) - 1)
+    return abs(errors[1] - rest).max(skipna=False)
+
+
+def order(sizes, errors):
+    """Slope of log |error| over log size by least squares."""
+    return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
+
+
+def present(claims):
+    """Claims whose rows exist: a quick run has no full rows to judge."""
+    return (claim for claim in claims if claim[1] is not None)

@@ -1,0 +1,157 @@
+"""Stability: extreme contrasts, nearly touching spheres and single precision, each verified or refused.
+
+A centred sphere in a cube between two isothermal faces. Contrasts from a perfect insulator to a million and to infinity
+(which only Rayleigh's method takes: a material's conductivity is finite), volume fractions up to 0.52 (spheres of
+neighbouring cells touch at 0.5236). A row is good if its conductivity agrees with the exact value, or if the method
+says why it does not compute it; a wrong number without a word fails.
+"""
+
+import math
+import warnings
+
+from demheat.gallery import EDGE, sphere_in_cube
+from studies import methods
+from studies.figures import GREY, LOOK, RED, look, resolution
+from studies.pick import finest, pick
+
+EXTREMES = (0.0, 1e-6, 1e6, math.inf)
+FRACTIONS = (0.5, 0.51, 0.52)
+CLOSE = (0.0, 0.01, 10.0, 1e6)
+SINGLE = ((methods.THIRD, 0.01), (methods.THIRD, 10.0), *((methods.THIRD, c) for c in EXTREMES[:3]), (0.5, 10.0))
+APPROACH = (1e2, 1e4, 1e6, 1e8, math.inf)
+# Quick and full resolution.
+RESOLUTIONS = {
+    "dem": ({"particles": 10_000, "seed": 0}, {"particles": 100_000, "seed": 0}),
+    "fem": ({"size": 0.1 * EDGE}, {"size": 0.05 * EDGE}),
+    "fft": ({"voxels": 64}, {"voxels": 128}),
+    "fft-em": ({"voxels": 64}, {"voxels": 128}),
+}
+# Per cent; what a user may take for right at full resolution.
+LIMIT = 1.0
+
+
+def _cases():
+    for name, resolutions in RESOLUTIONS.items():
+        for knobs in resolutions:
+            yield from (methods.case(name, fraction=methods.THIRD, contrast=c, **knobs) for c in EXTREMES)
+            yield from (methods.case(name, fraction=f, contrast=c, **knobs) for f in FRACTIONS for c in CLOSE)
+            if name in ("fft", "fft-em"):
+                single = {**knobs, "precision": "float32"}
+                yield from (methods.case(name, fraction=f, contrast=c, **single) for f, c in SINGLE)
+    for fraction in (methods.THIRD, *FRACTIONS):
+        for contrast in APPROACH:
+            yield {"name": "lattice", "fraction": fraction, "contrast": contrast, "method": "references.lattice"}
+
+
+CASES = list(_cases())
+PAPER = {}
+
+
+def QUICK(case):
+    """Coarse rows."""
+    coarse = RESOLUTIONS.get(case["name"], ({},))[0]
+    return coarse.items() <= case.items()
+
+
+def run(name, fraction, contrast, method, **knobs):
+    """Solve and compare with the exact value; a refusal is a result, and so is a warning."""
+    from references import lattice
+
+    exact = lattice.conductivity("sc", contrast, fraction)
+    if name == "lattice":
+        limit = lattice.conductivity("sc", math.inf, fraction)
+        return {"k_ratio": exact, "error_percent": 100 * (exact / limit - 1)}
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            row = methods.solve_row(sphere_in_cube(contrast, fraction=fraction), exact, method=method, **knobs)
+        except (ValueError, RuntimeError) as error:
+            row = {"status": "unsupported", "note": f"refused: {' '.join(str(error).split())}"}
+    row["warning"] = "; ".join(dict.fromkeys(str(each.message) for each in caught))
+    return row
+
+
+def warm_up(name, fraction, contrast, method, **knobs):
+    """Load the solver."""
+    methods.warm_up(method, **knobs)
+
+
+def claims(df):
+    """No wrong number without a word, few refusals, and single precision that tells no other story."""
+    solves = df[df["name"] != "lattice"]
+    finite = solves[solves["contrast"] < math.inf]
+    wrong = finite[(finite["status"] == "ok") & finite["warning"].isna() & ~(finite["error_percent"].abs() <= LIMIT)]
+    yield f"Numbers more than {LIMIT:g} % wrong, returned without a warning", float(len(wrong)), "= 0"
+    mute = solves[(solves["status"] == "unsupported") & (solves["note"] == "")]
+    yield "Refusals without a reason", float(len(mute)), "= 0"
+    silent = solves[(solves["contrast"] == math.inf) & (solves["status"] != "unsupported")]
+    yield "Infinite conductivities taken by a method", float(len(silent)), "= 0"
+    verified = (finite["status"] == "ok") & (finite["error_percent"].abs() <= LIMIT)
+    yield f"Share of rows at finite contrast right within {LIMIT:g} %", verified.mean(), ">= 0.8"
+    yield "FFT in single precision: worst relative difference from double precision", _single(df), 1e-4
+    far = pick(df, name="lattice", contrast=1e8)
+    if len(far):
+        yield (
+            "Lattice: difference between contrast 1e8 and infinity, relative",
+            far["error_percent"].abs().max() / 100,
+            1e-6,
+        )
+
+
+def _single(df):
+    keys = ["name", "fraction", "contrast", "voxels"]
+    pair = pick(df, precision="float32").merge(pick(df, precision=None), on=keys, suffixes=("", "_double"))
+    pair = pair[(pair["status"] == "ok") & (pair["status_double"] == "ok")]
+    return abs(pair["k_ratio"] / pair["k_ratio_double"] - 1).max(skipna=False)
+
+
+def table(df):
+    """Error in per cent of each method and resolution on each scene, or what it did instead."""
+    solves = df[df["name"] != "lattice"]
+    method = solves.apply(_method, axis=1)
+    scene = solves.apply(_scene, axis=1)
+    cells = solves.apply(_verdict, axis=1)
+    wide = cells.groupby([method, scene], sort=False).first().unstack(sort=False).fillna("")
+    return wide.rename_axis("error, %").reset_index()
+
+
+def _method(row):
+    single = ", single precision" if row["precision"] == "float32" else ""
+    return f"{LOOK[row['name']][0]}, {resolution(row['particles'], row['size'], row['voxels'])}{single}"
+
+
+def _scene(row):
+    return f"f = {row['fraction']:.3g}, {row['contrast']:.3g}"
+
+
+def _verdict(row):
+    if row["status"] != "ok":
+        return {"unsupported": "refused"}.get(row["status"], row["status"])
+    return f"{row['error_percent']:.2g}" + (" (warns)" if isinstance(row["warning"], str) else "")
+
+
+def plot(df):
+    """Error of the finest rows on each scene; refusals above all of them."""
+    from matplotlib import pyplot
+
+    solves = df[(df["name"] != "lattice") & (df["contrast"] < math.inf)]
+    scenes = list(dict.fromkeys(solves.sort_values(["fraction", "contrast"]).apply(_scene, axis=1)))
+    figure, axes = pyplot.subplots(figsize=(11, 5))
+    top = 30 * max(LIMIT, solves["error_percent"].abs().max())
+    for number, name in enumerate(RESOLUTIONS):
+        rows = finest(solves[(solves["name"] == name) & solves["precision"].isna()])
+        place = rows.apply(_scene, axis=1).map(scenes.index) + 0.15 * (number - 1.5)
+        axes.plot(place, rows["error_percent"].abs().fillna(top), **look(name, linestyle=""))
+    axes.axhline(LIMIT, color=RED, linewidth=1)
+    axes.annotate(
+        f"{LIMIT:g} %: wrong above, unless warned of", (len(scenes) - 0.5, LIMIT), fontsize=8, ha="right", va="bottom"
+    )
+    axes.axhline(top, color=GREY, linewidth=0.8, linestyle=":")
+    axes.annotate("refused", (-0.45, top), fontsize=8, va="bottom", color=GREY)
+    axes.set(yscale="log", ylabel="|error of the conductivity|, %", xticks=range(len(scenes)))
+    axes.set_xticklabels(scenes, rotation=40, ha="right")
+    axes.set_xlabel("volume fraction and contrast of the sphere (neighbours touch at f = 0.5236)")
+    wrong = int((solves["error_percent"].abs() > LIMIT).sum())
+    axes.set_title(f"{len(solves)} extreme cases: {wrong} numbers off by more than {LIMIT:g} %")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    return figure
