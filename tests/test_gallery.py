@@ -1,0 +1,167 @@
+"""Named scenes: what they contain, that they can be seeded, and what they refuse."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from demheat import Layer, Sphere, gallery
+
+PERIODIC_ONLY = (gallery.simple_cubic, gallery.body_centred, gallery.face_centred)
+EITHER = (
+    gallery.slab,
+    gallery.laminate,
+    gallery.sphere_in_cube,
+    gallery.coated_sphere,
+    gallery.random_dispersion,
+)
+
+
+def gaps(scene):
+    """Distances between the surfaces of all pairs, least first, m."""
+    centers = np.array([sphere.center for sphere in scene.inclusions])
+    offsets = centers[:, None] - centers[None]
+    if scene.periodic:
+        offsets -= np.round(offsets / scene.size) * scene.size
+    distance = np.linalg.norm(offsets, axis=2)[np.triu_indices(len(centers), 1)]
+    return np.sort(distance - 2 * scene.inclusions[0].radius)
+
+
+@pytest.mark.parametrize("make", EITHER)
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_shared_load(make, axis):
+    walled = make(periodic=False, axis=axis, temperatures=(300.0, 320.0))
+    assert walled.wall_temperatures == {"xyz"[axis] + "-": 300.0, "xyz"[axis] + "+": 320.0}
+    cell = make(periodic=True, axis=axis, temperatures=(300.0, 320.0))
+    assert cell.periodic
+    assert_allclose(np.array(cell.gradient) * cell.size, 20.0 * np.eye(3)[axis], rtol=1e-14)  # rounding
+
+
+@pytest.mark.parametrize("make", PERIODIC_ONLY)
+def test_arrays_are_periodic_cells(make):
+    assert_allclose(make(axis=2, edge=2.0, temperatures=(0.0, 4.0)).gradient, [0, 0, 2.0], rtol=1e-14)
+
+
+def test_haddad_cube():
+    scene = gallery.sphere_in_cube()
+    assert scene.size == (0.1, 0.1, 0.1)
+    assert scene.walls == {"y-": 25.0, "y+": 35.0}
+    assert_allclose(scene.conductivities, [33.0, 165.0], rtol=1e-14)
+    assert_allclose(scene.inclusions[0].radius, 0.1 / 3, rtol=1e-14)
+    assert_allclose(scene.inclusions[0].center, 0.05, rtol=1e-14)
+    assert scene.matrix.density == scene.inclusions[0].material.density == 7800.0
+
+
+@pytest.mark.parametrize(
+    ("scene", "fraction"),
+    [
+        (gallery.sphere_in_cube(fraction=0.5, edge=2.0), 0.5),
+        (gallery.simple_cubic(fraction=0.52), 0.52),
+        (gallery.body_centred(fraction=0.68), 0.68),
+        (gallery.face_centred(fraction=0.74), 0.74),
+        (gallery.random_dispersion(7, fraction=0.1), 0.1),
+    ],
+)
+def test_fractions(scene, fraction):
+    volume = sum(4 / 3 * math.pi * sphere.radius**3 for sphere in scene.inclusions)
+    assert_allclose(volume / scene.volume, fraction, rtol=1e-12)  # rounding
+
+
+@pytest.mark.parametrize("make", PERIODIC_ONLY)
+def test_arrays_touch_together(make):
+    touching = {gallery.simple_cubic: math.pi / 6, gallery.body_centred: math.pi * math.sqrt(3) / 8}
+    limit = touching.get(make, math.pi * math.sqrt(2) / 6)
+    make(fraction=limit * (1 - 1e-9))
+    with pytest.raises(ValueError, match=r"overlap partially|larger than the box"):
+        make(fraction=limit * (1 + 1e-9))
+
+
+def test_laminate_directions():
+    across, along = (gallery.laminate(direction=d, axis=2, layers=3) for d in ("across", "along"))
+    assert {layer.axis for layer in across.inclusions} == {2}
+    assert {layer.axis for layer in along.inclusions} == {0}
+    assert all(isinstance(layer, Layer) for layer in across.inclusions)
+    assert_allclose(sum(layer.stop - layer.start for layer in across.inclusions), 0.05, rtol=1e-14)
+
+
+@pytest.mark.parametrize(("core", "shell"), [(165.0, 16.5), (0.0, 2.0), (3.0, 0.0), (1.0, 1.0), (0.0, 0.0)])
+def test_coated_sphere_is_neutral(core, shell):
+    scene = gallery.coated_sphere(core, shell, core_fraction=0.3)
+    assert_allclose((scene.inclusions[1].radius / scene.inclusions[0].radius) ** 3, 0.3, rtol=1e-14)
+    total = core + 2 * shell
+    beta = (core - shell) / total if total else 0.0
+    assert_allclose(scene.matrix.conductivity, shell * (1 + 0.6 * beta) / (1 - 0.3 * beta), rtol=1e-14)
+
+
+def test_dispersion_is_seeded():
+    centers = [np.array([s.center for s in gallery.random_dispersion(seed=seed).inclusions]) for seed in (3, 3, 4)]
+    assert_array_equal(centers[0], centers[1])
+    assert np.abs(centers[0] - centers[2]).max() > 0.01
+    # 0.2 * 6^3 * 6/pi = 82.5: the number of Haddad et al. (2021).
+    assert len(centers[0]) == 83
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("gap", [0.0, 0.2])
+def test_dispersion_keeps_its_gap(periodic, gap):
+    scene = gallery.random_dispersion(40, diameter=0.15, gap=gap, periodic=periodic, seed=1, edge=2.0)
+    assert len(scene.inclusions) == 40
+    least = gap * 0.15 * 2.0
+    # Rounding of coordinates up to 2.
+    assert gaps(scene)[0] >= least - 1e-14
+    assert gaps(scene)[0] < least + 0.3  # and spheres do come near each other
+    if not periodic:
+        centers = np.array([sphere.center for sphere in scene.inclusions])
+        assert centers.min() >= 0.15 + least - 1e-14
+        assert centers.max() <= 2.0 - 0.15 - least + 1e-14
+
+
+def test_periodic_dispersion_crosses_faces_and_is_uniform():
+    scene = gallery.random_dispersion(2000, fraction=0.15, gap=0.0)
+    centers = np.array([sphere.center for sphere in scene.inclusions]) / 0.1
+    assert centers.min() < scene.inclusions[0].radius / 0.1
+    # 2000 uniform numbers: the mean scatters by 0.29/sqrt(2000) = 0.0065; five times that.
+    assert_allclose(centers.mean(axis=0), 0.5, atol=0.033)
+    counts = np.histogramdd(centers, bins=4, range=[(0, 1)] * 3)[0]
+    # 31 per cell on average, s.d. below 5.6 for hard spheres; five times that.
+    assert_allclose(counts, 2000 / 64, atol=28)
+
+
+def test_dispersion_between_walls_takes_the_load_of_another_scene():
+    cell = gallery.random_dispersion(10, fraction=0.1)
+    walled = replace(cell, gradient=None, walls={"x-": 0.0, "x+": 1.0})
+    assert walled.inclusions == cell.inclusions
+    assert all(isinstance(sphere, Sphere) for sphere in walled.inclusions)
+
+
+@pytest.mark.parametrize(
+    ("call", "match"),
+    [
+        (lambda: gallery.slab(axis=3), "axis = 3"),
+        (lambda: gallery.laminate(direction="up"), "direction = 'up': must be 'across' or 'along'"),
+        (lambda: gallery.laminate(layers=0), "layers = 0"),
+        (lambda: gallery.laminate(contrast=-1.0), "Material.conductivity = -33"),
+        (lambda: gallery.sphere_in_cube(radius=0.01, fraction=0.1), "give one of them"),
+        (lambda: gallery.sphere_in_cube(fraction=math.nan), "fraction = nan"),
+        (lambda: gallery.coated_sphere(core_fraction=1.0), "core_fraction = 1.0"),
+        (lambda: gallery.coated_sphere(core=-1.0), "Material.conductivity = -1.0"),
+        (lambda: gallery.random_dispersion(0), "count = 0"),
+        (lambda: gallery.random_dispersion(fraction=1.5), "fraction = 1.5"),
+        (lambda: gallery.random_dispersion(diameter=1.0), "diameter = 1.0"),
+        (lambda: gallery.random_dispersion(gap=-0.1), "gap = -0.1"),
+        (lambda: gallery.random_dispersion(fraction=0.4, gap=0.0), "reaches at most 0.35"),
+        (lambda: gallery.random_dispersion(1, diameter=0.6, gap=0.4, periodic=False), "must fit between the walls"),
+    ],
+)
+def test_bad_arguments(call, match):
+    with pytest.raises(ValueError, match=match):
+        call()
+
+
+def test_dispersion_without_room_gives_up(monkeypatch):
+    monkeypatch.setattr(gallery, "TRIALS_PER_SPHERE", 2000)
+    # Centres stay in a cube of 0.35 edges, whose diagonal is 0.61: two cannot be 0.65 apart.
+    with pytest.raises(RuntimeError, match="no room for sphere 2 of 2"):
+        gallery.random_dispersion(2, diameter=0.65, gap=0.0, periodic=False)
