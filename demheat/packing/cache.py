@@ -56,7 +56,7 @@ def cached(make, key, *, folder=None) -> Packing:
     Packing
         provenance["cached"] says whether it came from the folder.
     """
-    text = json.dumps({"format": FORMAT} | dict(key), sort_keys=True)
+    text = json.dumps({"format": FORMAT} | dict(key), sort_keys=True, default=_plain)
     path = Path(folder or cache_folder()) / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
     packing = _load(path, text)
     if packing is not None:
@@ -98,6 +98,13 @@ def relaxed(
     return unit._replace(
         centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * np.cbrt(np.prod(stretch)), size=sides
     )
+
+
+def _plain(value):
+    """Plain number of a NumPy one, for JSON."""
+    if isinstance(value, np.generic):
+        return value.item()
+    raise TypeError(f"key holds {value!r}: must be what JSON can hold")
 
 
 def _load(path, text):

@@ -155,6 +155,13 @@ def test_whatever_changes_the_packing_changes_the_key(tmp_path, change):
     assert not relaxed(**(usual | change), folder=tmp_path).provenance["cached"]
 
 
+def test_numpy_numbers_are_numbers(tmp_path):
+    relaxed(200, steps=5, folder=tmp_path)
+    assert relaxed(np.int64(200), steps=np.int32(5), seed=np.uint8(0), folder=tmp_path).provenance["cached"]
+    with pytest.raises(TypeError, match="must be what JSON can hold"):
+        cached(Maker(), {"key": object()}, folder=tmp_path)
+
+
 def test_new_code_retires_old_packings(tmp_path, monkeypatch):
     relaxed(200, steps=5, folder=tmp_path)
     monkeypatch.setattr(cache, "code_hash", lambda *modules: "newer")

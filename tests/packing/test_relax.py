@@ -242,6 +242,7 @@ def test_progress_is_told():
         ({"overlap": -1.0}, "overlap"),
         ({"steps": -1}, "steps"),
         ({"size": (1.0, 1.0, 0.05)}, "side 2 must be"),
+        ({"size": (1.0, 1.0, 0.2)}, "side 2 must be"),  # 2 but not 4 of the largest radii
         ({"size": (1.0, 1.0, 0.02), "periodic": False}, "side 2 must be"),
         ({"radii": Bidisperse(20.0, 0.005)}, "side 0 must be"),
     ],
