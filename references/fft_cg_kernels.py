@@ -1,0 +1,346 @@
+"""Numba kernels of the scalar scheme: conduction through voxels or links, and the vector work of conjugate gradients.
+
+Every kernel works on the planes low <= i < high of the first axis and is called once per thread.  An output plane is
+summed in one order whatever the chunk, and sums are kept per plane, so the bits do not depend on the threads.
+Arrays named `work` may be padded at the end of their last axis.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numba
+import numpy as np
+
+# Sums may be reordered and fused; NaN and infinity keep their meaning, so a diverging solve is noticed.
+compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+
+
+@compiled
+def conduct_voxels(theta, work, medium, gradient, inverse, walls, sums, low, high):
+    """Reduced-integration hexahedra: one temperature per corner, one gradient per voxel.
+
+    Parameters
+    ----------
+    theta : (mx, my, mz) float array, K
+        Temperature at the corners less the linear part.  Periodic: m = n.  Walls: mx = n - 1 (those on the two
+        isothermal walls are zero and left out), my = ny + 1, mz = nz + 1.
+    work : (mx, my, mz or more) float array
+        Out: -div(q) at the corners, W/m3, as the sum over the voxels of B^T q.
+    medium : Medium
+    gradient : (3,) float array, K/m
+        Linear part.
+    inverse : (3,) float array, 1/m
+        1 / (4 spacing).
+    walls : bool
+    sums : (nx, 5) float array
+        Out, per plane of voxels: sums of g.q, q_x, q_y, q_z and q.q.
+    low, high : int
+        Planes of `work` to fill.
+    """
+    nx, ny, nz = medium.phase.shape
+    mx, my, mz = theta.shape
+    shift = 1 if walls else 0
+    nothing = np.zeros((my, mz), theta.dtype)
+    corner = np.empty((3, nz + 1), theta.dtype)
+    slope = np.empty((3, nz), theta.dtype)
+    flux = np.zeros((3, nz + 2), theta.dtype)
+    work[low:high] = 0
+    for outer in range(low + shift - 1, high + shift):
+        slab, lower, upper = outer % nx, outer - shift, outer + 1 - shift
+        below = nothing if walls and lower < 0 else theta[lower % mx]
+        above = nothing if walls and upper >= mx else theta[upper % mx]
+        # Two threads compute the slab between their chunks, so it is summed aside and both write the same result.
+        found = np.zeros(5)
+        for j in range(ny):
+            jj = (j + 1) % my
+            _slopes(below[j], below[jj], above[j], above[jj], corner, slope, gradient, inverse)
+            _flux_row(slope, medium, slab, j, flux, found)
+            for axis in range(3):
+                for k in range(1, nz + 1):
+                    flux[axis, k] *= inverse[axis]
+                flux[axis, 0] = 0 if walls else flux[axis, nz]
+            if low <= lower < high:
+                _scatter(work[lower, j], work[lower, jj], flux, -1, mz)
+            if low <= upper < high:
+                _scatter(work[upper, j], work[upper, jj], flux, 1, mz)
+        sums[slab] = found
+
+
+# The compiler makes vector instructions of a loop only if it has few arrays to tell apart: hence so many small loops.
+
+
+@compiled
+def _slopes(a, b, c, d, corner, slope, gradient, inverse):
+    """Gradient in a row of voxels from the temperatures along its four edges."""
+    mz, nz = len(a), slope.shape[1]
+    total, along_x, along_y = corner[0], corner[1], corner[2]
+    for k in range(mz):
+        total[k] = (a[k] + b[k]) + (c[k] + d[k])
+    for k in range(mz):
+        along_x[k] = (c[k] + d[k]) - (a[k] + b[k])
+    for k in range(mz):
+        along_y[k] = (b[k] + d[k]) - (a[k] + c[k])
+    if mz == nz:
+        for axis in range(3):
+            corner[axis, nz] = corner[axis, 0]
+    gx, gy, gz = slope[0], slope[1], slope[2]
+    for k in range(nz):
+        gx[k] = (along_x[k] + along_x[k + 1]) * inverse[0] + gradient[0]
+    for k in range(nz):
+        gy[k] = (along_y[k] + along_y[k + 1]) * inverse[1] + gradient[1]
+    for k in range(nz):
+        gz[k] = (total[k + 1] - total[k]) * inverse[2] + gradient[2]
+
+
+@compiled
+def _flux_row(slope, medium, i, j, flux, sums):
+    """q = K g in a row of voxels, at entries 1 to nz of `flux`; adds to the sums."""
+    phase, scalar = medium.phase[i, j], medium.scalar
+    gx, gy, gz = slope[0], slope[1], slope[2]
+    qx, qy, qz = flux[0, 1:], flux[1, 1:], flux[2, 1:]
+    for k in range(len(phase)):
+        qx[k] = scalar[phase[k]]
+    for k in range(len(phase)):
+        qz[k] = qx[k] * gz[k]
+    for k in range(len(phase)):
+        qy[k] = qx[k] * gy[k]
+    for k in range(len(phase)):
+        qx[k] *= gx[k]
+    row = i * medium.phase.shape[1] + j
+    for m in range(medium.start[row], medium.start[row + 1]):
+        k, t = medium.place[m], medium.tensor[m]
+        qx[k] = t[0] * gx[k] + t[5] * gy[k] + t[4] * gz[k]
+        qy[k] = t[5] * gx[k] + t[1] * gy[k] + t[3] * gz[k]
+        qz[k] = t[4] * gx[k] + t[3] * gy[k] + t[2] * gz[k]
+    energy, square, flux_x, flux_y, flux_z = 0.0, 0.0, 0.0, 0.0, 0.0
+    for k in range(len(phase)):
+        energy += qx[k] * gx[k] + qy[k] * gy[k] + qz[k] * gz[k]
+        square += qx[k] * qx[k] + qy[k] * qy[k] + qz[k] * qz[k]
+        flux_x += qx[k]
+        flux_y += qy[k]
+        flux_z += qz[k]
+    sums[0] += energy
+    sums[1] += flux_x
+    sums[2] += flux_y
+    sums[3] += flux_z
+    sums[4] += square
+
+
+@compiled
+def _scatter(near, far, flux, side, mz):
+    """Add B^T q of a row of voxels to the corners of one of its two planes; `side` is -1 below, 1 above in x."""
+    qx, qy, qz = flux[0], flux[1], flux[2]
+    for k in range(mz):
+        near[k] += side * (qx[k] + qx[k + 1]) - (qy[k] + qy[k + 1]) + (qz[k] - qz[k + 1])
+    for k in range(mz):
+        far[k] += side * (qx[k] + qx[k + 1]) + (qy[k] + qy[k + 1]) + (qz[k] - qz[k + 1])
+
+
+class Links(NamedTuple):
+    """Conductivity of the links between neighbouring voxel centres, harmonic mean along each, W/(m K).
+
+    Link i of an axis joins voxels i - 1 and i.  The first and the last pass through the face: the same link twice in
+    a periodic cell, mirrored in an isothermal wall, 0 in an insulated one.
+
+    Attributes
+    ----------
+    x : (nx + 1, ny, nz) float array
+    y : (nx, ny + 1, nz) float array
+    z : (nx, ny, nz + 1) float array
+    """
+
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+
+
+@compiled
+def conduct_links(theta, work, links, gradient, inverse, walls, sums, low, high):
+    """Seven-point differences: one temperature per voxel centre, one conductivity per link between neighbours.
+
+    Parameters
+    ----------
+    theta : (nx, ny, nz) float array, K
+        Temperature at the voxel centres less the linear part; the isothermal walls are those across x.
+    work : (nx, ny, nz or more) float array
+        Out: -div(q), W/m3.
+    links : Links
+    gradient : (3,) float array, K/m
+    inverse : (3,) float array, 1/m
+        1 / spacing.
+    walls : bool
+    sums : (nx, 5) float array
+        Out, per plane of voxels: sums of g.q, q_x, q_y, q_z and q.q; each link counts half on either side.
+    low, high : int
+        Planes of `work` to fill.
+    """
+    nx, ny, nz = theta.shape
+    flux = np.empty((6, nz), theta.dtype)
+    for i in range(low, high):
+        found = np.zeros(5)
+        for j in range(ny):
+            _link_fluxes(theta, links, gradient, inverse, walls, i, j, flux, found)
+            row = work[i, j]
+            for k in range(nz):
+                row[k] = (flux[0, k] - flux[1, k]) * inverse[0]
+            for k in range(nz):
+                row[k] += (flux[2, k] - flux[3, k]) * inverse[1]
+            for k in range(nz):
+                row[k] += (flux[4, k] - flux[5, k]) * inverse[2]
+        sums[i] = found
+
+
+@compiled
+def _link_fluxes(theta, links, gradient, inverse, walls, i, j, flux, sums):
+    """Fluxes through the six links of each voxel in a row: below and above along x, y, z."""
+    nx, ny, nz = theta.shape
+    here = theta[i, j]
+    # A mirrored neighbour is the voxel itself with its sign changed.
+    first, last = walls and i == 0, walls and i == nx - 1
+    below = here if first else theta[i - 1, j]
+    above = here if last else theta[(i + 1) % nx, j]
+    minus, plus = inverse[0] * (-1 if first else 1), inverse[0] * (-1 if last else 1)
+    _link_row(below, here, -minus, inverse[0], links.x[i, j], gradient[0], flux[0], sums, 0)
+    _link_row(here, above, -inverse[0], plus, links.x[i + 1, j], gradient[0], flux[1], sums, 0)
+    _link_row(theta[i, j - 1], here, -inverse[1], inverse[1], links.y[i, j], gradient[1], flux[2], sums, 1)
+    _link_row(here, theta[i, (j + 1) % ny], -inverse[1], inverse[1], links.y[i, j + 1], gradient[1], flux[3], sums, 1)
+    link, h, g = links.z[i, j], inverse[2], gradient[2]
+    # The inner links are those below a voxel and those above its neighbour: they count whole, half and half.
+    _link_row(here[: nz - 1], here[1:], -h, h, link[1:nz], g, flux[4, 1:], sums, 2)
+    _link_row(here[: nz - 1], here[1:], -h, h, link[1:nz], g, flux[5, : nz - 1], sums, 2)
+    _link_row(here[nz - 1 :], here[:1], -h, h, link[:1], g, flux[4, :1], sums, 2)
+    _link_row(here[nz - 1 :], here[:1], -h, h, link[nz:], g, flux[5, nz - 1 :], sums, 2)
+
+
+@compiled
+def _link_row(low, high, minus, plus, link, gradient, flux, sums, axis):
+    """Flux through a row of links, minus * low + plus * high being the slope; half of each goes to the sums."""
+    energy, square, total = 0.0, 0.0, 0.0
+    for k in range(len(link)):
+        slope = minus * low[k] + plus * high[k] + gradient
+        q = link[k] * slope
+        flux[k] = q
+        energy += q * slope
+        square += q * q
+        total += q
+    sums[0] += 0.5 * energy
+    sums[1 + axis] += 0.5 * total
+    sums[4] += 0.5 * square
+
+
+@compiled
+def voxel_state(theta, medium, gradient, inverse, walls, center, flux, low, high):
+    """Temperature and flux at the centre of every voxel, for `conduct_voxels`; low and high are planes of voxels.
+
+    Parameters
+    ----------
+    center : (nx, ny, nz) float array, K
+        Out: temperature less the linear part.
+    flux : (3, nx, ny, nz) float array, W/m2
+        Out: along the gradient, that is against Fourier's direction.
+    """
+    nx, ny, nz = medium.phase.shape
+    mx, my, mz = theta.shape
+    shift = 1 if walls else 0
+    nothing = np.zeros((my, mz), theta.dtype)
+    corner = np.empty((3, nz + 1), theta.dtype)
+    slope = np.empty((3, nz), theta.dtype)
+    row = np.zeros((3, nz + 2), theta.dtype)
+    found = np.zeros(5)
+    for i in range(low, high):
+        below = nothing if walls and i == 0 else theta[i - shift]
+        above = nothing if walls and i == nx - 1 else theta[(i + 1 - shift) % mx]
+        for j in range(ny):
+            jj = (j + 1) % my
+            _slopes(below[j], below[jj], above[j], above[jj], corner, slope, gradient, inverse)
+            _flux_row(slope, medium, i, j, row, found)
+            for k in range(nz):
+                center[i, j, k] = 0.125 * (corner[0, k] + corner[0, k + 1])
+            for axis in range(3):
+                flux[axis, i, j] = row[axis, 1 : nz + 1]
+
+
+@compiled
+def link_state(theta, links, gradient, inverse, walls, flux, low, high):
+    """Flux at the centre of every voxel, for `conduct_links`: the mean of the two links along each axis."""
+    nx, ny, nz = theta.shape
+    row = np.empty((6, nz), theta.dtype)
+    found = np.zeros(5)
+    for i in range(low, high):
+        for j in range(ny):
+            _link_fluxes(theta, links, gradient, inverse, walls, i, j, row, found)
+            for axis in range(3):
+                for k in range(nz):
+                    flux[axis, i, j, k] = 0.5 * (row[2 * axis, k] + row[2 * axis + 1, k])
+
+
+@compiled
+def divide(modes, s, c, scale, low, high):
+    """Divide each mode by sx cy cz + cx sy cz + cx cy sz, the symbol of minus the Laplacian; empty modes become 0.
+
+    Parameters
+    ----------
+    modes : (mx, my, mz) complex or float array
+        Changed in place.
+    s, c : tuples of three float arrays
+        Per axis; c = 1 gives the seven-point Laplacian.
+    scale : float
+    low, high : int
+    """
+    for i in range(low, high):
+        for j in range(modes.shape[1]):
+            both = s[0][i] * c[1][j] + c[0][i] * s[1][j]
+            cross = c[0][i] * c[1][j]
+            row = modes[i, j]
+            for k in range(modes.shape[2]):
+                symbol = both * c[2][k] + cross * s[2][k]
+                row[k] *= scale / symbol if symbol > 0 else 0 * scale
+
+
+@compiled
+def start(residual, work, wy, wz, low, high):
+    """residual = -work; work = weighted residual, ready for the preconditioner.  Padding is left alone."""
+    for i in range(low, high):
+        for j in range(residual.shape[1]):
+            r, w = residual[i, j], work[i, j]
+            for k in range(len(r)):
+                r[k] = -w[k]
+            for k in range(len(r)):
+                w[k] = r[k] * (wy[j] * wz[k])
+
+
+@compiled
+def step(theta, direction, residual, work, alpha, wy, wz, low, high):
+    """theta += alpha direction; residual -= alpha work; work = weighted residual."""
+    for i in range(low, high):
+        for j in range(residual.shape[1]):
+            t, p, r, w = theta[i, j], direction[i, j], residual[i, j], work[i, j]
+            for k in range(len(r)):
+                t[k] += alpha * p[k]
+            for k in range(len(r)):
+                r[k] -= alpha * w[k]
+            for k in range(len(r)):
+                w[k] = r[k] * (wy[j] * wz[k])
+
+
+@compiled
+def dot(residual, work, partial, low, high):
+    """partial[i] = sum of residual * work over plane i."""
+    for i in range(low, high):
+        total = 0.0
+        for j in range(residual.shape[1]):
+            r, w = residual[i, j], work[i, j]
+            for k in range(len(r)):
+                total += r[k] * w[k]
+        partial[i] = total
+
+
+@compiled
+def turn(direction, work, beta, low, high):
+    """direction = work + beta direction."""
+    for i in range(low, high):
+        for j in range(direction.shape[1]):
+            p, w = direction[i, j], work[i, j]
+            for k in range(len(p)):
+                p[k] = w[k] + beta * p[k]

@@ -1,0 +1,36 @@
+"""Plain Python threads for compiled loops that release the interpreter's lock: they sleep while they wait."""
+
+from __future__ import annotations
+
+from concurrent.futures import ThreadPoolExecutor
+
+
+class Team:
+    """A number of threads that share loops over the planes of a grid.
+
+    Parameters
+    ----------
+    threads : int
+    """
+
+    def __init__(self, threads):
+        self.threads = threads
+        self._pool = ThreadPoolExecutor(threads - 1) if threads > 1 else None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self._pool:
+            self._pool.shutdown()
+
+    def run(self, kernel, planes, *arguments):
+        """Call kernel(*arguments, low, high) on chunks that make up range(planes)."""
+        parts = min(self.threads, planes)
+        bounds = [planes * part // parts for part in range(parts + 1)]
+        waiting = [
+            self._pool.submit(kernel, *arguments, low, high) for low, high in zip(bounds[1:-1], bounds[2:], strict=True)
+        ]
+        kernel(*arguments, 0, bounds[1])
+        for future in waiting:
+            future.result()

@@ -1,0 +1,182 @@
+"""Numba kernels of the voxelisation: which voxels a sphere fills, cuts or leaves."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+# A cut voxel is integrated exactly along one direction and by two-point Gauss on this many intervals along the others.
+INTERVALS = 4
+GAUSS = 0.5 / math.sqrt(3.0)
+# Fractions closer than this to 0 or 1 count as 0 or 1: far below the quadrature's error in one voxel.
+FULL = 1e-9
+
+
+@numba.njit(cache=True)
+def paint_sphere(grid, phase, center, radius, spacing, low, high):
+    """Give every voxel whose centre lies in the sphere this phase; count the voxels that the surface may cut.
+
+    Parameters
+    ----------
+    grid : (nx, ny, nz) int array
+        Changed in place.
+    phase : int
+    center : (3,) float array, m
+    radius : float, m
+    spacing : (3,) float array, m
+    low, high : (3,) int array
+        Voxels to look at, low <= index < high.
+
+    Returns
+    -------
+    count : int
+    """
+    reach = 0.5 * math.sqrt(spacing[0] ** 2 + spacing[1] ** 2 + spacing[2] ** 2)
+    outer = (radius + reach) ** 2
+    inner = max(radius - reach, 0.0) ** 2
+    count = 0
+    for i in range(low[0], high[0]):
+        x2 = ((i + 0.5) * spacing[0] - center[0]) ** 2
+        for j in range(low[1], high[1]):
+            xy2 = x2 + ((j + 0.5) * spacing[1] - center[1]) ** 2
+            if xy2 >= outer:
+                continue
+            for k in range(low[2], high[2]):
+                d2 = xy2 + ((k + 0.5) * spacing[2] - center[2]) ** 2
+                if d2 <= radius * radius:
+                    grid[i, j, k] = phase
+                if inner < d2 < outer:
+                    count += 1
+    return count
+
+
+@numba.njit(cache=True)
+def cut_sphere(shape, center, radius, spacing, low, high, index, fraction, moment):
+    """Voxels that the surface of a sphere cuts: their fraction inside and the second moment of the surface normal.
+
+    Parameters
+    ----------
+    shape : (3,) int array
+        Voxels of the whole grid, for the flat index.
+    center : (3,) float array, m
+    radius : float, m
+    spacing : (3,) float array, m
+    low, high : (3,) int array
+        Voxels to look at, low <= index < high.
+    index : (count,) int array
+        Out: flat index of each cut voxel.
+    fraction : (count,) float array
+        Out: part of the voxel inside the sphere.
+    moment : (count, 6) float array, m2
+        Out: integral of n n over the surface inside the voxel, order xx, yy, zz, yz, xz, xy.
+
+    Returns
+    -------
+    found : int
+        Rows filled; fewer than `count` of `paint_sphere`, which only bounds it.
+    """
+    reach = 0.5 * math.sqrt(spacing[0] ** 2 + spacing[1] ** 2 + spacing[2] ** 2)
+    outer = (radius + reach) ** 2
+    inner = max(radius - reach, 0.0) ** 2
+    corner = np.empty(3)
+    found = 0
+    for i in range(low[0], high[0]):
+        corner[0] = i * spacing[0] - center[0]
+        for j in range(low[1], high[1]):
+            corner[1] = j * spacing[1] - center[1]
+            for k in range(low[2], high[2]):
+                corner[2] = k * spacing[2] - center[2]
+                d2 = 0.0
+                for a in range(3):
+                    d2 += (corner[a] + 0.5 * spacing[a]) ** 2
+                if d2 <= inner or d2 >= outer:
+                    continue
+                inside = _measure(corner, radius, spacing, moment[found])
+                if FULL < inside < 1.0 - FULL:
+                    index[found] = (i * shape[1] + j) * shape[2] + k
+                    fraction[found] = inside
+                    found += 1
+    return found
+
+
+@numba.njit(cache=True)
+def _measure(corner, radius, spacing, moment):
+    """Fraction of one voxel inside a sphere about the origin; the moment of the normal goes to `moment`."""
+    normal = corner + 0.5 * spacing
+    c = 0
+    for a in range(1, 3):
+        if abs(normal[a]) > abs(normal[c]):
+            c = a
+    a, b = (c + 1) % 3, (c + 2) % 3
+    da, db = spacing[a] / (2 * INTERVALS), spacing[b] / (2 * INTERVALS)
+    floor, ceiling = corner[c], corner[c] + spacing[c]
+    length = 0.0
+    moment[:] = 0.0
+    for i in range(2 * INTERVALS):
+        u = corner[a] + _gauss(i) * spacing[a]
+        for j in range(2 * INTERVALS):
+            v = corner[b] + _gauss(j) * spacing[b]
+            h2 = radius * radius - u * u - v * v
+            if h2 <= 0.0:
+                continue
+            h = math.sqrt(h2)
+            length += max(0.0, min(h, ceiling) - max(-h, floor))
+            if floor < h < ceiling:
+                _add_normal(moment, a, b, c, u, v, h, da * db / (h * radius))
+            if floor < -h < ceiling:
+                _add_normal(moment, a, b, c, u, v, -h, da * db / (h * radius))
+    if moment[0] + moment[1] + moment[2] == 0.0:
+        weight = da * db / max(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2, 1e-300)
+        _add_normal(moment, a, b, c, normal[a], normal[b], normal[c], weight)
+    return length / (4 * INTERVALS * INTERVALS * spacing[c])
+
+
+@numba.njit(cache=True)
+def _gauss(i):
+    """Place of Gauss point i in a unit length of INTERVALS intervals."""
+    return (i // 2 + 0.5 + (2 * (i % 2) - 1) * GAUSS) / INTERVALS
+
+
+@numba.njit(cache=True)
+def _add_normal(moment, a, b, c, x, y, z, weight):
+    """Add weight * r r^T for r = (x, y, z) along the axes (a, b, c); entry 3 + m holds the pair without axis m."""
+    moment[a] += weight * x * x
+    moment[b] += weight * y * y
+    moment[c] += weight * z * z
+    moment[3 + a] += weight * y * z
+    moment[3 + b] += weight * x * z
+    moment[3 + c] += weight * x * y
+
+
+@numba.njit(cache=True)
+def cut_links(resistance, change, center, radius, spacing):
+    """Add a sphere's change of resistivity to the links along the last axis, by the part of each inside the sphere.
+
+    Parameters
+    ----------
+    resistance : (na, nb, n + 1) float array, m K/W
+        Changed in place.  Link i reaches from (i - 1/2) to (i + 1/2) spacings, less what lies outside the box.
+    change : float, m K/W
+    center : (3,) float array, m
+    radius : float, m
+    spacing : (3,) float array, m
+    """
+    na, nb, n = resistance.shape
+    h = spacing[2]
+    for i in range(na):
+        x2 = ((i + 0.5) * spacing[0] - center[0]) ** 2
+        if x2 >= radius * radius:
+            continue
+        for j in range(nb):
+            s2 = radius * radius - x2 - ((j + 0.5) * spacing[1] - center[1]) ** 2
+            if s2 <= 0.0:
+                continue
+            low = max(center[2] - math.sqrt(s2), 0.0) / h
+            high = min(center[2] + math.sqrt(s2), (n - 1) * h) / h
+            first, last = int(math.floor(low + 0.5)), int(math.floor(high + 0.5))
+            for k in range(max(first, 0), min(last, n - 1) + 1):
+                inside = min(high, k + 0.5) - max(low, k - 0.5)
+                if inside > 0.0:
+                    resistance[i, j, k] += change * inside
