@@ -160,5 +160,5 @@ def _compared(field, points, mask, name):
 
 def _error(values, weights, points):
     """Error from magnitudes; a value that is not finite makes both rms and maximum not finite."""
-    worst = int(np.argmax(np.where(np.isnan(values), np.inf, values)))
+    worst = int(np.argmax(values))  # that of the first NaN if there is one
     return Error(float(np.sqrt(np.average(values**2, weights=weights))), float(values[worst]), points[worst])

@@ -236,17 +236,15 @@ def _array(scene):
     kind = {1: "sc", 2: "bcc", 4: "fcc"}[len(spheres)]
     places = np.array([sphere.center for sphere in spheres]) / edge
     if not scene.periodic:
-        centred = np.all(np.abs(places - 0.5) <= SAME) and 2 * first.radius <= edge * (1 + SAME)
+        centred = np.all(np.abs(places - 0.5) <= SAME)
         return (kind, edge, spheres) if kind == "sc" and centred else None
     offsets = lattice_field.nearest_site(kind, places - places[0]) - (places - places[0])
-    distinct = {tuple(site) for site in np.round(2 * (places - places[0])) % 2}
-    if np.any(np.abs(offsets) > SAME) or len(distinct) != len(spheres):
-        return None
-    return kind, edge, spheres
+    # Spheres at as many different sites, for the scene refuses two at the same place, are the array.
+    return None if np.any(np.abs(offsets) > SAME) else (kind, edge, spheres)
 
 
 def _coated(scene):
-    """Pairs (outer, inner) if all inclusions are neutral coated spheres inside the box, else None."""
+    """Pairs (outer, inner) if all inclusions are neutral coated spheres, else None; `fractions` refuses cut ones."""
     if not scene.inclusions or not all(isinstance(sphere, Sphere) for sphere in scene.inclusions):
         return None
     centers = np.array([sphere.center for sphere in scene.inclusions])
@@ -263,13 +261,11 @@ def _coated(scene):
 
 
 def _neutral(scene, outer, inner):
-    """Whether the matrix does not notice a coated sphere, which must lie inside the walls."""
-    b, slack = outer.radius, SAME * max(scene.size)
-    inside = all(b - slack <= c <= n - b + slack for c, n in zip(outer.center, scene.size, strict=True))
+    """Whether the matrix does not notice a coated sphere."""
     above, below = _ratio(outer, inner)
     excess = abs(scene.matrix.conductivity * below - outer.material.conductivity * above)
     # Rounding of the two products, not of their difference, is what a matrix worked out by a user carries.
-    return (scene.periodic or inside) and excess <= SAME * outer.material.conductivity * above
+    return excess <= SAME * outer.material.conductivity * above
 
 
 def _ratio(outer, inner):

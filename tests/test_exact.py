@@ -274,6 +274,7 @@ def test_reversed_and_scaled(make):
 CUBE = gallery.sphere_in_cube()
 BALL = CUBE.inclusions[0]
 COATED = gallery.coated_sphere()
+PAIR = gallery.body_centred()
 
 
 @pytest.mark.parametrize(
@@ -286,10 +287,10 @@ COATED = gallery.coated_sphere()
         replace(CUBE, walls={"y-": 25.0, "y+": Flux(100.0)}),
         replace(CUBE, walls={"y-": 25.0, "y+": 35.0, "x-": 30.0}),
         replace(CUBE, walls={"y-": 25.0, "x+": 35.0}),
-        replace(
-            gallery.body_centred(), inclusions=gallery.body_centred().inclusions[:1] + (replace(BALL, radius=0.01),)
-        ),
-        replace(gallery.body_centred(), gradient=None, walls={"y-": 25.0, "y+": 35.0}),
+        replace(PAIR, inclusions=[PAIR.inclusions[0], replace(PAIR.inclusions[1], radius=0.02)]),
+        replace(PAIR, inclusions=[PAIR.inclusions[0], replace(PAIR.inclusions[1], material=B)]),
+        replace(PAIR, inclusions=[PAIR.inclusions[0], replace(PAIR.inclusions[1], center=(0.075, 0.075, 0.076))]),
+        replace(PAIR, gradient=None, walls={"y-": 25.0, "y+": 35.0}),
         replace(gallery.laminate(direction="along"), walls={"y-": 25.0, "y+": Flux(100.0)}),
         replace(COATED, matrix=Material(COATED.matrix.conductivity * (1 + 1e-9))),
         replace(COATED, inclusions=[COATED.inclusions[0], replace(COATED.inclusions[1], center=(0.05, 0.05, 0.051))]),

@@ -137,6 +137,7 @@ def test_bad_geometry(inclusions, load, match):
         ([Layer(0, 0.1, 0.9, B), Layer(0, 0.1, 0.3, A), ball(0.6, 0.5, 0.5, 0.2)], {}),
         ([Layer(0, 0.0, 0.2, B), ball(0.05, 0.5, 0.5, 0.1)], {}),
         ([Layer(0, 0.0, 0.2, B), ball(0.4, 0.5, 0.5, 0.2), ball(0.9, 0.5, 0.5, 0.1)], PERIODIC),
+        ([Layer(0, 0.6, 0.8, B), ball(-1.6, 0.5, 0.5, 0.1)], PERIODIC),
         # A layer that fills the cell holds also a sphere that crosses its face.
         ([Layer(0, 0.0, 1.0, B), ball(0.05, 0.5, 0.5, 0.1, A)], PERIODIC),
     ],
