@@ -20,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from references import fft_cg_kernels as kernels
+from references import fft_link_kernels as link_kernels
 from references.fft_problem import Problem, Solution
 from references.fft_transforms import Transform, fourier, trigonometric
 from references.voxels import medium
@@ -50,9 +51,10 @@ class _Vectors(NamedTuple):
 
 
 class _State(NamedTuple):
-    """Where the true residual stands: sums of g.q, q and q.q, r.z, and the energy that the next step would take off."""
+    """Where the true residual stands: sums of g.q, q and q.q, flux at both ends, r.z and p.A p of the next step."""
 
     sums: np.ndarray
+    ends: np.ndarray
     rz: float
     curvature: float
 
@@ -105,8 +107,8 @@ def _operator(problem):
     make = {"dtype": problem.dtype, "threads": problem.team.threads}
     nx, ny, nz = shape
     if problem.links is not None:
-        conduct, inverse, kind = kernels.conduct_links, 1.0 / spacing, "2"
-        material = kernels.Links(*(np.ascontiguousarray(link, problem.dtype) for link in problem.links))
+        conduct, inverse, kind = link_kernels.conduct_links, 1.0 / spacing, "2"
+        material = link_kernels.Links(*(np.ascontiguousarray(link, problem.dtype) for link in problem.links))
     else:
         conduct, inverse, kind = kernels.conduct_voxels, 0.25 / spacing, "1"
         material = medium(problem.voxels, problem.voxels.conductivity, problem.voxels.tensor, problem.dtype)
@@ -155,13 +157,13 @@ def _precondition(problem, operator, vectors):
 def _restart(problem, operator, vectors):
     """Recompute the residual and make the preconditioned residual the direction."""
     sums = _conduct(problem, operator, vectors, vectors.theta, problem.gradient)
+    ends = vectors.sums[[0, -1], 1] * len(vectors.sums) / problem.voxels.phase.size
     run, planes = problem.team.run, len(vectors.work)
     run(kernels.start, planes, vectors.residual, vectors.work, *operator.weights)
     rz = _precondition(problem, operator, vectors)
     run(kernels.turn, planes, vectors.direction, vectors.work, problem.dtype(0))
     curvature = _conduct(problem, operator, vectors, vectors.direction, np.zeros(3))[0]
-    # The sums of the direction replaced those of the solution in `vectors`, but planes at the ends are wanted later.
-    return _State(sums, rz, curvature)
+    return _State(sums, ends, rz, curvature)
 
 
 def _iterate(problem, operator, vectors, state, iterations):
@@ -185,11 +187,18 @@ def _iterate(problem, operator, vectors, state, iterations):
 
 
 def _solution(problem, operator, vectors, state, iterations, error):
-    size = problem.voxels.phase.size
-    _conduct(problem, operator, vectors, vectors.theta, problem.gradient)
-    ends = vectors.sums[[0, -1], 1] / (size / len(vectors.sums))
+    size, theta = problem.voxels.phase.size, vectors.theta
 
-    def state_():
-        return None
+    def centers():
+        shape = problem.voxels.phase.shape
+        flux = np.empty((3, *shape), problem.dtype)
+        arguments = (operator.material, problem.gradient.astype(problem.dtype), operator.inverse, problem.walls)
+        if problem.links is not None:
+            link_kernels.link_state(theta, *arguments, flux, 0, shape[0])
+            return theta, flux
+        temperature = np.empty(shape, problem.dtype)
+        kernels.voxel_state(theta, *arguments, temperature, flux, 0, shape[0])
+        return temperature, flux
 
-    return Solution(state.sums[1:4] / size, ends, state_, vectors.theta.size, iterations, {"residual": error})
+    mean_flux = state.sums[1:4] / size
+    return Solution(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error})

@@ -2,9 +2,10 @@
 
 Eyre and Milton, Eur. Phys. J. Appl. Phys. 6 (1999) 41-47; the polarisation form of Monchiet and Bonnet, Int. J. Numer.
 Meth. Engng 89 (2012) 1419-1436.  With g the temperature gradient, q = K g and p = q + c0 g, the local law gives
-q - c0 g = Z p with Z = (K - c0)/(K + c0), and equilibrium of q with compatibility of g gives p = (1 - 2 Gamma) (q - c0 g)
-+ 2 c0 <g>, Gamma = k k/k^2.  Iterating the two reflections contracts by (sqrt(r) - 1)/(sqrt(r) + 1) for contrast r
-when c0 = sqrt(smallest * largest conductivity).  The change of p in one iteration is exactly
+q - c0 g = Z p with Z = (K - c0)/(K + c0); equilibrium of q with compatibility of g gives
+p = (1 - 2 Gamma)(q - c0 g) + 2 c0 <g>, Gamma = k k/k^2.  Iterating the two reflections contracts by
+(sqrt(r) - 1)/(sqrt(r) + 1) for contrast r when c0 = sqrt(smallest * largest conductivity).  The change of p in one
+iteration is exactly
 |dp|^2 = 4 (|Gamma q|^2 + c0^2 |g - Gamma g - <g>|^2): equilibrium and compatibility errors together.
 
 In a box with two isothermal and four insulated walls the mirrored periodic field has sines and cosines only, and the
@@ -29,7 +30,8 @@ def solve(problem: Problem) -> Solution:
     Raises
     ------
     RuntimeError
-        If the error is above the tolerance after the allowed iterations, or the recomputed one is above what it implies.
+        If the error is above the tolerance after the allowed iterations, or the recomputed one is above what that
+        implies.
     """
     low, high = _extremes(problem.voxels)
     reference = math.sqrt(low * high)
@@ -149,7 +151,8 @@ def _settle(problem, reference, high, mirror, conductor, transform, field, itera
     mean_flux = sums.sum(axis=0)[:3] / cells
     unbalanced, _ = _split(problem, transform, potential.modes[0], mean_flux.astype(problem.dtype))
     scale = float(np.linalg.norm(mean_flux))
-    errors = {"equilibrium": math.sqrt(unbalanced) / scale, "compatibility": math.sqrt(incompatible)}
+    errors = {"residual": 0.0, "equilibrium": math.sqrt(unbalanced) / scale, "compatibility": math.sqrt(incompatible)}
+    errors["residual"] = errors["equilibrium"]
     # The iterate's errors are below the tolerance; making g compatible moves q by at most K/c0 of it.
     if not errors["equilibrium"] <= (1 + high / reference) * problem.tolerance:
         _fail(iterations, errors["equilibrium"], problem.tolerance)

@@ -1,0 +1,227 @@
+"""Steady conduction on voxels by fast Fourier transforms: Eyre and Milton's scheme, and a faster scalar one."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from functools import cache
+from numbers import Integral, Real
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.field import Field
+from demheat.scene import Layer, Scene
+from references import fft_cg, fft_eyre_milton, fft_field
+from references.fft_problem import Problem
+from references.fft_threads import Team
+from references.voxel_links import links
+from references.voxels import grid_shape, voxelise
+
+RULES = {"cg": ("auto", "plain", "laminate", "links"), "eyre-milton": ("auto", "plain", "laminate")}
+PRECISIONS = {"float64": np.float64, "float32": np.float32}
+TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
+
+
+def solve(
+    scene: Scene,
+    *,
+    voxels=128,
+    scheme="cg",
+    rule="auto",
+    precision="float64",
+    threads=2,
+    tolerance=None,
+    max_iterations=5000,
+) -> Field:
+    """Solve a periodic cell, or a box between two opposite isothermal walls with four insulated sides.
+
+    Parameters
+    ----------
+    scene : Scene
+    voxels : int or (3,) sequence of int
+        Voxels along the longest side, the others as nearly cubic as they can be; or along each side.
+    scheme : {"cg", "eyre-milton"}
+        Conjugate gradients on one temperature per voxel (`fft_cg`), or Eyre and Milton's iteration on the flux and
+        the gradient with the continuous Green operator (`fft_eyre_milton`).
+    rule : {"auto", "plain", "laminate", "links"}
+        What a voxel cut by an interface conducts: the phase of its centre; a laminate of its phases; for "cg" also
+        seven-point differences with links cut where they cross the interface.  "auto" chooses by contrast.
+    precision : {"float64", "float32"}
+    threads : int or None
+        None takes one per processor.
+    tolerance : float, optional
+        Relative error at which the iteration stops.  "cg": of the flux's equilibrium, and of the solution in the
+        energy norm.  "eyre-milton": of equilibrium and compatibility together.  The default leaves an error of the
+        conductivity below 1e-6 of the grid's own limit.
+    max_iterations : int
+
+    Returns
+    -------
+    Field
+        `stats` holds unknowns, iterations, residual (the equilibrium error, relative to the mean flux, recomputed),
+        scheme, rule, voxels and precision; for "eyre-milton" also equilibrium and compatibility.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the grid has too few voxels for the scheme.
+    NotImplementedError
+        If the load is another, or the scheme or rule cannot do with a zero conductivity.
+    RuntimeError
+        If the iteration does not converge.
+    """
+    _check(scheme, rule, precision, tolerance, max_iterations)
+    _check_load(scene)
+    order = (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
+    box = _turned(scene, order)
+    shape = tuple(grid_shape(scene, voxels)[a] for a in order)
+    rule = _automatic(scheme, scene) if rule == "auto" else rule
+    _check_scheme(box, scheme, rule, shape)
+    grid = voxelise(box, shape, laminate=rule == "laminate")
+    slope, level = _linear_part(box)
+    steep = float(np.linalg.norm(slope))
+    units = _Units(max(box.size), float(grid.conductivity[grid.fractions > 0].max()) or 1.0, steep)
+    with Team(_thread_count(threads)) as team:
+        problem = Problem(
+            voxels=_scaled(grid, units),
+            links=[link / units.conductivity for link in links(box, shape)] if rule == "links" else None,
+            # Equal wall temperatures: any load's solution, times zero.
+            gradient=slope / steep if steep else np.array([1.0, 0.0, 0.0]),
+            walls=not scene.periodic,
+            dtype=PRECISIONS[precision],
+            team=team,
+            tolerance=TOLERANCES[scheme] if tolerance is None else tolerance,
+            max_iterations=max_iterations,
+        )
+        solution = (fft_cg if scheme == "cg" else fft_eyre_milton).solve(problem)
+    knobs = {"scheme": scheme, "rule": rule, "precision": precision, "tolerance": problem.tolerance}
+    return _field(scene, fft_field.Grid(box, order, grid, None, None, slope, level), units, solution, knobs)
+
+
+class _Units(NamedTuple):
+    """What the problem is divided by, so that neither size nor conductivity meets the limits of float32."""
+
+    length: float
+    conductivity: float
+    slope: float
+
+
+def _check(scheme, rule, precision, tolerance, max_iterations):
+    if scheme not in RULES:
+        raise ValueError(f"scheme = {scheme!r}: must be one of {', '.join(RULES)}")
+    if rule not in RULES[scheme]:
+        raise ValueError(f"rule = {rule!r}: must be one of {', '.join(RULES[scheme])} for scheme {scheme!r}")
+    if precision not in PRECISIONS:
+        raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
+    if tolerance is not None and not (isinstance(tolerance, Real) and 0 < tolerance < 1):
+        raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
+    if not isinstance(max_iterations, Integral) or max_iterations < 1:
+        raise ValueError(f"max_iterations = {max_iterations!r}: must be a whole number >= 1")
+
+
+def _thread_count(threads):
+    if threads is None:
+        return os.cpu_count() or 1
+    if not isinstance(threads, Integral) or threads < 1:
+        raise ValueError(f"threads = {threads!r}: must be a whole number >= 1, or None for one per processor")
+    return int(threads)
+
+
+def _check_load(scene):
+    scene.check_steady()
+    names = sorted(scene.walls or {})
+    if scene.periodic or (not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0]):
+        return
+    raise NotImplementedError(
+        f"Scene.walls = {dict(scene.walls)}: fft.solve knows a periodic cell and two opposite walls with temperatures, "
+        "the others insulated; only their homogeneous problem is inverted by sines and cosines here"
+    )
+
+
+def _check_scheme(box, scheme, rule, shape):
+    pores = box.conductivities.min() == 0
+    if pores and scheme == "eyre-milton":
+        raise NotImplementedError(
+            "a conductivity is 0: Eyre and Milton's scheme converges like the square root of the contrast, which is "
+            "infinite; use scheme 'cg'"
+        )
+    if pores and rule == "links":
+        raise NotImplementedError("a conductivity is 0: links have a harmonic mean; use rule 'plain'")
+    if scheme == "cg" and rule != "links" and not box.periodic and shape[0] < 2:
+        raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
+
+
+def _automatic(scheme, scene):
+    return "laminate"
+
+
+def _turned(scene, order):
+    """The same scene with its axes in another order."""
+    place = {axis: new for new, axis in enumerate(order)}
+
+    def turned(vector):
+        return tuple(vector[a] for a in order)
+
+    inclusions = [
+        replace(i, axis=place[i.axis]) if isinstance(i, Layer) else replace(i, center=turned(i.center))
+        for i in scene.inclusions
+    ]
+    walls = scene.walls and {"xyz"[place["xyz".index(name[0])]] + name[1]: v for name, v in scene.walls.items()}
+    gradient = scene.gradient and turned(scene.gradient)
+    return replace(scene, size=turned(scene.size), inclusions=inclusions, walls=walls, gradient=gradient)
+
+
+def _linear_part(box):
+    """Mean gradient, and the temperature at the origin."""
+    if box.periodic:
+        return np.array(box.gradient), 0.0
+    low, high = box.wall_temperatures["x-"], box.wall_temperatures["x+"]
+    return np.array([(high - low) / box.size[0], 0.0, 0.0]), low
+
+
+def _scaled(grid, units):
+    return grid._replace(
+        spacing=grid.spacing / units.length,
+        conductivity=grid.conductivity / units.conductivity,
+        tensor=grid.tensor / units.conductivity,
+    )
+
+
+def _field(scene, grid, units, solution, knobs):
+    """The solution in the user's units and axes; what is costly is made when asked for."""
+    flux_unit = units.conductivity * units.slope
+    mean_flux = np.empty(3)
+    mean_flux[list(grid.order)] = -flux_unit * solution.mean_flux
+    heat = {}
+    if not scene.periodic:
+        area = scene.volume / scene.size[scene.axis]
+        name = "xyz"[scene.axis]
+        heat = {
+            name + "-": float(-flux_unit * solution.ends[0] * area),
+            name + "+": float(flux_unit * solution.ends[1] * area),
+        }
+
+    @cache
+    def whole():
+        temperature, flux = solution.state()
+        return grid._replace(temperature=temperature * (units.slope * units.length), flux=flux * -flux_unit)
+
+    shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
+    return Field(
+        scene=scene,
+        mean_flux=mean_flux,
+        fractions=grid.voxels.fractions,
+        sampler=lambda: fft_field.samples(whole()),
+        temperature_at=lambda points: fft_field.temperature_at(whole(), points),
+        flux_at=lambda points: fft_field.flux_at(whole(), points),
+        wall_temperature=scene.wall_temperatures,
+        wall_heat=heat,
+        stats={
+            "unknowns": solution.unknowns,
+            "iterations": solution.iterations,
+            **solution.errors,
+            **knobs,
+            "voxels": shape,
+        },
+    )
