@@ -40,7 +40,7 @@ class Solution(NamedTuple):
     order : int
         Highest degree l.
     digits : float
-        Decimal digits of the conductivity, from the difference between this order and three quarters of it.
+        Decimal digits of the conductivity, from the change between three quarters of this order and all of it.
     field_digits : float
         Decimal digits of the flux at the interface, where the series converges most slowly, from its last terms.
     residual : float
@@ -220,7 +220,8 @@ def _solve(kind, contrast, fraction, order):
     system = np.eye(len(degree)) - alpha[:, None] * matrix
     load = np.where(degree == 1, -alpha * r, 0.0)
     b = np.linalg.solve(system, load)
-    # Three quarters of the order, so that the difference is an honest estimate also of a slow (algebraic) convergence.
+    # What is left at this order is at most three times the change from three quarters of it, if the error falls at
+    # least as the inverse of the order, as it does even when spheres touch; it falls geometrically when they do not.
     less = int(np.sum(degree <= 3 * order // 4))
     rough = np.linalg.solve(system[:less, :less], load[:less])
     moment = 4 * math.pi * r**2 * len(SITES[kind])
@@ -235,7 +236,7 @@ def _solve(kind, contrast, fraction, order):
         radius=r,
         conductivity=float(ratio),
         order=order,
-        digits=_digits(moment * abs(b[0] - rough[0]) / ratio),
+        digits=_digits(3 * moment * abs(b[0] - rough[0]) / ratio),
         field_digits=_digits(last),
         residual=float(np.linalg.norm(system @ b - load) / max(np.linalg.norm(load), np.finfo(float).tiny)),
         source=source,

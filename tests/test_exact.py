@@ -155,9 +155,9 @@ def test_walls_and_periodic_cell_are_one_solution():
     [(gallery.simple_cubic, "sc"), (gallery.body_centred, "bcc"), (gallery.face_centred, "fcc")],
 )
 def test_cubic_cells_anywhere_and_in_any_order(make, kind):
-    scene = make(contrast=10.0, fraction=0.3)
+    scene = make(contrast=10.0, fraction=0.2)
     field = exact.solve(scene)
-    assert_allclose(field.conductivity / 33.0, lattice.conductivity(kind, 10.0, 0.3), rtol=1e-14)
+    assert_allclose(field.conductivity / 33.0, lattice.conductivity(kind, 10.0, 0.2), rtol=1e-14)
     shift = np.array([0.03, -0.21, 0.055])
     moved = [replace(s, center=tuple(np.array(s.center) + shift)) for s in scene.inclusions[::-1]]
     other = exact.solve(replace(scene, inclusions=moved))
@@ -170,7 +170,7 @@ def test_cubic_cells_anywhere_and_in_any_order(make, kind):
 
 
 def test_gradients_superpose_and_rotate():
-    scene = gallery.body_centred(contrast=0.1, fraction=0.4)
+    scene = gallery.body_centred(contrast=0.1, fraction=0.2)
     points = random_points(scene, 50)
     parts = [exact.solve(replace(scene, gradient=tuple(g))) for g in np.diag(OBLIQUE)]
     whole = exact.solve(replace(scene, gradient=OBLIQUE))
@@ -190,8 +190,9 @@ def test_pores_and_insulating_matrix():
     scene = replace(scene, matrix=Material(0.0))
     dead = exact.solve(scene)
     assert dead.conductivity == 0.0
-    assert np.all(np.isfinite(dead.samples.temperature))
-    assert_array_equal(dead.samples.flux, 0)
+    points = random_points(scene, 50)
+    assert np.all(np.isfinite(dead.temperature_at(points)))
+    assert_array_equal(dead.flux_at(points), 0)
 
 
 @pytest.mark.parametrize("scene", [gallery.coated_sphere(), gallery.coated_sphere(core=0.0, shell=2.0, periodic=True)])
@@ -295,12 +296,17 @@ PAIR = gallery.body_centred()
         replace(COATED, matrix=Material(COATED.matrix.conductivity * (1 + 1e-9))),
         replace(COATED, inclusions=[COATED.inclusions[0], replace(COATED.inclusions[1], center=(0.05, 0.05, 0.051))]),
         replace(COATED, inclusions=[replace(s, center=(0.02, 0.05, 0.05)) for s in COATED.inclusions]),
-        gallery.sphere_in_cube(1e6, fraction=0.5235),
     ],
 )
 def test_refuses_what_has_no_closed_form(scene):
     with pytest.raises(NotImplementedError, match="no closed form"):
         exact.solve(scene)
+
+
+def test_refuses_spheres_too_close_for_the_series(monkeypatch):
+    monkeypatch.setattr(lattice, "HIGHEST_ORDER", 59)
+    with pytest.raises(NotImplementedError, match="no closed form to six digits: .* nearly touching"):
+        exact.solve(gallery.sphere_in_cube(1e6, fraction=0.5235))
 
 
 def test_bad_knob():
