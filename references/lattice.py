@@ -111,8 +111,8 @@ def solve(kind, contrast, fraction, *, order=None, digits=6):
         found = _solve(kind, float(contrast), fraction, min(max(step, found.order + 4), HIGHEST_ORDER))
     if found.digits < digits:
         raise ValueError(
-            f"fraction = {fraction}, contrast = {contrast}: at order {found.order} the {kind} array of nearly touching "
-            f"spheres gives {found.digits:.1f} digits, digits = {digits} asked for; ask for fewer or a higher order"
+            f"fraction = {fraction}, contrast = {contrast}: at order {found.order} the {kind} array gives "
+            f"{found.digits:.1f} digits, digits = {digits} asked for; the spheres are nearly touching or order is low"
         )
     return found._replace(far=_far(found))
 
@@ -121,7 +121,7 @@ def zeta2(kind, fraction):
     """Milton's parameter zeta_2 of a cubic array, exactly.
 
     The third order in s - 1 of Rayleigh's solution against that of Torquato's expansion:
-    zeta_2 = 3/(2 phi_1) sum over l >= 3 of l/(2l+1) M_1l^2, M the matrix of `_interaction`.
+    zeta_2 = 3/(2 phi_1) sum over l >= 3 of l/(2l+1) M_1l^2, M the matrix by which multipoles act on each other.
 
     Parameters
     ----------
