@@ -6,12 +6,12 @@ import numpy as np
 
 from demheat.evaluate import field_of
 from demheat.network.calibrated import contact_facets
-from demheat.network.interface import connect
+from demheat.network.interface import check_rule, connect
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.scene import Material, Scene
-from demheat.steady import solve_steady
+from demheat.steady import check_solver, solve_steady
 
 LAWS = ("laguerre", "calibrated")
 
@@ -66,6 +66,8 @@ def solve(
     """
     if law not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
+    check_rule(interface)
+    check_solver(solver, tolerance)
     conforming = law == "laguerre" if conforming is None else conforming
     scene.check_steady()
     clock = [time.perf_counter()]

@@ -80,10 +80,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     RuntimeError
         If the residual, recomputed after the solve, misses the tolerance.
     """
-    if solver not in SOLVERS:
-        raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
-    if not 1e-15 < tolerance < 1e-2:
-        raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
+    check_solver(solver, tolerance)
     scene.check_steady()
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
@@ -105,6 +102,14 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         "islands": int((~reached).sum()),
     }
     return Solution(x, system.gradient, *_at_walls(system, scene, x), stats)
+
+
+def check_solver(solver, tolerance):
+    """Raise ValueError unless the solver is known and its tolerance sensible."""
+    if solver not in SOLVERS:
+        raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
+    if not 1e-15 < tolerance < 1e-2:
+        raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
 
 
 def _reached(network, scene):

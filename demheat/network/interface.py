@@ -24,14 +24,19 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     -------
     (m,) float array, W/(m K)
     """
-    if rule not in RULES:
-        raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
+    check_rule(rule)
     share = np.clip(share, 0.0, 1.0)
     if rule == "arithmetic":
         return share * k_here + (1.0 - share) * k_there
     least = np.minimum(k_here, k_there)
     series = share * k_there + (1.0 - share) * k_here
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
+
+
+def check_rule(rule):
+    """Raise ValueError unless `rule` names an interface rule."""
+    if rule not in RULES:
+        raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
 
 
 def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):

@@ -7,7 +7,8 @@ from demheat.network.base import Facets, row_numbers
 
 # Rows cut at once: bounds the scratch memory (about 1.5 kB a row) without costing speed.
 BLOCK = 65536
-MOST_FACETS = 64
+# Planes that may cut a cell: enough for any packing; cells that need more (a large one beside small ones) are redone.
+MOST_PLANES = 80
 # Facets below this fraction of the squared mean spacing are rounding where more than four cells meet in one point.
 SLIVER = 1e-11
 
@@ -86,11 +87,11 @@ def _cut_rows(rows, grid, spacing):
     """Cut some rows, again and wider where a cell was not secured; flat columns of their facets."""
     size, periodic = grid[2], grid[3]
     widest = size[periodic].min() if periodic.any() else 2 * size.max()
-    reach, room, eps = min(2.5 * spacing, widest), 256, 1e-11 * spacing
+    reach, room, most, eps = min(2.5 * spacing, widest), 256, MOST_PLANES, 1e-11 * spacing
     done = []
     while len(rows):
-        out = _empty_out(len(rows))
-        kernels.cut_cells(rows, reach, room, eps, *grid, out)
+        out = _empty_out(len(rows), most)
+        kernels.cut_cells(rows, reach, room, most, eps, *grid, out)
         status = out[0]
         done.append((rows[status == kernels.OK], _columns(out, status == kernels.OK)))
         if reach >= widest and np.any(status == kernels.UNSECURED):
@@ -102,14 +103,14 @@ def _cut_rows(rows, grid, spacing):
             raise RuntimeError(f"laguerre: {np.sum(status != kernels.OK)} cells could not be cut")
         rows = rows[status != kernels.OK]
         reach = min(1.35 * reach, widest)
-        room *= 4
+        room, most = 4 * room, min(3 * most, 2000)
         if np.any(status == kernels.TANGLED):
             eps *= 4
     return _in_order(done)
 
 
-def _empty_out(n):
-    shape = (n, MOST_FACETS)
+def _empty_out(n, most):
+    shape = (n, most)
     return (
         np.empty(n, np.int8),
         np.empty(n),
@@ -123,7 +124,7 @@ def _empty_out(n):
 
 def _columns(out, good):
     _, volume, number, neighbour, image, area, distance = out
-    used = good[:, None] & (np.arange(MOST_FACETS) < number[:, None])
+    used = good[:, None] & (np.arange(area.shape[1]) < number[:, None])
     return volume[good], number[good], neighbour[used], image[used], area[used], distance[used]
 
 

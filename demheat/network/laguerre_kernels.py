@@ -9,8 +9,6 @@ import numpy as np
 from numba import njit, prange
 
 OK, UNSECURED, OVERFLOW, TANGLED = 0, 1, 2, 3
-MAX_PLANES = 96
-MAX_VERTICES = 512
 
 
 @njit(cache=True)
@@ -154,7 +152,7 @@ def _cut(count, slot, nx, ny, nz, h, eps, vertex, triple, owner, above, edge, fo
         steps += 1
         if a == edge[0, 0] or steps > edges:
             break
-    if steps != edges or count + edges > MAX_VERTICES:
+    if steps != edges or count + edges > len(vertex):
         return -1
     total = count
     for e in range(edges):
@@ -237,7 +235,7 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
         m -= 1
         heap[0] = heap[m]
         _sift(heap, plane, 0, m)
-        if planes == MAX_PLANES:
+        if planes == len(distance):
             return OVERFLOW, 0, 0
         if h == -np.inf:
             return OK, 0, 0
@@ -263,10 +261,11 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
 
 
 @njit(cache=True, parallel=True)
-def cut_cells(rows, reach, room, eps, points, weights, size, periodic, counts, start, items, out):
+def cut_cells(rows, reach, room, most, eps, points, weights, size, periodic, counts, start, items, out):
     """Cut the cells of the given rows into out = (status, volume, number, neighbour, image, area, distance).
 
-    Neighbour -1 - s stands for side s of the box. Each thread writes its own rows only.
+    A cell may meet `room` candidates and be cut by `most` planes. Neighbour -1 - s stands for side s of the box. Each
+    thread writes its own rows only.
     """
     status, volume, number, neighbour, image, areas, distances = out
     heaviest = weights.max()
@@ -276,16 +275,16 @@ def cut_cells(rows, reach, room, eps, points, weights, size, periodic, counts, s
         work = (
             cand,
             np.empty(room, np.int64),
-            np.empty((MAX_VERTICES, 3)),
-            np.empty((MAX_VERTICES, 3), np.int16),
-            np.empty((MAX_PLANES, MAX_PLANES), np.int16),
-            np.empty(MAX_VERTICES),
-            np.empty((MAX_VERTICES, 4), np.int64),
-            np.empty(MAX_PLANES, np.int64),
-            np.empty((MAX_PLANES, 3)),
-            np.empty(MAX_PLANES),
-            np.empty(MAX_PLANES, np.int64),
-            np.empty(MAX_PLANES),
+            np.empty((4 * most, 3)),
+            np.empty((4 * most, 3), np.int16),
+            np.empty((most, most), np.int16),
+            np.empty(4 * most),
+            np.empty((4 * most, 4), np.int64),
+            np.empty(most, np.int64),
+            np.empty((most, 3)),
+            np.empty(most),
+            np.empty(most, np.int64),
+            np.empty(most),
         )
         for row in range(block * chunk, min(len(rows), (block + 1) * chunk)):
             i = rows[row]

@@ -5,15 +5,13 @@ weights delta^2 + c (delta the offset from the interface, c one constant) the fa
 exactly its circumscribed polyhedron, whatever the offsets: no facet crosses the interface.
 """
 
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
-from scipy.spatial.transform import Rotation
 
 from demheat.packing.base import make_packing
-from demheat.scene import Scene, Sphere
+from demheat.packing.interfaces import SphereSurface, surfaces_of
 
 # In mean radii of the packing. Twins at half a radius make cells centred between the interface and the next layer,
 # which is what the two-point flux needs where the interface is curved; found best of offsets .3 to .95 and spacings 1.2
@@ -26,8 +24,15 @@ CLEARANCE = 0.4
 LEAST_OFFSET = 0.05
 # Weight of a twin beyond its squared offset: a twin at OFFSET weighs as much as a mean particle.
 EXCESS = 1.0 - OFFSET**2
-# Every point of an interface lies within this many spacings of a twin (a triangular pattern would need 0.58).
-COVER = 0.7
+# In a gap of width g the twins of the other side must not come nearer to an interface than its own: with offsets g/4
+# and points COVER spacings away at most that needs a spacing below g/(sqrt(2) COVER) = 0.88 g.
+GAP_SPACING = 0.85
+LEAST_SPACING = 4 * LEAST_OFFSET
+# Points thinned to this part of their spacing cover the surface at least as densely as an even pattern does.
+THINNING = 0.75
+# Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
+# points need up to 0.77 near their poles.
+COVER = 0.8
 
 
 class _Twins(NamedTuple):
@@ -58,10 +63,11 @@ def conform(packing, scene, *, seed=0):
         return packing
     radius = packing.radii.mean()
     rng = np.random.default_rng([seed, 71])
-    surfaces = _surfaces(scene)
+    surfaces = surfaces_of(scene)
     parts = []
     for surface in surfaces:
-        points, normals = surface.pattern(SPACING * radius, rng)
+        points, normals = _pattern(surface, surfaces, radius, rng)
+        points = surface.touched(points, normals)
         offsets = _room(points, normals, surface, surfaces, scene, OFFSET * radius)
         fits = offsets >= LEAST_OFFSET * radius
         parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
@@ -79,6 +85,61 @@ def conform(packing, scene, *, seed=0):
     )
 
 
+def _pattern(surface, surfaces, radius, rng):
+    """Points in the box and normals on a surface, closer where another interface or a wall is near."""
+    points, normals = _inside(surface, *surface.pattern(SPACING * radius, rng))
+    spacing = _spacing(points, normals, surface, surfaces, radius)
+    coarse = spacing >= SPACING * radius
+    if coarse.all():
+        return points, normals
+    fine, fine_normals = _inside(surface, *surface.pattern(0.8 * LEAST_SPACING * radius, rng))
+    wanted = _spacing(fine, fine_normals, surface, surfaces, radius)
+    narrow = np.flatnonzero(wanted < SPACING * radius)
+    chosen = narrow[_thinned(fine[narrow], THINNING * wanted[narrow], points[coarse])]
+    return np.concatenate([points[coarse], fine[chosen]]), np.concatenate([normals[coarse], fine_normals[chosen]])
+
+
+def _inside(surface, points, normals):
+    """The points that lie in the box, where it has walls."""
+    if surface.scene.periodic:
+        return points, normals
+    good = np.all((points > 0) & (points < surface.scene.size), axis=1)
+    return points[good], normals[good]
+
+
+def _spacing(points, normals, surface, surfaces, radius):
+    """Distance between twins at points of a surface: no more than the gap's width asks, see GAP_SPACING."""
+    gap = np.min([other.gap(points, skip_self=other is surface) for other in surfaces], axis=0)
+    # A wall that faces the interface mirrors it; one that cuts it asks for nothing.
+    gap = np.minimum(gap, 2.0 * _way_to_wall(points, normals, surface.scene, facing=0.9))
+    return np.clip(GAP_SPACING * gap, LEAST_SPACING * radius, SPACING * radius)
+
+
+def _way_to_wall(points, normals, scene, *, facing=0.0):
+    """Distance along the normal, either way, to the nearest wall whose own normal is that close to it (cosine)."""
+    if scene.periodic:
+        return np.full(len(points), np.inf)
+    size, way = np.array(scene.size), []
+    for direction in (normals, -normals):
+        height = np.where(direction > 0, size - points, points)
+        faced = np.abs(direction) > facing
+        way.append(np.divide(height, np.abs(direction), out=np.full_like(height, np.inf), where=faced).min(axis=1))
+    return np.minimum(*way)
+
+
+def _thinned(points, least, taken):
+    """Choose points that keep their least distance from each other and from those taken, closest-set first."""
+    free = np.ones(len(points), dtype=bool)
+    if len(taken):
+        free = cKDTree(taken).query(points)[0] >= least
+    tree, chosen = cKDTree(points), []
+    for p in np.argsort(least, kind="stable"):
+        if free[p]:
+            chosen.append(p)
+            free[tree.query_ball_point(points[p], least[p])] = False
+    return np.array(chosen, dtype=int)
+
+
 def _margin(radius):
     """What a particle's weight must stay below its squared distance to an interface so that no facet of it reaches it.
 
@@ -88,116 +149,14 @@ def _margin(radius):
     return ((COVER * SPACING) ** 2 - EXCESS) * radius**2
 
 
-class _SphereSurface(NamedTuple):
-    center: np.ndarray
-    radius: float
-    scene: Scene
-
-    def pattern(self, spacing, rng):
-        """Touch points and outward normals, evenly spread, on the polyhedron of the sphere's volume."""
-        count = max(12, int(np.ceil(4 * np.pi * self.radius**2 / (np.sqrt(0.75) * spacing**2))))
-        normals = Rotation.random(random_state=rng).apply(fibonacci_sphere(count))
-        return self.center + inscribed_radius(normals) * self.radius * normals, normals
-
-    def gap(self, points, *, skip_self=False):
-        """Distance of points to the surface, its periodic images included; of its own points to its images only."""
-        box = np.array(self.scene.size)
-        if self.scene.periodic and skip_self:
-            nearest = np.full(len(points), np.inf)
-            for shift in product((-1, 0, 1), repeat=3):
-                if any(shift):
-                    offsets = points - self.center - shift * box
-                    nearest = np.minimum(nearest, np.abs(np.linalg.norm(offsets, axis=1) - self.radius))
-            return nearest
-        if skip_self:
-            return np.full(len(points), np.inf)
-        offsets = points - self.center
-        if self.scene.periodic:
-            offsets -= box * np.round(offsets / box)
-        return np.abs(np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) - self.radius)
-
-
-class _PlaneSurface(NamedTuple):
-    axis: int
-    position: float
-    scene: Scene
-
-    def pattern(self, spacing, rng):
-        """Touch points on a jittered triangular pattern that fits the box."""
-        size = self.scene.size
-        u, v = (k for k in range(3) if k != self.axis)
-        columns = max(4, round(size[u] / spacing))
-        rows = max(4, 2 * round(size[v] / (spacing * np.sqrt(0.75)) / 2))
-        i, j = (a.ravel() for a in np.meshgrid(np.arange(columns), np.arange(rows), indexing="ij"))
-        points = np.empty((len(i), 3))
-        points[:, self.axis] = self.position
-        points[:, u] = (i + 0.25 + 0.5 * (j % 2)) / columns * size[u]
-        points[:, v] = (j + 0.5) / rows * size[v]
-        jitter = 0.1 * spacing * rng.uniform(-1, 1, (len(i), 2))
-        points[:, u] = (points[:, u] + jitter[:, 0]) % size[u]
-        points[:, v] = (points[:, v] + jitter[:, 1]) % size[v]
-        normals = np.zeros((len(i), 3))
-        normals[:, self.axis] = 1.0
-        return points, normals
-
-    def gap(self, points, *, skip_self=False):
-        """Distance of points to the plane, its periodic images included."""
-        if skip_self:
-            return np.full(len(points), np.inf)
-        offset = points[:, self.axis] - self.position
-        if self.scene.periodic:
-            length = self.scene.size[self.axis]
-            offset = offset - length * np.round(offset / length)
-        return np.abs(offset)
-
-
-def fibonacci_sphere(count):
-    """Evenly spread unit vectors, (count, 3) float array."""
-    k = np.arange(count) + 0.5
-    z = 1.0 - 2.0 * k / count
-    azimuth = np.pi * (1.0 + np.sqrt(5.0)) * k
-    ring = np.sqrt(1.0 - z * z)
-    return np.stack([ring * np.cos(azimuth), ring * np.sin(azimuth), z], axis=1)
-
-
-def inscribed_radius(normals):
-    """Radius of the sphere inscribed in the polyhedron with these facet normals and the unit sphere's volume.
-
-    The polyhedron {x : n.x <= 1 for all n} has the volume of the mean of 1/cos^3 of the angle from a direction to
-    the nearest normal; the mean is taken over 40 directions per normal.
-    """
-    directions = fibonacci_sphere(40 * len(normals) + 7)
-    chord, _ = cKDTree(normals).query(directions)
-    cosine = 1.0 - 0.5 * chord**2
-    return float(np.mean(cosine**-3.0) ** (-1.0 / 3.0))
-
-
-def _surfaces(scene):
-    """Every sphere and every plane between layers, once each."""
-    spheres, planes = [], set()
-    for inclusion in scene.inclusions:
-        if isinstance(inclusion, Sphere):
-            spheres.append(_SphereSurface(np.array(inclusion.center), inclusion.radius, scene))
-            continue
-        length = scene.size[inclusion.axis]
-        for x in (inclusion.start, inclusion.stop):
-            if scene.periodic or 0.0 < x < length:
-                planes.add((inclusion.axis, x % length))
-    return spheres + [_PlaneSurface(axis, x, scene) for axis, x in sorted(planes)]
-
-
 def _room(points, normals, surface, surfaces, scene, most):
     """Largest offset that leaves each twin its own place: a half of the way to a wall, a quarter to an interface."""
     room = np.full(len(points), most)
-    if isinstance(surface, _SphereSurface):
+    if isinstance(surface, SphereSurface):
         room = np.minimum(room, 0.5 * surface.radius)
     for other in surfaces:
         room = np.minimum(room, 0.25 * other.gap(points, skip_self=other is surface))
-    if not scene.periodic:
-        for direction in (normals, -normals):
-            with np.errstate(divide="ignore"):
-                way = np.where(direction > 0, scene.size - points, points) / np.abs(direction)
-            room = np.minimum(room, 0.5 * way.min(axis=1))
+    room = np.minimum(room, 0.5 * _way_to_wall(points, normals, scene))
     return room
 
 

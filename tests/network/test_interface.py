@@ -1,0 +1,34 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat.network.interface import link_conductivity
+
+
+def test_harmonic_is_resistances_in_series():
+    k = link_conductivity(np.array([2.0]), np.array([6.0]), np.array([0.25]))
+    assert_allclose(k, 1.0 / (0.25 / 2.0 + 0.75 / 6.0), rtol=1e-15)
+
+
+def test_equal_shares_give_the_papers_mean():
+    here, there = np.array([195.0, 1.0]), np.array([1500.0, 7.0])
+    assert_allclose(link_conductivity(here, there, np.full(2, 0.5)), 2 * here * there / (here + there), rtol=1e-15)
+
+
+def test_arithmetic():
+    assert_allclose(link_conductivity(np.array([1.0]), np.array([3.0]), np.array([0.75]), rule="arithmetic"), 1.5)
+
+
+def test_a_pore_conducts_nothing():
+    k = link_conductivity(np.array([0.0, 5.0, 0.0]), np.array([5.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5]))
+    assert np.array_equal(k, np.zeros(3))
+
+
+def test_shares_beyond_the_link_are_cut():
+    k = link_conductivity(np.array([2.0, 2.0]), np.array([6.0, 6.0]), np.array([-0.3, 1.7]))
+    assert_allclose(k, [6.0, 2.0])
+
+
+def test_unknown_rule():
+    with pytest.raises(ValueError, match="interface = 'geometric'"):
+        link_conductivity(np.ones(1), np.ones(1), np.ones(1), rule="geometric")

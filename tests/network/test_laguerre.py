@@ -1,0 +1,146 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.spatial import ConvexHull
+
+from demheat.network.base import branches, row_numbers
+from demheat.network.interface import link_lengths
+from demheat.network.laguerre import laguerre, without_hidden
+from demheat.packing.base import make_packing
+
+
+def cloud(n=600, *, spread=0.6, seed=0, size=(1.0, 1.0, 1.0)):
+    """Random weighted points: harder than any packing, some are hidden."""
+    rng = np.random.default_rng(seed)
+    return rng.random((n, 3)) * size, (rng.uniform(1 - spread, 1 + spread, n) * 0.5 * n ** (-1 / 3)) ** 2
+
+
+def closure(facets, centers, size):
+    """Sum of the outward facet vectors of each cell."""
+    total = np.zeros_like(centers)
+    branch = branches(centers, size, facets.indptr, facets.indices, facets.image)
+    unit = branch / np.linalg.norm(branch, axis=1)[:, None]
+    np.add.at(total, row_numbers(facets.indptr), facets.area[:, None] * unit)
+    outward = 2.0 * (facets.wall_side % 2) - 1.0
+    np.add.at(total, (facets.wall_particle, facets.wall_side // 2), facets.wall_area * outward)
+    return total
+
+
+@pytest.mark.parametrize("periodic", [True, False, (True, False, True)])
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 2.0, 0.5)])
+def test_cells_close_and_fill_the_box(periodic, size):
+    centers, weights = cloud(size=size)
+    facets = laguerre(centers, weights, size, periodic=periodic)
+    # Rounding: positions carry 1e-16 of the box, facets 1e-11 of a squared spacing are dropped.
+    assert_allclose(facets.volumes.sum(), np.prod(size), rtol=1e-12)
+    assert_allclose(closure(facets, centers, size), 0.0, atol=1e-10 * 600 ** (-2 / 3))
+    walls = 2.0 * (np.prod(size) / np.array(size))[~np.broadcast_to(periodic, 3)].sum()
+    assert_allclose(facets.wall_area.sum(), walls, rtol=1e-12)
+
+
+def test_links_stand_in_both_rows_with_one_area():
+    centers, weights = cloud()
+    facets = laguerre(centers, weights, (1, 1, 1))
+    rows = row_numbers(facets.indptr)
+    there = {
+        (p, q, s): (a, h)
+        for p, q, s, a, h in zip(rows, facets.indices, facets.image, facets.area, facets.distance, strict=True)
+    }
+    length = link_lengths(facets, centers, np.ones(3))
+    for p, q, s, d in zip(rows, facets.indices, facets.image, length, strict=True):
+        area, height = there[p, q, s]
+        back_area, back_height = there[q, p, 26 - s]
+        assert area == back_area
+        # Both ends measure the same plane: their distances add up to the link, to rounding of the box's coordinates.
+        assert abs(height + back_height - d) < 1e-12
+
+
+def test_slow_twin():
+    """Each random point belongs to the cell that the definition of the power diagram names: volumes by counting."""
+    centers, weights = cloud(120)
+    facets = laguerre(centers, weights, (1, 1, 1), periodic=False)
+    points = (np.stack(np.meshgrid(*[np.arange(48) + 0.5] * 3, indexing="ij"), -1) / 48).reshape(-1, 3)
+    power = ((points[:, None, :] - centers) ** 2).sum(axis=2) - weights
+    counted = np.bincount(power.argmin(axis=1), minlength=120) / 48**3
+    # A cell's surface cuts about 6 (V^(1/3) 48)^2 voxels, each with an error of half a voxel of either sign at random.
+    surface = 6 * (np.maximum(facets.volumes, 1e-9) ** (1 / 3) * 48) ** 2
+    assert np.all(np.abs(counted - facets.volumes) * 48**3 < 3 * np.sqrt(surface) + 3)
+    assert np.array_equal(counted > 1e-4, (counted > 1e-4) & (facets.volumes > 0))
+
+
+def test_simple_cubic_crystal():
+    """Four planes meet in every corner of a cube: the most degenerate case there is."""
+    n = 6
+    centers = (np.stack(np.meshgrid(*[np.arange(n) + 0.5] * 3, indexing="ij"), -1) / n).reshape(-1, 3)
+    facets = laguerre(centers, np.zeros(n**3), (1, 1, 1))
+    assert np.all(np.diff(facets.indptr) == 6)
+    assert_allclose(facets.area, n**-2, rtol=1e-12)
+    assert_allclose(facets.volumes, n**-3, rtol=1e-12)
+
+
+def test_hidden_points_are_dropped():
+    centers, weights = cloud(300)
+    centers = np.vstack([centers, centers[:2] + 1e-3])
+    weights = np.append(weights, weights[:2] - 0.01)
+    packing = make_packing(centers, np.sqrt(weights + 0.02), (1, 1, 1), True, {})
+    facets = laguerre(packing.centers, packing.radii**2, packing.size)
+    seen, kept = without_hidden(packing, facets)
+    assert 2 <= packing.number - seen.number == np.sum(facets.volumes == 0)
+    assert kept.volumes.min() > 0 and kept.indices.max() < seen.number == len(kept.indptr) - 1
+    assert_allclose(closure(kept, seen.centers, seen.size), 0.0, atol=1e-10 * 300 ** (-2 / 3))
+
+
+def test_bits_do_not_depend_on_threads():
+    numba = pytest.importorskip("numba")
+    centers, weights = cloud(400)
+    before = numba.get_num_threads()
+    try:
+        results = []
+        for threads in (1, before):
+            numba.set_num_threads(threads)
+            results.append(laguerre(centers, weights, (1, 1, 1)))
+    finally:
+        numba.set_num_threads(before)
+    assert all(np.array_equal(a, b) for a, b in zip(*results, strict=True))
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_against_voro(periodic):
+    multivoro = pytest.importorskip("multivoro")
+    centers, weights = cloud(500, spread=0.3)
+    radii = np.sqrt(weights)
+    cells = multivoro.compute_voronoi(
+        centers, radii=radii, limits=np.array([[0.0] * 3, [1.0] * 3]), periodic_boundaries=(periodic,) * 3
+    )
+    facets = laguerre(centers, weights, (1, 1, 1), periodic=periodic)
+    for p, cell in enumerate(cells):
+        ours = sorted(facets.indices[facets.indptr[p] : facets.indptr[p + 1]])
+        if cell is None or len(cell.get_vertices()) == 0:
+            assert not ours
+            continue
+        # The hull is taken of vertices printed relative to the box: rounding of 1e-16 against cells of 1e-3.
+        assert_allclose(facets.volumes[p], ConvexHull(cell.get_vertices()).volume, rtol=1e-9)
+        # Voro++ also lists facets of rounding size.
+        theirs = {q for q in cell.get_neighbors() if q >= 0}
+        assert set(ours) <= theirs and len(theirs) - len(set(ours)) <= 1
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        (dict(centers=np.zeros((0, 3))), "centers: shape"),
+        (dict(centers=np.full((5, 3), 2.0)), "must lie in the box"),
+        (dict(centers=np.full((5, 3), np.nan)), "must lie in the box"),
+        (dict(weights=np.array([1.0, np.inf, 1, 1, 1])), "weights"),
+        (dict(weights=np.ones(4)), "weights"),
+    ],
+)
+def test_bad_input(change, words):
+    good = dict(centers=np.random.default_rng(0).random((5, 3)), weights=np.zeros(5), size=(1, 1, 1))
+    with pytest.raises(ValueError, match=words):
+        laguerre(**good | change)
+
+
+def test_too_few_points_in_a_periodic_box():
+    with pytest.raises(RuntimeError, match="reach across the periodic box"):
+        laguerre(np.array([[0.5, 0.5, 0.5], [0.2, 0.3, 0.4]]), np.zeros(2), (1, 1, 1))
