@@ -12,9 +12,10 @@ from demheat.network.base import Network, row_numbers
 from demheat.scene import WALLS
 
 SOLVERS = ("auto", "cg", "amg")
-# Measured in the study `speed_error`: beyond these, multigrid costs fewer CPU-seconds than Jacobi iterations.
-AMG_UNKNOWNS = 2_000_000
-AMG_CONTRAST = 50.0
+# Beyond these sizes multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with the size and with
+# the contrast: found on one and on 83 spheres, 2e4 to 1e6 particles, contrasts 0.01 to 1e6.
+AMG_UNKNOWNS = 300_000
+AMG_UNKNOWNS_WIDE, AMG_CONTRAST = 100_000, 50.0
 
 
 class Solution(NamedTuple):
@@ -64,7 +65,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         Its load only.
     solver : {"auto", "cg", "amg"}
         Jacobi-preconditioned conjugate gradients, or conjugate gradients preconditioned by algebraic multigrid
-        (Ruge-Stueben, pyamg); "auto" picks by size and contrast.
+        (smoothed aggregation, pyamg); "auto" picks by size and contrast.
     tolerance : float
         On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
@@ -174,10 +175,10 @@ def _start(network, scene, reached):
 
 
 def _choose(unknowns, scene):
-    """Multigrid for many unknowns or a wide contrast, else Jacobi-preconditioned conjugate gradients."""
+    """Multigrid for many unknowns, sooner at a wide contrast, else Jacobi-preconditioned conjugate gradients."""
     k = scene.conductivities[scene.conductivities > 0]
     wide = len(k) and k.max() > AMG_CONTRAST * k.min()
-    return "amg" if unknowns > AMG_UNKNOWNS or (wide and unknowns > 200_000) else "cg"
+    return "amg" if unknowns > (AMG_UNKNOWNS_WIDE if wide else AMG_UNKNOWNS) else "cg"
 
 
 def _iterate(system, x, solver, tolerance, most):
