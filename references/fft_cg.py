@@ -92,7 +92,7 @@ def solve(problem: Problem) -> Solution:
 
 def _error(rz, energy, problem):
     """Part of the flux that is not divergence-free, root mean square over the mean flux: the equilibrium error."""
-    return math.sqrt(max(rz, 0.0) * problem.voxels.phase.size) / energy if energy > 0 else 0.0
+    return math.sqrt(max(rz, 0.0) * problem.voxels.phase.size) / float(energy) if energy > 0 else 0.0
 
 
 def _fail(iterations, error, tolerance):

@@ -43,7 +43,10 @@ def conduct_voxels(theta, work, medium, gradient, inverse, walls, sums, low, hig
     corner = np.empty((3, nz + 1), theta.dtype)
     slope = np.empty((3, nz), theta.dtype)
     flux = np.zeros((3, nz + 2), theta.dtype)
-    work[low:high] = 0
+    for i in range(low, high):
+        for j in range(my):
+            for k in range(mz):
+                work[i, j, k] = 0
     for outer in range(low + shift - 1, high + shift):
         slab, lower, upper = outer % nx, outer - shift, outer + 1 - shift
         below = nothing if walls and lower < 0 else theta[lower % mx]
@@ -62,7 +65,8 @@ def conduct_voxels(theta, work, medium, gradient, inverse, walls, sums, low, hig
                 _scatter(work[lower, j], work[lower, jj], flux, -1, mz)
             if low <= upper < high:
                 _scatter(work[upper, j], work[upper, jj], flux, 1, mz)
-        sums[slab] = found
+        for item in range(5):
+            sums[slab, item] = found[item]
 
 
 # The compiler makes vector instructions of a loop only if it has few arrays to tell apart: hence so many small loops.
@@ -163,8 +167,8 @@ def voxel_state(theta, medium, gradient, inverse, walls, center, flux, low, high
             _flux_row(slope, medium, i, j, row, found)
             for k in range(nz):
                 center[i, j, k] = 0.125 * (corner[0, k] + corner[0, k + 1])
-            for axis in range(3):
-                flux[axis, i, j] = row[axis, 1 : nz + 1]
+                for axis in range(3):
+                    flux[axis, i, j, k] = row[axis, k + 1]
 
 
 @compiled

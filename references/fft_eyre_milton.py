@@ -86,21 +86,22 @@ def _waves(problem, transform):
             number *= sign
             number[-1] = 0.0
             weight[[0, -1]] = 1.0
-        return _cast(numbers, problem), _cast(weights, problem)
-    numbers = []
+        free = [np.arange(n + 1) == n for n in shape]
+        return _cast(numbers, problem), _cast(free, problem), _cast(weights, problem)
+    numbers, free = [], []
     for n, length in zip(shape, lengths, strict=True):
         number = 2 * np.pi / length * np.fft.fftfreq(n, 1 / n)
-        if n % 2 == 0:
-            # A wave of Nyquist frequency is sampled at its extremes, where its slope is zero.
-            number[n // 2] = 0.0
+        nyquist = np.arange(n) * 2 == n
+        number[nyquist] = 0.0
         numbers.append(number)
+        free.append(nyquist)
     half = transform.modes.shape[3]
-    numbers[2] = np.abs(numbers[2][:half])
+    numbers[2], free[2] = np.abs(numbers[2][:half]), free[2][:half]
     weight = np.full(half, 2.0)
     weight[0] = 1.0
     if shape[2] % 2 == 0:
         weight[-1] = 1.0
-    return _cast(numbers, problem), weight.astype(problem.dtype)
+    return _cast(numbers, problem), _cast(free, problem), weight.astype(problem.dtype)
 
 
 def _cast(arrays, problem):
@@ -116,14 +117,14 @@ def _iterate(problem, reference, mirror, transform, field):
     """Reflect in turn until p no longer changes; returns the iterations and the error that the last change shows."""
     run, cells = problem.team.run, problem.voxels.phase.size
     sums = np.zeros((field.shape[1], 4))
-    wave, _ = _waves(problem, transform)
+    wave, free, _ = _waves(problem, transform)
     turn = kernels.reflect_waves if problem.walls else kernels.reflect_modes
     scale, mean = problem.dtype(transform.scale), (2 * reference * problem.gradient).astype(problem.dtype)
     work = transform.real
     error = math.inf
     for iteration in range(problem.max_iterations + 1):
         transform.forward()
-        run(turn, _planes(problem, transform), transform.modes, wave, scale, mean)
+        run(turn, _planes(problem, transform), transform.modes, wave, free, scale, mean)
         transform.backward()
         run(kernels.reflect, field.shape[1], field, work, mirror, sums)
         total = sums.sum(axis=0)
@@ -162,10 +163,10 @@ def _settle(problem, reference, high, mirror, conductor, transform, field, itera
 def _split(problem, transform, potential, mean):
     """Replace a field's modes by its compatible part; returns the mean squares of that part and of the rest."""
     transform.forward()
-    wave, weight = _waves(problem, transform)
+    wave, free, weight = _waves(problem, transform)
     planes = _planes(problem, transform)
     sums = np.zeros((planes, 2))
     kernel = kernels.split_waves if problem.walls else kernels.split_modes
     scale = problem.dtype(transform.scale)
-    problem.team.run(kernel, planes, transform.modes, potential, wave, weight, scale, mean, sums)
+    problem.team.run(kernel, planes, transform.modes, potential, wave, free, weight, scale, mean, sums)
     return sums.sum(axis=0)

@@ -98,7 +98,7 @@ def conduct(field, work, medium, sums, low, high):
 
 
 @compiled
-def reflect_modes(modes, wave, scale, mean, low, high):
+def reflect_modes(modes, wave, free, scale, mean, low, high):
     """modes = scale (1 - 2 Gamma) modes + mean, Gamma = k k / k^2, for complex Fourier coefficients.
 
     Parameters
@@ -107,6 +107,8 @@ def reflect_modes(modes, wave, scale, mean, low, high):
         Changed in place.
     wave : tuple of three float arrays
         Wave numbers per axis, 0 at a Nyquist frequency.
+    free : tuple of three float arrays
+        Per axis: 1 at a Nyquist frequency, where the component along this axis is a gradient by itself, else 0.
     scale : float
     mean : (3,) float array
         Added to the mode of wave number 0.
@@ -121,16 +123,16 @@ def reflect_modes(modes, wave, scale, mean, low, high):
                 c = wave[2][k]
                 square = a * a + b * b + c * c
                 along = 2 * (a * x[i, j, k] + b * y[i, j, k] + c * z[i, j, k]) / (square if square > 0 else square + 1)
-                x[i, j, k] = scale * (x[i, j, k] - a * along)
-                y[i, j, k] = scale * (y[i, j, k] - b * along)
-                z[i, j, k] = scale * (z[i, j, k] - c * along)
+                x[i, j, k] = scale * (x[i, j, k] * (1 - 2 * free[0][i]) - a * along)
+                y[i, j, k] = scale * (y[i, j, k] * (1 - 2 * free[1][j]) - b * along)
+                z[i, j, k] = scale * (z[i, j, k] * (1 - 2 * free[2][k]) - c * along)
     if low == 0:
         for axis in range(3):
             modes[axis, 0, 0, 0] += mean[axis]
 
 
 @compiled
-def split_modes(modes, potential, wave, multiplicity, scale, mean, sums, low, high):
+def split_modes(modes, potential, wave, free, multiplicity, scale, mean, sums, low, high):
     """Keep the compatible part of a field, scale Gamma v + mean, and its potential; measure both parts.
 
     Parameters
@@ -139,7 +141,7 @@ def split_modes(modes, potential, wave, multiplicity, scale, mean, sums, low, hi
         Changed in place.
     potential : (mx, my, mz) complex array
         Out.
-    wave, scale, mean : see `reflect_modes`
+    wave, free, scale, mean : see `reflect_modes`
     multiplicity : (mz,) float array
         How often each mode of the last axis counts in a sum over all modes.
     sums : (mx, 2) float array
@@ -159,11 +161,14 @@ def split_modes(modes, potential, wave, multiplicity, scale, mean, sums, low, hi
                 along = (a * u + b * v + c * w) / (square if square > 0 else square + 1)
                 if i == 0 and j == 0 and k == 0:
                     u, v, w = u - mean[0], v - mean[1], w - mean[2]
-                x[i, j, k], y[i, j, k], z[i, j, k] = a * along, b * along, c * along
+                x[i, j, k] = a * along + free[0][i] * u
+                y[i, j, k] = b * along + free[1][j] * v
+                z[i, j, k] = c * along + free[2][k] * w
                 potential[i, j, k] = along * (-1j)
-                inside += multiplicity[k] * square * abs(along) ** 2
+                kept = abs(x[i, j, k]) ** 2 + abs(y[i, j, k]) ** 2 + abs(z[i, j, k]) ** 2
+                inside += multiplicity[k] * kept
                 outside += multiplicity[k] * (
-                    abs(u - a * along) ** 2 + abs(v - b * along) ** 2 + abs(w - c * along) ** 2
+                    abs(u - x[i, j, k]) ** 2 + abs(v - y[i, j, k]) ** 2 + abs(w - z[i, j, k]) ** 2
                 )
         sums[i, 0], sums[i, 1] = inside, outside
     if low == 0:
@@ -172,7 +177,7 @@ def split_modes(modes, potential, wave, multiplicity, scale, mean, sums, low, hi
 
 
 @compiled
-def reflect_waves(modes, wave, scale, mean, low, high):
+def reflect_waves(modes, wave, free, scale, mean, low, high):
     """Same as `reflect_modes` for the sine and cosine coefficients of a box with isothermal walls across x.
 
     The temperature is a sum of sin(a x) cos(b y) cos(c z), so its gradient is (a cos cos cos, -b sin sin cos,
@@ -185,7 +190,7 @@ def reflect_waves(modes, wave, scale, mean, low, high):
         Changed in place.
     wave : tuple of three float arrays
         Wave numbers 0 to n per axis, the last one 0; those of y and z with a minus.
-    scale, mean : see `reflect_modes`
+    free, scale, mean : see `reflect_modes`
     low, high : int
         Wave numbers along x, of 0 to nx.
     """
@@ -197,13 +202,16 @@ def reflect_waves(modes, wave, scale, mean, low, high):
                 a, b, c = wave[0][i], wave[1][j], wave[2][k]
                 square = a * a + b * b + c * c
                 along = 2 * (a * u + b * v + c * w) / (square if square > 0 else square + 1)
-                _set_wave(modes, i, j, k, scale * (u - a * along), scale * (v - b * along), scale * (w - c * along))
+                u = scale * (u * (1 - 2 * free[0][i]) - a * along)
+                v = scale * (v * (1 - 2 * free[1][j]) - b * along)
+                w = scale * (w * (1 - 2 * free[2][k]) - c * along)
+                _set_wave(modes, i, j, k, u, v, w)
     if low == 0:
         modes[0, 0, 0, 0] += mean[0]
 
 
 @compiled
-def split_waves(modes, potential, wave, multiplicity, scale, mean, sums, low, high):
+def split_waves(modes, potential, wave, free, multiplicity, scale, mean, sums, low, high):
     """Same as `split_modes` for sine and cosine coefficients; see `reflect_waves`.
 
     Parameters
@@ -224,9 +232,10 @@ def split_waves(modes, potential, wave, multiplicity, scale, mean, sums, low, hi
                 if i == 0 and j == 0 and k == 0:
                     u -= mean[0]
                 weight = multiplicity[0][i] * multiplicity[1][j] * multiplicity[2][k]
-                inside += weight * square * along**2
-                outside += weight * ((u - a * along) ** 2 + (v - b * along) ** 2 + (w - c * along) ** 2)
-                _set_wave(modes, i, j, k, a * along, b * along, c * along)
+                x, y, z = a * along + free[0][i] * u, b * along + free[1][j] * v, c * along + free[2][k] * w
+                inside += weight * (x**2 + y**2 + z**2)
+                outside += weight * ((u - x) ** 2 + (v - y) ** 2 + (w - z) ** 2)
+                _set_wave(modes, i, j, k, x, y, z)
                 if i > 0 and j < ny and k < nz:
                     potential[i - 1, j, k] = along
         sums[i, 0], sums[i, 1] = inside, outside

@@ -63,7 +63,8 @@ def conduct_links(theta, work, links, gradient, inverse, walls, sums, low, high)
                 row[k] += (flux[2, k] - flux[3, k]) * inverse[1]
             for k in range(nz):
                 row[k] += (flux[4, k] - flux[5, k]) * inverse[2]
-        sums[i] = found
+        for item in range(5):
+            sums[i, item] = found[item]
 
 
 @compiled

@@ -191,10 +191,13 @@ def _paint_layer(grid, spacing, number, layer):
     grid[tuple(whole)] = number
     inside = np.clip((np.minimum(layer.stop, (planes + 1) * h) - np.maximum(layer.start, planes * h)) / h, 0.0, 1.0)
     cut = np.flatnonzero((inside > kernels.FULL) & (inside < 1 - kernels.FULL))
-    index = np.moveaxis(np.arange(grid.size).reshape(grid.shape), axis, 0)[cut].reshape(len(cut), -1)
+    places = [np.arange(n) for n in grid.shape]
+    places[axis] = cut
+    index = np.ravel_multi_index(np.ix_(*places), grid.shape)
+    part = np.broadcast_to(np.expand_dims(inside[cut], [a for a in range(3) if a != axis]), index.shape)
     moment = np.zeros((index.size, 6))
     moment[:, axis] = np.prod(np.delete(spacing, axis))
-    return _Cuts(index.ravel(), np.repeat(inside[cut], index.shape[1]), moment, np.full(index.size, number))
+    return _Cuts(index.ravel(), part.ravel(), moment, np.full(index.size, number))
 
 
 def parents(scene):

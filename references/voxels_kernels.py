@@ -12,6 +12,8 @@ INTERVALS = 4
 GAUSS = 0.5 / math.sqrt(3.0)
 # Fractions closer than this to 0 or 1 count as 0 or 1: far below the quadrature's error in one voxel.
 FULL = 1e-9
+# Directions closer than this tie.
+TIE = 1e-9
 
 
 @numba.njit(cache=True)
@@ -105,15 +107,29 @@ def cut_sphere(shape, center, radius, spacing, low, high, index, fraction, momen
 def _measure(corner, radius, spacing, moment):
     """Fraction of one voxel inside a sphere about the origin; the moment of the normal goes to `moment`."""
     normal = corner + 0.5 * spacing
-    c = 0
-    for a in range(1, 3):
-        if abs(normal[a]) > abs(normal[c]):
-            c = a
+    steepest = max(abs(normal[0]), abs(normal[1]), abs(normal[2]))
+    moment[:] = 0.0
+    inside, ways = 0.0, 0
+    for c in range(3):
+        # Where two axes tie both are taken, so that the voxels are as symmetric as the scene.
+        if abs(normal[c]) >= (1.0 - TIE) * steepest:
+            inside += _measure_along(c, corner, radius, spacing, moment)
+            ways += 1
+    moment /= ways
+    if moment[0] + moment[1] + moment[2] == 0.0:
+        # No column meets the surface, only a corner does: the normal is that at the voxel's centre, its weight small.
+        weight = FULL * spacing[0] * spacing[1] / max(steepest * steepest, 1e-300)
+        _add_normal(moment, 0, 1, 2, normal[0], normal[1], normal[2], weight)
+    return inside / ways
+
+
+@numba.njit(cache=True)
+def _measure_along(c, corner, radius, spacing, moment):
+    """The same, integrated exactly along axis c; adds to `moment`."""
     a, b = (c + 1) % 3, (c + 2) % 3
-    da, db = spacing[a] / (2 * INTERVALS), spacing[b] / (2 * INTERVALS)
+    area = spacing[a] * spacing[b] / (4 * INTERVALS * INTERVALS)
     floor, ceiling = corner[c], corner[c] + spacing[c]
     length = 0.0
-    moment[:] = 0.0
     for i in range(2 * INTERVALS):
         u = corner[a] + _gauss(i) * spacing[a]
         for j in range(2 * INTERVALS):
@@ -124,12 +140,9 @@ def _measure(corner, radius, spacing, moment):
             h = math.sqrt(h2)
             length += max(0.0, min(h, ceiling) - max(-h, floor))
             if floor < h < ceiling:
-                _add_normal(moment, a, b, c, u, v, h, da * db / (h * radius))
+                _add_normal(moment, a, b, c, u, v, h, area / (h * radius))
             if floor < -h < ceiling:
-                _add_normal(moment, a, b, c, u, v, -h, da * db / (h * radius))
-    if moment[0] + moment[1] + moment[2] == 0.0:
-        weight = da * db / max(normal[0] ** 2 + normal[1] ** 2 + normal[2] ** 2, 1e-300)
-        _add_normal(moment, a, b, c, normal[a], normal[b], normal[c], weight)
+                _add_normal(moment, a, b, c, u, v, -h, area / (h * radius))
     return length / (4 * INTERVALS * INTERVALS * spacing[c])
 
 
