@@ -7,7 +7,8 @@ A study is a module with
 - `run(**case)`, a dict of metrics; costs it measures itself (`studies.cost.measured`) replace the whole run's, and a
   "status" with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
-- optionally `warm_up(**case)`, untimed, `table(df)`, what to print, and `TIMEOUT`, seconds per row.
+- optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
+  seconds per row.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ def find_case(study, case):
     return cases[case]
 
 
-def run_study(name, out, *, quick=False, force=False, say=print):
+def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
     """Bring DIR/NAME.csv up to date and return its path.
 
     Rows whose case, code, machine, threads and versions still hold are reused, unless forced. Rows of cases that are
@@ -81,7 +82,10 @@ def run_study(name, out, *, quick=False, force=False, say=print):
         Repeat every row.
     say : callable (str)
         Told of each row as it ends.
+    compute : callable (name, study, case) -> dict
+        Default `spawn_row`: each row in a fresh process, so that its cost means something.
     """
+    compute = compute or spawn_row
     study = load(name)
     path = Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
     known = {case_key(case) for case in study.CASES}
@@ -93,7 +97,7 @@ def run_study(name, out, *, quick=False, force=False, say=print):
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
         key = case_key(case)
-        rows[key] = {**spawn_row(name, study, case), "triad_gbs": bandwidth}
+        rows[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
         write_rows(path, (rows[case_key(c)] for c in study.CASES if case_key(c) in rows))
         say(_progress(number, len(todo), rows[key], time.perf_counter() - start))
     return path
@@ -111,7 +115,8 @@ def _progress(number, total, row, elapsed):
     error = row.get("error_percent")
     tail = f", error {error:+.4f} %" if isinstance(error, float) else f", {row['note']}" if row["note"] else ""
     cost = f"{row['cpu_s']:.2f} CPU-s" if isinstance(row.get("cpu_s"), float) else "no cost"
-    head = f"[{number}/{total}] {row['case']}: {row['status']}, {cost}{tail}"
+    short = row["case"].split(",method=")[0]  # what a method fixes comes last
+    head = f"[{number}/{total}] {short}: {row['status']}, {cost}{tail}"
     return f"{head}  ({elapsed:.0f} s so far, about {left:.0f} s left)"
 
 
@@ -161,13 +166,20 @@ def _last_line(log):
     return lines[-1][:300] if lines else "nothing on its output"
 
 
-def compute_row(study, case):
-    """Compute a row in this process, after the study's warm-up: the case, its metrics, costs and provenance."""
-    warm_up = getattr(study, "warm_up", None)
+def compute_row(study, case, *, warm=True):
+    """Compute a row in this process: the case, its metrics, costs and provenance.
+
+    Parameters
+    ----------
+    study : module
+    case : dict
+    warm : bool
+        Call the study's warm-up first; without it costs include what is loaded on first use.
+    """
     row = {"case": case_key(case), **case}
     try:
-        if warm_up is not None:
-            warm_up(**case)
+        if warm and hasattr(study, "warm_up"):
+            study.warm_up(**case)
         metrics, cost = measured(study.run, **case)
     except NotImplementedError as error:
         result = {"status": "unsupported", "note": str(error)}

@@ -15,8 +15,12 @@ from studies.pick import pick, present
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
 CONTRAST = 10.0
-PARTICLES = (3_000, 10_000, 30_000, 100_000, 400_000)
-SIZES = (0.2, 0.14, 0.1, 0.07, 0.05)
+PARTICLES = (1_000, 3_000, 10_000, 30_000, 100_000, 400_000)
+SIZES = {  # in edges of the cube
+    "fem": (0.2, 0.14, 0.1, 0.07, 0.05, 0.035),
+    "fem-straight": (0.2, 0.14, 0.1, 0.07, 0.05, 0.035),
+    "fem-p1": (0.1, 0.07, 0.05, 0.035, 0.025, 0.018),
+}
 VOXELS = (32, 64, 128, 256)
 TARGETS = (1.0, 0.1, 0.01)  # per cent
 TIGHT = 1e-9
@@ -29,8 +33,8 @@ def _cases():
             for number in PARTICLES:
                 seeds = (0, 1, 2) if number < 400_000 else (0,)
                 yield from (methods.case(name, scene=scene, particles=number, seed=seed) for seed in seeds)
-        for name in ("fem", "fem-straight", "fem-p1"):
-            yield from (methods.case(name, scene=scene, size=size * EDGE) for size in SIZES)
+        for name, sizes in SIZES.items():
+            yield from (methods.case(name, scene=scene, size=size * EDGE) for size in sizes)
         for name in ("fft", "fft-plain", "fft-em"):
             yield from (methods.case(name, scene=scene, voxels=voxels) for voxels in VOXELS)
     for name in ("fft", "fft-em"):
@@ -45,7 +49,7 @@ PAPER = {}
 
 def QUICK(case):
     """Coarse rows of the first scene."""
-    small = case.get("particles", 0) <= 20_000 and case.get("size", EDGE) > 0.09 * EDGE and case.get("voxels", 0) <= 64
+    small = case.get("particles", 0) <= 20_000 and case.get("size", EDGE) > 0.06 * EDGE and case.get("voxels", 0) <= 64
     return small and case.get("scene") != "half" and case.get("seed", 0) == 0
 
 

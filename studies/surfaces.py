@@ -67,7 +67,7 @@ def claims(df):
     """What the full run must show (issue 2), and its like for the quick rows."""
     laguerre = pick(df, law="laguerre", contrast=1.0)
     text = "homogeneous cube, Laguerre facets, any number of particles:"
-    yield f"{text} worst |error of the conductivity|", laguerre["error_percent"].abs().max(skipna=False) / 100, 1e-10
+    yield f"{text} worst error of the conductivity", laguerre["error_percent"].abs().max(skipna=False) / 100, 1e-10
     yield f"{text} worst error of a temperature over the span", laguerre["linear_error"].max(skipna=False), 1e-9
     sphere = df[df["contrast"] != 1.0]
     yield from present(_size_claims(sphere))
@@ -80,10 +80,10 @@ def _size_claims(sphere):
         slowest = None if orders is None else min(orders.values())
         yield f"DEM default, {first} to {last} particles: lowest order in particle size of any contrast", slowest, limit
     for number, limit in ((10_000, 0.8), (100_000, 0.06)):
-        text = f"DEM default, {number} particles: worst |error| of any contrast, %"
+        text = f"DEM default, {number} particles: worst error of any contrast, %"
         yield text, worst(sphere, name="dem", particles=number), limit
     for coarse, fine, limit in ((3_000, 10_000, 0.3), (10_000, 100_000, 0.02)):
-        text = f"DEM default, extrapolated from {coarse} and {fine} particles: worst |error| of any contrast, %"
+        text = f"DEM default, extrapolated from {coarse} and {fine} particles: worst error of any contrast, %"
         yield text, extrapolated(sphere, coarse, fine, name="dem"), limit
 
 

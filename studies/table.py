@@ -75,7 +75,7 @@ def claim(sentence, value, limit):
 
 
 def markdown(df):
-    """Data frame as an aligned Markdown table, numbers to four significant digits."""
+    """Data frame as an aligned Markdown table, numbers to three significant digits, large ones whole."""
     cells = [[str(name) for name in df.columns], *([_cell(v) for v in row] for row in df.itertuples(index=False))]
     widths = [max(3, *(len(row[k]) for row in cells)) for k in range(len(df.columns))]
     numeric = [df.iloc[:, k].map(lambda v: isinstance(v, int | float)).all() for k in range(len(df.columns))]
@@ -91,7 +91,7 @@ def _line(cells, widths, numeric):
 
 def _cell(value):
     if isinstance(value, float):
-        return "" if math.isnan(value) else f"{value:.0f}" if 1e3 <= abs(value) < 1e7 else f"{value:.4g}"
+        return "" if math.isnan(value) else f"{value:.0f}" if 1e3 <= abs(value) < 1e7 else f"{value:.3g}"
     return str(value).replace("|", "\\|")
 
 
@@ -118,16 +118,18 @@ def _page(study, df, claims, figure):
         {
             "": ["ok" if c.ok else "FAIL" for c in claims],
             "claim": [c.sentence for c in claims],
-            "value": [f"{c.value:.4g}" for c in claims],
+            "value": [f"{c.value:.3g}" for c in claims],
             "limit": [c.limit for c in claims],
         }
     )
-    table = getattr(study, "table", _all_rows)(df)
+    make = getattr(study, "table", _all_rows)
+    table, caption = make(df), make.__doc__.strip().splitlines()[0]
     return "\n\n".join(
         [
             f"# {title}",
             *([rest.strip()] if rest.strip() else []),
             markdown(table),
+            caption,
             f"![{title}]({figure.name})",
             "## Claims",
             markdown(judged),
@@ -139,6 +141,7 @@ def _page(study, df, claims, figure):
 
 
 def _all_rows(df):
+    """Every row."""
     return df.drop(columns=[c for c in ("code", "commit", "when", "machine", "threads", "versions") if c in df])
 
 

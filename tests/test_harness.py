@@ -347,10 +347,10 @@ def test_claims():
 def test_markdown():
     df = pd.DataFrame({"method": ["a|b", "c"], "error": [0.123456, float("nan")], "unknowns": [123456.0, 7.0]})
     assert table.markdown(df).split("\n") == [
-        "| method |  error | unknowns |",
-        "|--------|-------:|---------:|",
-        "| a\\|b   | 0.1235 |   123456 |",
-        "| c      |        |        7 |",
+        "| method | error | unknowns |",
+        "|--------|------:|---------:|",
+        "| a\\|b   | 0.123 |   123456 |",
+        "| c      |       |        7 |",
     ]
 
 
