@@ -1,0 +1,155 @@
+"""Linear and quadratic tetrahedra: shape functions and quadrature by scikit-fem, integrals in blocks of elements."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from skfem.element import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet, RefTri
+
+# By the number of nodes; scikit-fem orders the nodes as `Mesh.cells` and `Wall.triangles` do.
+ELEMENTS = {4: ElementTetP1(), 10: ElementTetP2(), 3: ElementTriP1(), 6: ElementTriP2()}
+# Elements per block: the largest array, 14 points x 10 functions x 3 components, is then 67 MB.
+BLOCK = 20_000
+
+
+def shapes(nodes, X):
+    """Shape functions of the element with so many nodes.
+
+    Parameters
+    ----------
+    nodes : {3, 4, 6, 10}
+    X : (d, ...) float array
+        Local coordinates.
+
+    Returns
+    -------
+    (..., nodes) float array
+        Values.
+    (..., nodes, d) float array
+        Gradients along the local coordinates.
+    """
+    values, gradients = zip(*(ELEMENTS[nodes].lbasis(X, i) for i in range(nodes)), strict=True)
+    values = np.stack([np.broadcast_to(v, X.shape[1:]) for v in values], axis=-1)
+    # scikit-fem gives the constant gradients of linear elements either once or once per point.
+    gradients = [g.reshape(g.shape + (1,) * (X.ndim - g.ndim)) for g in gradients]
+    gradients = np.stack([np.broadcast_to(g, X.shape) for g in gradients], axis=-1)
+    return values, np.moveaxis(gradients, 0, -1)
+
+
+def inverse(J):
+    """Inverse and determinant of (..., 3, 3) matrices."""
+    a, b, c = J[..., 0], J[..., 1], J[..., 2]
+    rows = np.stack([np.cross(b, c), np.cross(c, a), np.cross(a, b)], axis=-2)
+    det = np.einsum("...i,...i->...", a, rows[..., 0, :])
+    return rows / det[..., None, None], det
+
+
+def blocks(mesh, degree=5):
+    """Split a mesh into blocks of elements, each with its quadrature.
+
+    It is exact for straight elements. Curved ones get the degree asked for: 5 (14 points, some on edges) or 7 (24, all
+    inside); the Jacobian and the flux, both cubics, are integrated exactly either way, all weights are positive.
+
+    Yields
+    ------
+    (b,) int array
+        Elements.
+    tuple of (3, q) and (q,) float arrays
+        Local points and weights.
+    """
+    straight = 0 if mesh.cells.shape[1] == 4 else 2
+    for ids, exact in ((np.flatnonzero(~mesh.curved), straight), (np.flatnonzero(mesh.curved), degree)):
+        for start in range(0, len(ids), BLOCK):
+            yield ids[start : start + BLOCK], get_quadrature(RefTet, exact)
+
+
+def gradients(mesh, ids, rule):
+    """Gradients of the shape functions of one block at its quadrature points.
+
+    Returns
+    -------
+    (b, q, nodes, 3) float array, 1/m
+    (b, q) float array, m3
+        Weights, which sum to the volumes.
+    """
+    X, weights = rule
+    cells = mesh.cells[ids]
+    local = shapes(cells.shape[1], X)[1]
+    # The mapping of a straight element is that of its corners, with one constant gradient.
+    geometry = local if mesh.curved[ids[0]] else shapes(4, X[:, :1])[1]
+    nodes = mesh.points[cells[:, : geometry.shape[1]]]
+    back, det = inverse(np.einsum("bnx,qnk->bqxk", nodes, geometry, optimize=True))
+    return local @ back, det * weights
+
+
+def assemble(mesh, conductivity, dof, lift):
+    """Stiffness matrix, and the load that a known part of the temperature makes.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    conductivity : (m,) float array, W/(m K)
+        Of each element; those with zero are left out.
+    dof : (n,) int array
+        Row and column of each node.
+    lift : (n,) float array, K
+        Known part.
+
+    Returns
+    -------
+    (n, n) CSR matrix, W/K
+    (n,) float array, W
+        Minus the matrix times the known part, the latter taken before nodes are merged.
+    """
+    count, parts, load = len(mesh.points), [], np.zeros(len(mesh.points))
+    for ids, rule in blocks(mesh):
+        ids = ids[conductivity[ids] > 0]
+        if not len(ids):
+            continue
+        slopes, weights = gradients(mesh, ids, rule)
+        slopes *= np.sqrt(weights * conductivity[ids, None])[..., None, None]
+        slopes = np.swapaxes(slopes, 1, 2).reshape(len(ids), mesh.cells.shape[1], -1)
+        matrices = slopes @ np.swapaxes(slopes, 1, 2)
+        rows = dof[mesh.cells[ids]]
+        heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
+        load -= np.bincount(rows.ravel(), heat.ravel(), count)
+        i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
+        parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
+    while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
+        parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
+    return parts[0], load
+
+
+def wall_weights(mesh, triangles):
+    """Integral of each node's shape function over triangles, (n,) float array, m2."""
+    X, weights = get_quadrature(RefTri, 5)
+    values, slopes = shapes(triangles.shape[1], X)
+    tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
+    area = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
+    return np.bincount(triangles.ravel(), (area @ values).ravel(), len(mesh.points))
+
+
+def at_quadrature(mesh, temperature, degree=5):
+    """Solution at the quadrature points of one block after the other.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    temperature : (n,) float array, K
+        At the nodes.
+    degree : {5, 7}
+        Of the quadrature on curved elements.
+
+    Yields
+    ------
+    ids, points, weights, temperature, gradient
+        (b,) int; (b, q, 3) m; (b, q) m3; (b, q) K; (b, q, 3) K/m.
+    """
+    for ids, rule in blocks(mesh, degree):
+        slopes, weights = gradients(mesh, ids, rule)
+        values = shapes(mesh.cells.shape[1], rule[0])[0]
+        nodal = temperature[mesh.cells[ids]]
+        points = np.einsum("qn,bnx->bqx", values, mesh.points[mesh.cells[ids]], optimize=True)
+        yield ids, points, weights, nodal @ values.T, np.einsum("bqnx,bn->bqx", slopes, nodal, optimize=True)

@@ -1,0 +1,131 @@
+"""Values of a finite element solution at any point: which element, where in it, what there."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from demheat.field import Samples
+from demheat.scene import Scene
+from references.fem.elements import at_quadrature, inverse, shapes
+from references.mesh import Mesh
+
+# Local coordinates this little outside count as inside: rounding of points on a face.
+INSIDE = 1e-9
+# Elements tried by their centres; the few points that remain are tested against all bounding boxes.
+NEAREST = (8, 64)
+# Points looked up together: about 100 MB at 8 candidates.
+CHUNK = 50_000
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Nodal temperatures (n,) of a scene on a mesh."""
+
+    scene: Scene
+    mesh: Mesh
+    temperature: np.ndarray
+
+    def samples(self):
+        """`Samples` at quadrature points inside all elements."""
+        rows = []
+        for ids, points, volumes, temperature, gradient in at_quadrature(self.mesh, self.temperature, degree=7):
+            phase = np.repeat(self.mesh.phase[ids], volumes.shape[1])
+            flux = -self.scene.conductivities[phase, None] * gradient.reshape(-1, 3)
+            rows.append((points.reshape(-1, 3), volumes.ravel(), temperature.ravel(), phase, flux))
+        return Samples(*(np.concatenate(column) for column in zip(*rows, strict=True)))
+
+    def temperature_at(self, points):
+        """Temperature at (n, 3) points in metres, (n,) float array."""
+        points = np.asarray(points, dtype=float).reshape(-1, 3)
+        inside = self._inside(points)
+        temperature = np.empty(len(points))
+        for part, ids, X in self._located(inside):
+            values, _ = shapes(self.mesh.cells.shape[1], X.T)
+            temperature[part] = np.einsum("pn,pn->p", values, self.temperature[self.mesh.cells[ids]])
+        if self.scene.periodic:
+            temperature += (points - inside) @ np.array(self.scene.gradient)
+        return temperature
+
+    def flux_at(self, points):
+        """Flux density at (n, 3) points in metres, (n, 3) float array, W/m2; on an interface that of one side."""
+        points = np.asarray(points, dtype=float).reshape(-1, 3)
+        flux = np.empty((len(points), 3))
+        for part, ids, X in self._located(self._inside(points)):
+            cells = self.mesh.cells[ids]
+            _, slopes = shapes(cells.shape[1], X.T)
+            back, _ = inverse(np.einsum("pnx,pnk->pxk", self.mesh.points[cells], slopes))
+            gradient = np.einsum("pnk,pkx,pn->px", slopes, back, self.temperature[cells], optimize=True)
+            flux[part] = -self.scene.conductivities[self.mesh.phase[ids], None] * gradient
+        return flux
+
+    def _inside(self, points):
+        """The points, in a periodic cell moved into the box."""
+        box = np.array(self.scene.size)
+        if self.scene.periodic and np.all(np.isfinite(points)):
+            return points % box
+        outside = ~np.all((points >= -INSIDE * box) & (points <= (1 + INSIDE) * box), axis=1)
+        if outside.any():
+            raise ValueError(f"points: {points[outside][0]} lies outside the box {self.scene.size}")
+        return np.clip(points, 0, box)
+
+    def _located(self, points):
+        """Yield (slice, elements, local coordinates) for one chunk of points after the other."""
+        for start in range(0, len(points), CHUNK):
+            part = slice(start, start + CHUNK)
+            yield part, *self._locate(points[part])
+
+    @cached_property
+    def _centers(self):
+        return cKDTree(self.mesh.points[self.mesh.cells[:, :4]].mean(axis=1))
+
+    @cached_property
+    def _bounds(self):
+        nodes = self.mesh.points[self.mesh.cells]
+        # A curved edge bulges past its three nodes by less than a quarter of their extent.
+        low, high = nodes.min(axis=1), nodes.max(axis=1)
+        return low - (high - low) / 4, high + (high - low) / 4
+
+    def _locate(self, points):
+        ids, X = np.zeros(len(points), int), np.zeros((len(points), 3))
+        depth = np.full(len(points), -np.inf)
+
+        def attempt(rows, elements):
+            local = _local(self.mesh, elements, points[rows])
+            new = np.minimum(local.min(axis=1), 1 - local.sum(axis=1))
+            better = new > depth[rows]
+            rows = rows[better]
+            ids[rows], X[rows], depth[rows] = elements[better], local[better], new[better]
+
+        for nearest in NEAREST:
+            todo = np.flatnonzero(depth < -INSIDE)
+            if not len(todo):
+                return ids, X
+            candidates = self._centers.query(points[todo], min(nearest, len(self.mesh.cells)))[1]
+            for column in candidates.reshape(len(todo), -1).T:
+                open_ = depth[todo] < -INSIDE
+                attempt(todo[open_], column[open_])
+        low, high = self._bounds
+        for row in np.flatnonzero(depth < -INSIDE):
+            elements = np.flatnonzero(np.all((points[row] >= low) & (points[row] <= high), axis=1))
+            for element in elements:
+                attempt(np.array([row]), np.array([element]))
+        return ids, X
+
+
+def _local(mesh, ids, points):
+    """Local coordinates (p, 3) of points in given elements; far outside a curved one, those of its corners."""
+    corners = mesh.points[mesh.cells[ids, :4]]
+    J = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
+    X = np.einsum("pkx,px->pk", inverse(J)[0], points - corners[:, 0])
+    curved = np.flatnonzero(mesh.curved[ids] & np.all(np.abs(X - 0.25) < 2, axis=1))
+    nodes = mesh.points[mesh.cells[ids[curved]]]
+    for _ in range(8 if len(curved) else 0):  # Newton: 4 steps reach rounding from a point inside
+        values, slopes = shapes(10, X[curved].T)
+        miss = points[curved] - np.einsum("pn,pnx->px", values, nodes)
+        back, _ = inverse(np.einsum("pnx,pnk->pxk", nodes, slopes))
+        X[curved] = np.clip(X[curved] + np.einsum("pkx,px->pk", back, miss), -3, 4)
+    return X

@@ -1,0 +1,139 @@
+"""Conjugate gradients with a multigrid preconditioner: quadratic to linear elements, then smoothed aggregation."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pyamg
+from pyamg.multilevel import MultilevelSolver
+from pyamg.relaxation.smoothing import change_smoothers
+from scipy.sparse import csr_matrix, diags
+
+from references.mesh import EDGE_COLUMN
+
+MOST_ITERATIONS = 500
+SMOOTHER = ("gauss_seidel", {"sweep": "symmetric"})
+# A small coarsest matrix, factorised: the default dense pseudo-inverse of 500 rows costs as much as the whole solve.
+COARSEST = {"max_coarse": 100, "coarse_solver": "splu", "presmoother": SMOOTHER, "postsmoother": SMOOTHER}
+
+
+def solve_free(mesh, system, fixed, dof, tolerance):
+    """Solve for the free nodes, those that are not fixed and have a row.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    system : tuple of (n, n) CSR matrix and (n,) float array
+    fixed : (n,) bool array
+        Where the solution is zero.
+    dof : (n,) int array
+        Row of each node.
+    tolerance : float
+        Largest relative residual, the equations scaled to a unit diagonal so that contrast does not hide it.
+
+    Returns
+    -------
+    (n,) float array
+    dict
+        `unknowns`, `iterations`, `residual` (recomputed).
+
+    Raises
+    ------
+    RuntimeError
+        If the residual stays above the tolerance.
+    """
+    matrix, load = system
+    diagonal, solution = matrix.diagonal(), np.zeros(len(load))
+    free = np.flatnonzero(~fixed & (diagonal > 0))
+    stats = {"unknowns": len(free), "iterations": 0, "residual": 0.0}
+    if not load[free].any():
+        return solution, stats
+    scale = diags(1 / np.sqrt(diagonal[free]))
+    A, b = (scale @ matrix[free][:, free] @ scale).tocsr(), scale @ load[free]
+    multigrid = _multigrid(A, np.sqrt(diagonal[free]), _prolongation(mesh, free, dof))
+    x, stats["iterations"], stats["residual"] = _conjugate_gradients(A, b, multigrid, tolerance)
+    if not stats["residual"] <= tolerance:
+        raise RuntimeError(
+            f"finite elements: residual {stats['residual']:.2e} > tolerance {tolerance:.2e} after "
+            f"{stats['iterations']} iterations on {len(free)} unknowns"
+        )
+    solution[free] = scale @ x
+    return solution, stats
+
+
+def _conjugate_gradients(A, b, multigrid, tolerance):
+    """Solution, iterations and the true relative residual."""
+    x, scale, iterations = np.zeros_like(b), math.sqrt(_dot(b, b)), 0
+    # Rounding can part the recursive residual from the true one: start again from there, twice at most.
+    for _ in range(3):
+        r = b - A @ x
+        residual = math.sqrt(_dot(r, r)) / scale
+        if residual <= tolerance:
+            break
+        p, old = np.zeros_like(b), np.inf
+        while math.sqrt(_dot(r, r)) > tolerance * scale and iterations < MOST_ITERATIONS:
+            z = _cycle(multigrid, r)
+            new = _dot(r, z)
+            p = z + (new / old) * p
+            Ap = A @ p
+            step = new / _dot(p, Ap)
+            x += step * p
+            r -= step * Ap
+            old, iterations = new, iterations + 1
+        residual = math.sqrt(_dot(b - A @ x, b - A @ x)) / scale
+    return x, iterations, residual
+
+
+def _dot(a, b):
+    # Not BLAS: its threads, spinning between short products, cost several times the whole solve on a shared machine.
+    return float(np.einsum("i,i->", a, b))
+
+
+def _cycle(multigrid, b, number=0):
+    """One V-cycle from zero, without the residual norms of pyamg's own driver."""
+    level = multigrid.levels[number]
+    if number == len(multigrid.levels) - 1:
+        return multigrid.coarse_solver(level.A, b)
+    x = np.zeros_like(b)
+    level.presmoother(level.A, x, b)
+    x += level.P @ _cycle(multigrid, level.R @ (b - level.A @ x), number + 1)
+    level.postsmoother(level.A, x, b)
+    return x
+
+
+def _prolongation(mesh, free, dof):
+    """From corners to all free nodes: a middle is the mean of its edge's ends. None for linear elements."""
+    if mesh.cells.shape[1] == 4:
+        return None
+    count = len(dof)
+    ends = np.repeat(np.arange(count)[:, None], 2, axis=1)
+    for (a, b), c in EDGE_COLUMN.items():
+        ends[dof[mesh.cells[:, c]]] = dof[mesh.cells[:, [a, b]]]
+    corners = np.unique(dof[mesh.cells[:, :4]])
+    ends[corners] = corners[:, None]
+    coarse = np.intersect1d(corners, free)
+    column = np.full(count, -1)
+    column[coarse] = np.arange(len(coarse))
+    rows, columns = np.repeat(np.arange(len(free)), 2), column[ends[free]].ravel()
+    kept = columns >= 0
+    return csr_matrix((np.full(kept.sum(), 0.5), (rows[kept], columns[kept])), shape=(len(free), len(coarse)))
+
+
+def _multigrid(A, constant, prolongation):
+    """Hierarchy for the scaled matrix; `constant` is what a constant temperature is there."""
+    # pyamg estimates spectral radii with NumPy's global generator: same start each time, and put back afterwards.
+    state = np.random.get_state()  # noqa: NPY002
+    np.random.seed(0)  # noqa: NPY002
+    try:
+        if prolongation is None or prolongation.shape[1] == 0:
+            return pyamg.smoothed_aggregation_solver(A, B=constant[:, None], **COARSEST)
+        fine = MultilevelSolver.Level()
+        fine.A, fine.P = A, (diags(constant) @ prolongation).tocsr()
+        fine.R = fine.P.T.tocsr()
+        coarse = pyamg.smoothed_aggregation_solver((fine.R @ A @ fine.P).tocsr(), **COARSEST)
+        levels = MultilevelSolver([fine, *coarse.levels], coarse_solver=COARSEST["coarse_solver"])
+        change_smoothers(levels, SMOOTHER, SMOOTHER)
+        return levels
+    finally:
+        np.random.set_state(state)  # noqa: NPY002

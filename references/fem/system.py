@@ -1,0 +1,173 @@
+"""The equations of one scene on one mesh: what is known, what is loaded, what pores cut off.
+
+The temperature is a known part, the mean gradient or the wall temperatures, plus a correction that vanishes where the
+known part is the answer. Elements without conductivity (pores) are left out; afterwards they get the temperature that
+they have in the limit of a vanishing conductivity, and so do islands, the bodies inside them.
+"""
+
+from __future__ import annotations
+
+import time
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse.csgraph import connected_components
+
+from references.fem.elements import assemble, wall_weights
+from references.fem.multigrid import solve_free
+from references.mesh import twins
+
+
+class Solved(NamedTuple):
+    """Nodal temperatures and what the walls see.
+
+    Attributes
+    ----------
+    temperature : (n,) float array, K or degrees Celsius
+    wall_temperature : dict of str to float, K or degrees Celsius
+    wall_heat : dict of str to float, W
+        Heat into the body by the reactions at the nodes: sums to zero to the solver's residual.
+    stats : dict
+    """
+
+    temperature: np.ndarray
+    wall_temperature: dict[str, float]
+    wall_heat: dict[str, float]
+    stats: dict[str, object]
+
+
+class _Given(NamedTuple):
+    """The known part of the temperature, lift + level; nodes of each isothermal wall; walls per node; flux weights."""
+
+    lift: np.ndarray
+    level: float
+    nodes: dict[str, np.ndarray]
+    shares: np.ndarray
+    weights: dict[str, np.ndarray]
+
+
+class _Bodies(NamedTuple):
+    """Connected bodies: label of each node (-1: none), the bodies that nothing holds, one node of each of those."""
+
+    label: np.ndarray
+    loose: np.ndarray
+    pins: np.ndarray
+
+
+def solve_nodes(scene, mesh, tolerance):
+    """Nodal temperatures of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh
+    tolerance : float
+        Largest relative residual of the equations, scaled to a unit diagonal.
+
+    Returns
+    -------
+    Solved
+
+    Raises
+    ------
+    ValueError
+        If nothing conducts, or heat is forced into a pore or into a part that pores cut off from all temperatures.
+    RuntimeError
+        If the residual stays above the tolerance.
+    """
+    begin = time.perf_counter()
+    conductivity = scene.conductivities[mesh.phase]
+    unit = conductivity.max()
+    if unit == 0:
+        raise ValueError("Scene: all conductivities are 0, no heat can flow")
+    given, dof = _given(scene, mesh, conductivity > 0), twins(len(mesh.points), mesh.pairs)
+    matrix, load = assemble(mesh, conductivity / unit, dof, given.lift)
+    bodies = _bodies(matrix, given.shares > 0, pores=not conductivity.all())
+    imposed = np.zeros(len(load))
+    for name, weights in given.weights.items():
+        imposed += scene.wall_fluxes[name] / unit * weights
+    _check_loose(mesh, imposed, bodies)
+    load += imposed
+    assembled = time.perf_counter()
+    fixed = given.shares > 0
+    fixed[bodies.pins] = True
+    correction, stats = solve_free(mesh, (matrix, load), fixed, dof, tolerance)
+    heat = unit * (matrix @ correction - load)
+    temperature = given.lift + correction[dof]
+    if not conductivity.all():
+        shift, more = _pore_shift(mesh, conductivity == 0, (temperature, dof, given, bodies), tolerance)
+        temperature += shift
+        stats["iterations"] += more["iterations"]
+        stats["residual"] = max(stats["residual"], more["residual"])
+    temperature += given.level
+    stats |= {"islands": len(bodies.loose) if given.nodes else max(len(bodies.loose) - 1, 0)}
+    stats |= {"assembly_s": assembled - begin, "solve_s": time.perf_counter() - assembled}
+    return Solved(temperature, *_walls(scene, given, temperature, heat), stats)
+
+
+def _given(scene, mesh, solid):
+    """Read the load of the scene; `solid` says which elements conduct, only those take a wall's flux."""
+    lift, shares = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))
+    if scene.periodic:
+        return _Given(mesh.points @ np.array(scene.gradient), 0.0, {}, shares, {})
+    # Counted from one of the temperatures, a large common offset costs no digits.
+    level = next(iter(scene.wall_temperatures.values()))
+    nodes = {name: np.unique(mesh.walls[name].triangles) for name in scene.wall_temperatures}
+    for name, value in scene.wall_temperatures.items():
+        lift[nodes[name]] += value - level
+        shares[nodes[name]] += 1
+    # On an edge where two isothermal walls meet, the mean of both.
+    lift[shares > 0] /= shares[shares > 0]
+    weights = {}
+    for name in scene.wall_fluxes:
+        triangles, owners = mesh.walls[name]
+        weights[name] = wall_weights(mesh, triangles[solid[owners]])
+        if not weights[name].any():
+            raise ValueError(f"Scene.walls[{name!r}]: a Flux needs a wall that conducts somewhere")
+    return _Given(lift, level, nodes, shares, weights)
+
+
+def _bodies(matrix, held, pores):
+    present = matrix.diagonal() > 0
+    label = np.where(present, connected_components(matrix, directed=False)[1] if pores else 0, -1)
+    loose = np.setdiff1d(label[present], label[held & present])
+    if not held.any():  # in a periodic cell the largest body is the main one: it comes first
+        loose = loose[np.argsort(-np.bincount(label[present])[loose], kind="stable")]
+    pins = np.array([np.argmax(label == body) for body in loose], dtype=int)
+    return _Bodies(label, loose, pins)
+
+
+def _check_loose(mesh, imposed, bodies):
+    for pin, body in zip(bodies.pins, bodies.loose, strict=True):
+        heat = imposed[bodies.label == body]
+        # Fluxes that balance leave rounding only.
+        if abs(heat.sum()) > 1e-8 * np.abs(heat).sum():
+            raise ValueError(f"Scene.walls: a flux enters a part, near {mesh.points[pin]}, that no temperature reaches")
+
+
+def _pore_shift(mesh, pores, solution, tolerance):
+    """What to add to the temperature in pores and islands: the limit of a vanishing conductivity of the pores.
+
+    Pores then obey Laplace's equation between the bodies, an island floats at the level at which no heat enters it.
+    """
+    temperature, dof, given, bodies = solution
+    floating = bodies.loose if given.nodes else bodies.loose[1:]
+    merged = np.arange(len(dof))
+    for body in floating:
+        merged[bodies.label == body] = np.argmax(bodies.label == body)
+    merged = merged[dof]
+    fixed = ((bodies.label >= 0) & ~np.isin(bodies.label, floating)) | (given.shares > 0)
+    system = assemble(mesh, pores.astype(float), merged, temperature)
+    shift, stats = solve_free(mesh, system, fixed, merged, tolerance)
+    return shift[merged], stats
+
+
+def _walls(scene, given, temperature, heat):
+    """Mean temperature of each loaded wall, and the heat that enters there."""
+    mean, entering = scene.wall_temperatures, {}
+    for name, nodes in given.nodes.items():
+        entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))
+    for name, weights in given.weights.items():
+        mean[name] = float(weights @ temperature / weights.sum())
+        entering[name] = float(scene.wall_fluxes[name] * weights.sum())
+    return mean, entering
