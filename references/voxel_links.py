@@ -6,7 +6,12 @@ import numpy as np
 
 from demheat.scene import Layer, Scene
 from references import voxels_kernels as kernels
-from references.voxels import parents
+from references.voxels import parents, voxelise
+
+# A sphere's surface nearer to a node than this part of a link is taken this far away.  It moves the surface by 2e-4 of
+# a voxel in the mean (k changes by less than 0.002 % at 32^3) and saves half of the iterations at contrast 1e4, two
+# thirds at 1e6, which the few links of nearly no resistance cost.
+NEAREST = 0.02
 
 
 def links(scene: Scene, shape, dtype=np.float64) -> tuple:
@@ -30,10 +35,11 @@ def links(scene: Scene, shape, dtype=np.float64) -> tuple:
     """
     resistivity = 1.0 / scene.conductivities
     change = resistivity - resistivity[parents(scene)]
-    return tuple(_along(scene, shape, axis, resistivity[0], change).astype(dtype) for axis in range(3))
+    nodes = resistivity[voxelise(scene, shape, laminate=False).phase] if scene.images() else None
+    return tuple(_along(scene, shape, axis, resistivity[0], change, nodes).astype(dtype) for axis in range(3))
 
 
-def _along(scene, shape, axis, matrix, change):
+def _along(scene, shape, axis, matrix, change, nodes):
     """Conductivities of the links along one axis; each inclusion replaces the resistivity it was painted on."""
     counts = np.array(shape)
     spacing = np.array(scene.size) / counts
@@ -52,12 +58,25 @@ def _along(scene, shape, axis, matrix, change):
     if scene.periodic:
         view[:, :, 0] += view[:, :, -1]
         view[:, :, -1] = view[:, :, 0]
-        return 1.0 / resistance
-    view[:, :, [0, -1]] *= 2.0
+    else:
+        view[:, :, [0, -1]] *= 2.0
+    if nodes is not None:
+        _keep_off(view, np.moveaxis(nodes, axis, 2), scene.periodic)
     conductivity = 1.0 / resistance
-    if axis != scene.axis:
+    if not scene.periodic and axis != scene.axis:
         np.moveaxis(conductivity, axis, 2)[:, :, [0, -1]] = 0.0
     return conductivity
+
+
+def _keep_off(view, nodes, periodic):
+    """Keep surfaces off the nodes: a link between two phases resists at least a little like the poorer one."""
+    low, high = nodes[:, :, :-1], nodes[:, :, 1:]
+    inner = view[:, :, 1:-1]
+    np.maximum(inner, np.where(low == high, 0.0, NEAREST * np.maximum(low, high)), out=inner)
+    if periodic:
+        low, high = nodes[:, :, -1], nodes[:, :, 0]
+        ends = np.maximum(view[:, :, 0], np.where(low == high, 0.0, NEAREST * np.maximum(low, high)))
+        view[:, :, 0] = view[:, :, -1] = ends
 
 
 def _cut_by_layer(resistance, axis, change, layer, spacing):

@@ -317,9 +317,10 @@ def test_threads_do_not_change_the_answer(scheme):
 def test_a_contrast_of_a_million_converges_to_its_own_limit(rule):
     loose, tight = (
         fft.solve(sphere_cell(1e6, center=(0.51, 0.47, 0.53)), voxels=16, rule=rule, tolerance=t).conductivity
-        for t in (1e-5, 1e-9)
+        for t in (None, 1e-9)
     )
-    assert_allclose(loose, tight, rtol=1e-6)  # What the default tolerance promises.
+    # What the default tolerance promises.  A first trial that looked at the energy alone stopped 2e-4 away.
+    assert_allclose(loose, tight, rtol=1e-6)
 
 
 def test_pores():
@@ -356,6 +357,14 @@ def test_equal_walls_carry_no_heat(scheme):
 def test_too_few_iterations_raise(scheme, rule, walls):
     with pytest.raises(RuntimeError, match=r"3 iterations, relative residual \d"):
         fft.solve(sphere_cell(30.0, walls=walls), voxels=8, scheme=scheme, rule=rule, max_iterations=3)
+
+
+# cg waits for two small decreases of the energy, the check after it for one.
+@pytest.mark.parametrize(("scheme", "less"), [("cg", 2), ("eyre-milton", 1)])
+def test_just_too_few_iterations_raise(scheme, less):
+    needed = fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme).stats["iterations"] - less
+    with pytest.raises(RuntimeError, match=f"{needed} iterations"):
+        fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme, max_iterations=needed)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
