@@ -121,8 +121,13 @@ def _reached(network, scene):
         conducts[np.repeat(np.arange(n), np.diff(network.indptr))[network.conductance > 0]] = True
         return conducts
     conducts = network.conductance > 0
-    rows = row_numbers(network.indptr)[conducts]
-    graph = sparse.csr_matrix((np.ones(len(rows), np.int8), (rows, network.indices[conducts])), shape=(n, n))
+    if conducts.all():
+        indptr, indices = network.indptr, network.indices
+    else:
+        indptr = np.concatenate([[0], np.cumsum(conducts)])[network.indptr]
+        indices = network.indices[conducts]
+    ones = np.ones(len(indices), np.int8)
+    graph = sparse.csr_matrix((ones, indices.astype(np.int32), indptr), shape=(n, n))
     _, label = csgraph.connected_components(graph, directed=False)
     held = [WALLS.index(name) for name in scene.wall_temperatures]
     anchors = network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]
