@@ -88,7 +88,8 @@ def solve(
     shape = tuple(grid_shape(scene, voxels)[a] for a in order)
     rule = _automatic(scheme, scene) if rule == "auto" else rule
     _check_scheme(box, scheme, rule, shape)
-    grid = voxelise(box, shape, laminate=rule == "laminate")
+    # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
+    grid = voxelise(box, shape, laminate=rule != "plain")
     slope, level = _linear_part(box)
     steep = float(np.linalg.norm(slope))
     units = _Units(max(box.size), float(grid.conductivity[grid.fractions > 0].max()) or 1.0, steep)
@@ -106,7 +107,8 @@ def solve(
         )
         solution = (fft_cg if scheme == "cg" else fft_eyre_milton).solve(problem)
     knobs = {"scheme": scheme, "rule": rule, "precision": precision, "tolerance": problem.tolerance}
-    return _field(scene, fft_field.Grid(box, order, grid, None, None, slope, level), units, solution, knobs)
+    field_grid = fft_field.Grid(box, order, grid, None, None, slope, level, sharp=rule == "links")
+    return _field(scene, field_grid, units, solution, knobs)
 
 
 class _Units(NamedTuple):

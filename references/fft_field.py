@@ -34,6 +34,8 @@ class Grid(NamedTuple):
     slope : (3,) float array, K/m
     level : float, K
         Linear part: level + slope.x.
+    sharp : bool
+        The temperature of a cut voxel is that of its centre (links), not a mean over its phases.
     """
 
     scene: Scene
@@ -43,6 +45,7 @@ class Grid(NamedTuple):
     flux: np.ndarray
     slope: np.ndarray
     level: float
+    sharp: bool
 
 
 def temperature_at(grid: Grid, points):
@@ -57,7 +60,7 @@ def temperature_at(grid: Grid, points):
     value, weights = np.zeros(len(points)), np.zeros(len(points))
     slope, offset = np.zeros((3, len(points))), np.zeros((3, len(points)))
     for index, weight, away, mirrored in _neighbours(grid, points):
-        good, cut = _preference(grid.voxels, index, phase)
+        good, cut = _preference(grid.voxels, index, phase, trusted=grid.sharp)
         weight = weight * good
         conductivity = grid.voxels.conductivity[grid.voxels.phase[tuple(index)]]
         known = ~cut & (conductivity > 0)
@@ -83,7 +86,7 @@ def flux_at(grid: Grid, points):
     phase = grid.scene.phase_at(points)
     total, weights = np.zeros((len(points), 3)), np.zeros(len(points))
     for index, weight, _, mirrored in _neighbours(grid, points):
-        weight = weight * _preference(grid.voxels, index, phase)[0]
+        weight = weight * _preference(grid.voxels, index, phase, trusted=False)[0]
         weights += weight
         for axis in range(3):
             total[:, axis] += weight * _sign(axis, mirrored) * grid.flux[(axis, *index)]
@@ -143,10 +146,10 @@ def _sign(component, mirrored):
     return np.where(flips, -1.0, 1.0)
 
 
-def _preference(voxels, index, phase):
-    """How much a voxel tells about a point of this phase, and whether it is cut."""
+def _preference(voxels, index, phase, *, trusted):
+    """How much a voxel tells about a point of this phase, and whether it is cut and not trusted all the same."""
     same = voxels.phase[tuple(index)] == phase
-    if not len(voxels.cut):
+    if trusted or not len(voxels.cut):
         return np.where(same, 1.0, OTHER), np.zeros(len(phase), bool)
     flat = np.ravel_multi_index(index, voxels.phase.shape)
     place = np.minimum(np.searchsorted(voxels.cut, flat), len(voxels.cut) - 1)

@@ -116,17 +116,18 @@ def test_the_automatic_rule_is_the_measured_best():
     assert fft.solve(layers, voxels=4).stats["rule"] == "laminate"
 
 
-@pytest.mark.parametrize(("scheme", "limits"), [("cg", (1.6e-3, 0.06)), ("eyre-milton", (1.3e-3, 0.06))])
+@pytest.mark.parametrize(("scheme", "rule"), [r for r in RULES if r[1] != "plain"])
 @pytest.mark.parametrize("axis", [0, 2])
-def test_the_field_of_a_sphere_between_walls(scheme, limits, axis):
+def test_the_field_of_a_sphere_between_walls(scheme, rule, axis):
     scene = sphere_cell(5.0, axis=axis, walls=True, matrix=33.0, size=0.1)
-    field, closed = fft.solve(scene, voxels=32, scheme=scheme), exact.solve(scene)
+    field, closed = fft.solve(scene, voxels=32, scheme=scheme, rule=rule), exact.solve(scene)
     points = np.random.default_rng(1).random((2000, 3)) * 0.1
     temperature = field.temperature_at(points) - closed.temperature_at(points)
     flux = field.flux_at(points) - closed.flux_at(points)
-    # Root mean squares over the span and the mean flux; twice what was found, which is of first order in the voxel.
-    assert np.sqrt(np.mean(temperature**2)) / 10 < limits[0]
-    assert np.sqrt(np.mean(np.sum(flux**2, axis=1))) / np.linalg.norm(closed.mean_flux) < limits[1]
+    # Root mean squares over the span and the mean flux; found 0.5e-3 to 0.7e-3 and 0.028 to 0.030, first order in the
+    # voxel.  Trilinear interpolation across the interface makes them 1e-3, the nearest voxel 0.09.
+    assert np.sqrt(np.mean(temperature**2)) / 10 < 0.8e-3
+    assert np.sqrt(np.mean(np.sum(flux**2, axis=1))) / np.linalg.norm(closed.mean_flux) < 0.035
     samples = field.samples
     assert_allclose(samples.volumes.sum(), scene.volume, rtol=1e-12)
     # A sample is the field at its own point.
@@ -359,8 +360,8 @@ def test_too_few_iterations_raise(scheme, rule, walls):
         fft.solve(sphere_cell(30.0, walls=walls), voxels=8, scheme=scheme, rule=rule, max_iterations=3)
 
 
-# cg waits for two small decreases of the energy, the check after it for one.
-@pytest.mark.parametrize(("scheme", "less"), [("cg", 2), ("eyre-milton", 1)])
+# cg waits for two small decreases of the energy: two iterations more than its final check asks for.
+@pytest.mark.parametrize(("scheme", "less"), [("cg", 3), ("eyre-milton", 1)])
 def test_just_too_few_iterations_raise(scheme, less):
     needed = fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme).stats["iterations"] - less
     with pytest.raises(RuntimeError, match=f"{needed} iterations"):
