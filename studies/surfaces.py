@@ -29,7 +29,8 @@ def _cases():
         for seed in SEEDS if number < NUMBERS[-1] else SEEDS[:1]:
             here = {"particles": number, "seed": seed}
             yield from (methods.case("dem", contrast=contrast, **here) for contrast in CONTRASTS)
-            for name in SIDE_BY_SIDE:
+            # The others err by far more than they scatter: one packing of each shows it.
+            for name in SIDE_BY_SIDE if seed == 0 and number < NUMBERS[-1] else ():
                 yield from (methods.case(name, contrast=contrast, **here) for contrast in (0.01, 10.0))
         for name in ("dem", "dem-plain"):
             # A tight tolerance, so that what is left is the rounding of the law and not the solver's.
