@@ -17,7 +17,8 @@ CONTRASTS = (0.01, 0.1, 10.0, 100.0)
 CURVE = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 SCENES = [*(("third", contrast) for contrast in CONTRASTS), ("half", 10.0)]
 SIDE_BY_SIDE = ("dem-plain", "dem-calibrated", "dem-arithmetic")
-# Quick and full resolution; full rows of the default DEM are repeated for three packings. Element sizes are in edges of the cube.
+# Quick and full resolution; full rows of the default DEM are repeated for three packings. Element sizes are in edges
+# of the cube.
 PARTICLES, VOXELS = (20_000, 100_000), (64, 128)
 SIZES = {"fem": (0.1, 0.04), "fem-straight": (0.1, 0.04), "fem-p1": (0.05, 0.02)}
 COARSE, SEEDS = 10_000, (0, 1, 2)
