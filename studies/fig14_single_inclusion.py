@@ -20,7 +20,7 @@ SIDE_BY_SIDE = ("dem-plain", "dem-calibrated", "dem-arithmetic")
 # Quick and full resolution; full rows of the default DEM are repeated for three packings. Element sizes are in edges
 # of the cube.
 PARTICLES, VOXELS = (20_000, 100_000), (64, 128)
-SIZES = {"fem": (0.1, 0.04), "fem-straight": (0.1, 0.04), "fem-p1": (0.05, 0.02)}
+SIZES = {"fem": (0.06, 0.04), "fem-straight": (0.06, 0.04), "fem-p1": (0.05, 0.02)}
 COARSE, SEEDS = 10_000, (0, 1, 2)
 
 PAPER = printed("fig14_single_inclusion")

@@ -48,7 +48,7 @@ LOOK = {
 def look(name, **more):
     """Keywords of a line for a method: its label, colour, marker and line style."""
     label, colour, marker, style = LOOK[name]
-    return {"label": label, "color": colour, "marker": marker, "linestyle": style, **more}
+    return {"label": label, "color": colour, "marker": marker, "linestyle": style} | more
 
 
 def resolution(particles, size, voxels):
