@@ -43,6 +43,7 @@ def _parser():
     row.add_argument("--json", metavar="FILE", help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
     report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
+    report.add_argument("--page", metavar="FILE", type=Path, help="also write the tables marked in this page anew")
     report.set_defaults(action=_report)
     for each in (run, render, report):
         each.add_argument("--out", default=DEFAULT_OUT, metavar="DIR", type=Path)
@@ -114,6 +115,7 @@ def _row(arguments):
 
 
 def _report(arguments):
+    from studies.readme import fill
     from studies.store import replaced
     from studies.table import render
 
@@ -129,6 +131,8 @@ def _report(arguments):
     target = arguments.out / "README.md"
     with replaced(target) as temporary:
         temporary.write_text("\n".join(pages))
+    if arguments.page:
+        fill(arguments.page, arguments.out)
     print(f"{len(pages)} studies in {target}; " + ("a claim FAILED" if status else "every claim holds"))
     return int(status)
 

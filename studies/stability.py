@@ -15,7 +15,7 @@ from studies.figures import GREY, RED, look, resolution
 from studies.pick import finest, pick
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
-FRACTIONS = (0.5, 0.51, 0.52)
+FRACTIONS = (0.5, 0.52)
 CLOSE = (0.0, 0.01, 10.0, 1e6)
 SINGLE = ((methods.THIRD, 0.01), (methods.THIRD, 10.0), *((methods.THIRD, c) for c in EXTREMES[:3]), (0.5, 10.0))
 SLOW = (1e-6, 1e6)  # for Eyre and Milton's scheme, whose iterations grow with the square root of the contrast
