@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat.scene import Flux, Layer, Material, Scene, Sphere
-from references import exact, fft, fft_cg_kernels, fft_eyre_milton_kernels, fft_link_kernels
+from references import exact, fft, fft_cg_kernels, fft_eyre_milton_kernels, fft_link_kernels, voxel_links
 from references.voxels import medium, voxelise
 
 SCHEMES = ("cg", "eyre-milton")
@@ -322,6 +322,16 @@ def test_a_contrast_of_a_million_converges_to_its_own_limit(rule):
     )
     # What the default tolerance promises.  A first trial that looked at the energy alone stopped 2e-4 away.
     assert_allclose(loose, tight, rtol=1e-6)
+
+
+def test_surfaces_kept_off_the_nodes_save_iterations(monkeypatch):
+    scene = sphere_cell(1e4, center=(0.513, 0.471, 0.537))
+    kept = fft.solve(scene, voxels=24, rule="links")
+    monkeypatch.setattr(voxel_links, "NEAREST", 0.0)
+    exactly = fft.solve(scene, voxels=24, rule="links")
+    # Found 165 and 188 iterations (half at 64^3), and a conductivity lower by 1.1e-5, a hundredth of its error.
+    assert kept.stats["iterations"] < 0.95 * exactly.stats["iterations"]
+    assert 0 < exactly.conductivity / kept.conductivity - 1 < 2e-5
 
 
 def test_pores():
