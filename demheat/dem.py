@@ -1,6 +1,7 @@
 """The discrete element method: a packing, its network of conductances, and the field they give."""
 
 import time
+import warnings
 
 import numpy as np
 
@@ -63,6 +64,11 @@ def solve(
         If an argument is not as described, before any heavy work.
     RuntimeError
         If the solver does not converge.
+
+    Warns
+    -----
+    UserWarning
+        If interfaces are so near to each other or to a wall that particles do not fit between them.
     """
     if law not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
@@ -77,6 +83,7 @@ def solve(
     clock.append(time.perf_counter())
     if conforming:
         packing = conform(packing, scene, seed=seed)
+        _warn_of_gaps(packing)
     if law == "laguerre":
         facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
         packing, facets = without_hidden(packing, facets)
@@ -94,6 +101,16 @@ def solve(
     return field_of(
         scene, packing, facets, network, solution, law=law, stats=spent | {"law": law, "calibration": factor}
     )
+
+
+def _warn_of_gaps(packing):
+    count = packing.provenance["pairs_left_out"]
+    if count:
+        warnings.warn(
+            f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
+            "cross the interfaces there: use more particles where the gaps matter",
+            stacklevel=3,
+        )
 
 
 def _check_packing(packing, scene):

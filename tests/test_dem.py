@@ -207,6 +207,11 @@ def test_bad_input_before_heavy_work(change, words, monkeypatch):
         demheat.solve(ball(), **{"particles": 200} | change)
 
 
+def test_gaps_that_particles_do_not_resolve_are_warned_of():
+    with pytest.warns(UserWarning, match="do not fit into gaps"):
+        demheat.solve(ball(radius=0.4995), particles=1000)
+
+
 def test_packing_of_another_box_is_refused():
     with pytest.raises(ValueError, match="packing of size"):
         demheat.solve(ball(), packing=relaxed(200, seed=0))

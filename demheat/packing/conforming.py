@@ -55,21 +55,22 @@ def conform(packing, scene, *, seed=0):
     Returns
     -------
     Packing
-        Radii are square roots of the radical weights (up to a constant added to all). Where two interfaces, or an
-        interface and a wall, come closer than a few tenths of a mean radius, twins do not fit and the facets there do
-        not conform.
+        Radii are square roots of the radical weights (up to a constant added to all). Twins stand closer in narrow
+        gaps. Where two interfaces are nearer to each other than a fifth of a mean radius, or an interface to a wall
+        than a tenth, twins do not fit and facets there cross the interface; provenance["pairs_left_out"] counts them.
     """
     if not scene.inclusions:
-        return packing
+        return packing._replace(provenance={**packing.provenance, "twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()
     rng = np.random.default_rng([seed, 71])
     surfaces = surfaces_of(scene)
-    parts = []
+    parts, left_out = [], 0
     for surface in surfaces:
         points, normals = _pattern(surface, surfaces, radius, rng)
         points = surface.touched(points, normals)
         offsets = _room(points, normals, surface, surfaces, scene, OFFSET * radius)
         fits = offsets >= LEAST_OFFSET * radius
+        left_out += int(np.sum(_gap(points[~fits], normals[~fits], surface, surfaces) < LEAST_SPACING * radius))
         parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
     twins = _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True)))
     centers, weights, good = _twin_points(twins, scene, radius)
@@ -79,7 +80,7 @@ def conform(packing, scene, *, seed=0):
     kept = np.minimum(packing.radii**2, near**2 - _margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
     raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
-    provenance = {**packing.provenance, "twins": len(centers)}
+    provenance = {**packing.provenance, "twins": len(centers), "pairs_left_out": left_out}
     return make_packing(
         np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
     )
@@ -109,10 +110,14 @@ def _inside(surface, points, normals):
 
 def _spacing(points, normals, surface, surfaces, radius):
     """Distance between twins at points of a surface: no more than the gap's width asks, see GAP_SPACING."""
+    return np.clip(GAP_SPACING * _gap(points, normals, surface, surfaces), LEAST_SPACING * radius, SPACING * radius)
+
+
+def _gap(points, normals, surface, surfaces):
+    """Width of the gap to the nearest other interface, or to the mirror image in a wall that faces this one."""
     gap = np.min([other.gap(points, skip_self=other is surface) for other in surfaces], axis=0)
-    # A wall that faces the interface mirrors it; one that cuts it asks for nothing.
-    gap = np.minimum(gap, 2.0 * _way_to_wall(points, normals, surface.scene, facing=0.9))
-    return np.clip(GAP_SPACING * gap, LEAST_SPACING * radius, SPACING * radius)
+    # A wall that cuts the interface, rather than faces it, leaves no gap.
+    return np.minimum(gap, 2.0 * _way_to_wall(points, normals, surface.scene, facing=0.9))
 
 
 def _way_to_wall(points, normals, scene, *, facing=0.0):

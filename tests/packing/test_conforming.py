@@ -101,7 +101,19 @@ def test_a_wall_cuts_a_sphere():
 
 def test_no_inclusions_no_change():
     packing = relaxed(300, seed=1)
-    assert conform(packing, scene()) is packing
+    conformed = conform(packing, scene())
+    assert conformed.centers is packing.centers and conformed.radii is packing.radii
+
+
+@pytest.mark.parametrize("gap, crowded", [(0.3, False), (0.1, True)])
+def test_pairs_that_do_not_fit_are_counted(gap, crowded):
+    """A fifth of a mean radius between two spheres, a tenth to a wall, is the least that twins need."""
+    base = relaxed(3000, periodic=False, seed=1)
+    width = gap * base.radii.mean()
+    two = scene(Sphere((0.3, 0.5, 0.5), 0.2, OTHER), Sphere((0.7 + width, 0.5, 0.5), 0.2, OTHER), periodic=False)
+    wall = scene(Sphere((0.5, 0.2 + 0.5 * width, 0.5), 0.2, OTHER), periodic=False)
+    for given in (two, wall):
+        assert (conform(base, given).provenance["pairs_left_out"] > 0) == crowded
 
 
 def test_same_seed_same_packing():
