@@ -123,7 +123,7 @@ def _page(study, df, claims, figure):
         }
     )
     make = getattr(study, "table", _all_rows)
-    table, caption = make(df), make.__doc__.strip().splitlines()[0]
+    table, caption = make(df), " ".join(make.__doc__.split())
     return "\n\n".join(
         [
             f"# {title}",
