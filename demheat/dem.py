@@ -74,7 +74,11 @@ def solve(
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
     check_rule(interface)
     check_solver(solver, tolerance)
-    conforming = law == "laguerre" if conforming is None else conforming
+    conforming = law == "laguerre" if conforming is None else bool(conforming)
+    if conforming and law != "laguerre":
+        raise ValueError(
+            f"conforming = True with law = {law!r}: twins need not touch; must be False, or law 'laguerre'"
+        )
     scene.check_steady()
     clock = [time.perf_counter()]
     if packing is None:

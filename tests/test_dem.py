@@ -190,6 +190,7 @@ def _python(code, env):
     "change, words",
     [
         ({"law": "voronoi"}, "law = 'voronoi'"),
+        ({"law": "calibrated", "conforming": True}, "conforming = True"),
         ({"particles": 99}, "99"),
         ({"particles": float("nan")}, "nan"),
         ({"interface": "median"}, "interface = 'median'"),
