@@ -10,6 +10,7 @@ from skfem.helpers import dot, grad
 
 from demheat.scene import Flux, Layer, Material, Scene, Sphere
 from references import fem, mesh
+from references.fem import lookup
 from references.fem.elements import assemble, shapes
 from references.fem.lookup import Solution
 
@@ -204,6 +205,13 @@ def test_heat_that_enters_leaves_and_is_the_mean_flux():
     assert_allclose(pair.wall_heat["y+"], -pair.mean_flux[1], rtol=1e-10)
 
 
+def test_isothermal_walls_share_their_common_edge():
+    walls = {"x-": 300.0, "x+": 301.0, "y+": 303.0}
+    field = fem.solve(scene(walls=walls), size=0.3, tolerance=TIGHT)
+    assert_allclose(field.temperature_at([(1.0, 1.0, 0.4), (0.0, 1.0, 0.7)]), [302.0, 301.5], rtol=1e-12)
+    assert abs(sum(field.wall_heat.values())) < 1e-10 * max(field.wall_heat.values())
+
+
 def test_reversing_and_scaling():
     def solved(conductivity, low, high):
         walls = {"y-": low, "y+": high}
@@ -327,6 +335,17 @@ def test_lookup_among_elements_of_very_different_size():
     points = np.vstack([near, gap, made.points, points_in((1, 1, 1))])
     assert_allclose(linear.temperature_at(points), points @ np.array([1.0, 2.0, 3.0]), atol=1e-9)  # INSIDE
     assert_allclose(linear.flux_at(near) / linear.flux_at(near)[:, :1], np.tile([1.0, 2.0, 3.0], (300, 1)), rtol=1e-8)
+
+
+def test_lookup_finds_what_the_nearest_centres_miss(monkeypatch):
+    field = fem.solve(scene(ball(10.0)), size=COARSE)
+    points = points_in((1, 1, 1))
+    expected = field.temperature_at(points)
+    monkeypatch.setattr(lookup, "NEAREST", (1,))
+    assert_allclose(field.temperature_at(points), expected, atol=1e-9)  # continuous: either of two elements
+    monkeypatch.setattr(Solution, "_bounds", property(lambda self: (np.full((1, 3), 2.0), np.full((1, 3), 2.0))))
+    with pytest.raises(RuntimeError, match="no element contains"):
+        field.temperature_at(points)
 
 
 def test_points_outside_the_box_are_refused():

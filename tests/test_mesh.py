@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
 from references.mesh import cad
-from references.mesh.cells import bent, jacobian_coefficients, straighten, volumes_of
+from references.mesh.cells import bent, check, jacobian_coefficients, straighten, volumes_of
 from references.mesh.sizes import wanted_sizes
 
 ROCK, METAL = Material(1.0), Material(10.0)
@@ -105,6 +105,12 @@ def test_spheres_centred_on_corner_edge_and_face(center):
     assert_allclose(fractions(mesh.make(of, size=0.15), of)[1], 4 * math.pi / 81, rtol=2e-3)  # (h/R)^4/40 at 0.45
 
 
+def test_layers_that_touch_but_for_rounding():
+    layers = [Layer(2, 0.0, 0.3, METAL), Layer(2, 0.3 + 1e-13, 0.6, ROCK), Layer(2, 0.6 - 1e-13, 1 + 5e-13, METAL)]
+    of = scene(*layers)
+    assert_allclose(fractions(mesh.make(of, size=0.4), of), [0, 0.3, 0.3, 0.4], atol=1e-11)  # twice that rounding
+
+
 def test_narrow_gaps_get_finer_elements_and_stay_valid():
     of = scene(ball((0.5, 0.5, 0.25), 0.245), ball((0.5, 0.5, 0.745), 0.245))
     made = mesh.make(of, size=0.15)
@@ -114,6 +120,16 @@ def test_narrow_gaps_get_finer_elements_and_stay_valid():
         # Wanted there: 0.5 sqrt(0.005 x 0.245) = 0.0175, whose tetrahedra have at most size^3/6; 0.15^3/6 = 5.6e-4.
         assert near.sum() > 20 and np.median(made.volumes[near]) < 0.0175**3
     assert made.stats["jacobian"] > 0.1 and made.volumes.min() > 0
+
+
+def test_thin_shells_and_layers_get_elements_of_their_thickness():
+    shell, core = ball((0.4, 0.5, 0.55), 0.25), ball((0.4, 0.5, 0.55), 0.23, ROCK)
+    of = scene(shell, core, Layer(0, 0.8, 0.82, METAL))
+    made = mesh.make(of, size=0.2, order=1)
+    # Wanted edges: 0.06 in the shell, 0.02 in the layer; a tetrahedron of edge h has h^3/8.5, chords make some longer.
+    for phase, edge in ((1, 0.06), (3, 0.02)):
+        assert np.median(made.volumes[made.phase == phase]) < edge**3 / 4
+    assert made.volumes.max() > 0.06**3
 
 
 def test_wanted_sizes_of_small_spheres_shells_layers_and_gaps():
@@ -205,8 +221,18 @@ def test_bad_order():
 def test_wrong_geometry_is_noticed(monkeypatch):
     geometry = cad._geometry
     monkeypatch.setattr(cad, "_geometry", lambda *args: dict.fromkeys(geometry(*args), 0))
-    with pytest.raises(RuntimeError, match="phase 1 has volume 0"):
+    with pytest.raises(RuntimeError, match="phase 1: .* misplaced"):
         mesh.make(scene(ball()), size=0.25)
+    monkeypatch.undo()
+    made = mesh.make(scene(), size=0.5)
+    check(scene(), made)
+    with pytest.raises(RuntimeError, match="phase 1, a sphere, was lost"):
+        check(scene(ball((0.31, 0.52, 0.43), 1e-3)), made)
+    with pytest.raises(RuntimeError, match="fill 0.9"):
+        check(scene(), made._replace(volumes=made.volumes * 0.99))
+    made.volumes[0] *= -1
+    with pytest.raises(RuntimeError, match="1 inverted"):
+        check(scene(), made)
 
 
 def test_missing_system_libraries_are_named_with_their_packages(monkeypatch):
@@ -275,6 +301,15 @@ def test_inverted_elements_and_their_periodic_twins_are_straightened():
     count, least = straighten(points, cells, np.array([[14, 4]]))
     assert count == 1 and least == 1.0
     assert_allclose(points, np.vstack([reference_element(), second]), atol=1e-15)
+
+
+def test_default_size_follows_order_and_number_of_spheres():
+    few, many = scene(ball()), scene(*(ball((x / 10, 0.5, 0.5), 0.01) for x in range(1, 10)), size=(2.0, 2.0, 2.0))
+    assert cad._checked_size(few, None, 2) == pytest.approx(1 / 26)
+    assert cad._checked_size(few, None, 1) == pytest.approx(1 / 50)
+    assert cad._checked_size(many, None, 2) == pytest.approx(2 / 26)
+    grid = [(i / 5 - 0.1, j / 5 - 0.1, k / 5 - 0.1) for i in range(1, 6) for j in range(1, 6) for k in range(1, 6)]
+    assert cad._checked_size(scene(*(ball(c, 0.05) for c in grid)), None, 2) == pytest.approx(1 / 40)
 
 
 def test_write_for_other_programs(tmp_path):

@@ -28,7 +28,8 @@ def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
         Longest wanted edge; it is less on small spheres, in thin layers and in narrow gaps. Default: the cube root
-        of the box volume over 26 (order 2, 1e5 unknowns in a plain box) or 50 (order 1).
+        of the box volume over 26 (order 2) or 50 (order 1), about 1e5 unknowns; with many spheres an eighth of their
+        mean distance.
     curved : bool
         Quadratic elements that follow the spheres; straight ones lose volume there.
     tolerance : float

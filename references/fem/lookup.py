@@ -15,6 +15,8 @@ from references.mesh import Mesh
 
 # Local coordinates this little outside count as inside: rounding of points on a face.
 INSIDE = 1e-9
+# Beyond this a point of the box is in no element: the mesh would have a hole.
+LOST = 1e-6
 # Elements tried by their centres; the few points that remain are tested against all bounding boxes.
 NEAREST = (8, 64)
 # Points looked up together: about 100 MB at 8 candidates.
@@ -113,6 +115,8 @@ class Solution:
             elements = np.flatnonzero(np.all((points[row] >= low) & (points[row] <= high), axis=1))
             for element in elements:
                 attempt(np.array([row]), np.array([element]))
+        if depth.min(initial=0.0) < -LOST:
+            raise RuntimeError(f"no element contains the point {points[np.argmin(depth)]}")
         return ids, X
 
 

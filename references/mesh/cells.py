@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.scene import Sphere
+
 # Unit lengths. Nodes this close to a face lie on it (found: they are 1e-15 off, or on spheres at least `TOUCH`).
 SNAP = 1e-9
 # Nodes and surfaces this close after the periodic shift are twins (OpenCASCADE's own tolerance is 1e-7).
@@ -168,9 +170,14 @@ def straighten(points, cells, pairs):
         How many elements were straightened.
     float
         Lower bound of the smallest Jacobian over its element's mean.
+
+    Raises
+    ------
+    RuntimeError
+        If elements stay inverted.
     """
     twin, total = twins(len(points), pairs), 0
-    while True:
+    for _ in range(20):  # each round may bend a neighbour too far; found: 1 or 2
         curved = np.flatnonzero(bent(points[cells]))
         coefficients = jacobian_coefficients(points[cells[curved]])
         relative = coefficients.min(axis=1) / np.abs(coefficients.mean(axis=1))
@@ -183,6 +190,7 @@ def straighten(points, cells, pairs):
         for (a, b), c in EDGE_COLUMN.items():
             mine = cells[wanted[twin[cells[:, c]]]]
             points[mine[:, c]] = (points[mine[:, a]] + points[mine[:, b]]) / 2
+    raise RuntimeError(f"{len(bad)} curved elements stay inverted")
 
 
 def volumes_of(nodes):
@@ -201,9 +209,13 @@ def check(scene, mesh):
     # Rounding only: all faces are plane.
     if abs(volumes.sum() / scene.volume - 1) > 1e-9:
         raise RuntimeError(f"the elements fill {volumes.sum() / scene.volume} of the box")
-    wrong = scene.phase_at(mesh.points[mesh.cells[:, :4]].mean(axis=1)) != phase
-    count = 1 + len(scene.inclusions)
-    bad = np.bincount(phase[wrong], volumes[wrong], count)
-    total = np.bincount(phase, volumes, count)
-    for number in np.flatnonzero((bad > MISLABELLED * total) | (total == 0)):
-        raise RuntimeError(f"phase {number} has volume {total[number]:.3g} m3, of which {bad[number]:.3g} is misplaced")
+    wanted = scene.phase_at(mesh.points[mesh.cells[:, :4]].mean(axis=1))
+    for labels in (phase, wanted):
+        volume = np.bincount(labels, volumes, len(scene.materials))
+        bad = np.bincount(labels[wanted != phase], volumes[wanted != phase], len(scene.materials))
+        for number in np.flatnonzero(bad > MISLABELLED * volume):
+            raise RuntimeError(f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced")
+    for number, inclusion in enumerate(scene.inclusions, start=1):
+        # Other inclusions can fill a layer or the matrix, but never a sphere.
+        if isinstance(inclusion, Sphere) and not np.any(phase == number):
+            raise RuntimeError(f"phase {number}, a sphere, was lost")

@@ -13,8 +13,8 @@ from demheat.scene import Layer, Sphere
 # Of the longest edge. Closer surfaces touch: the cusp between them has no valid elements (2e-6 meshes, 0 does not).
 TOUCH = 1e-6
 _WHY = "the cusp between touching surfaces has no valid elements; leave a gap or let them overlap clearly"
-# Coordinates closer than this part of the edge are one plane: rounding of what the user typed.
-SAME = 1e-12
+# Of the longest edge. Coordinates closer than this are one plane: rounding of what the user typed.
+SAME = 1e-10
 # Edge length on a small sphere over its radius; in a gap, to a distance of width = sqrt(gap radius), over that width;
 # in a shell over its thickness.
 ON_SPHERE, IN_GAP, IN_SHELL = 0.33, 0.5, 3.0
@@ -93,14 +93,15 @@ def _spheres(scene, size):
 
 def _planes(scene):
     """Coordinates of the faces and layer planes along each axis."""
-    planes = []
+    planes, longest = [], max(scene.size)
     for axis, length in enumerate(scene.size):
         layers = [x for x in scene.inclusions if isinstance(x, Layer) and x.axis == axis]
-        values = np.unique([0.0, length, *(x.start for x in layers), *(x.stop for x in layers)])
+        values = np.clip([0.0, length, *(x.start for x in layers), *(x.stop for x in layers)], 0.0, length)
+        values = np.unique(values)
         gaps = np.diff(values, prepend=-np.inf)
-        if np.any((gaps > SAME * length) & (gaps < TOUCH * max(scene.size))):
+        if np.any((gaps > SAME * longest) & (gaps < TOUCH * longest)):
             raise NotImplementedError(f"layer planes along axis {axis} at {values}: too close to mesh between them")
-        planes.append(values[gaps > SAME * length])
+        planes.append(values[gaps > SAME * longest])
     return planes
 
 
