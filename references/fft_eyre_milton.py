@@ -40,7 +40,8 @@ def solve(problem: Problem) -> Solution:
     transform = _transform(problem, 3)
     field = np.zeros((3, *shape), problem.dtype)
     iterations, error = _iterate(problem, reference, mirror, transform, field)
-    if error > problem.tolerance:
+    # Not a number must fail too.
+    if not error <= problem.tolerance:
         _fail(iterations, error, problem.tolerance)
     return _settle(problem, reference, high, mirror, conductor, transform, field, iterations)
 
@@ -121,8 +122,11 @@ def _iterate(problem, reference, mirror, transform, field):
     turn = kernels.reflect_waves if problem.walls else kernels.reflect_modes
     scale, mean = problem.dtype(transform.scale), (2 * reference * problem.gradient).astype(problem.dtype)
     work = transform.real
-    error = math.inf
-    for iteration in range(problem.max_iterations + 1):
+    for component, value in zip(work, mean, strict=True):
+        component[:] = value
+    run(kernels.reflect, field.shape[1], field, work, mirror, sums)
+    iterations, error = 0, math.inf
+    while error > problem.tolerance and iterations < problem.max_iterations:
         transform.forward()
         run(turn, _planes(problem, transform), transform.modes, wave, free, scale, mean)
         transform.backward()
@@ -130,10 +134,8 @@ def _iterate(problem, reference, mirror, transform, field):
         total = sums.sum(axis=0)
         flux = 0.5 * np.linalg.norm(total[1:]) / cells
         error = 0.5 * math.sqrt(total[0] / cells) / flux if flux > 0 else math.inf
-        # The first pass starts from nothing and only makes p uniform.
-        if iteration and (error <= problem.tolerance or not math.isfinite(error)):
-            break
-    return iteration, error
+        iterations += 1
+    return iterations, error
 
 
 def _settle(problem, reference, high, mirror, conductor, transform, field, iterations):

@@ -132,7 +132,7 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     phase = np.zeros(shape, dtype=np.uint16)
     cuts = _paint(scene, phase, spacing)
     conductivity = scene.conductivities
-    count = np.bincount(phase.ravel(), minlength=len(conductivity))
+    count = kernels.count(phase.ravel(), len(conductivity))
     if not laminate:
         return Voxels(spacing, phase, conductivity, np.empty(0, np.int64), np.empty((0, 6)), count / phase.size)
     parent = parents(scene)

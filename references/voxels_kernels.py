@@ -17,6 +17,15 @@ TIE = 1e-9
 
 
 @numba.njit(cache=True)
+def count(phase, phases):
+    """How often each phase number occurs, (phases,) int array; without the copy to 64 bits that bincount makes."""
+    result = np.zeros(phases, np.int64)
+    for i in range(len(phase)):
+        result[phase[i]] += 1
+    return result
+
+
+@numba.njit(cache=True)
 def paint_sphere(grid, phase, center, radius, spacing, low, high):
     """Give every voxel whose centre lies in the sphere this phase; count the voxels that the surface may cut.
 
