@@ -123,13 +123,15 @@ def test_narrow_gaps_get_finer_elements_and_stay_valid():
 
 
 def test_thin_shells_and_layers_get_elements_of_their_thickness():
-    shell, core = ball((0.4, 0.5, 0.55), 0.25), ball((0.4, 0.5, 0.55), 0.23, ROCK)
+    shell, core = ball((0.4, 0.5, 0.55), 0.25), ball((0.4, 0.5, 0.55), 0.24, ROCK)
     of = scene(shell, core, Layer(0, 0.8, 0.82, METAL))
     made = mesh.make(of, size=0.2, order=1)
-    # Wanted edges: 0.06 in the shell, 0.02 in the layer; a tetrahedron of edge h has h^3/8.5, chords make some longer.
-    for phase, edge in ((1, 0.06), (3, 0.02)):
-        assert np.median(made.volumes[made.phase == phase]) < edge**3 / 4
-    assert made.volumes.max() > 0.06**3
+    corners = made.points[made.cells]
+    longest = np.linalg.norm(corners[:, :, None] - corners[:, None], axis=3).max(axis=(1, 2))
+    # Wanted edges: 0.03 in the shell (0.08 for its sphere alone), 0.02 in the layer; the longest of six is above that.
+    assert np.median(longest[made.phase == 1]) < 0.05
+    assert np.median(longest[made.phase == 3]) < 0.04
+    assert longest.max() > 0.1
 
 
 def test_wanted_sizes_of_small_spheres_shells_layers_and_gaps():
