@@ -21,7 +21,7 @@ def field_of(scene, packing, facets, network, solution, *, law, stats):
     sampler, temperature_at, flux_at = _samplers(scene, packing, facets, network, solution, law)
     return Field(
         scene=scene,
-        mean_flux=_mean_flux(scene, network, solution, heat),
+        mean_flux=_mean_flux(scene, facets, network, solution, heat, law),
         fractions=np.bincount(network.phase, network.volumes, len(scene.materials)) / network.volumes.sum(),
         sampler=sampler,
         temperature_at=temperature_at,
@@ -32,19 +32,18 @@ def field_of(scene, packing, facets, network, solution, *, law, stats):
     )
 
 
-def _mean_flux(scene, network, solution, wall_heat):
-    """Volume average of the flux density: the first moment of the heat flows over links.
+def _mean_flux(scene, facets, network, solution, wall_heat, law):
+    """Volume average of the flux density.
 
-    Between two walls the component along the load is the mean of the heat that enters at one and leaves at the other,
-    over their area: the same by the divergence theorem, and right also where centres are held at wall temperature.
+    In a periodic cell it is the first moment of the heat flows over links. Between two walls the component along the
+    load is the mean of the heat that enters at one and leaves at the other, over their area: the same by the divergence
+    theorem, and right also where centres are held at wall temperature. Other components average the cells' fluxes.
     """
-    first = np.empty((len(network.volumes), 3))
-    kernels.moments(*_links(network), network.conductance, solution.gradient, _filled(solution), first)
-    flow = first.sum(axis=0)
-    np.add.at(
-        flow, network.wall_side // 2, solution.wall_heat * network.wall_distance * (2 * (network.wall_side % 2) - 1)
-    )
-    flux = -flow / scene.volume
+    if scene.periodic:
+        first = np.empty((len(network.volumes), 3))
+        kernels.moments(*_links(network), network.conductance, solution.gradient, _filled(solution), first)
+        return -first.sum(axis=0) / scene.volume
+    flux = network.volumes @ cell_fluxes(facets, network, solution, law=law) / scene.volume
     for axis, letter in enumerate("xyz"):
         if set(wall_heat) == {letter + "-", letter + "+"}:
             flux[axis] = 0.5 * (wall_heat[letter + "-"] - wall_heat[letter + "+"]) * scene.size[axis] / scene.volume

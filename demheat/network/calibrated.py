@@ -73,7 +73,7 @@ def _nearest_image(packing, rows, columns):
 
 def _wall_contacts(packing):
     """Particles that touch a wall, as (particle, side, area, distance)."""
-    particle, side = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+    particle, side, area = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
     for s in range(6):
         if packing.periodic[s // 2]:
             continue
@@ -82,6 +82,8 @@ def _wall_contacts(packing):
         touching = np.flatnonzero(height <= packing.radii * (1.0 + 1e-3))
         particle.append(touching)
         side.append(np.full(len(touching), s))
-    particle, side = np.concatenate(particle), np.concatenate(side)
-    radii = packing.radii[particle]
-    return particle, side, np.pi * radii**2, ISOTHERMAL * radii
+        wall = np.prod(np.delete(packing.size, s // 2))
+        share = packing.radii[touching] ** 2
+        area.append(wall * share / share.sum())  # together the whole wall, so that an imposed flux enters in full
+    particle, side, area = (np.concatenate(parts) for parts in (particle, side, area))
+    return particle, side, area, ISOTHERMAL * packing.radii[particle]
