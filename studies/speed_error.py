@@ -23,7 +23,8 @@ SIZES = {  # in edges of the cube
 }
 VOXELS = (32, 64, 128, 256)
 TARGETS = (1.0, 0.1, 0.01)  # per cent
-TIGHT = 1e-9
+# To compare the FFT schemes: tolerances that bring each within 1e-6 of its own limit, which the tight one shows.
+TO_LIMIT, TIGHT = {"fft": 1e-3, "fft-em": 1e-5}, 1e-9
 TIMEOUT = 3600.0
 
 
@@ -37,8 +38,9 @@ def _cases():
             yield from (methods.case(name, scene=scene, size=size * EDGE) for size in sizes)
         for name in ("fft", "fft-plain", "fft-em"):
             yield from (methods.case(name, scene=scene, voxels=voxels) for voxels in VOXELS)
-    for name in ("fft", "fft-em"):
-        yield from (methods.case(name, scene="third", voxels=voxels, tolerance=TIGHT) for voxels in VOXELS[1::2])
+    for voxels in VOXELS[1::2]:
+        for name, loose in TO_LIMIT.items():
+            yield from (methods.case(name, scene="third", voxels=voxels, tolerance=each) for each in (loose, TIGHT))
     for name, numbers in (("tessellation", (10_000, 100_000)), ("steady", (20_000, 1_000_000))):
         yield from ({"name": name, "particles": number, "seed": 0, "method": "demheat.dem"} for number in numbers)
 
@@ -100,14 +102,21 @@ def _kernel_claims(df):
 
 def _scheme_claims(df):
     for voxels in VOXELS[1::2]:
-        pair = [pick(df, name=name, scene="third", voxels=voxels) for name in ("fft", "fft-em")]
-        if not all(len(rows) == 2 for rows in pair):
+        loose, tight = (
+            [pick(df, name=name, scene="third", voxels=voxels, tolerance=each) for name, each in tolerances.items()]
+            for tolerances in (TO_LIMIT, dict.fromkeys(TO_LIMIT, TIGHT))
+        )
+        if not all(len(rows) == 1 for rows in (*loose, *tight)):
             continue
-        off = max(abs(rows["k_ratio"].iloc[0] / rows["k_ratio"].iloc[1] - 1) for rows in pair)
+        off = max(abs(a["k_ratio"].iloc[0] / b["k_ratio"].iloc[0] - 1) for a, b in zip(loose, tight, strict=True))
         yield f"FFT {voxels}^3: difference of either scheme from its own limit", off, 1e-6
         if voxels == VOXELS[-1]:
-            costs = [rows["cpu_s"].iloc[0] for rows in pair]
-            yield f"FFT {voxels}^3: CPU time of Eyre-Milton over that of the scalar scheme", costs[1] / costs[0], ">= 3"
+            scalar, eyre_milton = (rows["cpu_s"].iloc[0] for rows in loose)
+            yield (
+                f"FFT {voxels}^3: CPU time of Eyre-Milton over that of the scalar scheme",
+                eyre_milton / scalar,
+                ">= 3",
+            )
 
 
 def points(df):
