@@ -14,6 +14,11 @@ from references.fem import lookup
 from references.fem.elements import assemble, shapes
 from references.fem.lookup import Solution
 
+try:
+    mesh.load_gmsh()
+except ImportError as error:
+    pytest.skip(str(error), allow_module_level=True)
+
 # The simple cubic array with a = L/3, k/k_m by Rayleigh's multipole method (McPhedran and McKenzie 1978).
 EXACT = {0.01: 0.786847280, 0.1: 0.812845293, 10: 1.395734838, 100: 1.533386809, 1e6: 1.552615028}
 EXACT_HALF = 3.1445580197  # f = 0.5, contrast 10

@@ -17,6 +17,15 @@ ROCK, METAL = Material(1.0), Material(10.0)
 WALLS = {"y-": 0.0, "y+": 1.0}
 
 
+@pytest.fixture(autouse=True)
+def gmsh_or_skip(request):
+    if "missing" not in request.node.name:
+        try:
+            mesh.load_gmsh()
+        except ImportError as error:
+            pytest.skip(str(error))
+
+
 def scene(*inclusions, size=(1.0, 1.0, 1.0), **load):
     return Scene(size=size, matrix=ROCK, inclusions=inclusions, **(load or {"walls": WALLS}))
 
