@@ -41,6 +41,7 @@ def _parser():
     row.add_argument("name", metavar="NAME")
     row.add_argument("case", metavar="CASE", help="key as in the column 'case', or number in CASES")
     row.add_argument("--json", metavar="FILE", help=argparse.SUPPRESS)
+    row.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
     report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
     report.add_argument("--page", metavar="FILE", type=Path, help="also write the tables marked in this page anew")
@@ -102,8 +103,8 @@ def _show(name, path):
 def _row(arguments):
     # Before any library that reads these is loaded.
     os.environ.update(row_environment())
-    if arguments.json:
-        harness.die_with_parent()
+    if arguments.parent:
+        harness.die_with_parent(arguments.parent)
     study = harness.load(arguments.name)
     row = harness.compute_row(study, harness.find_case(study, arguments.case))
     if arguments.json:

@@ -26,7 +26,7 @@ import traceback
 from pathlib import Path
 
 from studies.cost import measured, triad_gbs
-from studies.provenance import SAME, provenance, row_environment
+from studies.provenance import SAME, provenance
 from studies.store import case_key, read_rows, write_rows
 
 TIMEOUT = 1800.0
@@ -128,7 +128,18 @@ def spawn_row(name, study, case):
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
         with log.open("w") as stream:
             process = subprocess.Popen(
-                [sys.executable, "-m", "studies", "row", name, key, "--json", str(answer)],
+                [
+                    sys.executable,
+                    "-m",
+                    "studies",
+                    "row",
+                    name,
+                    key,
+                    "--json",
+                    str(answer),
+                    "--parent",
+                    str(os.getpid()),
+                ],
                 env=row_environment(),
                 stdout=stream,
                 stderr=stream,
@@ -201,9 +212,17 @@ def write_json(row, path):
     Path(path).write_text(json.dumps(row, default=lambda value: value.item()))
 
 
-def die_with_parent():
-    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind."""
+def die_with_parent(parent):
+    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind.
+
+    Parameters
+    ----------
+    parent : int
+        Process number of the parent; if it is gone already, the process ends here.
+    """
     try:
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1 = PR_SET_PDEATHSIG
     except (OSError, AttributeError):
-        pass
+        return
+    if os.getppid() != parent:
+        os._exit(1)

@@ -210,13 +210,19 @@ def test_a_killed_run_resumes(tiny):
 
 def test_a_row_dies_with_its_run(tiny, tmp_path):
     tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": "_log(f'pid {os.getpid()}'); time.sleep(60)"})
-    words = [sys.executable, "-m", "studies", "row", tiny.name, "2", "--json", str(tmp_path / "row.json")]
-    code = f"import subprocess, time; subprocess.Popen({words!r}); time.sleep(60)"
+    words = [sys.executable, "-m", "studies", "row", tiny.name, "2", "--json", str(tmp_path / "row.json"), "--parent"]
+    code = f"import os, subprocess, time; subprocess.Popen([*{words!r}, str(os.getpid())]); time.sleep(60)"
     parent = subprocess.Popen([sys.executable, "-c", code])
     pid = _wait_for(lambda: _logged_pid(tmp_path / "log"))
     parent.kill()
     parent.wait()
     assert _wait_for(lambda: not _alive(pid))
+
+
+def test_a_row_whose_run_is_gone_computes_nothing(tiny, tmp_path):
+    words = [sys.executable, "-m", "studies", "row", tiny.name, "0", "--json", str(tmp_path / "row.json")]
+    assert subprocess.run([*words, "--parent", str(2**30)]).returncode == 1  # no process has this number
+    assert not (tmp_path / "row.json").exists() and not (tmp_path / "log").exists()
 
 
 def _wait_for(condition, seconds=20):
@@ -286,6 +292,10 @@ def test_csv_is_replaced_whole_or_not_at_all(tmp_path):
     store.write_rows(path, [{"case": "a", "value": 0.1 + 0.2, "note": 'comma, "quote"\nand line'}])
     assert store.read_rows(path)["a"] == {"case": "a", "value": repr(0.1 + 0.2), "note": 'comma, "quote"\nand line'}
     before = path.read_bytes()
+    with path.open("rb") as reader:  # a reader at this moment still sees the old file, whole
+        store.write_rows(path, [{"case": "b"}])
+        assert reader.read() == before and list(store.read_rows(path)) == ["b"]
+    before = path.read_bytes()
     with pytest.raises(ZeroDivisionError), store.replaced(path) as temporary:
         temporary.write_text("half a fi")
         raise ZeroDivisionError
@@ -354,6 +364,9 @@ def test_markdown():
     ]
 
 
+ONE = "LIMIT = 2\nSTEP = 1\ndef run():\n    return STEP\ndef plot():\n    return LIMIT\n"
+
+
 @pytest.fixture
 def tree(tmp_path, monkeypatch):
     """Small source tree of ours to hash; returns (write(file, text), hash())."""
@@ -375,7 +388,7 @@ def tree(tmp_path, monkeypatch):
     write("references/__init__.py", "")
     write("references/fft.py", "from demheat.scene import A")
     write("studies/__init__.py", "")
-    write("studies/one.py", "LIMIT = 2\ndef run():\n    return 1\ndef plot():\n    return LIMIT")
+    write("studies/one.py", ONE)
     return write, lambda method: provenance.code_hash(tmp_path / "studies/one.py", method)
 
 
@@ -387,8 +400,10 @@ def tree(tmp_path, monkeypatch):
         ("demheat/scene.py", "A = 2", "references.fft", True),
         ("demheat/inner.py", "thing = 2", "references.fft", False),
         ("demheat/inner.py", "thing = 2", "demheat.dem", True),
-        ("studies/one.py", "LIMIT = 3\ndef run():\n    return 1\ndef plot():\n    return LIMIT", "", False),
-        ("studies/one.py", "LIMIT = 2\ndef run():\n    return 2\ndef plot():\n    return LIMIT", "", True),
+        ("studies/one.py", ONE.replace("LIMIT = 2", "LIMIT = 3"), "", False),
+        ("studies/one.py", ONE.replace("return STEP", "'Why.'; return STEP"), "", False),
+        ("studies/one.py", ONE.replace("return STEP", "return -STEP"), "", True),
+        ("studies/one.py", ONE.replace("STEP = 1", "STEP = 2"), "", True),
     ],
 )
 def test_code_hash_covers_what_a_row_runs(tree, file, text, method, differs):
