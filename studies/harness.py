@@ -127,23 +127,9 @@ def spawn_row(name, study, case):
     with tempfile.TemporaryDirectory() as folder:
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
         with log.open("w") as stream:
+            words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
             process = subprocess.Popen(
-                [
-                    sys.executable,
-                    "-m",
-                    "studies",
-                    "row",
-                    name,
-                    key,
-                    "--json",
-                    str(answer),
-                    "--parent",
-                    str(os.getpid()),
-                ],
-                env=row_environment(),
-                stdout=stream,
-                stderr=stream,
-                start_new_session=True,
+                [sys.executable, "-m", "studies", *words], stdout=stream, stderr=stream, start_new_session=True
             )
             try:
                 code = process.wait(limit)
