@@ -62,13 +62,16 @@ def solve(
     ------
     ValueError
         If an argument is not as described, before any heavy work.
+    NotImplementedError
+        For temperatures on walls that meet, with the calibrated law.
     RuntimeError
         If the solver does not converge.
 
     Warns
     -----
     UserWarning
-        If interfaces are so near to each other or to a wall that particles do not fit between them.
+        If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
+        holds no particle.
     """
     if law not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
@@ -80,6 +83,9 @@ def solve(
             f"conforming = True with law = {law!r}: twins need not touch; must be False, or law 'laguerre'"
         )
     scene.check_steady()
+    _check_walls(scene, law)
+    if packing is None and isinstance(particles, int | float) and particles < 100 and not allow_few:
+        raise ValueError(f"particles = {particles!r}: fewer than 100; pass allow_few=True if you mean it")
     clock = [time.perf_counter()]
     if packing is None:
         packing = relaxed(particles, size=scene.size, periodic=scene.periodic, seed=seed, allow_few=allow_few)
@@ -97,6 +103,7 @@ def solve(
     factor = 1.0 if law == "laguerre" else calibration(facets, packing, scene)
     facets = facets._replace(area=factor * facets.area)
     phase = scene.phase_at(packing.centers)
+    _warn_of_lost_phases(scene, phase)
     network = connect(facets, packing.centers, packing.size, phase, scene.conductivities, rule=interface)
     clock.append(time.perf_counter())
     solution = solve_steady(network, scene, solver=solver, tolerance=tolerance)
@@ -114,6 +121,26 @@ def _warn_of_gaps(packing):
             f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
             "cross the interfaces there: use more particles where the gaps matter",
             stacklevel=3,
+        )
+
+
+def _warn_of_lost_phases(scene, phase):
+    lost = np.flatnonzero(np.bincount(phase, minlength=len(scene.materials)) == 0)
+    # A phase may rightly be absent where later ones cover it: only the matrix can be.
+    if np.any(lost > 0):
+        warnings.warn(
+            f"no particle lies in inclusions {(lost[lost > 0] - 1).tolist()}: they are thinner than a "
+            "particle and take no part; use more particles",
+            stacklevel=3,
+        )
+
+
+def _check_walls(scene, law):
+    held = {name[0] for name in scene.wall_temperatures}
+    if law == "calibrated" and len(held) > 1:
+        raise NotImplementedError(
+            "law 'calibrated' holds the centres of the particles at a wall at its temperature: where "
+            "two held walls meet, one particle would join them"
         )
 
 

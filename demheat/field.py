@@ -49,7 +49,10 @@ class Field:
         Volume fraction of each phase as the method saw it.
     sampler : callable () -> Samples
     temperature_at : callable (n, 3) float array, m -> (n,) float array, K
+        NaN where the method has no temperature (the DEM in pores, which exchange no heat).
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
+        Both take one (3,) point too, and raise ValueError if the points are anything else, not finite, or outside a
+        box with walls.
     wall_temperature : mapping of str to float, K
         Area-averaged temperature of each loaded wall; empty in a periodic cell.
     wall_heat : mapping of str to float, W
@@ -69,6 +72,10 @@ class Field:
     wall_heat: Mapping[str, float] = field(default_factory=dict)
     stats: Mapping[str, object] = field(default_factory=dict)
     time: float | None = None
+
+    def __post_init__(self):
+        for name in ("temperature_at", "flux_at"):
+            object.__setattr__(self, name, _guarded(getattr(self, name), self.scene))
 
     @cached_property
     def samples(self) -> Samples:
@@ -95,3 +102,24 @@ class Field:
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low))
+
+
+def _guarded(evaluate, scene):
+    """The same function of points behind one check of them."""
+
+    def at(points):
+        points = np.asarray(points, dtype=float)
+        points = points[None] if points.shape == (3,) else points
+        if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
+            raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")
+        size = np.array(scene.size)
+        # 1e-9 of the box: points computed to lie on a wall.
+        outside = np.any((points < -1e-9 * size) | (points > (1 + 1e-9) * size), axis=1)
+        if not scene.periodic and outside.any():
+            first = points[outside][0].tolist()
+            raise ValueError(
+                f"points: {outside.sum()} lie outside the box with walls, 0 to {scene.size}; the first is {first}"
+            )
+        return evaluate(points)
+
+    return at

@@ -109,7 +109,7 @@ def check_solver(solver, tolerance):
     """Raise ValueError unless the solver is known and its tolerance sensible."""
     if solver not in SOLVERS:
         raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
-    if not 1e-15 < tolerance < 1e-2:
+    if not (isinstance(tolerance, int | float) and 1e-15 < tolerance < 1e-2):
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
 
 

@@ -191,7 +191,8 @@ def _python(code, env):
     [
         ({"law": "voronoi"}, "law = 'voronoi'"),
         ({"law": "calibrated", "conforming": True}, "conforming = True"),
-        ({"particles": 99}, "99"),
+        ({"particles": 99}, "particles = 99"),
+        ({"tolerance": "small"}, "tolerance"),
         ({"particles": float("nan")}, "nan"),
         ({"interface": "median"}, "interface = 'median'"),
         ({"solver": "lu"}, "solver = 'lu'"),
@@ -211,6 +212,29 @@ def test_bad_input_before_heavy_work(change, words, monkeypatch):
 def test_gaps_that_particles_do_not_resolve_are_warned_of():
     with pytest.warns(UserWarning, match="do not fit into gaps"):
         demheat.solve(ball(radius=0.4995), particles=1000)
+
+
+@pytest.mark.parametrize("knobs", [{}, {"conforming": False}, {"law": "calibrated"}])
+def test_an_inclusion_without_particles_is_warned_of(knobs):
+    film = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[Layer(1, 0.5, 0.50005, TEN)], walls={"y-": 0.0, "y+": 1.0})
+    with pytest.warns(UserWarning, match="no particle lies in inclusions \\[0\\]"):
+        demheat.solve(film, particles=500, **knobs)
+
+
+def test_calibrated_law_refuses_held_walls_that_meet():
+    scene = Scene(size=(1, 1, 1), matrix=ONE, walls={"x-": 1.0, "y-": 0.0})
+    with pytest.raises(NotImplementedError, match="two held walls meet"):
+        demheat.solve(scene, particles=500, law="calibrated")
+
+
+@pytest.mark.parametrize(
+    "points", [[[0.1, 0.2]] * 3, [0.1] * 6, np.ones((3, 5)), [[0.5, np.nan, 0.5]], [[0.5, 1.5, 0.5]]]
+)
+def test_points_that_are_none(points):
+    field = demheat.solve(ball(), particles=300)
+    for evaluate in (field.temperature_at, field.flux_at):
+        with pytest.raises(ValueError, match="points"):
+            evaluate(points)
 
 
 def test_packing_of_another_box_is_refused():
