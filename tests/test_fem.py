@@ -360,7 +360,7 @@ def test_points_outside_the_box_are_refused():
     for field, points in ((walls, [nowhere, *outside]), (cell, [nowhere])):
         for point in points:
             for at in (field.temperature_at, field.flux_at):
-                with pytest.raises(ValueError, match="outside the box"):
+                with pytest.raises(ValueError, match="finite coordinates|outside the box"):
                     at([(0.5, 0.5, 0.5), point])
 
 
