@@ -145,6 +145,8 @@ def _check_walls(scene, law):
 
 
 def _check_packing(packing, scene):
+    if packing.domain != "box":
+        raise NotImplementedError(f"a packing in a {packing.domain}: scenes are boxes")
     if not np.allclose(packing.size, scene.size, rtol=1e-9) or set(packing.periodic.tolist()) != {scene.periodic}:
         kind = "periodic" if scene.periodic else "walled"
         raise ValueError(

@@ -8,10 +8,12 @@ import numpy as np
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21
+# Axes across which each domain is round: it is inscribed in its box.
+ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z": (0, 1), "sphere": (0, 1, 2)}
 
 
 class Packing(NamedTuple):
-    """Spheres in the box [0, size], stored so that neighbours in space are near in memory.
+    """Spheres in a domain inscribed in the box [0, size], stored so that neighbours in space are near in memory.
 
     Attributes
     ----------
@@ -23,6 +25,8 @@ class Packing(NamedTuple):
         Axis by axis: True for a periodic axis, False for a hard wall at both ends.
     provenance : dict
         How it was made (algorithm, seed, number, phi, ...) and what was reached (iterations, mean_overlap, ...).
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+        Shape of the domain; a cylinder is named by its axis. Axes across which it is round are not periodic.
     """
 
     centers: np.ndarray
@@ -30,6 +34,7 @@ class Packing(NamedTuple):
     size: np.ndarray
     periodic: np.ndarray
     provenance: dict
+    domain: str = "box"
 
     @property
     def number(self) -> int:
@@ -37,16 +42,22 @@ class Packing(NamedTuple):
         return len(self.radii)
 
     @property
+    def volume(self) -> float:
+        """Volume of the domain, m^3."""
+        share = {0: 1.0, 2: np.pi / 4, 3: np.pi / 6}[len(ROUND_AXES[self.domain])]
+        return float(share * np.prod(self.size))
+
+    @property
     def phi(self) -> float:
-        """Sum of the sphere volumes over the volume of the box (overlaps counted twice)."""
-        return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / np.prod(self.size))
+        """Sum of the sphere volumes over the volume of the domain (overlaps counted twice)."""
+        return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / self.volume)
 
     def scaled(self, factor) -> Packing:
         """The same packing with every length multiplied by `factor`."""
         return self._replace(centers=self.centers * factor, radii=self.radii * factor, size=self.size * factor)
 
 
-def make_packing(centers, radii, size, periodic, provenance) -> Packing:
+def make_packing(centers, radii, size, periodic, provenance, *, domain="box") -> Packing:
     """Check, cast and sort the arrays of a packing.
 
     Parameters
@@ -57,6 +68,8 @@ def make_packing(centers, radii, size, periodic, provenance) -> Packing:
     size : (3,) array_like, m
     periodic : bool or (3,) array_like of bool
     provenance : dict
+    domain : str
+        As in `Packing`; centres must lie inside it.
 
     Raises
     ------
@@ -64,6 +77,7 @@ def make_packing(centers, radii, size, periodic, provenance) -> Packing:
         If a shape, a sign or a value is not as described.
     """
     size, periodic = check_box(size, periodic)
+    check_domain(domain, size, periodic)
     centers = np.array(centers, dtype=float)
     radii = np.array(radii, dtype=float)
     if centers.ndim != 2 or centers.shape[1] != 3 or len(centers) == 0 or not np.all(np.isfinite(centers)):
@@ -76,9 +90,14 @@ def make_packing(centers, radii, size, periodic, provenance) -> Packing:
         raise ValueError(
             f"centers[{which}] = {centers[which].tolist()}: lies outside the walls of the box, 0 to {size}"
         )
+    axes = list(ROUND_AXES[domain])
+    far = np.linalg.norm(centers[:, axes] - size[axes] / 2, axis=1) > (size[axes[0]] / 2 if axes else 0.0)
+    if far.any():
+        which = int(np.argmax(far))
+        raise ValueError(f"centers[{which}] = {centers[which].tolist()}: lies outside the domain {domain!r}")
     centers = wrap(centers, size, periodic)
     order = morton_order(centers, size)
-    return Packing(centers[order], radii[order], size, periodic, dict(provenance))
+    return Packing(centers[order], radii[order], size, periodic, dict(provenance), domain)
 
 
 def check_box(size, periodic):
@@ -90,6 +109,18 @@ def check_box(size, periodic):
     if flags.dtype != bool or flags.shape not in ((), (3,)):
         raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")
     return sides, np.broadcast_to(flags, 3).copy()
+
+
+def check_domain(domain, size, periodic):
+    """Raise ValueError unless the domain is known, and its box square and without periods across the round axes."""
+    if domain not in ROUND_AXES:
+        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    axes = list(ROUND_AXES[domain])
+    if axes and (np.ptp(size[axes]) > 0 or np.any(periodic[axes])):
+        raise ValueError(
+            f"domain = {domain!r} with size {size.tolist()} and periodic {periodic.tolist()}: sides across its round "
+            f"axes {axes} must be equal and not periodic"
+        )
 
 
 def wrap(centers, size, periodic):

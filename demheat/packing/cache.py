@@ -18,7 +18,7 @@ from demheat.packing.radii import Gaussian
 from demheat.packing.relax import relax
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
-FORMAT = 1
+FORMAT = 2
 MAKERS = tuple(
     f"demheat.packing.{name}" for name in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")
 )
@@ -114,7 +114,7 @@ def _load(path, text):
             if str(stored["key"]) != text:
                 return None
             arrays = (stored[name] for name in ("centers", "radii", "size", "periodic"))
-            return Packing(*arrays, json.loads(str(stored["provenance"])))
+            return Packing(*arrays, json.loads(str(stored["provenance"])), str(stored["domain"]))
     except (FileNotFoundError, NotADirectoryError):
         return None
     except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:

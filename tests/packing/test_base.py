@@ -43,9 +43,31 @@ def test_phi_and_scaling():
     assert_allclose(small.centers, 0.05, rtol=1e-15)
 
 
+def test_domains():
+    """Volumes by school formulas; a centre in a corner of the box is outside a round domain."""
+    center, corner = [[0.5, 0.5, 1.0]], [[0.05, 0.05, 1.0]]
+    for domain, size, volume in (
+        ("box", (1, 1, 2), 2.0),
+        ("cylinder-z", (1, 1, 2), np.pi * 0.25 * 2),
+        ("sphere", (2, 2, 2), 4 / 3 * np.pi),
+    ):
+        packing = make_packing(center, [0.1], size, False, {}, domain=domain)
+        assert_allclose(packing.volume, volume, rtol=1e-15)  # rounding
+        assert_allclose(packing.phi, 4 / 3 * np.pi * 1e-3 / volume, rtol=1e-14)  # rounding
+        if domain != "box":
+            with pytest.raises(ValueError, match="outside the domain"):
+                make_packing(corner, [0.1], size, False, {}, domain=domain)
+    make_packing(corner, [0.1], (1, 1, 2), False, {})
+    make_packing([[1.0, 0.05, 0.05]], [0.1], (2, 1, 1), (True, False, False), {}, domain="box")
+    make_packing([[0.1, 0.5, 0.5]], [0.1], (2, 1, 1), (True, False, False), {}, domain="cylinder-x")
+
+
 @pytest.mark.parametrize(
     "change, name",
     [
+        ({"domain": "cone"}, "domain"),
+        ({"domain": "sphere"}, "must be equal"),
+        ({"domain": "cylinder-z", "size": (1, 1, 3), "periodic": True}, "not periodic"),
         ({"centers": np.zeros((50, 2))}, "centers"),
         ({"centers": np.full((50, 3), np.nan)}, "centers"),
         ({"centers": np.zeros((0, 3)), "radii": np.zeros(0)}, "centers"),
