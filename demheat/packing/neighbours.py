@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
-from demheat.packing.base import Packing, wrap
+from demheat.packing.base import ROUND_AXES, Packing, wrap
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0
@@ -17,6 +20,31 @@ PER_CELL = 4.0
 FACTOR, MAX_LEVELS = 4.0, 12
 # First guess of a gap that holds enough contacts: 7.5 of them were found within 0.07 at phi = 0.64.
 FIRST_GAP = 0.12
+
+
+class Coordination(NamedTuple):
+    """How well the particles of a contact network are connected.
+
+    Attributes
+    ----------
+    gap : float
+        Detection gap, as `contacts` returns it.
+    mean : float
+        Mean number of links per particle, all particles counted (walls do not count as links).
+    least : int
+        Smallest number of links.
+    under_2, under_4 : float
+        Fraction of the particles with fewer than 2 and fewer than 4 links.
+    islands : int
+        Particles outside the largest connected cluster.
+    """
+
+    gap: float
+    mean: float
+    least: int
+    under_2: float
+    under_4: float
+    islands: int
 
 
 def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
@@ -48,7 +76,7 @@ def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
     return indptr, indices
 
 
-def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
+def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additive=False):
     """Contact network: pairs with |x_i - x_j| <= (1 + gap)(r_i + r_j), gap chosen for a mean coordination number.
 
     Parameters
@@ -59,8 +87,10 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
     gap : float, optional
         Use this gap, as a part of r_i + r_j, instead; `coordination` is then ignored.
     margin : float
-        Bulk particles are those at least this many mean radii away from every wall; 0 counts all particles, as the
-        papers do. A periodic packing is bulk throughout.
+        Bulk particles are those at least this many mean radii away from every wall, flat or round; 0 counts all
+        particles, as the papers do. A periodic packing is bulk throughout.
+    additive : bool
+        The gap is a part of the mean diameter, the same length for all pairs: |x_i - x_j| <= r_i + r_j + 2 gap <r>.
 
     Returns
     -------
@@ -68,7 +98,7 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
     indices : (nnz,) uint32 array
         Each pair twice, rows ascending.
     gap : float
-        As a part of r_i + r_j; negative if only overlapping pairs are needed.
+        Negative if only overlapping pairs are needed.
 
     Raises
     ------
@@ -78,7 +108,7 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
     if gap is not None:
         if not (math.isfinite(gap) and gap > -1):
             raise ValueError(f"gap = {gap!r}: must be a finite part of r_i + r_j > -1")
-        return *neighbours(packing, scale=1.0 + gap), float(gap)
+        return *_closer(packing, 1.0 + gap, additive)[:2], float(gap)
     bulk = _bulk(packing, margin)
     if not (math.isfinite(coordination) and 0 < coordination <= packing.number - 1):
         raise ValueError(f"coordination = {coordination!r}: must be > 0 and <= {packing.number - 1}, all others")
@@ -86,8 +116,7 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
     wanted = max(1, round(coordination * np.count_nonzero(bulk)))
     scale = 1.0 + FIRST_GAP
     while True:
-        indptr, indices = neighbours(packing, scale=scale)
-        ratio = _ratios(packing, indptr, indices)
+        indptr, indices, ratio = _closer(packing, scale, additive)
         counted = ratio[np.repeat(bulk, np.diff(indptr))]
         if len(counted) > wanted:
             break
@@ -100,12 +129,58 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0):
     return new, indices[kept], float(limit - 1.0)
 
 
+def coordination(indptr, indices, gap=math.nan) -> Coordination:
+    """How well a contact network connects its particles; takes what `contacts` returns.
+
+    Parameters
+    ----------
+    indptr : (n + 1,) int array
+    indices : (nnz,) int array
+        Each pair twice.
+    gap : float
+
+    Returns
+    -------
+    Coordination
+    """
+    links = np.diff(indptr)
+    _, cluster = csgraph.connected_components(as_graph(indptr, indices), directed=False)
+    islands = len(links) - int(np.bincount(cluster).max())
+    under_2, under_4 = (float(np.mean(links < few)) for few in (2, 4))
+    return Coordination(float(gap), float(links.mean()), int(links.min()), under_2, under_4, islands)
+
+
+def as_graph(indptr, indices):
+    """The network as a SciPy matrix of ones, for its graph routines."""
+    n = len(indptr) - 1
+    return sparse.csr_matrix((np.ones(len(indices), np.int8), indices.astype(np.int32), indptr), shape=(n, n))
+
+
+def _closer(packing, scale, additive):
+    """Rows of the pairs whose measured distance (1 at contact) is at most `scale`, and these distances."""
+    if not additive:
+        indptr, indices = neighbours(packing, scale=scale)
+        return indptr, indices, _ratios(packing, indptr, indices)
+    diameter = 2.0 * float(np.mean(packing.radii))
+    # A negative skin would be refused: an overlap is looked for among all overlapping pairs.
+    indptr, indices = neighbours(packing, scale=1.0, skin=max(0.0, scale - 1.0) * diameter)
+    sums = np.repeat(packing.radii, np.diff(indptr)) + packing.radii[indices]
+    measured = 1.0 + (_ratios(packing, indptr, indices) - 1.0) * sums / diameter
+    kept = measured <= scale
+    return np.concatenate(([0], np.cumsum(kept)))[indptr], indices[kept], measured[kept]
+
+
 def _bulk(packing, margin):
-    """Which particles lie at least `margin` mean radii away from every wall."""
+    """Which particles lie at least `margin` mean radii away from every wall, flat or round."""
     if not (math.isfinite(margin) and margin >= 0):
         raise ValueError(f"margin = {margin!r}: must be a finite number of mean radii >= 0")
-    depth = np.where(packing.periodic, np.inf, np.minimum(packing.centers, packing.size - packing.centers))
-    bulk = np.all(depth >= margin * np.mean(packing.radii), axis=1)
+    axes = list(ROUND_AXES[packing.domain])
+    depth = np.where(packing.periodic, np.inf, np.minimum(packing.centers, packing.size - packing.centers)).min(axis=1)
+    if axes:
+        # The box's sides touch the round wall: it is the nearer one everywhere.
+        off_axis = np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
+        depth = np.minimum(depth, packing.size[axes[0]] / 2 - off_axis)
+    bulk = depth >= margin * np.mean(packing.radii)
     if not bulk.any():
         raise ValueError(f"margin = {margin!r}: no particle is that many mean radii away from all walls")
     return bulk

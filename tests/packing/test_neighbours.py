@@ -4,7 +4,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.neighbours import contacts, coordination, neighbours
 from demheat.packing.relax import relax
 
 
@@ -135,3 +135,45 @@ def test_bad_input(relaxed):
     ):
         with pytest.raises(ValueError, match="scale|skin|coordination|gap|margin"):
             call()
+
+
+def test_coordination_reports_what_brute_force_counts(relaxed):
+    found = coordination(*contacts(relaxed, coordination=5.0))
+    ratio = distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii)
+    near = ratio <= 1 + found.gap
+    links = near.sum(axis=1)
+    assert found.mean == links.mean() and found.least == links.min()
+    assert found.under_2 == np.mean(links < 2) and found.under_4 == np.mean(links < 4)
+    # The largest cluster by spreading from a well-linked particle.
+    reached = np.zeros(2000, dtype=bool)
+    reached[np.argmax(links)] = True
+    while (grown := reached | near[reached].any(axis=0)).sum() > reached.sum():
+        reached = grown
+    assert found.islands == 2000 - reached.sum() > 0
+
+
+@pytest.mark.parametrize("wanted", [3.0, 7.5])
+def test_additive_gap_is_one_length_for_all_pairs(relaxed, wanted):
+    indptr, indices, gap = contacts(relaxed, coordination=wanted, additive=True)
+    surface = distances(relaxed) - relaxed.radii[:, None] - relaxed.radii
+    expected = rows(surface <= gap * 2 * relaxed.radii.mean())
+    assert_array_equal(indptr, expected[0])
+    assert_array_equal(indices, expected[1])
+    # One pair more or less changes the mean by 2/2000.
+    assert_allclose(len(indices) / 2000, wanted, atol=2 / 2000)
+    again = contacts(relaxed, gap=gap, additive=True)
+    assert_array_equal(again[1], indices)
+
+
+def test_bulk_of_a_cylinder_is_away_from_its_round_wall():
+    packing = relax(4000, seed=2)
+    inside = np.linalg.norm(packing.centers[:, [0, 2]] - 0.5, axis=1) < 0.5
+    drum = make_packing(
+        packing.centers[inside], packing.radii[inside], (1, 1, 1), (False, True, False), {}, domain="cylinder-y"
+    )
+    indptr, _, _ = contacts(drum, coordination=7.5, margin=4.0)
+    off_axis = np.linalg.norm(drum.centers[:, [0, 2]] - 0.5, axis=1)
+    bulk = off_axis <= 0.5 - 4 * drum.radii.mean()
+    assert 500 < bulk.sum() < 2500
+    # One pair more or less.
+    assert_allclose(np.diff(indptr)[bulk].mean(), 7.5, atol=2 / bulk.sum())
