@@ -6,15 +6,16 @@ import warnings
 import numpy as np
 
 from demheat.evaluate import field_of
-from demheat.network.calibrated import contact_facets
+from demheat.network.calibrated import POLICIES, WALL_RULES, contact_facets
 from demheat.network.interface import check_rule, connect
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
-from demheat.scene import Material, Scene
+from demheat.scene import Flux, Material, Scene
 from demheat.steady import check_solver, solve_steady
 
 LAWS = ("laguerre", "calibrated")
+LOADINGS = ("isothermal", "flux")
 
 
 def solve(
@@ -25,6 +26,8 @@ def solve(
     law="laguerre",
     conforming=None,
     interface="harmonic",
+    poor="nearest",
+    wall="center",
     packing=None,
     solver="auto",
     tolerance=1e-8,
@@ -46,6 +49,12 @@ def solve(
         Mirror particles across every interface so that facets lie on it; the default for "laguerre".
     interface : {"harmonic", "arithmetic"}
         Rule for links between materials (Haddad et al. 2021, eq. 24).
+    poor : {"nearest", "keep", "drop"}
+        Law "calibrated" only: what happens to particles with fewer than 2 links; see
+        `demheat.network.calibrated.contact_facets`.
+    wall : {"center", "surface"}
+        Law "calibrated" only: wall temperatures act in the centres of the particles that touch the wall, as in the
+        papers, or at the wall.
     packing : Packing, optional
         Used instead of a relaxed one; must have the scene's box and periodicity.
     solver : {"auto", "cg", "amg"}
@@ -63,7 +72,7 @@ def solve(
     ValueError
         If an argument is not as described, before any heavy work.
     NotImplementedError
-        For temperatures on walls that meet, with the calibrated law.
+        For temperatures on walls that meet, with the calibrated law and wall "center".
     RuntimeError
         If the solver does not converge.
 
@@ -77,13 +86,14 @@ def solve(
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
     check_rule(interface)
     check_solver(solver, tolerance)
+    _check_contacts(law, poor, wall)
     conforming = law == "laguerre" if conforming is None else bool(conforming)
     if conforming and law != "laguerre":
         raise ValueError(
             f"conforming = True with law = {law!r}: twins need not touch; must be False, or law 'laguerre'"
         )
     scene.check_steady()
-    _check_walls(scene, law)
+    _check_walls(scene, law, wall)
     if packing is None and isinstance(particles, int | float) and particles < 100 and not allow_few:
         raise ValueError(f"particles = {particles!r}: fewer than 100; pass allow_few=True if you mean it")
     clock = [time.perf_counter()]
@@ -96,12 +106,13 @@ def solve(
         _warn_of_gaps(packing)
     if law == "laguerre":
         facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
-        packing, facets = without_hidden(packing, facets)
     else:
-        facets = contact_facets(packing)
+        facets = contact_facets(packing, poor=poor, wall=wall)
+    packing, facets = without_hidden(packing, facets)
     clock.append(time.perf_counter())
     factor = 1.0 if law == "laguerre" else calibration(facets, packing, scene)
-    facets = facets._replace(area=factor * facets.area)
+    # Wall areas are those of the walls: what scales is the conductance of their links.
+    facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
     phase = scene.phase_at(packing.centers)
     _warn_of_lost_phases(scene, phase)
     network = connect(facets, packing.centers, packing.size, phase, scene.conductivities, rule=interface)
@@ -135,12 +146,22 @@ def _warn_of_lost_phases(scene, phase):
         )
 
 
-def _check_walls(scene, law):
+def _check_contacts(law, poor, wall):
+    for name, value, valid in (("poor", poor, POLICIES), ("wall", wall, WALL_RULES)):
+        if value not in valid:
+            raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
+    if law != "calibrated" and (poor, wall) != ("nearest", "center"):
+        raise ValueError(
+            f"poor = {poor!r}, wall = {wall!r} with law = {law!r}: only law 'calibrated' has these choices"
+        )
+
+
+def _check_walls(scene, law, wall):
     held = {name[0] for name in scene.wall_temperatures}
-    if law == "calibrated" and len(held) > 1:
+    if law == "calibrated" and wall == "center" and len(held) > 1:
         raise NotImplementedError(
-            "law 'calibrated' holds the centres of the particles at a wall at its temperature: where "
-            "two held walls meet, one particle would join them"
+            "law 'calibrated' with wall 'center' holds the centres of the particles at a wall at its temperature: "
+            "where two held walls meet, one particle would join them; use wall 'surface'"
         )
 
 
@@ -155,7 +176,7 @@ def _check_packing(packing, scene):
         )
 
 
-def calibration(facets, packing, scene):
+def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", tolerance=1e-8):
     """C_t of a contact network: conductivity over that of the homogeneous lattice with C_t = 1, under a like load.
 
     Source: Haddad et al. 2021, eqs. 7-9.
@@ -165,19 +186,45 @@ def calibration(facets, packing, scene):
     facets : Facets
         With S = pi R_m^2.
     packing : Packing
+        In any domain; axes without a load may be periodic or not.
     scene : Scene
         Its box and load; a wall load calibrates between the two walls along its axis.
+    loading : {"isothermal", "flux"}
+        Between walls: two temperatures, or as in the paper a temperature below and a flux that enters above, where the
+        temperature is then read.
+    solver, tolerance
+        As in `demheat.steady.solve_steady`.
 
     Returns
     -------
     float
+
+    Raises
+    ------
+    ValueError
+        If `loading` is none of these, or no particle conducts between the two walls.
     """
+    if loading not in LOADINGS:
+        raise ValueError(f"loading = {loading!r}: must be one of {', '.join(LOADINGS)}")
     walls = None
     if not scene.periodic:
         letter = next(iter(scene.walls))[0]
-        walls = {letter + "-": 0.0, letter + "+": 1.0}
+        walls = {letter + "-": 0.0, letter + "+": 1.0 if loading == "isothermal" else Flux(1.0)}
     unit = Scene(size=scene.size, matrix=Material(1.0), gradient=scene.gradient, walls=walls)
     phase = np.zeros(packing.number, dtype=np.int32)
     network = connect(facets, packing.centers, packing.size, phase, unit.conductivities)
-    solution = solve_steady(network, unit)
-    return 1.0 / field_of(unit, packing, facets, network, solution, law="calibrated", stats={}).conductivity
+    solution = solve_steady(network, unit, solver=solver, tolerance=tolerance)
+    if scene.periodic:
+        return 1.0 / field_of(unit, packing, facets, network, solution, law="calibrated", stats={}).conductivity
+    return 1.0 / _between_walls(network, solution, "xyz".index(letter))
+
+
+def _between_walls(network, solution, axis):
+    """Conductivity between the two walls across an axis: heat times length over area and temperature difference."""
+    low, high = (network.wall_side == 2 * axis + end for end in (0, 1))
+    area, heat = network.wall_area[high].sum(), solution.wall_heat[high].sum()
+    if not (low.any() and abs(heat) > 0):
+        raise ValueError(f"packing: no heat passes between its walls along {'xyz'[axis]}; no particle joins them")
+    drop = np.average(solution.wall_temperature[high], weights=network.wall_area[high])
+    drop -= np.average(solution.wall_temperature[low], weights=network.wall_area[low])
+    return heat * network.size[axis] / (area * drop)

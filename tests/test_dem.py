@@ -9,7 +9,11 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere
+from demheat.dem import LOADINGS, calibration
+from demheat.network.calibrated import contact_facets
+from demheat.network.laguerre import without_hidden
 from demheat.packing.cache import relaxed
+from demheat.packing.neighbours import contacts
 from references import exact
 
 ONE, TEN = Material(1.0), Material(10.0)
@@ -80,6 +84,75 @@ def test_calibrated_and_laguerre_agree_where_homogeneous(law):
     # C_t comes from a solve at the default tolerance, 1e-8 on each particle's balance: measured 9e-6 in the sum.
     assert_allclose(field.conductivity, 10.0, rtol=1e-4)
     assert field.stats["calibration"] == 1.0 or 0.5 < field.stats["calibration"] < 0.9
+
+
+@pytest.mark.parametrize("knobs", [{"poor": "keep"}, {"poor": "drop"}, {"wall": "surface"}])
+def test_calibrated_law_is_exact_where_homogeneous_with_every_choice(knobs):
+    scene = Scene(size=(1, 1, 1), matrix=TEN, walls={"z-": 0.0, "z+": 1.0})
+    field = demheat.solve(scene, particles=3000, law="calibrated", **knobs)
+    # All links, those to walls too, scale with C_t; both solves have a tolerance of 1e-8 on each particle's balance.
+    assert_allclose(field.conductivity, 10.0, rtol=1e-4)
+    own = field.samples
+    assert_allclose(own.volumes.sum(), 1.0, rtol=1e-12)
+    if knobs.get("poor") == "drop":
+        assert 2900 < len(own.volumes) < 3000
+        assert np.isfinite(own.temperature).all()
+
+
+@pytest.fixture(scope="module")
+def between_walls():
+    """A periodic packing and one with walls along y whose bulk is in the same state: a wall takes 0.27 mean radii."""
+    return relaxed(10_000, seed=0), relaxed(10_000, periodic=(True, False, True), phi=0.632, seed=0)
+
+
+def homogeneous(packing):
+    load = {"gradient": (0, 1, 0)} if packing.periodic.all() else {"walls": {"y-": 0.0, "y+": 1.0}}
+    return Scene(size=tuple(packing.size), matrix=ONE, **load)
+
+
+def test_calibration_with_links_at_the_wall_is_that_of_the_periodic_cell(between_walls):
+    found = {}
+    for wall in ("center", "surface"):
+        found[wall] = [calibration(contact_facets(p, wall=wall), p, homogeneous(p)) for p in between_walls]
+    periodic, surface = found["surface"]
+    # The two packings differ by their sampling: 0.3 % between seeds at 1e4 particles. Centres held at the walls'
+    # temperatures take two radii off the length, 5 %.
+    assert_allclose(surface, periodic, rtol=0.01)
+    assert found["center"][1] < 0.97 * periodic
+
+
+def test_calibration_by_a_flux_is_that_by_temperatures_up_to_the_ends(between_walls):
+    facets, scene = contact_facets(between_walls[1], wall="surface"), homogeneous(between_walls[1])
+    held, heated = (calibration(facets, between_walls[1], scene, loading=loading) for loading in LOADINGS)
+    # Two loads of one resistor differ by how they share the heat among the particles at the wall.
+    assert held != heated
+    assert_allclose(held, heated, rtol=0.03)
+    # Of all ways to spread a heat flow over the wall the isothermal one takes the least power (Thomson's principle).
+    assert heated > held
+
+
+def test_kept_particles_carry_no_steady_heat(between_walls):
+    """Dead ends and islands conduct nothing between periodic images: without them C_t is the same."""
+    packing = between_walls[0]
+    kept, dropped, joined = (contact_facets(packing, poor=poor) for poor in ("keep", "drop", "nearest"))
+    values = [calibration(kept, packing, homogeneous(packing))]
+    rest, facets = without_hidden(packing, dropped)
+    values.append(calibration(facets, rest, homogeneous(packing)))
+    # Solver tolerance, 1e-8 on each particle's balance.
+    assert_allclose(*values, rtol=1e-6)
+    assert calibration(joined, packing, homogeneous(packing)) < values[0] * (1 - 1e-4)
+
+
+def test_bad_loading(between_walls):
+    with pytest.raises(ValueError, match="loading = 'radiation'"):
+        calibration(None, between_walls[0], homogeneous(between_walls[0]), loading="radiation")
+
+
+def test_walls_that_nobody_joins(between_walls):
+    packing = between_walls[1]
+    apart = contact_facets(packing, links=contacts(packing, gap=-0.5), poor="keep")
+    with pytest.raises(ValueError, match="no heat passes"):
+        calibration(apart, packing, homogeneous(packing))
 
 
 def test_calibrated_law_overestimates_with_the_arithmetic_mean():
@@ -196,6 +269,10 @@ def _python(code, env):
         ({"particles": float("nan")}, "nan"),
         ({"interface": "median"}, "interface = 'median'"),
         ({"solver": "lu"}, "solver = 'lu'"),
+        ({"poor": "drop"}, "poor = 'drop'"),
+        ({"wall": "surface"}, "wall = 'surface'"),
+        ({"law": "calibrated", "poor": "join"}, "poor = 'join'"),
+        ({"law": "calibrated", "wall": "face"}, "wall = 'face'"),
         ({"tolerance": -1.0}, "tolerance"),
         ({"seed": -1}, "seed"),
     ],
@@ -225,6 +302,10 @@ def test_calibrated_law_refuses_held_walls_that_meet():
     scene = Scene(size=(1, 1, 1), matrix=ONE, walls={"x-": 1.0, "y-": 0.0})
     with pytest.raises(NotImplementedError, match="two held walls meet"):
         demheat.solve(scene, particles=500, law="calibrated")
+    # Walls met at their surface have no such trouble: what enters at one leaves at the other.
+    field = demheat.solve(scene, particles=3000, law="calibrated", wall="surface")
+    assert field.wall_heat["x-"] > 0
+    assert_allclose(field.wall_heat["x-"], -field.wall_heat["y-"], rtol=1e-5)  # solver tolerance
 
 
 @pytest.mark.parametrize(

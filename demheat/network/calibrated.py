@@ -4,86 +4,241 @@ Source: Haddad et al. 2021, eqs. 2-3 and 7-9.
 """
 
 import numpy as np
+from scipy.sparse import csgraph
 from scipy.spatial import cKDTree
 
 from demheat.network.base import Facets, row_numbers
-from demheat.packing.neighbours import contacts
+from demheat.packing.base import ROUND_AXES
+from demheat.packing.neighbours import as_graph, contacts
 
+MEANS = {
+    "arithmetic": lambda a, b: 0.5 * (a + b),
+    "harmonic": lambda a, b: 2.0 * a * b / (a + b),
+    "geometric": lambda a, b: np.sqrt(a * b),
+}
+POLICIES = ("nearest", "keep", "drop")
+WALL_RULES = ("center", "surface")
 # The papers impose wall temperatures at the centres of the particles that touch the wall. A wall link this short, in
 # radii, holds the centre at the wall's temperature to 1e-4 of the drop over one link.
 ISOTHERMAL = 1e-4
+# A particle overlapping or touching a wall within this part of its radius is always in contact with it.
+TOUCH = 1e-3
+# Packings are layered near a wall; beyond this many mean radii links are those of the bulk (their number was found 4 %
+# low at 4 mean radii, and within its scatter at 6).
+LAYER = 6.0
 
 
-def contact_facets(packing, *, coordination=7.5, least_links=2):
+def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wall="center"):
     """Contact network of a packing with S = pi R_m^2, R_m the mean of two radii (C_t = 1).
 
     Parameters
     ----------
     packing : Packing
-    coordination : float
-        Mean number of links; it sets the detection gap, since hard spheres touch six others on average at most.
-    least_links : int
-        A particle with fewer links is joined to its nearest neighbours (by surface distance) until it has as many;
-        0 leaves particles that touch nobody as islands.
+    links : (indptr, indices, gap), optional
+        As `demheat.packing.neighbours.contacts` returns them, which is the default with 7.5 contacts in the bulk: hard
+        spheres touch six others on average at most, so a gap is needed. A wall is met within the same gap.
+    mean : {"arithmetic", "harmonic", "geometric"}
+        R_m of the two radii; the papers' is the arithmetic one.
+    poor : {"nearest", "keep", "drop"}
+        Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
+        that touch nobody become islands without heat); or take out, again and again until none is left, particles with
+        fewer than 2 links (flat walls count as one) and all clusters but the largest. What is taken out has neither
+        links nor volume here (see `demheat.network.laguerre.without_hidden`).
+    wall : {"center", "surface"}
+        Where a wall temperature acts: in the centres of the particles that touch the wall, a radius inside the body, as
+        in the papers; or at the wall, see `surface_distances`.
 
     Returns
     -------
     Facets
-        Volumes are V_p over the packing fraction, so that they fill the box. Facets divide a link by the radii.
+        Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
+        areas fill the wall, shared out as the squares of the radii. Round walls have no facets: they are insulated.
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these, or with `wall = "surface"` for a packing without bulk or without wall contacts.
     """
-    indptr, indices, _ = contacts(packing, coordination=coordination)
-    rows, columns = _joined(packing, row_numbers(indptr), indices.astype(np.int64), least_links)
-    offsets, image = _nearest_image(packing, rows, columns)
-    here, there = packing.radii[rows], packing.radii[columns]
-    length = np.linalg.norm(offsets, axis=1)
-    pointers = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=packing.number))])
-    volumes = packing.radii**3 * (np.prod(packing.size) / np.sum(packing.radii**3))
-    area = np.pi * (0.5 * (here + there)) ** 2
-    walls = _wall_contacts(packing)
-    return Facets(pointers, columns.astype(np.uint32), image, area, length * here / (here + there), *walls, volumes)
+    for name, value, valid in (("mean", mean, MEANS), ("poor", poor, POLICIES), ("wall", wall, WALL_RULES)):
+        if value not in valid:
+            raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
+    indptr, indices, gap = contacts(packing) if links is None else links
+    walls = _wall_contacts(packing, max(gap, TOUCH))
+    alive = np.ones(packing.number, dtype=bool)
+    if poor == "nearest":
+        indptr, indices = _joined(packing, indptr, indices, 2)
+    elif poor == "drop":
+        alive = _well_linked(indptr, indices, walls[0])
+        indptr, indices = _without(indptr, indices, ~alive)
+        walls = [column[alive[walls[0]]] for column in walls]
+    particle, side, height = walls
+    length, image = _lengths(packing, indptr, indices)
+    here, there = np.repeat(packing.radii, np.diff(indptr)), packing.radii[indices]
+    area = np.pi * MEANS[mean](here, there) ** 2
+    length *= here / (here + there)
+    volumes = np.where(alive, packing.radii, 0.0) ** 3
+    volumes *= packing.volume / volumes.sum()
+    shares = _wall_shares(packing, particle, side)
+    facets = Facets(indptr, indices, image, area, length, particle, side, shares, height, volumes)
+    if wall == "surface":
+        return facets._replace(wall_distance=surface_distances(facets, packing))
+    return facets._replace(wall_distance=ISOTHERMAL * packing.radii[particle])
 
 
-def _joined(packing, rows, columns, least):
-    """Rows and columns with links added, both ways, from each particle with fewer than `least` to its nearest."""
-    degree = np.bincount(rows, minlength=packing.number)
-    poor = np.flatnonzero(degree < least)
+def surface_distances(facets, packing):
+    """Effective distances between wall and centres with which imposed temperatures act at the wall.
+
+    A wall link is H = k S_w a / h, with h the distance from the centre to the wall and S_w its share of the wall. The
+    factor a of each axis makes a linear field right on average: under T = x the network's mean flux along x over a
+    column from wall to wall, (sum over links of H b_x^2 + sum over wall links of H h^2) / volume with H in units of k
+    and b the branch vector, equals its value in the bulk, `LAYER` mean radii away from the walls. What links lack in
+    the layer at the wall, where there are fewer of them, the wall links thus make up for. All links scale with C_t.
+
+    Parameters
+    ----------
+    facets : Facets
+        With wall distances h.
+    packing : Packing
+
+    Returns
+    -------
+    (w,) float array, m
+        h / a.
+
+    Raises
+    ------
+    ValueError
+        If no bulk is left between the walls, no particle touches a wall, or the layer there lacks nothing.
+    """
+    distance = facets.wall_distance.copy()
+    for axis in _flat_walls(packing):
+        here = facets.wall_side // 2 == axis
+        distance[here] /= _wall_factor(facets, packing, axis)
+    return distance
+
+
+def _wall_factor(facets, packing, axis):
+    """Factor a of `surface_distances` for the two walls across one axis."""
+    layer, length = LAYER * np.mean(packing.radii), packing.size[axis]
+    column = _side_depth(packing, axis) >= layer
+    reaching = column[facets.wall_particle] & (facets.wall_side // 2 == axis)
+    if not column.any() or length <= 3 * layer:
+        raise ValueError(
+            f"wall = 'surface': the packing of size {packing.size.tolist()} has no bulk {LAYER:g} mean radii away from "
+            "its walls; use more particles or wall = 'center'"
+        )
+    rows = row_numbers(facets.indptr)
+    inside = column[rows]
+    rows, columns = rows[inside], facets.indices[inside]
+    x = packing.centers[:, axis]
+    low, high = np.minimum(x[rows], x[columns]), np.maximum(x[rows], x[columns])
+    # Half of H b_x for each end of a link, with facets that divide the link by the radii.
+    share = packing.radii[rows] / (packing.radii[rows] + packing.radii[columns])
+    flow = 0.5 * facets.area[inside] * share / facets.distance[inside] * (high - low)
+    within = np.minimum(high, length - layer) - np.maximum(low, layer)
+    bulk = flow @ np.maximum(within, 0.0) / (length - 2 * layer)
+    lacking = bulk * length - flow @ (high - low)
+    carried = facets.wall_area[reaching] @ facets.wall_distance[reaching]
+    if not (lacking > 0 and carried > 0):
+        raise ValueError(
+            "wall = 'surface': the network has no layer at its walls with fewer links than inside, or no particle "
+            "touches them; the packing must have been made between hard walls"
+        )
+    return lacking / carried
+
+
+def _side_depth(packing, axis):
+    """Distance of each centre from the walls that do not cut `axis`, m; infinite without such walls."""
+    depth = np.full(packing.number, np.inf)
+    for k in _flat_walls(packing):
+        if k != axis:
+            x = packing.centers[:, k]
+            depth = np.minimum(depth, np.minimum(x, packing.size[k] - x))
+    axes = list(ROUND_AXES[packing.domain])
+    if axes:
+        off_axis = np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
+        depth = np.minimum(depth, packing.size[axes[0]] / 2 - off_axis)
+    return depth
+
+
+def _joined(packing, indptr, indices, least):
+    """Rows with links added, both ways, from each particle with fewer than `least` to its nearest."""
+    poor = np.flatnonzero(np.diff(indptr) < least)
     if len(poor) == 0:
-        return rows, columns
-    box = np.where(packing.periodic, packing.size, 0.0)
-    most = min(packing.number, 33)
-    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[poor], k=most)
-    pairs = set(zip(rows.tolist(), columns.tolist(), strict=True))
-    for p, candidates in zip(poor.tolist(), near, strict=True):
-        candidates = candidates[candidates != p]
-        offsets, _ = _nearest_image(packing, np.full(len(candidates), p), candidates)
-        surface = np.linalg.norm(offsets, axis=1) - packing.radii[candidates]
-        for q in candidates[np.argsort(surface, kind="stable")].tolist()[:least]:
-            pairs |= {(p, q), (q, p)}
-    both = np.array(sorted(pairs))
-    return both[:, 0], both[:, 1]
+        return indptr, indices
+    box, n = np.where(packing.periodic, packing.size, 0.0), packing.number
+    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[poor], k=min(n, 33))
+    offsets = packing.centers[near] - packing.centers[poor][:, None]
+    offsets -= box * np.round(offsets / packing.size)
+    surface = np.linalg.norm(offsets, axis=2) - packing.radii[near]
+    surface[near == poor[:, None]] = np.inf
+    chosen = np.take_along_axis(near, np.argsort(surface, axis=1, kind="stable")[:, :least], axis=1).ravel()
+    ends = np.repeat(poor, len(chosen) // len(poor))
+    # One number per link, ascending as the rows are.
+    present = row_numbers(indptr) * n + indices.astype(np.int64)
+    added = np.setdiff1d(np.concatenate((ends * n + chosen, chosen * n + ends)), present)
+    merged = np.insert(present, np.searchsorted(present, added), added)
+    return _pointers(merged // n, n), (merged % n).astype(np.uint32)
 
 
-def _nearest_image(packing, rows, columns):
-    """Offsets to the nearest image of each column's particle, and the image's code."""
-    offsets = packing.centers[columns] - packing.centers[rows]
-    shift = np.where(packing.periodic, -np.round(offsets / packing.size), 0.0)
-    code = (shift + 1.0) @ np.array([9.0, 3.0, 1.0])
-    return offsets + shift * packing.size, code.astype(np.uint8)
+def _well_linked(indptr, indices, touching):
+    """Particles of the largest cluster in which each has 2 links or more, walls counted as one."""
+    held = np.zeros(len(indptr) - 1, dtype=np.int64)
+    held[touching] = 1
+    alive = np.ones(len(held), dtype=bool)
+    while True:
+        poor = alive & (np.diff(indptr) + held < 2)
+        if not poor.any():
+            break
+        alive &= ~poor
+        indptr, indices = _without(indptr, indices, poor)
+    _, cluster = csgraph.connected_components(as_graph(indptr, indices), directed=False)
+    return alive & (cluster == np.argmax(np.bincount(cluster)))
 
 
-def _wall_contacts(packing):
-    """Particles that touch a wall, as (particle, side, area, distance)."""
-    particle, side, area = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
-    for s in range(6):
-        if packing.periodic[s // 2]:
-            continue
+def _without(indptr, indices, gone):
+    """Rows without the links to or from some particles."""
+    rows = row_numbers(indptr)
+    kept = ~(gone[rows] | gone[indices])
+    return _pointers(rows[kept], len(gone)), indices[kept]
+
+
+def _pointers(rows, n):
+    return np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))])
+
+
+def _lengths(packing, indptr, indices):
+    """Length of each link to the nearest image, m, and that image's code; axis by axis to spare memory."""
+    squares, code = np.zeros(len(indices)), np.zeros(len(indices), dtype=np.uint8)
+    for k in range(3):
+        x = packing.centers[:, k]
+        step = x[indices] - np.repeat(x, np.diff(indptr))
+        shift = -np.round(step / packing.size[k]) if packing.periodic[k] else np.zeros(len(step))
+        squares += (step + shift * packing.size[k]) ** 2
+        code = 3 * code + (shift + 1.0).astype(np.uint8)
+    return np.sqrt(squares), code
+
+
+def _flat_walls(packing):
+    """Axes with a flat wall at each end."""
+    return [k for k in range(3) if not packing.periodic[k] and k not in ROUND_AXES[packing.domain]]
+
+
+def _wall_contacts(packing, gap):
+    """Particles within the gap of a flat wall, as (particle, side, height of the centre above the wall)."""
+    particle, side, height = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
+    for s in (2 * axis + end for axis in _flat_walls(packing) for end in (0, 1)):
         x = packing.centers[:, s // 2]
-        height = packing.size[s // 2] - x if s % 2 else x
-        touching = np.flatnonzero(height <= packing.radii * (1.0 + 1e-3))
+        above = packing.size[s // 2] - x if s % 2 else x
+        touching = np.flatnonzero(above <= packing.radii * (1.0 + gap))
         particle.append(touching)
         side.append(np.full(len(touching), s))
-        wall = np.prod(np.delete(packing.size, s // 2))
-        share = packing.radii[touching] ** 2
-        area.append(wall * share / share.sum())  # together the whole wall, so that an imposed flux enters in full
-    particle, side, area = (np.concatenate(parts) for parts in (particle, side, area))
-    return particle, side, area, ISOTHERMAL * packing.radii[particle]
+        height.append(above[touching])
+    return [np.concatenate(parts) for parts in (particle, side, height)]
+
+
+def _wall_shares(packing, particle, side):
+    """Part of its wall that each wall contact stands for, m2: together all of it, so that a flux enters in full."""
+    share = packing.radii[particle] ** 2
+    walls = packing.volume / packing.size[side // 2]
+    return walls * share / np.bincount(side, share, minlength=6)[side]
