@@ -44,8 +44,7 @@ class Packing(NamedTuple):
     @property
     def volume(self) -> float:
         """Volume of the domain, m^3."""
-        share = {0: 1.0, 2: np.pi / 4, 3: np.pi / 6}[len(ROUND_AXES[self.domain])]
-        return float(share * np.prod(self.size))
+        return domain_volume(self.domain, self.size)
 
     @property
     def phi(self) -> float:
@@ -121,6 +120,12 @@ def check_domain(domain, size, periodic):
             f"domain = {domain!r} with size {size.tolist()} and periodic {periodic.tolist()}: sides across its round "
             f"axes {axes} must be equal and not periodic"
         )
+
+
+def domain_volume(domain, size):
+    """Volume of a domain inscribed in a box, m^3."""
+    share = {0: 1.0, 2: np.pi / 4, 3: np.pi / 6}[len(ROUND_AXES[domain])]
+    return float(share * np.prod(size))
 
 
 def wrap(centers, size, periodic):

@@ -12,7 +12,16 @@ from itertools import product
 import numpy as np
 
 from demheat.packing import relax_kernels as kernels
-from demheat.packing.base import Packing, check_box, make_packing, morton_order, wrap
+from demheat.packing.base import (
+    ROUND_AXES,
+    Packing,
+    check_box,
+    check_domain,
+    domain_volume,
+    make_packing,
+    morton_order,
+    wrap,
+)
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian
 
@@ -37,6 +46,7 @@ def relax(
     phi=0.64,
     radii=None,
     periodic=True,
+    domain="box",
     seed=0,
     overlap=0.002,
     steps=400,
@@ -50,12 +60,14 @@ def relax(
     number : int
     size : (3,) sequence of float, m
     phi : float
-        Sum of the sphere volumes over the volume of the box, met to rounding. Walls leave less room: above what fits
+        Sum of the sphere volumes over the volume of the domain, met to rounding. Walls leave less room: above what fits
         (0.595 at 1e3 and 0.625 at 1e4 particles with spread 0.3 in a walled cube) overlaps remain.
     radii : Gaussian, Uniform, Lognormal, Bidisperse or Listed, optional
         Default Gaussian(spread=0.3, cut=2.5).
     periodic : bool or (3,) sequence of bool
         Per axis: periodic, or a hard wall at both ends.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+        Inscribed in the box, with a hard round wall.
     seed : int
     overlap : float
         Stop when the mean overlap of the overlapping pairs is below this part of the mean diameter.
@@ -77,16 +89,18 @@ def relax(
     """
     radii = Gaussian() if radii is None else radii
     size, periodic = _check_request(number, size, phi, radii, periodic, seed, overlap, steps, allow_few)
+    check_domain(domain, size, periodic)
     rng = np.random.default_rng(seed)
-    centers = _jittered_grid(int(number), size, periodic, rng)
+    centers = _starting_points(int(number), size, periodic, domain, rng)
     drawn = radii.draw(int(number), rng)
-    drawn *= np.cbrt(phi * np.prod(size) / (4.0 / 3.0 * np.pi * np.sum(drawn**3)))
+    drawn *= np.cbrt(phi * domain_volume(domain, size) / (4.0 / 3.0 * np.pi * np.sum(drawn**3)))
     check_fit(drawn, size, periodic)
     order = morton_order(centers, size)
-    centers, reached = _minimise(centers[order], drawn, size, periodic, overlap, steps, progress=progress)
+    box = (size, periodic, domain)
+    centers, reached = _minimise(centers[order], drawn, *box, overlap, steps, progress=progress)
     provenance = {"algorithm": "relax", "seed": int(seed), "number": int(number), "phi": float(phi)}
     provenance |= {"radii": repr(radii), "overlap": float(overlap), "steps": int(steps)} | reached
-    return make_packing(centers, drawn, size, periodic, provenance)
+    return make_packing(centers, drawn, size, periodic, provenance, domain=domain)
 
 
 def settle(packing: Packing, *, fixed=None, steps=100, overlap=0.0, progress=None) -> Packing:
@@ -118,9 +132,8 @@ def settle(packing: Packing, *, fixed=None, steps=100, overlap=0.0, progress=Non
         raise ValueError(f"fixed of shape {fixed.shape} and type {fixed.dtype}: must be {n} bools, one per particle")
     _check_stop(overlap, steps)
     check_fit(packing.radii, packing.size, packing.periodic)
-    centers, reached = _minimise(
-        packing.centers, packing.radii, packing.size, packing.periodic, overlap, steps, fixed=fixed, progress=progress
-    )
+    box = (packing.size, packing.periodic, packing.domain)
+    centers, reached = _minimise(packing.centers, packing.radii, *box, overlap, steps, fixed=fixed, progress=progress)
     centers[fixed] = packing.centers[fixed]
     return packing._replace(centers=centers, provenance=packing.provenance | {"settled": reached})
 
@@ -142,11 +155,12 @@ def check_fit(radii, size, periodic):
             )
 
 
-def _minimise(centers, radii, size, periodic, overlap, steps, *, fixed=None, progress=None):
+def _minimise(centers, radii, size, periodic, domain, overlap, steps, *, fixed=None, progress=None):
     """Run FIRE; returns the centres, inside the box, and what was reached."""
     unit = float(np.mean(radii))
     points, box = np.column_stack((centers, radii)) / unit, size / unit
-    period = np.where(periodic, box, 0.0)
+    period, across = np.where(periodic, box, 0.0), np.zeros(3)
+    across[list(ROUND_AXES[domain])] = 1.0
     mobility = _mobility(points[:, 3], fixed)
     chunks = -(-len(points) // kernels.CHUNK)
     velocity, force = np.zeros((2, len(points), 3))
@@ -157,7 +171,7 @@ def _minimise(centers, radii, size, periodic, overlap, steps, *, fixed=None, pro
         if start is None or 2 * moved > SKIN:
             indptr, indices = near_rows(points, box, periodic, skin=SKIN, guess=row)
             start, lists, row = points[:, :3].copy(), lists + 1, len(indices) / len(points)
-        kernels.forces(points, velocity, mobility, indptr, indices, box, period, force, sums)
+        kernels.forces(points, velocity, mobility, indptr, indices, box, period, across, force, sums)
         mean = sums[:, 3].sum() / max(sums[:, 4].sum(), 1.0) / 2
         if progress is not None:
             progress(step, mean)
@@ -169,8 +183,20 @@ def _minimise(centers, radii, size, periodic, overlap, steps, *, fixed=None, pro
         moved = math.sqrt(farthest.max())
     reached = {"iterations": step, "lists": lists, "mean_overlap": float(mean)}
     reached |= {"max_overlap": float(sums[:, 5].max()) / 2, "converged": bool(mean <= overlap)}
-    centers = wrap(points[:, :3] * unit, size, periodic)
-    return np.clip(centers, 0.0, size), reached
+    centers = np.clip(wrap(points[:, :3] * unit, size, periodic), 0.0, size)
+    return _inside(centers, size, domain), reached
+
+
+def _inside(centers, size, domain):
+    """Centres that lie beyond the round wall drawn back to it."""
+    axes = list(ROUND_AXES[domain])
+    if axes:
+        middle = size[axes] / 2
+        away = np.linalg.norm(centers[:, axes] - middle, axis=1, keepdims=True)
+        # A hair less than the radius, so that rounding leaves them inside.
+        shrink = np.minimum(1.0, middle[0] * (1 - 1e-15) / np.maximum(away, 1e-300))
+        centers[:, axes] = middle + (centers[:, axes] - middle) * shrink
+    return centers
 
 
 def _mobility(radii, fixed):
@@ -191,6 +217,20 @@ def _fire(power, ff, vv, dt, mix, downhill):
     # Norm of v + dt a, over the norm of a, in the metric of the masses.
     ratio = math.sqrt(max(vv + 2 * dt * power + dt * dt * ff, 0.0) / ff)
     return 1 - mix, (1 - mix) * dt + mix * ratio, (dt, mix, downhill + 1)
+
+
+def _starting_points(number, size, periodic, domain, rng):
+    """Points of a jittered grid inside the domain, (number, 3) float array, m."""
+    if domain == "box":
+        return _jittered_grid(number, size, periodic, rng)
+    axes = list(ROUND_AXES[domain])
+    asked = math.ceil(number * np.prod(size) / domain_volume(domain, size))
+    while True:
+        points = _jittered_grid(asked, size, periodic, rng)
+        points = points[np.linalg.norm(points[:, axes] - size[axes] / 2, axis=1) < size[axes[0]] / 2]
+        if len(points) >= number:
+            return points[:number]
+        asked += asked // 20 + 1
 
 
 def _jittered_grid(number, size, periodic, rng):

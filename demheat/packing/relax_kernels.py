@@ -8,7 +8,7 @@ CHUNK = 256
 
 
 @njit(parallel=True, cache=True)
-def forces(points, velocity, mobility, indptr, indices, size, period, force, sums):
+def forces(points, velocity, mobility, indptr, indices, size, period, across, force, sums):
     """Harmonic repulsion (stiffness 1) of overlapping spheres and of walls, times each particle's mobility.
 
     Parameters
@@ -23,6 +23,8 @@ def forces(points, velocity, mobility, indptr, indices, size, period, force, sum
     size : (3,) float array
     period : (3,) float array
         `size` on periodic axes, 0 on walled ones.
+    across : (3,) float array
+        1 on axes across which the wall is round (inscribed in the box), else 0.
     force : (n, 3) float array, out
         Acceleration: mobility times force.
     sums : (chunks, 6) float array, out
@@ -63,8 +65,13 @@ def forces(points, velocity, mobility, indptr, indices, size, period, force, sum
                 total += overlap
                 count += overlap > 0.0
                 worst = max(worst, overlap)
+            square = 0.0
+            bound = np.inf
             for axis in range(3):
-                if period[axis] == 0.0:
+                if across[axis] > 0.0:
+                    bound = 0.5 * size[axis]
+                    square += (points[i, axis] - bound) ** 2
+                elif period[axis] == 0.0:
                     low = max(0.0, r - points[i, axis])
                     high = max(0.0, points[i, axis] + r - size[axis])
                     fx += (low - high) * (axis == 0)
@@ -74,6 +81,15 @@ def forces(points, velocity, mobility, indptr, indices, size, period, force, sum
                     total += 2.0 * (low + high)
                     count += 2.0 * ((low > 0.0) + (high > 0.0))
                     worst = max(worst, low, high)
+            out = np.sqrt(square) + r - bound
+            if out > 0.0:
+                inward = out / max(np.sqrt(square), 1e-9)
+                fx -= across[0] * inward * (points[i, 0] - bound)
+                fy -= across[1] * inward * (points[i, 1] - bound)
+                fz -= across[2] * inward * (points[i, 2] - bound)
+                total += 2.0 * out
+                count += 2.0
+                worst = max(worst, out)
             m = mobility[i]
             force[i, 0] = m * fx
             force[i, 1] = m * fy
