@@ -1,0 +1,155 @@
+"""Domains cut out of larger packings, and large packings by repeating a periodic one."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from demheat.packing.base import ROUND_AXES, Packing, check_box, check_domain, make_packing, morton_order
+
+KEEP = ("inside", "center")
+# Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
+ROUNDING = 1e-12
+
+
+def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside") -> Packing:
+    """Cut a domain out of a larger packing.
+
+    The cut is rough: spheres lie at all distances from it, as in a sawn specimen, so that its outer layer is less dense
+    than that of a packing made between hard walls (`relax` and `lsa` make these in every domain), and few spheres touch
+    it.
+
+    Parameters
+    ----------
+    packing : Packing
+        A box.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+    size : (3,) sequence of float, m, optional
+        Box in which the domain is inscribed, at most the packing's; default the largest one: the packing's box, its
+        sides across round axes shortened to the least of them.
+    center : (3,) sequence of float, m, optional
+        Of that box, in the packing's coordinates; default the middle. It may cross periodic faces.
+    keep : {"inside", "center"}
+        Keep the spheres that lie wholly inside, or those whose centre does.
+
+    Returns
+    -------
+    Packing
+        With its own box at the origin. An axis that is not round and keeps its full length keeps its walls or its
+        period; ends elsewhere are cut.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, the domain reaches beyond a wall, or no sphere is left.
+    """
+    _check_box_packing(packing)
+    if domain not in ROUND_AXES:
+        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    if keep not in KEEP:
+        raise ValueError(f"keep = {keep!r}: must be one of {', '.join(KEEP)}")
+    axes = list(ROUND_AXES[domain])
+    sides, full = _checked_size(packing, size, axes)
+    whole = full & ~np.isin(np.arange(3), axes)
+    periodic = packing.periodic & whole
+    check_domain(domain, sides, periodic)
+    corner = _checked_center(packing, center, sides) - sides / 2
+    # Whole axes keep their origin, walls and period; elsewhere each sphere is met at its image nearest to the middle.
+    corner[whole] = 0.0
+    local = packing.centers - corner
+    turns = np.floor((local - sides / 2) / packing.size + 0.5)
+    local -= np.where(packing.periodic & ~whole, turns * packing.size, 0.0)
+    kept = _reach_inside(local, packing.radii if keep == "inside" else 0.0, sides, axes, np.flatnonzero(~whole))
+    if not kept.any():
+        raise ValueError(f"size = {sides.tolist()}: no sphere of the packing is left in this {domain}; must be larger")
+    provenance = {"algorithm": "cut", "keep": keep, "corner": corner.tolist(), "of": packing.provenance}
+    return make_packing(local[kept], packing.radii[kept], sides, periodic, provenance, domain=domain)
+
+
+def tile(packing: Packing, repeats) -> Packing:
+    """Repeat a packing along its periodic axes.
+
+    The larger packing is a legitimate periodic one, but holds no more information than the tile: a homogeneous periodic
+    network has the very same conductivity, and scatter between packings does not fall with the number of tiles.
+
+    Parameters
+    ----------
+    packing : Packing
+    repeats : (3,) sequence of int
+        Tiles along each axis; 1 where there are walls.
+
+    Returns
+    -------
+    Packing
+        Tile after tile, each in the order of the given packing, so that neighbours in space stay near in memory.
+        provenance["repeats"] says how often it was repeated, "of" how the tile was made.
+
+    Raises
+    ------
+    ValueError
+        If a number is not an integer >= 1, or an axis with walls is to be repeated.
+    """
+    counts = np.array(repeats)
+    if counts.shape != (3,) or counts.dtype.kind not in "iu" or np.any(counts < 1):
+        raise ValueError(f"repeats = {repeats!r}: must be three integers >= 1")
+    if np.any((counts > 1) & ~packing.periodic):
+        raise ValueError(
+            f"repeats = {repeats!r} of a packing with periodic = {packing.periodic.tolist()}: must be 1 along axes "
+            "with walls"
+        )
+    cells = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
+    cells = cells[morton_order(cells + 0.5, counts.astype(float))]
+    n, size = packing.number, packing.size * counts
+    centers = np.empty((len(cells) * n, 3))
+    for k, cell in enumerate(cells):
+        np.add(packing.centers, cell * packing.size, out=centers[k * n : (k + 1) * n])
+    # Rounding may put the last tile's last centre on the far face, which is the first.
+    beyond = packing.periodic & (centers >= size)
+    centers[beyond] = 0.0
+    provenance = {"algorithm": "tile", "repeats": counts.tolist(), "number": len(centers), "of": packing.provenance}
+    return packing._replace(centers=centers, radii=np.tile(packing.radii, len(cells)), size=size, provenance=provenance)
+
+
+def _check_box_packing(packing):
+    if packing.domain != "box":
+        raise ValueError(f"packing in a {packing.domain}: must be in a box to be cut")
+
+
+def _checked_size(packing, size, axes):
+    """Sides of the box to cut, and which of them are the packing's own."""
+    if size is None:
+        sides = packing.size.copy()
+        if axes:
+            sides[axes] = sides[axes].min()
+    else:
+        sides, _ = check_box(size, False)
+    if np.any(sides > packing.size * (1 + ROUNDING)):
+        raise ValueError(f"size = {sides.tolist()}: must not exceed the packing's box, {packing.size.tolist()}")
+    return sides, sides >= packing.size * (1 - ROUNDING)
+
+
+def _checked_center(packing, center, sides):
+    middle = packing.size / 2 if center is None else np.array(center, dtype=float)
+    if middle.shape != (3,) or not all(map(math.isfinite, middle)):
+        raise ValueError(f"center = {center!r}: must be three finite coordinates in metres")
+    least, room = sides / 2, ROUNDING * packing.size
+    beyond = ~packing.periodic & ((middle < least - room) | (middle > packing.size - least + room))
+    if beyond.any():
+        raise ValueError(
+            f"center = {middle.tolist()} of a domain of size {sides.tolist()}: reaches beyond the walls of the "
+            f"packing, 0 to {packing.size.tolist()}"
+        )
+    return middle
+
+
+def _reach_inside(local, reach, sides, axes, cut_axes):
+    """Which spheres, that reach so far around their centre, lie in the domain."""
+    inside = np.ones(len(local), dtype=bool)
+    for k in (k for k in cut_axes if k not in axes):
+        inside &= (local[:, k] >= reach) & (local[:, k] <= sides[k] - reach)
+    if axes:
+        off_axis = np.linalg.norm(local[:, axes] - sides[axes] / 2, axis=1)
+        # A hair less than the radius: the gate of `make_packing` squares in another order.
+        inside &= off_axis + reach <= sides[axes[0]] / 2 * (1 - ROUNDING)
+    return inside
