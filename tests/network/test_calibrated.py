@@ -91,6 +91,14 @@ def test_dropping_peels_chains_and_islands():
     assert_allclose(facets.volumes.sum(), packing.volume, rtol=1e-12)  # rounding
 
 
+def test_a_column_between_two_walls_is_not_dropped():
+    centers = np.array([(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.0, 1.0, 1.0)])
+    packing = make_packing(centers, np.full(6, 1.0), (10, 10, 10), (True, False, True), {})
+    facets = contact_facets(packing, links=contacts(packing, gap=0.02), poor="drop")
+    assert_array_equal(facets.volumes > 0, packing.centers[:, 0] == 5.0)
+    assert len(facets.wall_particle) == 2  # that of the lone sphere is gone
+
+
 def test_volumes_fill_the_domain(packing):
     for poor in ("keep", "drop"):
         assert_allclose(contact_facets(packing, poor=poor).volumes.sum(), 1.0, rtol=1e-12)

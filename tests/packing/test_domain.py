@@ -67,6 +67,11 @@ def test_a_cylinder_of_full_length_keeps_its_period_and_fills_it(block):
     assert cut(block, "cylinder-y", keep="center").number > drum.number
 
 
+def test_a_centre_along_an_axis_of_full_length_moves_nothing(block):
+    moved = cut(block, "cylinder-y", center=(0.5, 0.2, 0.45))
+    assert as_set(moved) == as_set(cut(block, "cylinder-y"))
+
+
 def test_a_drum_between_hard_walls_keeps_them():
     walled = relax(2000, periodic=(True, False, True), phi=0.6, seed=4)
     drum = cut(walled, "cylinder-y", size=(0.7, 1.0, 0.7))
