@@ -1,0 +1,189 @@
+"""How much of a packing lies in the core of its domain: exact volumes and surfaces of spheres cut by its faces."""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+
+import numpy as np
+
+from demheat.packing.base import ROUND_AXES, Packing
+
+# Nodes along the axis of a cylinder, per cut sphere. Measured on 3000 spheres cut at random, against 3000 nodes: the
+# error is 5e-6 of a sphere at most, rms 9e-7 and of both signs; 32 nodes were six times worse.
+NODES = 64
+
+
+def packing_fraction(packing: Packing, *, margin=0.0) -> float:
+    """Sphere volume over volume, in the part of the domain at least `margin` mean radii away from every wall.
+
+    The core of a walled packing is what compares with a periodic one: walls push spheres apart. Spheres are cut by the
+    faces of the core exactly (box, ball), or by Gauss-Legendre quadrature with 64 nodes along the axis (cylinder).
+
+    Parameters
+    ----------
+    packing : Packing
+    margin : float
+        In mean radii; 0 is the whole domain. A periodic packing is core throughout.
+
+    Returns
+    -------
+    float
+        Overlaps count twice, parts beyond a wall do not count.
+
+    Raises
+    ------
+    ValueError
+        If margin is negative, or leaves no core.
+    """
+    depth = check_margin(packing, margin)
+    core = packing.size - 2 * depth * ~packing.periodic
+    volume = core_volume(packing, depth)
+    axes = list(ROUND_AXES[packing.domain])
+    low, high = core_bounds(packing, depth)
+    if not axes:
+        return float(math.fsum(spheres_in_box(packing.centers, packing.radii, low, high)[0]) / volume)
+    offsets = packing.centers - packing.size / 2
+    distance, reach = np.linalg.norm(offsets[:, axes], axis=1), core[axes[0]] / 2
+    if packing.domain == "sphere":
+        return float(math.fsum(_lens_volumes(distance, packing.radii, reach)) / volume)
+    axis = "xyz".index(packing.domain[-1])
+    ends = (low[axis] - packing.centers[:, axis], high[axis] - packing.centers[:, axis])
+    return float(math.fsum(_spheres_in_cylinder(distance, packing.radii, reach, *ends)) / volume)
+
+
+def check_margin(packing, margin, name="margin"):
+    """Depth of the core in metres for a margin in mean radii, or a ValueError that names the largest valid one."""
+    try:
+        good = math.isfinite(margin) and margin >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise ValueError(f"{name} = {margin!r}: must be a finite number of mean radii >= 0")
+    mean = float(np.mean(packing.radii))
+    largest = float(np.min(np.where(packing.periodic, np.inf, packing.size / 2)))
+    if margin * mean >= largest:
+        raise ValueError(f"{name} = {margin!r}: must be < {largest / mean:.6g} mean radii, where no core is left")
+    return float(margin) * mean
+
+
+def core_volume(packing, depth):
+    """Volume of the domain at least `depth` metres away from every wall, m^3: the same shape, smaller."""
+    return packing._replace(size=packing.size - 2 * depth * ~packing.periodic).volume
+
+
+def core_bounds(packing, depth):
+    """Lower and upper bounds of the core's box, (3,) float arrays, m; infinite along periodic axes."""
+    low = np.where(packing.periodic, -np.inf, depth)
+    return low, np.where(packing.periodic, np.inf, packing.size - depth)
+
+
+def inscribed_box(packing, depth):
+    """Bounds of the largest box (along the axes, square across round ones) in the core, (3,) float arrays, m."""
+    axes = list(ROUND_AXES[packing.domain])
+    half = packing.size / 2 - depth * ~packing.periodic
+    if axes:
+        half[axes] /= math.sqrt(len(axes))
+    return packing.size / 2 - half, packing.size / 2 + half
+
+
+def wall_distances(packing):
+    """Distance of each centre from the nearest wall, (n,) float array, m; infinite where there is none."""
+    axes = list(ROUND_AXES[packing.domain])
+    flat = ~packing.periodic
+    flat[axes] = False
+    centers, size = packing.centers[:, flat], packing.size[flat]
+    depth = np.minimum(centers, size - centers).min(axis=1, initial=np.inf)
+    if axes:
+        offsets = packing.centers[:, axes] - packing.size[axes] / 2
+        depth = np.minimum(depth, packing.size[axes[0]] / 2 - np.linalg.norm(offsets, axis=1))
+    return depth
+
+
+def spheres_in_box(centers, radii, low, high):
+    """Volume and surface of spheres inside a box along the axes, exactly.
+
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    radii : (n,) float array, m
+    low, high : (3,) float arrays, m
+        May be infinite.
+
+    Returns
+    -------
+    volumes : (n,) float array, m^3
+    surfaces : (n,) float array, m^2
+        Of the spherical part only, not of the cuts.
+    """
+    lower, upper = (np.clip((bound - centers) / radii[:, None], -1.0, 1.0) for bound in (low, high))
+    cut = np.any((lower > -1) | (upper < 1), axis=1)
+    share = np.repeat([[4 / 3 * np.pi], [4 * np.pi]], len(radii), axis=1)
+    share[:, cut] = 0.0
+    # Inclusion and exclusion over the corners: what lies beyond the lower bounds, less what lies beyond the upper ones.
+    for corner in product((0, 1), repeat=3):
+        faces = [(lower, upper)[side][cut, axis] for axis, side in enumerate(corner)]
+        share[:, cut] += (-1) ** sum(corner) * _beyond(faces)
+    return share[0] * radii**3, share[1] * radii**2
+
+
+def _beyond(faces):
+    """Volume and surface of the unit ball beyond three planes x > a, y > b, z > c of any sign, (2, n) float array."""
+    total = np.zeros((2, len(faces[0])))
+    # A plane at a < 0 leaves both halves less what lies beyond the mirrored plane.
+    for halved in product((False, True), repeat=3):
+        signs = [2.0 * (a < 0) if h else np.where(a < 0, -1.0, 1.0) for a, h in zip(faces, halved, strict=True)]
+        planes = [np.zeros_like(a) if h else np.abs(a) for a, h in zip(faces, halved, strict=True)]
+        total += np.prod(signs, axis=0) * _octant(*planes)
+    return total
+
+
+def _octant(a, b, c):
+    """Volume and surface of the unit ball beyond x > a, y > b, z > c, all >= 0, (2, n) float array.
+
+    Gauss and Bonnet give the spherical triangle from its corners and the geodesic curvature of its sides; the
+    divergence theorem gives the volume from the faces, seen from the centre.
+    """
+    met = a * a + b * b + c * c < 1
+    planes = [np.where(met, x, 0.0) for x in (a, b, c)]
+    surface, cone = np.full_like(a, 2 * np.pi), np.zeros_like(a)
+    for k in range(3):
+        x, y, z = (planes[(k + i) % 3] for i in range(3))
+        surface -= np.arccos(np.clip(-x * y / np.sqrt((1 - x * x) * (1 - y * y)), -1.0, 1.0))
+        # On the face x = a: the arc runs from (far_y, z) to (y, far_z).
+        far_y, far_z = (np.sqrt(np.maximum(1 - x * x - w * w, 0.0)) for w in (z, y))
+        angle = np.arctan2(far_z, y) - np.arctan2(z, far_y)
+        surface -= x * angle
+        cone += x * ((1 - x * x) * angle - y * (far_z - z) - z * (far_y - y)) / 2
+    return np.where(met, [(surface - cone) / 3, surface], 0.0)
+
+
+def _lens_volumes(distance, radii, reach):
+    """Volume of spheres inside a ball of radius `reach`, from the distance of the centres, (n,) float array, m^3."""
+    least = 4 / 3 * np.pi * np.minimum(radii, reach) ** 3
+    d = np.where(distance > 0, distance, 1.0)
+    lens = np.pi * (reach + radii - d) ** 2 * (d * d + 2 * d * (radii + reach) - 3 * (radii - reach) ** 2) / (12 * d)
+    return np.where(distance >= radii + reach, 0.0, np.where(distance <= np.abs(reach - radii), least, lens))
+
+
+def _spheres_in_cylinder(distance, radii, reach, low, high):
+    """Volume of spheres inside a cylinder, from their distance to its axis and that of its ends, (n,) float array."""
+    nodes, weights = np.polynomial.legendre.leggauss(NODES)
+    low, high = (np.clip(end, -radii, radii)[:, None] for end in (low, high))
+    z = (low + high) / 2 + (high - low) / 2 * nodes
+    disc = np.sqrt(np.maximum(radii[:, None] ** 2 - z * z, 0.0))
+    areas = _lens_areas(distance[:, None], disc, reach)
+    return np.einsum("ij,j->i", areas, weights) * (high - low)[:, 0] / 2
+
+
+def _lens_areas(distance, disc, reach):
+    """Area shared by a disc and a disc of radius `reach` at a distance, float array, m^2."""
+    cut = (distance < disc + reach) & (distance > np.abs(reach - disc))
+    d, r = np.where(cut, distance, 1.0), np.where(cut, disc, 1.0)
+    big = np.where(cut, reach, 1.0)
+    small_angle = np.arccos(np.clip((d * d + r * r - big * big) / (2 * d * r), -1.0, 1.0))
+    big_angle = np.arccos(np.clip((d * d + big * big - r * r) / (2 * d * big), -1.0, 1.0))
+    kite = np.sqrt(np.maximum((-d + r + big) * (d + r - big) * (d - r + big) * (d + r + big), 0.0)) / 2
+    lens = r * r * small_angle + big * big * big_angle - kite
+    whole = np.where(distance >= disc + reach, 0.0, np.pi * np.minimum(disc, reach) ** 2)
+    return np.where(cut, lens, whole)

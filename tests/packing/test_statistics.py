@@ -1,0 +1,509 @@
+from itertools import product
+
+import numba
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from scipy.optimize import linprog
+
+from demheat.packing import statistics_kernels as kernels
+from demheat.packing.base import ROUND_AXES, Packing, make_packing, wrap
+from demheat.packing.neighbours import build_grid, contacts, neighbours
+from demheat.packing.statistics import (
+    backbone,
+    coordination,
+    directions,
+    fabric,
+    packing_fraction,
+    radial_distribution,
+    two_point,
+)
+from demheat.packing.statistics.links import _unit_vectors, _wall_contacts
+from demheat.packing.statistics.regions import inscribed_box, spheres_in_box, wall_distances
+
+# Crystals touch to rounding, 1e-15; their second neighbours are 1.41 away.
+TOUCH = 1e-6
+
+
+def crystal(cells, basis, radius, *, periodic=True, size=None):
+    """Equal touching spheres on a lattice of unit cubes; radius in cubes."""
+    size = np.full(3, cells) if size is None else size
+    corners = np.array(list(product(range(cells), repeat=3)))
+    centers = (corners[:, None] + np.array(basis)).reshape(-1, 3)
+    return make_packing(centers, np.full(len(centers), radius), size, periodic, {})
+
+
+def simple_cubic(cells=6, **keywords):
+    return crystal(cells, [(0.5, 0.5, 0.5)], 0.5, **keywords)
+
+
+def face_centred(cells=4):
+    basis = np.array([(0, 0, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (0.5, 0.5, 0)]) + 0.25
+    return crystal(cells, basis, np.sqrt(2) / 4)
+
+
+def random_packing(seed, number=400, *, periodic=True, domain="box", size=(1.0, 1.0, 1.0), radius=0.05):
+    """Random points and radii of up to threefold size: an ideal gas."""
+    rng, radii = np.random.default_rng(seed), None
+    size, axes = np.array(size), list(ROUND_AXES[domain])
+    centers = rng.random((4 * number, 3)) * size
+    inside = np.linalg.norm((centers - size / 2)[:, axes], axis=1) <= (size[axes[0]] / 2 if axes else 1.0)
+    radii = radius * rng.uniform(0.5, 1.5, number)
+    return make_packing(centers[inside][:number], radii, size, periodic, {}, domain=domain)
+
+
+def pairs_at_random(seed, links):
+    """Pairs of touching spheres with directions at random, far from each other."""
+    normals = np.random.default_rng(seed).standard_normal((links, 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    middles = np.column_stack((3.0 * np.arange(links) + 1.5, np.full((links, 2), 1.5)))
+    centers = np.concatenate((middles - normals / 2, middles + normals / 2))
+    return make_packing(centers, np.full(2 * links, 0.5), (3.0 * links, 3.0, 3.0), False, {})
+
+
+def touching(packing):
+    return contacts(packing, gap=TOUCH)[:2]
+
+
+# Packing fraction
+
+
+def test_spheres_are_cut_exactly():
+    """Against chords summed on a fine grid; the surface is the growth of the volume with the radius."""
+    rng = np.random.default_rng(0)
+    centers, radii = rng.uniform(-0.8, 0.8, (40, 3)), rng.uniform(0.2, 1.0, 40)
+    low, high = np.array([-0.5, -0.3, -0.6]), np.array([0.4, 0.7, 0.3])
+    volumes, surfaces = spheres_in_box(centers, radii, low, high)
+    m, sides = 400, high - low
+    x, y = (low[a] + (np.arange(m) + 0.5) / m * sides[a] for a in (0, 1))
+    for c, r, volume in zip(centers, radii, volumes, strict=True):
+        half = np.sqrt(np.maximum(r**2 - (x[:, None] - c[0]) ** 2 - (y - c[1]) ** 2, 0.0))
+        chord = np.maximum(np.minimum(c[2] + half, high[2]) - np.maximum(c[2] - half, low[2]), 0.0) * (half > 0)
+        # Midpoint rule with kinks: second order, h^2 = 6e-6 times lengths below 1.
+        assert_allclose(volume, chord.mean() * sides[0] * sides[1], atol=6e-6)
+    grown, shrunk = (spheres_in_box(centers, radii + h, low, high)[0] for h in (1e-5, -1e-5))
+    # Central difference: h^2 and rounding 1e-16/h, both 1e-10 times the curvature.
+    assert_allclose(surfaces, (grown - shrunk) / 2e-5, atol=1e-7)
+    whole = spheres_in_box(centers, radii, np.full(3, -np.inf), np.full(3, np.inf))
+    assert_allclose(whole, [4 / 3 * np.pi * radii**3, 4 * np.pi * radii**2], rtol=1e-14)  # rounding
+
+
+def test_fraction_of_crystals():
+    # Rounding of a sum over few hundred spheres, each cut by a difference of terms of order 1.
+    assert_allclose(packing_fraction(face_centred()), np.pi * np.sqrt(2) / 6, rtol=1e-13)
+    walled = simple_cubic(periodic=False)
+    # Faces of the core between spheres, through their centres, and halfway: mirror planes first, then a cap of height
+    # r/2 = 5 pi/24 r^3 less per sphere of the outer layers, which the box then shares.
+    for margin in (0.0, 1.0, 2.0, 3.0):
+        assert_allclose(packing_fraction(walled, margin=margin), np.pi / 6, rtol=1e-13)
+    slab = simple_cubic(periodic=(True, True, False))
+    cap = 5 * np.pi / 24 * 0.5**3
+    assert_allclose(packing_fraction(slab, margin=0.5), (np.pi / 6 * 6 - 2 * cap) / 5.5, rtol=1e-13)
+
+
+@pytest.mark.parametrize("domain", ["sphere", "cylinder-x", "cylinder-y", "cylinder-z"])
+def test_fraction_of_round_cores(domain):
+    packing = random_packing(1, 40, periodic=False, domain=domain, radius=0.1)
+    # A sphere larger than the core and one concentric with it.
+    packing = packing._replace(centers=np.vstack((packing.centers[1:], packing.size / 2)))
+    packing.radii[:2] = 0.45, 0.5
+    margin = 0.1 / packing.radii.mean()
+    m = 100
+    at = (np.indices((m, m, m)).reshape(3, -1).T + 0.5) / m
+    depth = wall_distances(packing._replace(centers=at))
+    at, found = at[depth >= 0.1], 0.0
+    for c, r in zip(packing.centers, packing.radii, strict=True):
+        found += np.count_nonzero(((at - c) ** 2).sum(axis=1) < r * r)
+    # Points in and near a surface S on a grid h: about sqrt(S/h^2) h^3 of random error each, 3e-5 of the core for all
+    # 60; the count of the core's own points errs by 1e-4.
+    assert_allclose(packing_fraction(packing, margin=margin), found / len(at), rtol=5e-4)
+
+
+# Contacts
+
+
+def test_coordination_of_crystals():
+    for packing, number in ((simple_cubic(), 6), (face_centred(), 12)):
+        found = coordination(packing, *touching(packing))
+        assert (found.mean, found.least, found.under_4, found.islands, found.largest) == (number, number, 0, 1, 1)
+        assert_array_equal(found.histogram, [0] * number + [packing.number])
+    walled = simple_cubic(periodic=False)
+    rows = touching(walled)
+    assert coordination(walled, *rows).mean == 2 * 3 * 5 * 36 / 216
+    inner = coordination(walled, *rows, margin=1.5)
+    assert (inner.mean, inner.least, inner.counted, inner.islands) == (6, 6, 64, 1)
+
+
+def test_coordination_by_hand():
+    # A chain of three, a pair, one alone.
+    x = np.array([1.0, 2.0, 3.0, 5.0, 6.0, 8.0])
+    packing = make_packing(np.column_stack((x, x * 0 + 1, x * 0 + 1)), np.full(6, 0.5), (9, 2, 2), False, {})
+    found = coordination(packing, *touching(packing))
+    assert_array_equal(found.histogram, [1, 4, 1])
+    assert_allclose(found[:1] + found[3:5], [1, 5 / 6, 1], rtol=1e-15)
+    assert (found.islands, found.largest, found.counted, found.least) == (3, 0.5, 6, 0)
+
+
+def held(vectors, half_space=True):
+    """Whether vectors hold a particle, through the kernel: particle 0 touches walls only."""
+    now, ends = np.empty(1, dtype=bool), np.array([0, len(vectors)])
+    none = np.zeros(2, dtype=np.int64), np.empty(0, dtype=np.uint32), np.empty((0, 3))
+    kernels.held(*none, ends, np.array(vectors, dtype=float), half_space, np.ones(1, dtype=bool), now)
+    return bool(now[0])
+
+
+def test_what_holds_a_particle():
+    tetrahedron = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) / np.sqrt(3)
+    assert held(tetrahedron) and not held(tetrahedron[:3])
+    assert not held(tetrahedron * [[-1], [1], [1], [1]])  # one on the wrong side
+    axes = np.vstack((np.eye(3), -np.eye(3)))
+    assert held(axes)
+    assert not held(axes[:5]) and held(axes[:5], half_space=False)  # closed half-space: nothing at -z
+    assert not held(axes[[0, 1, 3, 4]]) and held(axes[[0, 1, 3, 4]], half_space=False)  # in one plane
+    assert not held([axes[0], axes[3]] * 3)  # on one line
+
+
+@pytest.mark.parametrize("seed", range(80))
+def test_half_space_rule_is_that_of_a_linear_program(seed):
+    """Positive forces in balance exist exactly if no half-space holds all directions."""
+    rng = np.random.default_rng(seed)
+    normals = rng.standard_normal((rng.integers(4, 11), 3))
+    normals /= np.linalg.norm(normals, axis=1)[:, None]
+    program = linprog(np.zeros(len(normals)), A_eq=normals.T, b_eq=np.zeros(3), bounds=(1, None))
+    assert program.status in (0, 2)
+    assert held(normals) == (program.status == 0)
+
+
+def test_a_stack_unravels_from_its_free_top():
+    n = 5
+    packing = simple_cubic(n, periodic=(True, True, False), size=(n, n, n + 0.5))
+    rows = touching(packing)
+    found = backbone(packing, *rows, gap=TOUCH, rule="half-space")
+    # One layer per round, and a round that finds nothing more.
+    assert found.rattler.all() and found.rounds == n + 1 and np.isnan(found.coordination)
+    counted = backbone(packing, *rows, gap=TOUCH)
+    assert not counted.rattler.any()
+    closed = simple_cubic(n, periodic=(True, True, False))
+    found = backbone(closed, *touching(closed), gap=TOUCH, rule="half-space")
+    pairs, walls = 2 * n**3 + n * n * (n - 1), 2 * n * n
+    assert not found.rattler.any() and found.rounds == 1
+    assert_allclose(found[1:3], [2 * pairs / n**3, (pairs + walls) / (3 * n**3)], rtol=1e-15)
+
+
+def test_rattlers_fall_one_after_another():
+    """A chain of three beads ending at a crystal: each is held by fewer than four contacts once its neighbour falls."""
+    block = simple_cubic(4)
+    top = np.array([[1.5, 1.5, z] for z in (4.5, 5.5, 6.5)])
+    packing = make_packing(np.vstack((block.centers, top)), np.full(67, 0.5), (4, 4, 8), (True, True, False), {})
+    found = backbone(packing, *touching(packing), gap=TOUCH)
+    assert_array_equal(packing.centers[found.rattler][:, 2].round(1), [4.5, 5.5, 6.5])
+    assert_allclose(found.coordination, 2 * (2 * 64 + 48) / 64, rtol=1e-15)
+
+
+def test_round_walls_touch_along_the_radius():
+    packing = make_packing([[0.9, 0.5, 0.1], [0.5, 0.5, 0.5]], [0.1, 0.1], (1, 1, 2), False, {}, domain="cylinder-z")
+    first = int(np.argmin(packing.centers[:, 2]))
+    indptr, vectors = _wall_contacts(packing, 1e-9)
+    assert_array_equal(np.diff(indptr), [2, 0] if first == 0 else [0, 2])
+    assert_allclose(vectors, [[0, 0, -1], [1, 0, 0]], atol=1e-15)  # rounding
+    ball = make_packing([[0.5, 0.5 + 0.24, 0.5 - 0.32]], [0.1], (1, 1, 1), False, {}, domain="sphere")
+    assert_allclose(_wall_contacts(ball, 1e-9)[1], [[0, 0.6, -0.8]], atol=1e-15)
+
+
+# Isotropy
+
+
+def test_fabric_of_crystals():
+    # A cubic crystal is invisible to the tensor and plain in the fourth moments: 1/3 and 1/6 instead of 1/5.
+    for packing, fourth in ((simple_cubic(), 1 / 3), (face_centred(), 1 / 6)):
+        rows = touching(packing)
+        found = fabric(packing, *rows)
+        assert_allclose(found.tensor, np.eye(3) / 3, atol=1e-14)  # rounding
+        assert_allclose(found.fourth, fourth, rtol=1e-13)
+        assert found.links == len(rows[1]) / 2 and found.deviation < 1e-10
+        assert_allclose(found.fourth_deviation, abs(fourth - 0.2) / np.sqrt(16 / 225 / found.links), rtol=1e-10)
+
+
+def test_fabric_at_walls_counts_links_from_the_core():
+    packing = random_packing(2, 500, periodic=False)
+    indptr, indices = neighbours(packing)
+    deep = wall_distances(packing) >= 3 * packing.radii.mean()
+    total, count, squares = np.zeros((3, 3)), 0, 0
+    for i in np.flatnonzero(deep):
+        for j in indices[indptr[i] : indptr[i + 1]]:
+            n = packing.centers[j] - packing.centers[i]
+            total, count = total + np.outer(n, n) / (n @ n), count + 1
+            squares += 2 if deep[j] else 1  # a weight of 2, squared, shared by the two ends
+    found = fabric(packing, indptr, indices, margin=3.0)
+    assert_allclose(found.tensor, total / count, rtol=1e-12, atol=1e-14)  # order of summation
+    assert_allclose(found.links, count**2 / squares, rtol=1e-12)
+    assert count != len(indices)
+
+
+def test_sampling_errors_are_those_of_independent_links():
+    links, repeats = 100, 300
+    tensors, fourths, densities = [], [], []
+    for seed in range(repeats):
+        packing = pairs_at_random(seed, links)
+        rows = touching(packing)
+        found, histogram = fabric(packing, *rows), directions(packing, *rows, bins=12)
+        tensors.append(found.tensor)
+        fourths.append(found.fourth)
+        densities.append(histogram.density)
+    off, on = np.triu_indices(3, 1), np.diag_indices(3)
+    tensors = np.array(tensors)
+    for values, mean, error in (
+        (tensors[:, on[0], on[1]], 1 / 3, found.diagonal_error),
+        (tensors[:, off[0], off[1]], 0.0, found.off_diagonal_error),
+        (np.array(fourths), 1 / 5, found.fourth_error),
+        (np.array(densities)[:, :, :6].reshape(repeats, -1), 1.0, histogram.error[0]),
+    ):
+        # Standard error of a mean of 300: 4 of them; of a root mean square of 900 values, some 3 %: 4 of them.
+        assert_allclose(values.mean(axis=0), mean, atol=4 * error / np.sqrt(repeats))
+        assert_allclose(np.sqrt(np.mean((values - mean) ** 2)), error, rtol=0.12)
+
+
+def test_directions_of_crystals():
+    for packing, at_axes, at_bisectors in ((simple_cubic(), 18, 0), (face_centred(), 12, 6)):
+        found = directions(packing, *touching(packing))
+        expected = np.zeros(72)
+        # Of the 36 bins of a half turn: SC fills two, FCC has 2 of 6 links on each axis and 1 on each bisector.
+        expected[::18], expected[9::18] = at_axes, at_bisectors
+        assert_allclose(found.density, np.tile(expected, (3, 1)), rtol=1e-13)
+        assert_allclose(np.degrees(found.angles), 5 * np.arange(72), rtol=1e-13)
+
+
+def test_directions_turn_the_right_way():
+    for axis in range(3):
+        n = np.zeros(3)
+        n[(axis + 1) % 3], n[(axis + 2) % 3] = np.cos(np.pi / 6), np.sin(np.pi / 6)
+        packing = make_packing([[2, 2, 2], n + 2], [0.5, 0.5], (4, 4, 4), False, {})
+        found = directions(packing, *touching(packing), bins=12)
+        assert_array_equal(
+            found.angles[found.density[axis] > 0].round(6), np.array([np.pi / 6, 7 * np.pi / 6]).round(6)
+        )
+        # In the plane normal to the first of the two axes only the second shows: 90 degrees before the third.
+        assert found.density[(axis + 1) % 3][[0, 6]].sum() == 12
+    along_x = make_packing([[1, 1, 1], [2, 1, 1]], [0.5, 0.5], (3, 2, 2), False, {})
+    assert np.isnan(directions(along_x, *touching(along_x)).density[0]).all()
+
+
+# Radial distribution
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_shells_of_a_simple_cubic_crystal(periodic):
+    found = radial_distribution(simple_cubic(8, periodic=periodic), r_max=1.95, bins=13)
+    edges = np.linspace(0, 1.95, 14)
+    numbers = found.g * found.density * 4 / 3 * np.pi * np.diff(edges**3)
+    expected = np.zeros(13)
+    expected[[6, 9, 11]] = 6, 12, 8  # distances 1, sqrt 2, sqrt 3
+    assert_allclose(numbers, expected, rtol=1e-12)
+    assert found.origins == (512 if periodic else 64)  # depth > 1.95: beyond two layers of spheres
+
+
+def distances(packing):
+    offsets = packing.centers[None] - packing.centers[:, None]
+    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
+    result = np.sqrt((offsets**2).sum(axis=-1))
+    np.fill_diagonal(result, np.inf)
+    return result
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+@pytest.mark.parametrize(
+    ("domain", "periodic"),
+    [("box", True), ("box", False), ("box", (True, False, True)), ("sphere", False), ("cylinder-y", False)],
+)
+def test_pair_counts_are_those_of_brute_force(scaled, domain, periodic):
+    packing = random_packing(3, 600, periodic=periodic, domain=domain)
+    r_max = 2.0 if scaled else 2.7
+    found = radial_distribution(packing, r_max=r_max, bins=40, scaled=scaled)
+    largest, mean = packing.radii.max(), packing.radii.mean()
+    origins = wall_distances(packing) > 2 * r_max * (largest if scaled else mean)
+    unit = packing.radii + packing.radii[:, None] if scaled else np.full((600, 600), 2 * mean)
+    counts, edges = np.histogram((distances(packing) / unit)[origins], bins=40, range=(0, r_max))
+    np.fill_diagonal(unit, 0.0)
+    expected = found.density / 599 * (unit[origins] ** 3).sum() * 4 / 3 * np.pi * np.diff(edges**3)
+    assert found.origins == origins.sum() > 5
+    assert_allclose(found.g, counts / expected, rtol=1e-11)  # differences of cubes
+    if np.all(periodic):
+        assert_allclose(found.density, 599 / packing.volume, rtol=1e-14)
+        assert_allclose(found.error, np.sqrt(2 * counts) / expected, rtol=1e-11)
+    assert_allclose(found.r, (edges[1:] + edges[:-1]) / 2, rtol=1e-13)
+
+
+@pytest.mark.parametrize("scaled", [False, True])
+def test_random_points_have_no_correlation(scaled):
+    for periodic in (True, False):
+        packing = random_packing(4, 6000, periodic=periodic, radius=0.02)
+        found = radial_distribution(packing, r_max=3.0, bins=30, scaled=scaled)
+        kept = (found.error > 0) & (found.error < 0.1)  # inner bins hold too few pairs to be normal
+        shared = 0.0 if periodic else 1 / np.sqrt(found.origins)  # error of the density of the core
+        deviation = (found.g - 1)[kept] / np.hypot(found.error[kept], shared)
+        # Standard normal: beyond 4 once in 16000; the mean square of 25 of them scatters by .3.
+        assert kept.sum() > 20 and np.abs(deviation).max() < 4 and np.mean(deviation**2) < 2
+
+
+# Two-point probability
+
+
+def test_one_sphere_in_a_periodic_box():
+    """S2 = phi (1 - 3 r/4R + r^3/16 R^3), 0 beyond 2R until images meet; the start slope is -surface/4 each way."""
+    packing = make_packing([[0.1, 0.5, 0.9]], [0.2], (1, 1, 1), True, {})
+    found = two_point(packing, r_max=1.25, points=26, lines=8000)
+    x = found.r * 2  # r over R
+    expected = found.phi * np.maximum(1 - 3 * x / 4 + x**3 / 16, 0.0) * (x < 2)
+    assert_allclose(found.phi, 4 / 3 * np.pi * 0.2**3, rtol=1e-14)
+    # Surface 4 pi R^2 of a unit box, in mean diameters of 0.4.
+    assert_allclose(found.exact_slope, -np.pi * 0.2**2 * 0.4, rtol=1e-14)
+    assert np.all(found.s2[:, x > 2 + 1e-9] == 0)
+    # 4 standard errors: some 100 independent values. The errors themselves stay below 5 % of phi.
+    assert np.all(np.abs(found.s2 - expected) <= 4 * found.error + 1e-15)
+    assert np.all(np.abs(found.slope - found.exact_slope) <= 4 * found.slope_error)
+    assert found.error.max() < 0.05 * found.phi and found.slope_error.max() < 0.05 * -found.exact_slope
+
+
+def union(packing, start, along, length):
+    """Spans of the union of chords, by brute force over periodic images: the slow twin."""
+    spans = []
+    for shift in product(*(range(-2, 3) if p else (0,) for p in packing.periodic)):
+        offsets = packing.centers + np.array(shift) * packing.size - start
+        middle = offsets @ along
+        half2 = packing.radii**2 - (offsets**2).sum(axis=1) + middle**2
+        for m, h in zip(middle[half2 > 0], np.sqrt(half2[half2 > 0]), strict=True):
+            if m + h > 0 and m - h < length:
+                spans.append((max(m - h, 0.0), min(m + h, length)))
+    joined = []
+    for low, high in sorted(spans):
+        if joined and low <= joined[-1][1]:
+            joined[-1][1] = max(high, joined[-1][1])
+        else:
+            joined.append([low, high])
+    return joined
+
+
+@pytest.mark.parametrize("periodic", [True, False, (False, True, True)])
+def test_lines_are_cut_and_overlaid_exactly(periodic):
+    packing = random_packing(5, 400, periodic=periodic, radius=0.07)  # many overlaps
+    points = np.column_stack((packing.centers, packing.radii))
+    lags, steps = np.linspace(0.0, 0.45, 10), 7
+    grid = build_grid(points, packing.size, packing.periodic, scale=1.0, skin=0.9 / steps / 2)
+    rng, cut = np.random.default_rng(6), 0
+    for _ in range(20):
+        along, start = rng.standard_normal(3), rng.random(3)
+        along /= np.linalg.norm(along)
+        sums = np.empty((kernels.TASKS, 2, 11))
+        kernels.line_correlations(points, grid, start[None], along, lags, steps, sums)
+        spans = union(packing, start, along, 0.9)
+        shared = [sum(max(0.0, min(b, d - r, 0.45) - max(a, c - r)) for a, b in spans for c, d in spans) for r in lags]
+        ends = sum(b < 0.45 for _, b in spans)
+        cut += len(spans)
+        assert_allclose(sums[:, 0].sum(axis=0), [*np.array(shared) / 0.45, -ends / 0.45], rtol=1e-11, atol=1e-12)
+        assert_allclose(sums[:, 1].sum(axis=0), sums[:, 0].sum(axis=0) ** 2, rtol=1e-12)
+    assert cut > 30
+
+
+def test_standard_errors_are_the_scatter_of_repeats():
+    packing = random_packing(7, 100)
+    found = [two_point(packing, along=[[1, 2, 0]], r_max=1.0, points=3, lines=100, seed=seed) for seed in range(200)]
+    for name, error in (("s2", "error"), ("slope", "slope_error")):
+        scatter = np.std([getattr(one, name) for one in found], axis=0)
+        mean = np.sqrt(np.mean([getattr(one, error) ** 2 for one in found], axis=0))
+        assert_allclose(scatter, mean, rtol=0.2)  # a standard deviation of 200 values: 5 %, 4 of them
+
+
+@pytest.mark.parametrize("domain", ["box", "cylinder-x", "sphere"])
+def test_lines_keep_away_from_walls(domain):
+    """Spheres outside the sampled box only, and close to all its sides: no line may meet one."""
+    packing = random_packing(8, 3000, periodic=False, domain=domain, radius=0.015)
+    margin = 8.0
+    low, high = inscribed_box(packing, margin * packing.radii.mean())
+    beyond = np.linalg.norm(np.maximum(np.maximum(low - packing.centers, packing.centers - high), 0), axis=1)
+    kept = beyond > packing.radii
+    hollow = packing._replace(centers=packing.centers[kept], radii=packing.radii[kept])
+    margin *= packing.radii.mean() / hollow.radii.mean()
+    found = two_point(hollow, margin=margin, points=3, lines=2000)
+    assert np.all(found.s2 == 0)
+    assert_allclose([found.phi, found.exact_slope], 0.0, atol=1e-15)  # what cut spheres leave by rounding
+    # Filled, the same lines see the spheres.
+    assert np.all(two_point(packing, margin=8.0, points=3, lines=200).s2 > 0)
+
+
+@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
+def test_bits_do_not_depend_on_threads():
+    packing = random_packing(9, 3000, radius=0.04)
+    rows = neighbours(packing)
+
+    def everything():
+        g, s2 = radial_distribution(packing, r_max=2.0), two_point(packing, r_max=2.0, lines=500)
+        return [*g, *s2, _unit_vectors(packing, *rows), *backbone(packing, *rows, rule="half-space")]
+
+    before = numba.get_num_threads()
+    try:
+        numba.set_num_threads(1)
+        one = everything()
+        numba.set_num_threads(2)
+        two = everything()
+    finally:
+        numba.set_num_threads(before)
+    for a, b in zip(one, two, strict=True):
+        assert_array_equal(a, b)
+
+
+def test_order_of_particles_and_images_do_not_matter():
+    """Hand-made packings need not be wrapped or sorted: both correlations must not rely on it."""
+    packing = random_packing(10, 500)
+    rng = np.random.default_rng(0)
+    moved = packing._replace(centers=packing.centers + rng.integers(-2, 3, (500, 3)))
+    assert np.any(wrap(moved.centers, moved.size, moved.periodic) != moved.centers)
+    assert_allclose(radial_distribution(moved).g, radial_distribution(packing).g, rtol=1e-12)
+    first, second = (two_point(p, lines=200).s2 for p in (packing, moved))
+    assert_allclose(first, second, rtol=1e-10)  # rounding of the images
+
+
+def test_bad_input():
+    crystal = simple_cubic(6)
+    walled, rows = crystal._replace(periodic=np.zeros(3, dtype=bool)), touching(crystal)
+    indptr, indices = rows
+    swapped = indices.copy()
+    swapped[[0, 1]] = swapped[[1, 0]]
+    one = Packing(np.full((2, 3), 1.0), np.full(2, 0.5), np.full(3, 4.0), np.ones(3, dtype=bool), {})
+    pair = np.array([0, 1, 2]), np.array([1, 0])
+    for name, call in (
+        ("margin = -1", lambda: packing_fraction(crystal, margin=-1)),
+        ("margin = nan", lambda: packing_fraction(crystal, margin=np.nan)),
+        ("margin = '1'", lambda: packing_fraction(crystal, margin="1")),
+        ("margin = 6.0: must be < 6 mean radii", lambda: packing_fraction(walled, margin=6.0)),
+        ("margin = 5.5: no particle", lambda: coordination(walled, *rows, margin=5.5)),
+        ("indptr of shape", lambda: coordination(crystal, indptr[:-1], indices)),
+        ("indptr of shape", lambda: coordination(crystal, indptr[::-1], indices)),
+        ("indices of shape", lambda: coordination(crystal, indptr, indices[:-1])),
+        ("indices of shape", lambda: coordination(crystal, indptr, indices.astype(float))),
+        ("indices from", lambda: coordination(crystal, indptr, indices + 1)),
+        ("indices: each pair", lambda: coordination(crystal, indptr, swapped)),
+        ("indices: each pair", lambda: coordination(one, np.array([0, 1, 1]), np.array([1]))),
+        ("indices: each pair", lambda: coordination(one, np.array([0, 1, 2]), np.array([0, 1]))),
+        ("centers: 0 and 1 coincide", lambda: fabric(one, *pair)),
+        ("centers: 0 and 1 coincide", lambda: backbone(one, *pair)),
+        ("no links", lambda: fabric(one, np.zeros(3, dtype=int), np.empty(0, dtype=int))),
+        ("gap = -1", lambda: backbone(crystal, *rows, gap=-1)),
+        ("rule = 'lp'", lambda: backbone(crystal, *rows, rule="lp")),
+        ("bins = 7", lambda: directions(crystal, *rows, bins=7)),
+        ("bins = 0", lambda: radial_distribution(crystal, bins=0)),
+        ("bins = 9.0", lambda: radial_distribution(crystal, r_max=1.0, bins=9.0)),
+        ("r_max = 3.1: .* <= 3, half of the shortest period", lambda: radial_distribution(crystal, r_max=3.1)),
+        ("r_max = 3.0: no centre", lambda: radial_distribution(walled, r_max=3.0)),
+        ("r_max = 0", lambda: two_point(crystal, r_max=0)),
+        ("r_max = 2.6: must be <= 2.5, half of the longest line", lambda: two_point(walled, r_max=2.6, margin=1.0)),
+        ("at least 2", lambda: radial_distribution(make_packing([[1, 1, 1]], [0.5], (4, 4, 4), True, {}))),
+        ("along = ", lambda: two_point(crystal, along=[[0, 0, 0]], r_max=1.0)),
+        ("along = ", lambda: two_point(crystal, along=(1, 0, 0), r_max=1.0)),
+        ("along = ", lambda: two_point(crystal, along="x", r_max=1.0)),
+        ("points = 1", lambda: two_point(crystal, points=1, r_max=1.0)),
+        ("lines = 1", lambda: two_point(crystal, lines=1, r_max=1.0)),
+        ("seed = -1", lambda: two_point(crystal, seed=-1, r_max=1.0)),
+        ("periods must be", lambda: two_point(one._replace(radii=np.full(2, 1.1)), r_max=0.5)),
+    ):
+        with pytest.raises(ValueError, match=name):
+            call()
