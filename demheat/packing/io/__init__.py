@@ -1,0 +1,182 @@
+"""Packings as files: what LAMMPS, LIGGGHTS, YADE, OVITO, ASE and ParaView write and read.
+
+Lengths are taken as metres: `packing.scaled(1e-3)` mends a file in millimetres. Floats are written as the shortest text
+that reads back to the same bits, so what a format can hold comes back bit for bit. What it cannot hold:
+
+============  =============================  =======================================================================
+format        suffixes                       kept
+============  =============================  =======================================================================
+lammps-data   .data .lmp                     all but provenance; type 1 and density 1 are written
+lammps-dump   .dump .lammpstrj .liggghts     all but provenance and domain
+yade          .yade                          all but provenance (the box as a comment that YADE passes over)
+extxyz        .xyz .extxyz                   all but provenance
+npz           .npz                           all
+vtp           .vtp                           all but provenance; links as lines beside
+============  =============================  =======================================================================
+
+Text may be packed: a further suffix .gz.
+"""
+
+from __future__ import annotations
+
+import gzip
+import io
+import os
+import zlib
+from numbers import Integral
+from pathlib import Path
+
+from demheat.packing.base import ROUND_AXES, Packing, check_box, make_packing
+from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
+from demheat.packing.io.found import to_packing
+from demheat.packing.io.text import Lines, broken
+
+__all__ = ["read", "write"]
+
+TEXTS = {"lammps-data": lammps_data, "lammps-dump": lammps_dump, "yade": yade, "extxyz": extxyz}
+SUFFIXES = {
+    "lammps-data": (".data", ".lmp"),
+    "lammps-dump": (".dump", ".lammpstrj", ".liggghts"),
+    "yade": (".yade",),
+    "extxyz": (".xyz", ".extxyz"),
+    "npz": (".npz",),
+    "vtp": (".vtp",),
+}
+
+
+def write(packing, path, *, format=None, network=None, temperature=None) -> None:
+    """Write a packing into a file; an interrupted write leaves no file, and an old one as it was.
+
+    Parameters
+    ----------
+    packing : Packing
+        Sphere i gets the id i + 1 where the format has ids.
+    path : path
+    format : str, optional
+        One of the formats above; by default as the suffix says.
+    network : Network, optional
+        Of the packing's particles, in the same order; only for vtp. Each pair becomes one line with its conductance,
+        W/K; links to periodic images are left out (and counted in the field data `links_cut`), links to walls too.
+    temperature : (n,) array_like, K or degrees Celsius, optional
+        One per sphere, NaN where there is none; only for vtp. Each line p-q (p before q) then has its heat flow
+        H (T_q - T_p), W: what p receives (Haddad et al. 2021, eq. 2).
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the suffix does not tell the format.
+    """
+    path, name, packed = _format(path, format)
+    if not isinstance(packing, Packing):
+        raise ValueError(f"packing = {type(packing).__name__}: must be a Packing")
+    make_packing(*packing[:5], domain=packing.domain)
+    if name != "vtp" and not (network is None and temperature is None):
+        raise ValueError(f"network, temperature: the format {name} has no place for them; must be None, or use vtp")
+    drawn = links.drawn(packing, network, temperature)
+    part = path.with_name(f".{path.name}.{os.getpid()}.part")
+    try:
+        with open(part, "xb") as stream:
+            if name == "vtp":
+                vtp.write(packing, stream, drawn)
+            elif name == "npz":
+                arrays.write(packing, stream)
+            else:
+                _write_text(TEXTS[name], packing, stream, packed)
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def read(path, *, format=None, size=None, periodic=None, domain=None, step=None, order="given") -> Packing:
+    """Read a packing from a file.
+
+    Parameters
+    ----------
+    path : path
+    format : str, optional
+        One of the formats above; by default as the suffix says.
+    size : (3,) sequence of float, m, optional
+        Box of a file that has none (YADE, VTP or XYZ of others): it is [0, size] in the coordinates of the file.
+        Without it the box is the bounding box of the spheres, with walls; provenance["box"] says which it was.
+    periodic : bool or three bools, optional
+        Goes before what the file says. LAMMPS data of others do not say, and need it.
+    domain : str, optional
+        As in `Packing`; by default what the file says, else "box".
+    step : int, optional
+        Timestep of a dump, or number of the frame (from 0) of extended XYZ; by default the last in the file.
+    order : {"given", "morton"}
+        "given": by rising id, or as in the file where there are no ids, so that sphere i is known to its maker and a
+        packing written and read comes back row by row. "morton": as `make_packing` sorts, which keeps neighbours near
+        in memory: worth it for large packings of others.
+
+    Returns
+    -------
+    Packing
+        The corner of the box is moved to 0; on periodic axes centres are wrapped into it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the file is broken: then its line (text), what was found there and what
+        was expected.
+    """
+    path, name, _ = _format(path, format)
+    _check_knobs(name, size, periodic, domain, step, order)
+    if name in TEXTS:
+        found = _read_text(TEXTS[name], path, step)
+    else:
+        found = (vtp_read if name == "vtp" else arrays).read(path)
+    if name != "npz":
+        found = found._replace(
+            provenance={"algorithm": "read", "file": path.name, "format": name} | (found.provenance or {})
+        )
+    return to_packing(found, path, size=size, periodic=periodic, domain=domain, order=order)
+
+
+def _format(path, format):
+    """Path, name of the format, and whether the text is packed."""
+    path = Path(path)
+    packed = path.suffix.lower() == ".gz"
+    suffix = (path.with_suffix("") if packed else path).suffix.lower()
+    name = format or next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), None)
+    if name not in SUFFIXES:
+        known = "; ".join(f"{name} ({' '.join(suffixes)})" for name, suffixes in SUFFIXES.items())
+        said = f"path = {str(path)!r}: the suffix tells no format, and " if format is None else ""
+        raise ValueError(f"{said}format = {format!r}: must be one of {known}")
+    if packed and name not in TEXTS:
+        raise ValueError(
+            f"path = {str(path)!r}: only text is packed, one of {', '.join(TEXTS)}; {name} must end plainly"
+        )
+    return path, name, packed
+
+
+def _check_knobs(name, size, periodic, domain, step, order):
+    check_box((1.0, 1.0, 1.0) if size is None else size, False if periodic is None else periodic)
+    if domain is not None and domain not in ROUND_AXES:
+        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    if step is not None and name not in ("lammps-dump", "extxyz"):
+        raise ValueError(f"step = {step!r}: a file of format {name} has one packing; must be None")
+    if step is not None and (not isinstance(step, Integral) or isinstance(step, bool)):
+        raise ValueError(f"step = {step!r}: must be an integer")
+    if order not in ("given", "morton"):
+        raise ValueError(f"order = {order!r}: must be 'given' or 'morton'")
+
+
+def _write_text(module, packing, stream, packed):
+    # Level 1: digits of random numbers shrink hardly more at 6, in three times the time. No name and no time in the
+    # archive: equal packings make equal files.
+    raw = gzip.GzipFile("", "wb", 1, stream, 0) if packed else stream
+    text = io.TextIOWrapper(raw, encoding="utf-8", newline="\n")
+    module.write(packing, text)
+    text.flush()
+    text.detach()
+    if packed:
+        raw.close()
+
+
+def _read_text(module, path, step):
+    with Lines(path) as lines:
+        try:
+            return module.read(lines, step)
+        except (EOFError, gzip.BadGzipFile, zlib.error) as error:
+            raise broken(path, lines.number + 1, f"broken packed data ({error})", "a whole .gz file") from None

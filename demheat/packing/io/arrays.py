@@ -1,0 +1,52 @@
+"""NumPy archives (.npz): every bit, with provenance and domain."""
+
+from __future__ import annotations
+
+import json
+import zipfile
+
+import numpy as np
+
+from demheat.packing.base import check_box
+from demheat.packing.io.found import Found
+
+NAMES = ("centers", "radii", "size", "periodic", "provenance", "domain")
+
+
+def write(packing, stream):
+    """Write a packing; its provenance as JSON."""
+    try:
+        provenance = json.dumps(packing.provenance, default=_plain)
+    except TypeError as error:
+        raise ValueError(f"packing.provenance: {error}") from None
+    np.savez(stream, **packing._asdict() | {"provenance": provenance})
+
+
+def read(path) -> Found:
+    """Read an archive without unpickling anything."""
+    try:
+        with np.load(path, allow_pickle=False) as stored:
+            lacking = [name for name in NAMES if name not in stored.files]
+            if lacking:
+                raise ValueError(f"found the arrays {', '.join(stored.files)}; expected {', '.join(NAMES)}")
+            arrays = {name: stored[name] for name in NAMES}
+        centers, radii = arrays["centers"], arrays["radii"]
+        if centers.ndim != 2 or centers.shape[1] != 3 or radii.shape != (len(centers),) or len(radii) == 0:
+            raise ValueError(f"found centers {centers.shape} and radii {radii.shape}; expected (n, 3) and (n,), n > 0")
+        size, periodic = check_box(arrays["size"], arrays["periodic"])
+        provenance = json.loads(str(arrays["provenance"]))
+        if not isinstance(provenance, dict):
+            raise ValueError(f"found a provenance of {type(provenance).__name__}; expected an object")
+        spheres = np.column_stack((centers, radii)).astype(float)
+    except FileNotFoundError:
+        raise
+    except (OSError, EOFError, TypeError, AttributeError, ValueError, zipfile.BadZipFile) as error:
+        raise ValueError(f"{path}: not a whole packing archive: {error}") from None
+    return Found(spheres, size, periodic, domain=str(arrays["domain"]), provenance=provenance)
+
+
+def _plain(value):
+    """What JSON can hold of a NumPy value."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    raise TypeError(f"holds {value!r}: must be what JSON can hold")

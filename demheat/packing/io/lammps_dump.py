@@ -1,0 +1,119 @@
+"""Dumps of LAMMPS and LIGGGHTS as text (docs.lammps.org, dump; cfdem.com, dump custom)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.packing.io.found import Found
+from demheat.packing.io.text import floats, read_table, whole, write_rows
+
+# Kinds of coordinates, best first: plain, unwrapped, scaled by the box, scaled and unwrapped.
+KINDS = ("", "u", "s", "su")
+
+
+def write(packing, stream):
+    """Write a packing as one timestep, 0, with ids from 1; the domain is lost."""
+    flags = " ".join("pp" if flag else "ff" for flag in packing.periodic)
+    stream.write(f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{packing.number}\nITEM: BOX BOUNDS {flags}\n")
+    stream.write("".join(f"0.0 {side!r}\n" for side in packing.size.tolist()))
+    stream.write("ITEM: ATOMS id type x y z radius\n")
+    ids = np.arange(1, packing.number + 1)
+    write_rows(stream, "%d 1 %r %r %r %r\n", ids, *packing.centers.T, packing.radii)
+
+
+def read(lines, step) -> Found:
+    """Read the timestep `step`, or the last one if None."""
+    last, seen = None, []
+    while (header := _header(lines)) is not None:
+        rows = lines.take_rows(header["NUMBER OF ATOMS"])
+        if header["TIMESTEP"] == step:
+            return _atoms(lines, header, rows)
+        last = header, rows
+        seen.append(header["TIMESTEP"])
+    if last is None or step is not None:
+        some = ", ".join(map(str, seen[:10])) + (", ..." if len(seen) > 10 else "")
+        raise lines.broken(None, f"timestep {step}: the file has {some}" if seen else "ITEM: TIMESTEP")
+    return _atoms(lines, *last)
+
+
+def _header(lines):
+    """Read the items before the atoms as a dict by their names; None at the end of the file."""
+    header = {}
+    while (line := lines.take()) is not None:
+        if not line.startswith("ITEM:"):
+            if line:
+                raise lines.broken(repr(line), "a line ITEM: ...")
+            continue
+        item = line[5:].strip()
+        if item.startswith("ATOMS"):
+            lacking = [name for name in ("TIMESTEP", "NUMBER OF ATOMS", "BOX BOUNDS") if name not in header]
+            if lacking:
+                raise lines.broken(repr(line), f"ITEM: {lacking[0]} before it")
+            return header | {"columns": item.split()[1:], "line": lines.number}
+        if item.startswith("BOX BOUNDS"):
+            header["BOX BOUNDS"] = _bounds(lines, item.split()[2:])
+        elif item in ("TIMESTEP", "NUMBER OF ATOMS"):
+            least = 0 if item == "NUMBER OF ATOMS" else None
+            header[item] = whole(lines, lines.take(), f"the integer of ITEM: {item}", least=least)
+        else:
+            # UNITS, TIME: one line each, not needed.
+            lines.take()
+    if header:
+        raise lines.broken(None, "ITEM: ATOMS")
+    return None
+
+
+def _bounds(lines, words):
+    """(3, 2) bounds in metres, and the periodicity or None."""
+    if words[:2] == ["abc", "origin"]:
+        raise lines.broken("BOX BOUNDS abc origin", "bounds without tilt: triclinic boxes are not read")
+    tilted = words[:3] == ["xy", "xz", "yz"]
+    rows = []
+    for axis in "xyz":
+        line = lines.take()
+        expected = f"{axis}lo {axis}hi, {axis}lo < {axis}hi"
+        if line is None:
+            raise lines.broken(None, expected)
+        row = floats(lines, line.split(), 3 if tilted else 2, expected)
+        if not row[0] < row[1]:
+            raise lines.broken(repr(line), expected)
+        if tilted and row[2]:
+            raise lines.broken(repr(line), "a tilt of 0: triclinic boxes are not read")
+        rows.append(row[:2])
+    flags = words[3:] if tilted else words
+    periodic = np.array([flag.startswith("p") for flag in flags]) if len(flags) == 3 else None
+    return np.array(rows), periodic
+
+
+def _atoms(lines, header, rows) -> Found:
+    """Read the rows of one timestep."""
+    if not rows.count:
+        raise lines.broken("no atoms", f"some in timestep {header['TIMESTEP']}", number=header["line"])
+    (bounds, periodic), names = header["BOX BOUNDS"], header["columns"]
+    low, side = bounds[:, 0], bounds[:, 1] - bounds[:, 0]
+    columns, scaled = _columns(lines, names, header["line"])
+    values, numbers = read_table(lines, rows, columns, names)
+    x = np.column_stack([values[axis] for axis in "xyz"])
+    x = np.where(scaled, low + x * side, x)
+    radii = values["radius"] if "radius" in values else values["diameter"] / 2
+    said = {"step": header["TIMESTEP"]}
+    return Found(np.column_stack((x, radii)), side, periodic, low, None, values.get("id"), numbers, said)
+
+
+def _columns(lines, names, number):
+    """Where the wanted columns are, as a dict, and which axes are scaled by the box."""
+    columns, scaled = {}, []
+    said = f"the columns {' '.join(names)}"
+    for axis in "xyz":
+        kind = next((kind for kind in KINDS if axis + kind in names), None)
+        if kind is None:
+            raise lines.broken(said, f"one of {', '.join(axis + kind for kind in KINDS)} among them", number=number)
+        columns[axis] = names.index(axis + kind)
+        scaled.append("s" in kind)
+    sizes = [name for name in ("radius", "diameter") if name in names]
+    if not sizes:
+        raise lines.broken(said, "radius or diameter among them", number=number)
+    columns[sizes[0]] = names.index(sizes[0])
+    if "id" in names:
+        columns["id"] = names.index("id")
+    return columns, np.array(scaled)

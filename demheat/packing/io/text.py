@@ -1,0 +1,196 @@
+"""Lines of text files, counted, and the tables of numbers in them."""
+
+from __future__ import annotations
+
+import gzip
+import re
+from itertools import chain, islice
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+# Rows formatted at once: their Python numbers stay few.
+CHUNK = 10_000
+MARK = re.compile(
+    r"demheat packing: size {0} {0} {0}, periodic ([TF]) ([TF]) ([TF]), domain ([\w-]+)".format(
+        r"(\d+\.?\d*(?:e[+-]?\d+)?)"
+    )
+)
+
+
+class Rows(NamedTuple):
+    """Lines of a table: their texts, the number of the first, and how many there should be (None: any)."""
+
+    texts: list[str]
+    first: int
+    count: int | None
+
+
+class Lines:
+    """A text file (packed too, if it ends in .gz) as lines counted from 1.
+
+    Parameters
+    ----------
+    path : path
+
+    Attributes
+    ----------
+    path : Path
+    number : int
+        Number of the line last taken.
+    """
+
+    def __init__(self, path):
+        self.path, self.number = Path(path), 0
+        # Foreign comments may be in any encoding; what is read from them is not.
+        opened = gzip.open if self.path.suffix.lower() == ".gz" else open
+        self._file = opened(self.path, "rt", encoding="utf-8", errors="replace")
+        self._stream = iter(self._file)
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._file.close()
+
+    def take(self):
+        """Return the next line without the blanks around it, or None at the end of the file."""
+        line = next(self._stream, None)
+        self.number += line is not None
+        return None if line is None else line.strip()
+
+    def put_back(self, line):
+        """Undo the last `take`, which gave `line`."""
+        self._stream = chain([line], self._stream)
+        self.number -= 1
+
+    def take_rows(self, count=None) -> Rows:
+        """Take up to `count` lines (all that are left if None) as they are, fewer only at the end of the file."""
+        rows = Rows(list(islice(self._stream, count)), self.number + 1, count)
+        self.number += len(rows.texts)
+        return rows
+
+    def broken(self, found, expected, *, number=None) -> ValueError:
+        """The error to raise for a line, by default the one last taken; None is found at the end of the file."""
+        if found is None:
+            return broken(self.path, self.number + 1, "the end of the file", expected)
+        return broken(self.path, number or self.number, found, expected)
+
+
+def broken(path, number, found, expected) -> ValueError:
+    """The one form of error of a broken file."""
+    found = found if len(found) <= 100 else found[:100] + "..."
+    return ValueError(f"{path}, line {number}: found {found}; expected {expected}")
+
+
+def floats(lines, words, count, expected):
+    """Cast the first words of the line last taken, or raise the error of a broken file; (count,) float array."""
+    try:
+        values = np.array([float(word) for word in words[:count]])
+    except ValueError:
+        values = np.array([])
+    if len(values) != count or not np.all(np.isfinite(values)):
+        raise lines.broken(repr(" ".join(words)), expected)
+    return values
+
+
+def whole(lines, word, expected, *, least=None) -> int:
+    """Cast a word of the line last taken to an integer, or raise the error of a broken file."""
+    try:
+        value = int(word)
+    except (TypeError, ValueError):
+        raise lines.broken(repr(word) if word is not None else None, expected) from None
+    if least is not None and value < least:
+        raise lines.broken(repr(word), f"{expected}, >= {least}")
+    return value
+
+
+def read_table(lines, rows, columns, names, *, extra=()):
+    """Read rows of numbers.
+
+    Parameters
+    ----------
+    lines : Lines
+        Where they come from.
+    rows : Rows
+        Blank ones and comments are left out if any number of rows will do.
+    columns : mapping of str to int
+        Which columns to return, under which names.
+    names : sequence of str
+        Names of all columns of a row, for the count and the message.
+    extra : sequence of str
+        Columns that may follow, on all rows or none.
+
+    Returns
+    -------
+    values : dict of str to (n,) float array
+    numbers : sequence of int
+        Line number of each row.
+
+    Raises
+    ------
+    ValueError
+        For the first line that is not such a row.
+    """
+    texts, first, count = rows
+    numbers = range(first, first + len(texts))
+    if any("#" in text for text in texts):
+        texts = [text.partition("#")[0] for text in texts]
+    widths = list(map(len, map(str.split, texts)))
+    if count is None and 0 in widths:
+        kept = [k for k, width in enumerate(widths) if width]
+        texts, numbers, widths = ([column[k] for k in kept] for column in (texts, numbers, widths))
+    _check_widths(lines, texts, numbers, widths, [names, extra], count)
+    try:
+        values = np.loadtxt(texts, usecols=list(columns.values()), comments=None, ndmin=2)
+    except ValueError as error:
+        raise _not_a_number(lines, texts, numbers, columns, error) from None
+    return dict(zip(columns, values.T, strict=True)), numbers
+
+
+def write_rows(stream, template, *columns):
+    """Write one line per row: a %-template, its columns as (n,) arrays; %r gives the shortest exact floats."""
+    for start in range(0, len(columns[0]), CHUNK):
+        rows = zip(*(column[start : start + CHUNK].tolist() for column in columns), strict=True)
+        stream.write("".join([template % row for row in rows]))
+
+
+def mark(packing) -> str:
+    """What a comment must say for `marked` to know the box of a packing."""
+    size = " ".join(map(repr, packing.size.tolist()))
+    flags = " ".join("T" if flag else "F" for flag in packing.periodic)
+    return f"demheat packing: size {size}, periodic {flags}, domain {packing.domain}"
+
+
+def marked(line):
+    """(size, periodic, domain) as `mark` has written them into a line, or None."""
+    found = MARK.search(line)
+    if found is None:
+        return None
+    size, flags = np.array(found.groups()[:3], dtype=float), np.array([flag == "T" for flag in found.groups()[3:6]])
+    return size, flags, found.group(7)
+
+
+def _check_widths(lines, texts, numbers, widths, names, count):
+    """Raise for the first row that has another number of columns than it should, and for rows that lack."""
+    usual, full = list(names[0]), [*names[0], *names[1]]
+    columns = full if widths[:1] == [len(full)] else usual
+    said = f"{f' of {count}' if count else ''}, {len(columns)} columns: {' '.join(columns)}"
+    if set(widths) - {len(columns)}:
+        k = next(k for k, width in enumerate(widths) if width != len(columns))
+        raise lines.broken(f"{widths[k]} columns, {texts[k].strip()!r}", f"row {k + 1}{said}", number=numbers[k])
+    if not texts or len(texts) < (count or 0):
+        raise lines.broken(None, f"row {len(texts) + 1}{said}")
+
+
+def _not_a_number(lines, texts, numbers, columns, error):
+    """The error of the first word that is not a number; `error` is what the fast reader said."""
+    for number, text in zip(numbers, texts, strict=True):
+        words = text.split()
+        for name, index in columns.items():
+            try:
+                float(words[index])
+            except ValueError:
+                return lines.broken(f"{name} = {words[index]!r}", f"a number in column {index + 1}", number=number)
+    return ValueError(f"{lines.path}: {error}")
