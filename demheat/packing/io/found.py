@@ -102,14 +102,12 @@ def _centers(found, path, origin, sides, flags):
     origin = np.asarray(origin, dtype=float)
     centers = found.spheres[:, :3] - origin
     walls = ~np.broadcast_to(flags, 3)
-    # Shifting the corner to 0 rounds the centre and the side, each by an ulp of the larger coordinate.
-    slack = 4 * np.finfo(float).eps * np.maximum(np.abs(origin), np.abs(origin + sides))
-    outside = np.any(walls & ((centers < -slack) | (centers > sides + slack)), axis=1)
+    outside = np.any(walls & ((centers < 0) | (centers > sides)), axis=1)
     if outside.any():
         k = int(np.argmax(outside))
         box = f"a centre between the walls, {origin.tolist()} to {(origin + sides).tolist()}"
         _refuse(found, path, k, f"x y z = {found.spheres[k, :3].tolist()}", box)
-    return np.where(walls, np.clip(centers, 0.0, sides), centers)
+    return centers
 
 
 def _rank(found, path):
