@@ -1,10 +1,10 @@
 """Packings of spheres: how they are made, kept and searched.
 
-`relax` and `neighbours` are modules here; their functions are imported from them.
+`relax`, `lsa` and `neighbours` are modules here; their functions are imported from them.
 """
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.cache import cached, relaxed
+from demheat.packing.cache import cached, grown, relaxed
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal, Uniform
 from demheat.packing.relax import settle
@@ -18,6 +18,7 @@ __all__ = [
     "Uniform",
     "cached",
     "contacts",
+    "grown",
     "make_packing",
     "relaxed",
     "settle",

@@ -14,14 +14,16 @@ from pathlib import Path
 import numpy as np
 
 from demheat.packing.base import Packing, check_box
-from demheat.packing.radii import Gaussian
+from demheat.packing.lsa import lsa
+from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 2
-MAKERS = tuple(
+RELAX = tuple(
     f"demheat.packing.{name}" for name in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")
 )
+LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")
 
 
 def cache_folder() -> Path:
@@ -81,16 +83,38 @@ def relaxed(
     folder : path, optional
         Default `cache_folder()`.
     """
+    request = {"number": number, "phi": phi, "seed": seed} | knobs
+    return _of_shape(relax, RELAX, request, size, radii, periodic, folder)
+
+
+def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, folder=None, **knobs) -> Packing:
+    """`lsa` with a memory: boxes of one shape share one packing, scaled.
+
+    Parameters
+    ----------
+    number, size, radii, periodic, seed, knobs
+        As in `demheat.packing.lsa.lsa`, without `start`.
+    folder : path, optional
+        Default `cache_folder()`.
+    """
+    if "start" in knobs:
+        raise ValueError("start: must not be given here; `lsa` takes it, and `cached` keeps what it makes")
+    request = {"number": number, "seed": seed} | knobs
+    return _of_shape(lsa, LSA, request, size, radii, periodic, folder)
+
+
+def _of_shape(maker, modules, request, size, radii, periodic, folder):
+    """Packing of a box of this shape by `maker`, from the folder or made now, stretched to the size asked for."""
     sides, periodic = check_box(size, periodic)
     # 12 digits: sides such as 0.1 and 0.3 are rounded already, and so are their ratios.
     shape = np.round(sides / sides.max(), 12)
-    radii = Gaussian() if radii is None else radii
-    request = {"phi": phi, "seed": seed} | knobs
-    key = {"algorithm": "relax", "code": code_hash(*MAKERS), "number": number, "shape": shape.tolist()}
-    key |= {"radii": repr(radii), "periodic": periodic.tolist()} | {k: v for k, v in request.items() if k != "progress"}
+    radii = Gaussian() if radii is None else distribution(radii)
+    key = {"algorithm": maker.__name__, "code": code_hash(*modules), "shape": shape.tolist()}
+    key |= {"radii": repr(radii), "periodic": periodic.tolist()}
+    key |= {name: value for name, value in request.items() if name != "progress"}
 
     def make():
-        return relax(number, size=shape, radii=radii, periodic=periodic, **request)
+        return maker(size=shape, radii=radii, periodic=periodic, **request)
 
     unit = cached(make, key, folder=folder)
     # Stretched by the 1e-12 that rounding the shape took, so that the box is met exactly; volumes keep phi.

@@ -126,6 +126,16 @@ class Listed:
         return rng.permutation(np.array(self.values) / np.mean(self.values))
 
 
+def distribution(radii):
+    """A radius distribution as it is, or the list of radii that an array is; raises ValueError for anything else."""
+    if hasattr(radii, "draw"):
+        return radii
+    try:
+        return Listed(tuple(np.asarray(radii, dtype=float).tolist()))
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"radii = {radii!r}: must be a distribution such as Gaussian(0.3), or numbers > 0") from error
+
+
 def _cut_normal(number, cut, rng):
     """Standard normal numbers given that they lie within +-cut, by inversion."""
     return ndtri(rng.uniform(ndtr(-cut), ndtr(cut), number))

@@ -23,7 +23,7 @@ from demheat.packing.base import (
     wrap,
 )
 from demheat.packing.neighbours import near_rows
-from demheat.packing.radii import Gaussian
+from demheat.packing.radii import Gaussian, distribution
 
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).
@@ -62,8 +62,8 @@ def relax(
     phi : float
         Sum of the sphere volumes over the volume of the domain, met to rounding. Walls leave less room: above what fits
         (0.595 at 1e3 and 0.625 at 1e4 particles with spread 0.3 in a walled cube) overlaps remain.
-    radii : Gaussian, Uniform, Lognormal, Bidisperse or Listed, optional
-        Default Gaussian(spread=0.3, cut=2.5).
+    radii : Gaussian, Uniform, Lognormal, Bidisperse, Listed or (n,) array_like, optional
+        Only ratios count. Default Gaussian(spread=0.3, cut=2.5).
     periodic : bool or (3,) sequence of bool
         Per axis: periodic, or a hard wall at both ends.
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
@@ -87,8 +87,8 @@ def relax(
     ValueError
         If an argument is not as described, or a sphere is too large for the box.
     """
-    radii = Gaussian() if radii is None else radii
-    size, periodic = _check_request(number, size, phi, radii, periodic, seed, overlap, steps, allow_few)
+    radii = Gaussian() if radii is None else distribution(radii)
+    size, periodic = _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few)
     check_domain(domain, size, periodic)
     rng = np.random.default_rng(seed)
     centers = _starting_points(int(number), size, periodic, domain, rng)
@@ -248,15 +248,13 @@ def _jittered_grid(number, size, periodic, rng):
     return np.where(periodic, wrap(points, size, periodic), inside)
 
 
-def _check_request(number, size, phi, radii, periodic, seed, overlap, steps, allow_few):
+def _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few):
     if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} particles; pass allow_few=True if you mean it")
     if not (math.isfinite(phi) and 0 < phi <= 0.74):
         raise ValueError(f"phi = {phi!r}: must be > 0 and <= 0.74, the densest packing of equal spheres")
-    if not hasattr(radii, "draw"):
-        raise ValueError(f"radii = {radii!r}: must be a radius distribution such as Gaussian(0.3)")
     if not isinstance(seed, int | np.integer) or seed < 0:
         raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
     _check_stop(overlap, steps)

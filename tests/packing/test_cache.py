@@ -170,7 +170,7 @@ def test_new_code_retires_old_packings(tmp_path, monkeypatch):
 
 def test_code_hash_reads_the_sources():
     assert code_hash("demheat.packing.base") != code_hash("demheat.packing.radii")
-    assert len(code_hash(*cache.MAKERS)) == 64
+    assert len(code_hash(*cache.LSA)) == 64
 
 
 def test_nothing_is_cached_of_bad_input(tmp_path):

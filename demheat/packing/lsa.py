@@ -1,0 +1,179 @@
+"""Packings by the Lubachevsky-Stillinger algorithm: hard spheres move, collide and grow until they are dense enough.
+
+Source: B. D. Lubachevsky, F. H. Stillinger, J. Stat. Phys. 60 (1990) 561. All spheres have mass 1 whatever their size
+and all radii grow in proportion.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+
+import numpy as np
+
+from demheat.packing.base import Packing, check_box, check_domain, make_packing
+from demheat.packing.motion import Motion
+from demheat.packing.radii import Gaussian, Listed, distribution
+from demheat.packing.relax import FEWEST, relax
+
+# Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the
+# spheres have no time to arrange themselves: 1e4 of them with spread 0.3 then jam at 0.6538 (start at 0.55) or 0.651
+# (0.60) instead of 0.6558 (0.4; spheropack, which starts from points: 0.6559).
+START, START_OF_TARGET, START_OVERLAP = 0.4, 0.6, 1e-4
+# Reduced pressure at which packings count as jammed: the radii could grow by some 1e-6 more.
+JAMMED = 1e6
+
+
+def lsa(
+    number=None,
+    *,
+    size=(1.0, 1.0, 1.0),
+    phi=None,
+    pressure=None,
+    radii=None,
+    periodic=True,
+    domain="box",
+    seed=0,
+    growth=0.02,
+    start=None,
+    allow_few=False,
+    progress=None,
+) -> Packing:
+    """Pack spheres without overlap by letting them grow while they move and collide.
+
+    Parameters
+    ----------
+    number : int
+        Of spheres; not needed with `start`.
+    size : (3,) sequence of float, m
+    phi : float, optional
+        Stop at this packing fraction, met to rounding.
+    pressure : float, optional
+        Stop at this reduced pressure P V / (N k T), averaged over 10 collisions per sphere; default 1e6 (jammed) unless
+        `phi` is given. With both, what comes first stops.
+    radii : Gaussian, Uniform, Lognormal, Bidisperse, Listed or (n,) array_like, optional
+        Only ratios count. Default Gaussian(spread=0.3, cut=2.5).
+    periodic : bool or (3,) sequence of bool
+        Per axis: periodic, or a hard wall at both ends.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+        Inscribed in the box, with a hard round wall.
+    seed : int
+    growth : float or sequence of (reduced pressure, rate)
+        Growth rate of the mean diameter over the thermal velocity; of a sequence, each rate holds from its pressure on.
+        Slower growth jams denser and takes longer.
+    start : Packing, optional
+        Begin from these spheres (domain, radii and seed included, radii shrunk as far as they overlap) instead of a
+        relaxed packing at phi = 0.4 or 0.6 of the one asked for.
+    allow_few : bool
+        Fewer than 100 spheres are refused unless this is True.
+    progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
+
+    Returns
+    -------
+    Packing
+        No two spheres overlap, nor a sphere and a wall. Same bits for the same arguments, whatever the number of
+        threads. `provenance` has the packing fraction and the reduced pressure reached, collisions and events per
+        sphere, and what stopped it.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the box is too small for the largest spheres.
+    RuntimeError
+        If the spheres jam (reduced pressure 1e6) before `phi`; the message says at which packing fraction.
+
+    Warns
+    -----
+    UserWarning
+        If the sphere radii had to be shrunk by more than rounding to leave no overlap.
+    """
+    radii = Gaussian() if radii is None else distribution(radii)
+    stages, phi, pressure = _check_targets(growth, phi, pressure)
+    _check_seed(seed)
+    if start is None:
+        size, periodic = _check_request(number, size, periodic, domain, radii, allow_few)
+        begin = START if phi is None else min(START, START_OF_TARGET * phi)
+        start = relax(
+            number, size=size, phi=begin, radii=radii, periodic=periodic, domain=domain, seed=seed,
+            overlap=START_OVERLAP, allow_few=allow_few,
+        )  # fmt: skip
+    elif number not in (None, start.number):
+        raise ValueError(f"number = {number!r} with a start of {start.number} spheres: must be the same, or left out")
+    _check_start(start, phi)
+    motion = Motion(start, np.random.default_rng([seed, 1]))
+    stopped = _grow(motion, stages, phi, pressure, progress)
+    centers, radii_now, shrunk = motion.packing()
+    if shrunk > 1e-10:
+        warnings.warn(f"radii were shrunk by {shrunk:.1e} of themselves to leave no overlap", stacklevel=2)
+    provenance = {"algorithm": "lsa", "seed": int(seed), "number": start.number, "start": start.provenance}
+    provenance |= {"growth": [list(stage) for stage in stages], "stopped_by": stopped} | motion.reached()
+    provenance |= {"shrunk": shrunk}
+    return make_packing(centers, radii_now, start.size, start.periodic, provenance, domain=start.domain)
+
+
+def _grow(motion, stages, phi, pressure, progress):
+    """Run until the target is reached; returns what stopped it, or raises RuntimeError if the spheres jam before."""
+    windows, limit = 0, JAMMED if pressure is None else pressure
+    while phi is None or motion.phi < phi * (1 - 1e-14):
+        reached = motion.pressure if windows else 0.0
+        rate = [rate for least, rate in stages if reached >= least or least == stages[0][0]][-1]
+        if not motion.run(rate, phi):
+            continue
+        windows += 1
+        if progress is not None:
+            progress(motion.collisions / len(motion.spheres), motion.phi, motion.pressure)
+        # The first window may begin with many collisions of spheres that nearly touch.
+        if windows > 1 and motion.pressure >= limit:
+            if pressure is None:
+                raise RuntimeError(
+                    f"phi = {phi} not reached: the spheres jam at phi = {motion.phi:.6f}, reduced pressure "
+                    f"{motion.pressure:.2e}; ask for less, or let them grow more slowly"
+                )
+            return "pressure"
+    return "phi"
+
+
+def _check_request(number, size, periodic, domain, radii, allow_few):
+    if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 2:
+        raise ValueError(f"number = {number!r}: must be an integer >= 2")
+    if number < FEWEST and not allow_few:
+        raise ValueError(f"number = {number}: fewer than {FEWEST} spheres; pass allow_few=True if you mean it")
+    if isinstance(radii, Listed) and len(radii.values) != number:
+        raise ValueError(f"radii: {len(radii.values)} of them for number = {number} spheres; must be one each")
+    sides, flags = check_box(size, periodic)
+    check_domain(domain, sides, flags)
+    return sides, flags
+
+
+def _check_seed(seed):
+    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
+        raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
+
+
+def _check_targets(growth, phi, pressure):
+    """Growth as stages (reduced pressure from which it holds, rate), and the targets."""
+    stages = np.array([(0.0, growth)] if np.ndim(growth) == 0 else growth, dtype=float)
+    good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
+    if not (good and np.all(stages[:, 1] > 0) and np.all(np.diff(stages[:, 0]) > 0)):
+        raise ValueError(f"growth = {growth!r}: must be a rate > 0, or pairs of ascending pressures and rates > 0")
+    if phi is not None and not (math.isfinite(phi) and 0 < phi <= 0.74):
+        raise ValueError(f"phi = {phi!r}: must be > 0 and <= 0.74, the densest packing of equal spheres")
+    if pressure is not None and not (math.isfinite(pressure) and pressure > 1):
+        raise ValueError(f"pressure = {pressure!r}: must be a reduced pressure > 1, that of points")
+    return stages.tolist(), phi, JAMMED if phi is None and pressure is None else pressure
+
+
+def _check_start(start, phi):
+    """Raise ValueError if the start is denser than the target, or its largest spheres would meet both ways round."""
+    if phi is not None and start.phi > phi:
+        raise ValueError(f"phi = {phi}: must be at least that of the start, {start.phi:.6g}")
+    most = 0.74 if phi is None else phi
+    largest = float(np.max(start.radii)) * math.cbrt(most / start.phi)
+    for axis in range(3):
+        # Along a period only the nearest image is seen; a little room, since lists reach beyond contact.
+        least = 4.2 * largest if start.periodic[axis] else 2.0 * largest
+        if start.size[axis] < least:
+            raise ValueError(
+                f"size = {start.size.tolist()}: side {axis} must be >= {least:.6g} for spheres of radius up to "
+                f"{largest:.6g} at phi = {most}; use more spheres, a narrower distribution or a thicker box"
+            )

@@ -1,0 +1,301 @@
+"""Event-driven motion of growing hard spheres, compiled: one event per sphere, the earliest found in a tree of minima.
+
+Bookkeeping after Lubachevsky, J. Comput. Phys. 94 (1991) 255: every sphere keeps its one next event. A collision is
+taken over by a sphere that can have it earlier; the partner left behind is looked at again when its event comes up.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+# What a sphere's next event is, where it is not a collision with another sphere (its number): to be predicted again, to
+# leave the region its list of neighbours serves, to hit wall 0 to 5 (x-, x+, y-, ...) or the round wall.
+AGAIN, LEAVE, WALL, ROUND = -1, -2, -3, -9
+# Why the motion stopped.
+LEFT, TIMED_OUT, COUNTED = 0, 1, 2
+# Children of a node of the tree: their times are one cache line.
+FAN = 8
+
+
+class Bounds(NamedTuple):
+    """Plain numbers that hold for a whole run: no arrays, whose counted references would cost more than the events.
+
+    Attributes
+    ----------
+    period, wall : tuples of three floats
+        Period of each axis, 0 if it has none; position of its upper flat wall (the lower is at 0), 0 if it has none.
+    middle : tuple of three floats
+        Centre of the round wall.
+    across : tuple of three floats
+        1 for axes across which the round wall stands, else 0.
+    round : float
+        Its radius, 0 if there is none.
+    grow : float
+        Growth rate of the radii over the radii at time 0.
+    leash : float
+        How far from home a sphere may go before the neighbours must be listed again.
+    last : float
+        Time at which to stop.
+    """
+
+    period: tuple
+    wall: tuple
+    middle: tuple
+    across: tuple
+    round: float
+    grow: float
+    leash: float
+    last: float
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _set_time(times, levels, i, time):
+    """Give leaf i a time and mend the minima above it, as far up as they change."""
+    times[i] = time
+    node = i
+    for level in range(1, len(levels) - 1):
+        node //= FAN
+        first = levels[level - 1] + node * FAN
+        least = min(
+            min(min(times[first], times[first + 1]), min(times[first + 2], times[first + 3])),
+            min(min(times[first + 4], times[first + 5]), min(times[first + 6], times[first + 7])),
+        )
+        here = levels[level] + node
+        if times[here] == least:
+            return
+        times[here] = least
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _earliest(times, levels):
+    """Leaf with the least time."""
+    node = 0
+    for level in range(len(levels) - 2, 0, -1):
+        least = times[levels[level] + node]
+        first = levels[level - 1] + node * FAN
+        child = 0
+        while times[first + child] != least:
+            child += 1
+        node = node * FAN + child
+    return node
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _advance(spheres, i, now):
+    """Move a sphere along its way to the time `now`."""
+    step = now - spheres[i, 6]
+    spheres[i, 0] += step * spheres[i, 3]
+    spheres[i, 1] += step * spheres[i, 4]
+    spheres[i, 2] += step * spheres[i, 5]
+    spheres[i, 6] = now
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _meeting(a, b, c):
+    """First root >= 0 of a t^2 + 2 b t + c, the growing contact distance met from outside (c >= 0 but for rounding)."""
+    if b < 0.0:
+        if c <= 0.0:
+            return 0.0
+        square = b * b - a * c
+        return c / (np.sqrt(square) - b) if square >= 0.0 else np.inf
+    # Moving apart, but slower than the surfaces grow.
+    return (b + np.sqrt(b * b - a * c)) / -a if a < 0.0 else np.inf
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _parting(a, b, c):
+    """First root >= 0 of a t^2 + 2 b t + c, a shrinking bound met from inside (c <= 0 but for rounding)."""
+    square = b * b - a * c
+    if square < 0.0:
+        return np.inf
+    if b > 0.0:
+        return max(0.0, -c / (b + np.sqrt(square)))
+    return (np.sqrt(square) - b) / a if a > 0.0 else np.inf
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _walls(bounds, s, home, i, now):
+    """First meeting with a wall or the edge of the sphere's region: time from now, and which."""
+    a = b = c = 0.0
+    for k in range(3):
+        away = s[i, k] - home[i, k]
+        v = s[i, 3 + k]
+        a += v * v
+        b += away * v
+        c += away * away
+    best, who = _parting(a, b, c - bounds.leash**2), LEAVE
+    radius, swell = s[i, 7] * (1.0 + bounds.grow * now), s[i, 7] * bounds.grow
+    a = b = c = 0.0
+    for k in range(3):
+        x, v = s[i, k], s[i, 3 + k]
+        if bounds.wall[k] > 0.0:
+            if v < swell:
+                t = max(0.0, x - radius) / (swell - v)
+                if t < best:
+                    best, who = t, WALL - 2 * k
+            if -v < swell:
+                t = max(0.0, bounds.wall[k] - x - radius) / (swell + v)
+                if t < best:
+                    best, who = t, WALL - 2 * k - 1
+        if bounds.across[k] > 0.0:
+            x -= bounds.middle[k]
+            a += v * v
+            b += x * v
+            c += x * x
+    if bounds.round > 0.0:
+        room = bounds.round - radius
+        t = _parting(a - swell * swell, b + room * swell, c - room * room)
+        if t < best:
+            best, who = t, ROUND
+    return best, who
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _predict(bounds, s, home, indptr, indices, times, levels, partner, i, now):
+    """Find the next event of sphere i, which stands at time `now`, and take its partner over from any other sphere.
+
+    A collision that others have arranged with sphere i holds unless something comes earlier.
+    """
+    bx, by, bz = bounds.period
+    ix = 1.0 / bx if bx > 0.0 else 0.0
+    iy = 1.0 / by if by > 0.0 else 0.0
+    iz = 1.0 / bz if bz > 0.0 else 0.0
+    grow = bounds.grow
+    size = 1.0 + grow * now
+    x, y, z, u, v, w, radius = s[i, 0], s[i, 1], s[i, 2], s[i, 3], s[i, 4], s[i, 5], s[i, 7]
+    wait, who = _walls(bounds, s, home, i, now)
+    best, held = now + wait, partner[i]
+    if held >= 0 and times[i] <= best:
+        best, who = times[i], np.int64(held)
+    for t in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
+        j = indices[t]
+        lag = now - s[j, 6]
+        du, dv, dw = s[j, 3] - u, s[j, 4] - v, s[j, 5] - w
+        dx = s[j, 0] + lag * s[j, 3] - x
+        dy = s[j, 1] + lag * s[j, 4] - y
+        dz = s[j, 2] + lag * s[j, 5] - z
+        dx -= bx * np.rint(dx * ix)
+        dy -= by * np.rint(dy * iy)
+        dz -= bz * np.rint(dz * iz)
+        reach = radius + s[j, 7]
+        swell = reach * grow
+        reach *= size
+        a = du * du + dv * dv + dw * dw - swell * swell
+        b = dx * du + dy * dv + dz * dw - reach * swell
+        c = dx * dx + dy * dy + dz * dz - reach * reach
+        # Too far to matter: no later than c / -2b is only what surfaces outrun by their growth can be.
+        if a >= 0.0 and c >= -2.0 * b * (best - now):
+            continue
+        when = now + _meeting(a, b, c)
+        if when < best and when < times[j]:
+            best, who = when, np.int64(j)
+    if who != held:
+        if held >= 0:
+            partner[held] = AGAIN
+        partner[i] = who
+        _set_time(times, levels, i, best)
+        if who >= 0:
+            if partner[who] >= 0:
+                partner[partner[who]] = AGAIN
+            partner[who] = i
+            _set_time(times, levels, who, best)
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _collide(bounds, s, i, j):
+    """Elastic collision of two spheres of mass 1, seen from the growing surfaces; returns impulse times distance."""
+    bx, by, bz = bounds.period
+    dx, dy, dz = s[j, 0] - s[i, 0], s[j, 1] - s[i, 1], s[j, 2] - s[i, 2]
+    dx -= bx * np.rint(dx / bx) if bx > 0.0 else 0.0
+    dy -= by * np.rint(dy / by) if by > 0.0 else 0.0
+    dz -= bz * np.rint(dz / bz) if bz > 0.0 else 0.0
+    distance = np.sqrt(dx * dx + dy * dy + dz * dz)
+    dx, dy, dz = dx / distance, dy / distance, dz / distance
+    approach = dx * (s[j, 3] - s[i, 3]) + dy * (s[j, 4] - s[i, 4]) + dz * (s[j, 5] - s[i, 5])
+    impulse = bounds.grow * (s[i, 7] + s[j, 7]) - approach
+    s[i, 3] -= impulse * dx
+    s[i, 4] -= impulse * dy
+    s[i, 5] -= impulse * dz
+    s[j, 3] += impulse * dx
+    s[j, 4] += impulse * dy
+    s[j, 5] += impulse * dz
+    return impulse * distance
+
+
+@njit(cache=True, error_model="numpy", inline="always")
+def _bounce(bounds, s, i, who):
+    """Elastic collision with a wall, seen from the growing surface."""
+    swell = s[i, 7] * bounds.grow
+    if who == ROUND:
+        square = normal = 0.0
+        for k in range(3):
+            x = (s[i, k] - bounds.middle[k]) * bounds.across[k]
+            square += x * x
+            normal += x * s[i, 3 + k]
+        change = -2.0 * (normal / np.sqrt(square) + swell) / np.sqrt(square)
+        for k in range(3):
+            s[i, 3 + k] += change * (s[i, k] - bounds.middle[k]) * bounds.across[k]
+    else:
+        k, upper = (WALL - who) // 2, (WALL - who) % 2
+        s[i, 3 + k] = -s[i, 3 + k] + (-2.0 * swell if upper else 2.0 * swell)
+
+
+@njit(cache=True, error_model="numpy")
+def start(bounds, spheres, home, indptr, indices, times, levels, partner):
+    """Predict the first event of every sphere; all stand at time 0."""
+    partner[:] = AGAIN
+    times[:] = np.inf
+    for i in range(len(spheres)):
+        _predict(bounds, spheres, home, indptr, indices, times, levels, partner, i, 0.0)
+
+
+@njit(cache=True, error_model="numpy")
+def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
+    """Work off events until a sphere leaves its region, the last time is reached or `most` collisions have happened.
+
+    All spheres then stand at the same time.
+
+    Returns
+    -------
+    why : int
+        LEFT, TIMED_OUT or COUNTED.
+    now : float
+    collisions : int
+        Between spheres.
+    events : int
+    virial : float
+        Sum over the collisions of impulse times distance.
+    """
+    collisions = events = 0
+    virial = 0.0
+    while True:
+        i = _earliest(times, levels)
+        now = times[i]
+        if now > bounds.last:
+            now, why = bounds.last, TIMED_OUT
+            break
+        who = partner[i]
+        if who == LEAVE:
+            why = LEFT
+            break
+        if collisions >= most:
+            why = COUNTED
+            break
+        events += 1
+        _advance(spheres, i, now)
+        met = np.int64(who)
+        if met >= 0:
+            _advance(spheres, met, now)
+            virial += _collide(bounds, spheres, i, met)
+            collisions += 1
+            partner[met] = AGAIN
+        elif met <= WALL:
+            _bounce(bounds, spheres, i, met)
+        partner[i] = AGAIN
+        # While the first is predicted the second's time is still now: nothing can be arranged with it.
+        for turn in range(2 if met >= 0 else 1):
+            _predict(bounds, spheres, home, indptr, indices, times, levels, partner, met if turn else np.int64(i), now)
+    for i in range(len(spheres)):
+        _advance(spheres, i, now)
+    return why, now, collisions, events, virial
