@@ -1,0 +1,109 @@
+"""What the calibration's rows are, and how they are shown: unchanged or with a change, a table and a figure."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from studies.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK
+from studies.pick import pick
+from studies.store import printed
+
+# What else the level depends on, one change at a time; on the paper's load and in the periodic cell.
+VARIANTS = {
+    "as in the paper": {},
+    "harmonic mean radius": {"mean": "harmonic"},
+    "geometric mean radius": {"mean": "geometric"},
+    "one gap for all pairs": {"additive": True},
+    "one gap, harmonic": {"additive": True, "mean": "harmonic"},
+    "7 links": {"wanted": 7.0},
+    "6.5 links": {"wanted": 6.5},
+    "spread 0.15": {"spread": 0.15},
+    "equal spheres": {"spread": 0.0},
+}
+VARIED = 100_000
+PAPER = printed("fig03_calibration")
+PRINTED = {100_000: PAPER["ct_1e5"], 1_000_000: PAPER["ct_1e6"]}
+# What a case may change.
+KNOBS = ("mean", "additive", "wanted", "spread", "margin", "wall", "poor", "count", "tiles")
+LINES = {
+    ("flux", "cube"): ("flux on top, as in the paper, cube", PINK, "s"),
+    ("flux", "cylinder"): ("the same, cylinder", ORANGE, "v"),
+    ("isothermal", "cube"): ("two isothermal ends, cube", GREY, "D"),
+    ("across", "cube"): ("periodic across, temperatures at the wall", BLUE, "^"),
+    ("periodic", "cube"): ("periodic cell", GREEN, "o"),
+}
+
+
+def unchanged(df):
+    """Rows without a change, default in everything."""
+    return np.logical_and.reduce([df[name].isna() for name in KNOBS if name in df])
+
+
+def variant(df, loading, change, column="ct"):
+    """Value of the one row with exactly this change; None without it."""
+    rows = pick(df, loading=loading, domain="cube", packing="lsa", particles=VARIED, seed=0)
+    rows = pick(rows, **{name: change.get(name) for name in KNOBS})
+    return float(rows[column].iloc[0]) if len(rows) == 1 else None
+
+
+def table(df):
+    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
+
+    Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
+    C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.
+    """
+    import pandas as pd
+
+    rows = []
+    changes = [name for name in KNOBS if name in df]
+    for (loading, domain, packing, *change), group in df.groupby(
+        ["loading", "domain", "packing", *changes], dropna=False, sort=False
+    ):
+        row = {"load": loading, "domain": domain, "packing": packing}
+        row["change"] = ", ".join(f"{n} {v}" for n, v in zip(changes, change, strict=True) if v == v)
+        by_number = group.groupby("particles")["ct"]
+        row |= {f"{number:.0e}".replace("e+0", "e"): f"{value:.4f}" for number, value in by_number.mean().items()}
+        here = group[group["particles"] == VARIED]["ct"]
+        row["scatter"] = float(100 * here.std() / here.mean()) if len(here) > 1 else float("nan")
+        largest = group[group["particles"] == group["particles"].max()]
+        names = {"bound": "bound", "formula": "formula", "gap": "gap", "under_2": "under 2 links"}
+        rows.append(row | {new: float(largest[old].mean()) for old, new in names.items()})
+    return pd.DataFrame(rows).fillna({name: "" for name in rows[0] if name[0].isdigit()})
+
+
+def plot(df):
+    """C_t over the number of particles by load, and at 1e5 by what else is changed."""
+    from matplotlib import pyplot
+
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(12, 5.2), width_ratios=(1.5, 1))
+    plain = df[unchanged(df)]
+    for (loading, domain), (label, colour, marker) in LINES.items():
+        for packing, fill, dashes in (("lsa", colour, "-"), ("relaxed", "white", "--")):
+            rows = pick(plain, loading=loading, domain=domain, packing=packing)
+            mean = rows.groupby("particles")["ct"].mean()
+            name = label if packing == "lsa" or not len(pick(plain, packing="lsa")) else None
+            left.plot(mean.index, mean, color=colour, marker=marker, markerfacecolor=fill, linestyle=dashes, label=name)
+    tiled = pick(df, packing="tiled")
+    left.plot(tiled["particles"], tiled["ct"], "*", color=GREEN, markersize=11, label="periodic, 8 tiles")
+    left.axhspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15, label="range that the paper prints")
+    left.plot(list(PRINTED), list(PRINTED.values()), "x", color=BLACK, markersize=9, label="paper")
+    left.set(xscale="log", xlabel="particles", ylabel="C_t")
+    left.set_title("Walls make C_t drift; without them, or with links at the wall, it is constant")
+    _levels(right, df)
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    note = "full: hard spheres (LSA), open: relaxed"
+    left.annotate(note, (0.99, 0.02), xycoords="axes fraction", fontsize=8, color=GREY, ha="right")
+    return figure
+
+
+def _levels(axes, df):
+    names = list(VARIANTS)[::-1]
+    for loading, colour, marker in (("flux", PINK, "s"), ("periodic", GREEN, "o")):
+        points = [(variant(df, loading, VARIANTS[name]), y) for y, name in enumerate(names)]
+        points = [point for point in points if point[0] is not None]
+        if points:
+            axes.plot(*zip(*points, strict=True), marker, color=colour)
+    axes.axvspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15)
+    axes.axvline(PRINTED[VARIED], color=BLACK, linewidth=1)
+    axes.set(yticks=range(len(names)), yticklabels=names, ylim=(-0.6, len(names) - 0.4), xlabel="C_t, 1e5 particles")
+    axes.set_title("The paper's level (line) is that of\na narrower distribution of radii")

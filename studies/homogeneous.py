@@ -1,0 +1,122 @@
+"""Packings and homogeneous solves of the calibration: what one C_t costs and says."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.dem import calibration
+from demheat.network.calibrated import contact_facets
+from demheat.network.laguerre import without_hidden
+from demheat.packing.cache import grown, relaxed
+from demheat.packing.domain import tile
+from demheat.packing.neighbours import contacts, coordination
+from demheat.packing.radii import Gaussian
+from demheat.scene import Material, Scene
+
+# A flat wall keeps the bulk as many mean radii away on average (relaxed packings, found at 3e3 to 1e5 particles and
+# spread 0.3, +-0.03): the packing fraction over the whole sample is lower by as much, that of the bulk as asked for.
+DEPLETED = 0.27
+# Reduced pressure at which the algorithm of Lubachevsky and Stillinger stops, with walls or without: phi = 0.641 in a
+# periodic cell, and the same state of the bulk between walls.
+PRESSURE = 120.0
+# Which axes are periodic: walls everywhere; along the load (y) only; nowhere.
+PERIODIC = {"flux": False, "isothermal": False, "across": (True, False, True), "periodic": True}
+
+
+def packed(loading, domain, packing, particles, seed, *, spread=0.3, tiles=1):
+    """Packing of unit size for a load, kept in the cache; tiles is the number of repeats along each axis."""
+    if tiles > 1:
+        whole = packed(loading, domain, packing, particles // tiles**3, seed, spread=spread)
+        return tile(whole, (tiles, tiles, tiles)).scaled(1 / tiles)
+    kind = {"periodic": PERIODIC[loading], "domain": "box" if domain == "cube" else "cylinder-y", "seed": seed}
+    radii = Gaussian(spread)
+    if packing == "lsa":
+        return grown(particles, pressure=PRESSURE, radii=radii, **kind)
+    # Equal spheres jam at 0.64.
+    phi = _bulk_to_whole(0.64 if spread > 0.2 else 0.63, particles, kind, radii)
+    return relaxed(particles, phi=phi, radii=radii, **kind)
+
+
+def _bulk_to_whole(phi, particles, kind, radii):
+    """Packing fraction of the whole sample for one of the bulk."""
+    cube = radii.draw(100_000, np.random.default_rng(0)) ** 3
+    volume = 1.0 if kind["domain"] == "box" else np.pi / 4
+    radius = np.cbrt(phi * volume / (particles * 4 / 3 * np.pi * cube.mean()))
+    # Between two walls a length 1 - 2 depth is left; across a cylinder of diameter 1 the same, twice.
+    walls = 3 - int(np.sum(np.broadcast_to(kind["periodic"], 3)))
+    return float(phi * (1 - 2 * DEPLETED * radius) ** walls)
+
+
+def calibrated(
+    packing,
+    loading,
+    *,
+    wall=None,
+    poor="nearest",
+    mean="arithmetic",
+    additive=False,
+    margin=None,
+    wanted=7.5,
+    count="all",
+):
+    """C_t of a packing under a load, with what it depends on.
+
+    Parameters
+    ----------
+    packing : Packing
+        Of unit size.
+    loading : {"flux", "isothermal", "across", "periodic"}
+    wall, poor, mean
+        As in `contact_facets`; the default is "center" with walls all round, as in the papers, and else "surface".
+    additive, margin
+        As in `contacts`; the default is no margin with walls all round, as in the papers.
+    wanted : float
+        Mean coordination number.
+    count : {"all", "rest"}
+        Over all particles, or over those that poor = "drop" leaves.
+
+    Returns
+    -------
+    dict
+        ct; bound, 1 over the conductivity under a linear field, below which C_t cannot lie in a periodic cell;
+        formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap, links (mean number), least, under_2, under_4, islands as in
+        `coordination`; phi; linked (mean number after poor particles are dealt with); left (particles then).
+    """
+    as_papers = loading in ("flux", "isothermal")
+    wall = wall or ("center" if as_papers else "surface")
+    margin = (0.0 if as_papers else 4.0) if margin is None else margin
+    target = wanted
+    for _ in range(4 if count == "rest" else 1):
+        links = contacts(packing, coordination=target, margin=margin, additive=additive)
+        rest, facets = without_hidden(packing, contact_facets(packing, links=links, mean=mean, poor=poor, wall=wall))
+        reached = len(facets.indices) / rest.number
+        target += wanted - reached
+    report = coordination(*links)._asdict() | {"phi": packing.phi, "linked": reached, "left": rest.number}
+    report["links"] = report.pop("mean")
+    del links
+    load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
+    scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
+    how = "flux" if loading == "flux" else "isothermal"
+    # Tiles of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.
+    solver = "cg" if packing.provenance.get("algorithm") == "tile" else "auto"
+    ct = calibration(facets, rest, scene, loading=how, solver=solver)
+    return {"ct": float(ct)} | affine(rest, facets) | report
+
+
+def affine(packing, facets):
+    """C_t under a linear temperature field.
+
+    A linear field is a trial field of the periodic cell: the conductivity with C_t = 1 is at most
+    sum over links of S d cos^2 / V, the angle being that to the load, hence C_t at least its inverse (`bound`). For
+    isotropic links that touch, d = 2 R_m, and the sum is (N Z / 2)(1/3) 2 pi <R_m^3> / V with N / V = phi / <4/3 pi
+    R^3>: C_t >= 4 <R^3> / (Z phi <R_m^3>) (`formula`), with <R^3> over particles and <R_m^3> over links.
+    """
+    here = np.repeat(packing.radii, np.diff(facets.indptr))
+    there = packing.radii[facets.indices]
+    length = facets.distance * (here + there) / here
+    y = packing.centers[:, 1]
+    step = y[facets.indices] - np.repeat(y, np.diff(facets.indptr))
+    step -= np.where(packing.periodic[1], np.round(step / packing.size[1]) * packing.size[1], 0.0)
+    slope = 0.5 * (facets.area / length) @ step**2 / packing.volume
+    z, cubes = len(here) / packing.number, np.mean((facets.area / np.pi) ** 1.5)
+    return {"bound": 1 / slope, "formula": 4 * np.mean(packing.radii**3) / (z * packing.phi * cubes)}
