@@ -9,16 +9,16 @@ import numpy as np
 
 from demheat.packing.base import ROUND_AXES, Packing
 
-# Nodes along the axis of a cylinder, per cut sphere. Measured on 3000 spheres cut at random, against 3000 nodes: the
-# error is 5e-6 of a sphere at most, rms 9e-7 and of both signs; 32 nodes were six times worse.
-NODES = 64
+# Nodes along the axis of a cylinder, per sphere. Largest error of 2000 spheres cut at random, against 1000 nodes: 6e-11
+# of a sphere up to half as wide as the core, 8e-5 of wider ones.
+NODES = 32
 
 
 def packing_fraction(packing: Packing, *, margin=0.0) -> float:
     """Sphere volume over volume, in the part of the domain at least `margin` mean radii away from every wall.
 
     The core of a walled packing is what compares with a periodic one: walls push spheres apart. Spheres are cut by the
-    faces of the core exactly (box, ball), or by Gauss-Legendre quadrature with 64 nodes along the axis (cylinder).
+    faces of the core exactly (box, ball), or by Gauss-Legendre quadrature with 32 nodes along the axis (cylinder).
 
     Parameters
     ----------
@@ -169,11 +169,19 @@ def _lens_volumes(distance, radii, reach):
 def _spheres_in_cylinder(distance, radii, reach, low, high):
     """Volume of spheres inside a cylinder, from their distance to its axis and that of its ends, (n,) float array."""
     nodes, weights = np.polynomial.legendre.leggauss(NODES)
-    low, high = (np.clip(end, -radii, radii)[:, None] for end in (low, high))
-    z = (low + high) / 2 + (high - low) / 2 * nodes
-    disc = np.sqrt(np.maximum(radii[:, None] ** 2 - z * z, 0.0))
+    low, high = (np.clip(end, -radii, radii) for end in (low, high))
+    whole = np.pi * (radii**2 * (high - low) - (high**3 - low**3) / 3)
+    inner = distance < reach
+    # Discs are cut for |z| < edge only. There the smaller part of each is integrated over t, z = edge sin(t): it is
+    # smooth in t, while over z it ends like a power of 3/2.
+    edge = np.sqrt(np.maximum(radii**2 - (reach - distance) ** 2, 0.0))
+    start, stop = (np.arcsin(np.clip(end / np.where(edge > 0, edge, 1.0), -1.0, 1.0))[:, None] for end in (low, high))
+    t = (start + stop) / 2 + (stop - start) / 2 * nodes
+    disc = np.sqrt(np.maximum(radii[:, None] ** 2 - (edge[:, None] * np.sin(t)) ** 2, 0.0))
     areas = _lens_areas(distance[:, None], disc, reach)
-    return np.einsum("ij,j->i", areas, weights) * (high - low)[:, 0] / 2
+    areas = np.where(inner[:, None], np.pi * disc**2 - areas, areas) * np.cos(t)
+    part = np.einsum("ij,j->i", areas, weights) * edge * (stop - start)[:, 0] / 2
+    return np.where(inner, whole - part, part)
 
 
 def _lens_areas(distance, disc, reach):
