@@ -9,6 +9,7 @@ run: .venv/ready
 	$(PY) -m studies run fig14_single_inclusion --quick --out $(OUT)
 
 full: .venv/ready
+	.venv/bin/pip install --quiet --disable-pip-version-check -e '.[test,peers]'
 	$(PY) -m studies run --out results
 
 test: .venv/ready

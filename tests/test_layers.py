@@ -52,6 +52,7 @@ HOMES = {
     "pandas": ("studies",),
     "matplotlib": ("studies",),
     "multivoro": ("studies",),
+    "spheropack": ("studies",),
 }
 
 

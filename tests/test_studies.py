@@ -25,8 +25,9 @@ def folder(tmp_path_factory):
         yield tmp_path_factory.mktemp("out")
 
 
-def test_the_four_studies_are_there():
+def test_the_studies_are_there():
     assert {"fig14_single_inclusion", "surfaces", "speed_error", "stability"} <= set(NAMES)
+    assert {"fig03_calibration", "packings"} <= set(NAMES)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -80,7 +80,8 @@ def lsa(
     ValueError
         If an argument is not as described, or the box is too small for the largest spheres.
     RuntimeError
-        If the spheres jam (reduced pressure 1e6) before `phi`; the message says at which packing fraction.
+        If the spheres jam (reduced pressure 1e6) before `phi`; the message says at which packing fraction. If events
+        go on without end.
 
     Warns
     -----

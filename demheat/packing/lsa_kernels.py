@@ -13,7 +13,10 @@ from numba import njit
 # leave the region its list of neighbours serves, to hit wall 0 to 5 (x-, x+, y-, ...) or the round wall.
 AGAIN, LEAVE, WALL, ROUND = -1, -2, -3, -9
 # Why the motion stopped.
-LEFT, TIMED_OUT, COUNTED = 0, 1, 2
+LEFT, TIMED_OUT, COUNTED, STUCK = 0, 1, 2, 3
+# Events per collision asked for that can only mean that time stands still; a dense packing has 1.2, a thin gas between
+# walls some tens.
+TOO_MANY = 1000
 # Children of a node of the tree: their times are one cache line.
 FAN = 8
 
@@ -259,7 +262,7 @@ def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
     Returns
     -------
     why : int
-        LEFT, TIMED_OUT or COUNTED.
+        LEFT, TIMED_OUT, COUNTED, or STUCK if events go on without end.
     now : float
     collisions : int
         Between spheres.
@@ -283,6 +286,9 @@ def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
             why = COUNTED
             break
         events += 1
+        if events > TOO_MANY * (most + len(spheres)):
+            why = STUCK
+            break
         _advance(spheres, i, now)
         met = np.int64(who)
         if met >= 0:

@@ -75,6 +75,8 @@ class Motion:
         kernels.start(bounds, *arrays)
         left = WINDOW * n - int(self.window[2])
         why, now, collisions, events, virial = kernels.run(bounds, *arrays, left)
+        if why == kernels.STUCK:
+            raise RuntimeError(f"{events} events without {left} collisions at phi = {self.phi:.6f}: time stands still")
         self.spheres[:, 7] *= 1.0 + grow * now
         self.spheres[:, 6] = 0.0
         self._count(why, now, collisions, events, virial, grow)

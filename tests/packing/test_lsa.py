@@ -198,6 +198,13 @@ def test_energy_and_momentum(rate, monkeypatch):
     motion.run(rate, None)
 
 
+def test_time_that_stands_still_is_an_error(monkeypatch):
+    start = lsa(200, phi=0.3)
+    monkeypatch.setattr(kernels, "run", lambda *_: (kernels.STUCK, 0.0, 0, 10**6, 0.0))
+    with pytest.raises(RuntimeError, match="time stands still"):
+        lsa(start=start, phi=0.4)
+
+
 def slow_twin(x, v, radius, box, wall, grow, most):
     """Positions, velocities and time after `most` collisions between spheres, all pairs looked at after every event."""
     n, now, collisions = len(x), 0.0, 0
