@@ -60,13 +60,14 @@ def _spheropack(drawn, seed, growth, pressure):
     try:
         import spheropack
     except ImportError as error:
-        raise NotImplementedError("spheropack is not installed") from error
+        raise NotImplementedError("spheropack is not installed; install it and run with --force") from error
     stop = [spheropack.stop.Pressure(pressure)]
     found, cost = measured(
         spheropack.pack, radii=drawn, density="max", growth_rate=growth, stop=stop, seed=seed, strict=True
     )
     packing = make_packing(found.positions, found.radii, (1.0, 1.0, 1.0), True, {"algorithm": "spheropack"})
-    return packing, _counted(cost, found.reduced_pressure, found.n_collisions / len(drawn), len(drawn))
+    row = _counted(cost, found.reduced_pressure, found.n_collisions / len(drawn), len(drawn))
+    return packing, row | {"peer_version": spheropack.__version__}
 
 
 def _counted(cost, pressure, collisions, particles):
