@@ -260,6 +260,27 @@ def test_motion_follows_the_slow_twin(periodic):
     assert_allclose(motion.spheres[:, 3:6], v, atol=1e-8)
 
 
+def first_root(a, b, c):
+    roots = np.roots([a, 2 * b, c])
+    real = roots.real[np.abs(roots.imag) < 1e-12]
+    return min(real[real >= 0], default=np.inf)
+
+
+def test_meeting_and_parting_are_first_roots():
+    """A contact distance met from outside, also where it only grows faster than the spheres part; and from inside."""
+    rng = np.random.default_rng(0)
+    kinds = set()
+    for a, b, c in np.column_stack((rng.uniform(-1, 1, (500, 2)), rng.uniform(0.01, 1, 500))):
+        meets, parts = first_root(a, b, c), first_root(a, b, -c)
+        # Rounding, amplified where two roots nearly coincide.
+        assert_allclose(kernels._meeting(a, b, c), meets, rtol=1e-6)
+        assert_allclose(kernels._parting(a, b, -c), parts, rtol=1e-6)
+        kinds |= {(a > 0, b > 0, np.isfinite(meets), np.isfinite(parts))}
+    assert {(False, True, True, False), (False, True, True, True), (True, True, False, True)} <= kinds
+    # Rounding has let them overlap: at once if they approach, never if they part.
+    assert kernels._meeting(1.0, -0.5, -1e-17) == 0.0 and kernels._meeting(1.0, 0.5, -1e-17) == np.inf
+
+
 @pytest.mark.parametrize("n", [2, 8, 9, 64, 65, 600])
 def test_the_tree_finds_the_earliest(n):
     rng = np.random.default_rng(n)
