@@ -4,9 +4,20 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 """
 
 from demheat.field import Field, Samples
-from demheat.scene import Flux, Layer, Material, Scene, Sphere
+from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
 
-__all__ = ["Field", "Flux", "Layer", "Material", "Samples", "Scene", "Sphere", "solve"]
+__all__ = [
+    "Field",
+    "Flux",
+    "Heating",
+    "Layer",
+    "Material",
+    "MovingCylinder",
+    "Samples",
+    "Scene",
+    "Sphere",
+    "solve",
+]
 __version__ = "0.1.0"
 
 

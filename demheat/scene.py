@@ -6,114 +6,29 @@ A scene knows nothing of meshes, voxels or particles; every method reads the sam
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from itertools import product
-from numbers import Integral, Real
 
 import numpy as np
 
+from demheat.parts import Flux, Heating, Layer, Material, MovingCylinder, Sphere, check_material, finite, vector
+
+__all__ = ["WALLS", "Flux", "Heating", "Layer", "Material", "MovingCylinder", "Scene", "Sphere"]
+
 WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
+# Axes across which each domain is round.
+ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z": (0, 1), "sphere": (0, 1, 2)}
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
 
 
 @dataclass(frozen=True)
-class Material:
-    """A homogeneous, isotropic material.
-
-    Parameters
-    ----------
-    conductivity : float, W/(m K)
-        Finite and not negative; 0 is a perfect insulator (a pore).
-    density : float, kg/m3, optional
-        Needed by transients only.
-    heat_capacity : float, J/(kg K), optional
-        Specific heat, needed by transients only.
-    """
-
-    conductivity: float
-    density: float | None = None
-    heat_capacity: float | None = None
-
-    def __post_init__(self):
-        _number(self, "conductivity", "a finite number >= 0 W/(m K)", lambda v: v >= 0)
-        for name in ("density", "heat_capacity"):
-            if getattr(self, name) is not None:
-                _number(self, name, "a finite number > 0", lambda v: v > 0)
-
-
-@dataclass(frozen=True)
-class Sphere:
-    """A spherical inclusion.
-
-    Parameters
-    ----------
-    center : (3,) sequence of float, m
-    radius : float, m
-    material : Material
-    """
-
-    center: tuple[float, float, float]
-    radius: float
-    material: Material
-
-    def __post_init__(self):
-        object.__setattr__(self, "center", _vector("Sphere.center", self.center))
-        _number(self, "radius", "a finite number > 0 m", lambda v: v > 0)
-        _check_material("Sphere.material", self.material)
-
-    def contains(self, offsets):
-        """Which points, given as (n, 3) offsets from the centre in metres, lie inside (surface included)."""
-        return np.einsum("ij,ij->i", offsets, offsets) <= self.radius**2
-
-
-@dataclass(frozen=True)
-class Layer:
-    """A plane layer, start <= coordinate <= stop along one axis, across the whole box.
-
-    Parameters
-    ----------
-    axis : {0, 1, 2}
-    start, stop : float, m
-    material : Material
-    """
-
-    axis: int
-    start: float
-    stop: float
-    material: Material
-
-    def __post_init__(self):
-        if not isinstance(self.axis, Integral) or self.axis not in (0, 1, 2):
-            raise ValueError(f"Layer.axis = {self.axis!r}: must be 0, 1 or 2")
-        object.__setattr__(self, "axis", int(self.axis))
-        _number(self, "start", "a finite number of metres")
-        _number(self, "stop", f"a finite number > start = {self.start}", lambda v: v > self.start)
-        _check_material("Layer.material", self.material)
-
-
-@dataclass(frozen=True)
-class Flux:
-    """Heat flux imposed on a wall.
-
-    Parameters
-    ----------
-    value : float, W/m2
-        Positive *into* the body.
-    """
-
-    value: float
-
-    def __post_init__(self):
-        _number(self, "value", "a finite number of W/m2")
-
-
-@dataclass(frozen=True)
 class Scene:
-    """A box of matrix with inclusions painted in order, under one load.
+    """A box of matrix with inclusions painted in order, under one load; or what is inscribed in the box.
 
-    Give either `gradient` (the box is then a periodic cell) or `walls` (faces not named are insulated).
+    Give either `gradient` (the box is then a periodic cell) or `walls` (faces not named are insulated). A transient
+    needs `initial` besides, and may do without any wall.
 
     Parameters
     ----------
@@ -125,9 +40,15 @@ class Scene:
         comes in on the other side; in a walled box the wall cuts it.
     gradient : (3,) sequence of float, K/m, optional
         Mean temperature gradient of the periodic cell.
-    walls : mapping of str to float or Flux, optional
-        Keys "x-", "x+", "y-", "y+", "z-", "z+"; a number is a temperature in the user's scale (K or degrees
-        Celsius), a `Flux` an imposed heat flux density.
+    walls : mapping of str to float, callable (time, s) -> float, or Flux, optional
+        Keys "x-", "x+", "y-", "y+", "z-", "z+", and "round" for a round wall; a number is a temperature in the user's
+        scale (K or degrees Celsius), a function one that changes in time, a `Flux` an imposed heat flux density.
+    initial : float or callable (points) -> temperatures, optional
+        Temperature at time 0; a function takes (n, 3) points in metres and returns (n,) temperatures.
+    sources : sequence of Heating or MovingCylinder
+        Heat sources, for transients.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+        The body inscribed in the box; a cylinder is named by its axis. Round ones are for transients.
 
     Raises
     ------
@@ -139,16 +60,21 @@ class Scene:
     matrix: Material
     inclusions: tuple[Sphere | Layer, ...] = ()
     gradient: tuple[float, float, float] | None = None
-    walls: Mapping[str, float | Flux] | None = None
+    walls: Mapping[str, float | Callable[[float], float] | Flux] | None = None
+    initial: float | Callable | None = None
+    sources: tuple[Heating | MovingCylinder, ...] = ()
+    domain: str = "box"
 
     def __post_init__(self):
-        size = _vector("Scene.size", self.size)
+        size = vector("Scene.size", self.size)
         if min(size) <= 0:
             raise ValueError(f"Scene.size = {self.size!r}: all three lengths must be > 0 m")
         object.__setattr__(self, "size", size)
-        _check_material("Scene.matrix", self.matrix)
+        check_material("Scene.matrix", self.matrix)
         object.__setattr__(self, "inclusions", _checked_inclusions(self.inclusions))
+        _check_domain(self)
         _check_load(self)
+        _check_transient_parts(self)
         _check_geometry(self)
 
     @property
@@ -168,17 +94,18 @@ class Scene:
 
     @property
     def volume(self) -> float:
-        """Volume of the box, m3."""
-        return math.prod(self.size)
+        """Volume of the body, m3."""
+        share = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}[len(ROUND_AXES[self.domain])]
+        return share * math.prod(self.size)
 
     @property
     def wall_temperatures(self) -> dict[str, float]:
-        """The walls held at a temperature."""
-        return {name: float(v) for name, v in (self.walls or {}).items() if not isinstance(v, Flux)}
+        """The walls held at a temperature; a function where it depends on time (see `at`)."""
+        return {name: _plain(v) for name, v in (self.walls or {}).items() if not isinstance(v, Flux)}
 
     @property
     def wall_fluxes(self) -> dict[str, float]:
-        """The walls with an imposed flux, W/m2 into the body."""
+        """The walls with an imposed flux, W/m2 into the body; a function where it depends on time (see `at`)."""
         return {name: v.value for name, v in (self.walls or {}).items() if isinstance(v, Flux)}
 
     @property
@@ -229,43 +156,53 @@ class Scene:
             phase[inside] = number
         return phase
 
+    def at(self, time) -> Scene:
+        """The same scene with the loads of its walls as they are at a time in seconds."""
+        if not any(callable(getattr(v, "value", v)) for v in (self.walls or {}).values()):
+            return self
+        walls = {}
+        for name, load in self.walls.items():
+            value = load.value if isinstance(load, Flux) else load
+            value = finite(f"Scene.walls[{name!r}] at {time} s", value(time), "finite") if callable(value) else value
+            walls[name] = Flux(value) if isinstance(load, Flux) else value
+        return replace(self, walls=walls)
+
     def check_steady(self) -> None:
-        """Raise ValueError unless the load fixes a steady temperature level."""
+        """Raise unless a steady method can take this scene.
+
+        Raises
+        ------
+        ValueError
+            If no wall fixes the temperature level, or a load depends on time.
+        NotImplementedError
+            For heat sources and round bodies.
+        """
+        if self.sources or self.domain != "box":
+            what = "heat sources" if self.sources else f"a {self.domain}"
+            raise NotImplementedError(f"{what}: only transients take them; use evolve")
+        loads = {name: getattr(load, "value", load) for name, load in (self.walls or {}).items()}
+        changing = [name for name, load in loads.items() if callable(load)]
+        if changing:
+            raise ValueError(f"Scene.walls: {changing} depend on time; must be numbers for a steady solution")
         if not self.periodic and not self.wall_temperatures:
             raise ValueError(
-                f"Scene.walls = {dict(self.walls)}: a steady solution needs at least one wall with a temperature"
+                f"Scene.walls = {dict(self.walls or {})}: a steady solution needs at least one wall with a temperature"
             )
 
-
-def _vector(name, value):
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError, OverflowError):
-        array = None
-    if array is None or array.shape != (3,) or not np.all(np.isfinite(array)):
-        raise ValueError(f"{name} = {value!r}: must be three finite numbers")
-    return tuple(array.tolist())
-
-
-def _finite(name, value, valid, accept=lambda v: True):
-    """A number as a float, or a ValueError that says what would be valid; no strings, arrays or huge integers."""
-    try:
-        good = isinstance(value, Real) and math.isfinite(value) and accept(value)
-    except OverflowError:
-        good = False
-    if not good:
-        raise ValueError(f"{name} = {value!r}: must be {valid}")
-    return float(value)
+    def check_transient(self) -> None:
+        """Raise ValueError unless there is all that a transient needs: initial temperature and heat capacities."""
+        if self.periodic:
+            raise ValueError("Scene.gradient: a transient needs walls instead, or insulation all round")
+        if self.initial is None:
+            raise ValueError("Scene.initial = None: a transient needs the temperature at time 0")
+        for phase, material in enumerate(self.materials):
+            for name in ("density", "heat_capacity"):
+                if getattr(material, name) is None:
+                    raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
 
 
-def _number(owner, field, valid, accept=lambda v: True):
-    name = f"{type(owner).__name__}.{field}"
-    object.__setattr__(owner, field, _finite(name, getattr(owner, field), valid, accept))
-
-
-def _check_material(name, value):
-    if not isinstance(value, Material):
-        raise ValueError(f"{name} = {value!r}: must be a Material")
+def _plain(load):
+    return load if callable(load) else float(load)
 
 
 def _checked_inclusions(inclusions):
@@ -278,26 +215,56 @@ def _checked_inclusions(inclusions):
 
 
 def _check_load(scene):
-    if (scene.gradient is None) == (scene.walls is None):
-        given = "both" if scene.walls is not None else "neither"
+    transient = scene.initial is not None
+    both = scene.gradient is not None and scene.walls is not None
+    if both or (scene.gradient is None and scene.walls is None and not transient):
         raise ValueError(
-            f"Scene.gradient, Scene.walls: {given} given; a scene needs exactly one load: a mean gradient "
-            "(periodic cell) or at least one wall with a temperature or Flux"
+            f"Scene.gradient, Scene.walls: {'both' if both else 'neither'} given; a scene needs exactly one load: a "
+            "mean gradient (periodic cell) or at least one wall with a temperature or Flux"
         )
     if scene.gradient is not None:
-        gradient = _vector("Scene.gradient", scene.gradient)
+        gradient = vector("Scene.gradient", scene.gradient)
         if not any(gradient):
             raise ValueError(f"Scene.gradient = {scene.gradient!r}: must not be zero")
         object.__setattr__(scene, "gradient", gradient)
         return
-    if not isinstance(scene.walls, Mapping) or not scene.walls:
-        raise ValueError(f"Scene.walls = {scene.walls!r}: must map at least one of {', '.join(WALLS)} to a load")
-    object.__setattr__(scene, "walls", dict(scene.walls))
+    valid = wall_names(scene.domain)
+    walls = {} if scene.walls is None and transient else scene.walls
+    if not isinstance(walls, Mapping) or not (walls or transient):
+        raise ValueError(f"Scene.walls = {scene.walls!r}: must map at least one of {', '.join(valid)} to a load")
+    object.__setattr__(scene, "walls", dict(walls))
     for name, value in scene.walls.items():
-        if name not in WALLS:
-            raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(WALLS)}")
-        if not isinstance(value, Flux):
-            _finite(f"Scene.walls[{name!r}]", value, "a finite temperature or a Flux")
+        if name not in valid:
+            raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(valid)}")
+        if not isinstance(value, Flux) and not callable(value):
+            finite(f"Scene.walls[{name!r}]", value, "a finite temperature, a function of time or a Flux")
+
+
+def wall_names(domain):
+    """Names of the walls of a domain."""
+    axes = ROUND_AXES[domain]
+    flat = tuple(name for name in WALLS if "xyz".index(name[0]) not in axes)
+    return (*flat, "round") if axes else flat
+
+
+def _check_domain(scene):
+    if scene.domain not in ROUND_AXES:
+        raise ValueError(f"Scene.domain = {scene.domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    across = [scene.size[axis] for axis in ROUND_AXES[scene.domain]]
+    if across and max(across) > min(across):
+        raise ValueError(f"Scene.size = {scene.size} of a {scene.domain}: sides across its round axes must be equal")
+    if across and scene.gradient is not None:
+        raise ValueError(f"Scene.gradient with domain = {scene.domain!r}: only a box can be a periodic cell")
+
+
+def _check_transient_parts(scene):
+    if scene.initial is not None and not callable(scene.initial):
+        finite("Scene.initial", scene.initial, "a finite temperature or a function of points")
+    if not isinstance(scene.sources, Sequence) or not all(
+        isinstance(source, Heating | MovingCylinder) for source in scene.sources
+    ):
+        raise ValueError(f"Scene.sources = {scene.sources!r}: must be a sequence of Heating or MovingCylinder")
+    object.__setattr__(scene, "sources", tuple(scene.sources))
 
 
 def _meets_box(center, radius, size):

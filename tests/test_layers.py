@@ -13,7 +13,8 @@ OURS = ("demheat", "references", "studies", "tests")
 # What a module may import of ours; the longest prefix that fits decides. A prefix stands for itself and all below it.
 LAYERS = {
     "demheat": ("demheat.scene", "demheat.field", "demheat.dem"),
-    "demheat.scene": (),
+    "demheat.parts": (),
+    "demheat.scene": ("demheat.parts",),
     "demheat.field": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.referee": (),

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Flux, Layer, Material, Scene, Sphere
+from demheat import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
 
 A, B = Material(1.0), Material(2.0)
 BOX = (1.0, 1.0, 1.0)
@@ -221,3 +221,81 @@ def test_scenes_are_values():
     assert isinstance(Material(33).conductivity, float)
     with pytest.raises(FrozenInstanceError):
         made.matrix = B
+
+
+STEEL = Material(33.0, density=7800.0, heat_capacity=0.9)
+
+
+def transient(**more):
+    return Scene(**({"size": (1.0, 2.0, 1.0), "matrix": STEEL, "initial": 25.0} | more))
+
+
+def test_a_transient_may_do_without_walls():
+    made = transient()
+    made.check_transient()
+    assert made.walls == {} and not made.periodic
+    with pytest.raises(ValueError, match="at least one wall with a temperature"):
+        made.check_steady()
+    with pytest.raises(ValueError, match="neither given"):
+        Scene(size=(1, 1, 1), matrix=STEEL)
+
+
+def test_loads_in_time():
+    made = transient(walls={"y-": lambda time: 20.0 + time, "y+": Flux(lambda time: 2.0 * time), "x-": 3.0})
+    then = made.at(5.0)
+    assert then.wall_temperatures == {"y-": 25.0, "x-": 3.0} and then.wall_fluxes == {"y+": 10.0}
+    assert then.at(7.0) is then
+    with pytest.raises(ValueError, match=r"\['y-', 'y\+'\] depend on time"):
+        made.check_steady()
+    with pytest.raises(ValueError, match="y-.*at 1.0 s = nan"):
+        transient(walls={"y-": lambda time: float("nan")}).at(1.0)
+
+
+def test_bodies_inscribed_in_the_box():
+    for domain, size, share, names in (
+        ("sphere", (2, 2, 2), np.pi / 6, ["round"]),
+        ("cylinder-y", (1, 5, 1), np.pi / 4, ["y-", "y+", "round"]),
+        ("box", (1, 2, 3), 1.0, ["x-", "x+", "y-", "y+", "z-", "z+"]),
+    ):
+        made = transient(size=size, domain=domain, walls=dict.fromkeys(names, 1.0))
+        assert made.volume == pytest.approx(share * np.prod(size), rel=1e-15)
+        if domain != "box":
+            with pytest.raises(NotImplementedError, match=domain):
+                made.check_steady()
+    with pytest.raises(ValueError, match="x-"):
+        transient(size=(1, 1, 1), domain="sphere", walls={"x-": 1.0})
+
+
+def test_a_moving_source():
+    source = MovingCylinder(axis=2, diameter=0.008, power_density=1e11, start=(0.02, 0.015), velocity=(0.0033, 0.0))
+    assert source.position(2.0) == pytest.approx((0.0266, 0.015), rel=1e-14)
+    made = transient(sources=[source, Heating(5.0)])
+    assert made.sources == (source, Heating(5.0))
+    with pytest.raises(NotImplementedError, match="heat sources"):
+        made.check_steady()
+
+
+@pytest.mark.parametrize(
+    "make, match",
+    [
+        (lambda: transient(initial="warm"), "Scene.initial"),
+        (lambda: transient(initial=float("inf")), "Scene.initial"),
+        (lambda: transient(sources=[3.0]), "Scene.sources"),
+        (lambda: transient(domain="cone"), "Scene.domain"),
+        (lambda: transient(domain="sphere"), "must be equal"),
+        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), domain="sphere"), "only a box"),
+        (lambda: Heating(-1.0), "power_density"),
+        (lambda: MovingCylinder(2, 0.1, -1e9, (0, 0)), "power_density"),
+        (lambda: MovingCylinder(3, 0.1, 1e9, (0, 0)), "axis"),
+        (lambda: MovingCylinder(2, 0.0, 1e9, (0, 0)), "diameter"),
+        (lambda: MovingCylinder(2, 0.1, 1e9, (0, 0, 0)), "two finite numbers"),
+        (lambda: MovingCylinder(2, 0.1, 1e9, (0, 0), clip=1), "clip"),
+        (lambda: transient(matrix=Material(1.0)).check_transient(), "Material.density = None in phase 0"),
+        (lambda: transient(matrix=Material(1.0, density=1.0)).check_transient(), "heat_capacity = None"),
+        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, walls={"y-": 1.0}).check_transient(), "Scene.initial = None"),
+        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), initial=1.0).check_transient(), "gradient"),
+    ],
+)
+def test_bad_transients(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()
