@@ -34,3 +34,15 @@ def test_the_example_runs():
     # The exact value at contrast 5; 1000 particles err by 0.2 %.
     assert_allclose(names["field"].conductivity, 42.640335234, rtol=5e-3)
     assert names["field"].flux_at(names["points"]).shape == (2, 3)
+
+
+def test_the_packing_example_runs(tmp_path, monkeypatch):
+    code = re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL)[1].replace("10_000", "1_000").replace("3_000", "500")
+    monkeypatch.chdir(tmp_path)
+    names = {}
+    exec(code, names)
+    # Jammed between walls: fewer spheres fit than the 0.655 of a periodic cell.
+    assert names["drum"].number == 500 and 0.55 < names["drum"].phi < 0.63
+    assert_allclose(names["packing"].phi, 0.64, rtol=1e-12)  # rounding of a sum of 1000 cubes
+    again = names["io"].read("packing.dump")
+    assert_allclose(again.centers, names["packing"].centers, rtol=0, atol=0)
