@@ -56,19 +56,20 @@ def table(df):
 
     rows = []
     changes = [name for name in KNOBS if name in df]
+    numbers = sorted(df["particles"].unique())
     for (loading, domain, packing, *change), group in df.groupby(
         ["loading", "domain", "packing", *changes], dropna=False, sort=False
     ):
         row = {"load": loading, "domain": domain, "packing": packing}
         row["change"] = ", ".join(f"{n} {v}" for n, v in zip(changes, change, strict=True) if v == v)
-        by_number = group.groupby("particles")["ct"]
-        row |= {f"{number:.0e}".replace("e+0", "e"): f"{value:.4f}" for number, value in by_number.mean().items()}
+        mean = group.groupby("particles")["ct"].mean()
+        row |= {f"{n:.0e}".replace("e+0", "e"): f"{mean[n]:.4f}" if n in mean else "" for n in numbers}
         here = group[group["particles"] == VARIED]["ct"]
         row["scatter"] = float(100 * here.std() / here.mean()) if len(here) > 1 else float("nan")
         largest = group[group["particles"] == group["particles"].max()]
         names = {"bound": "bound", "formula": "formula", "gap": "gap", "under_2": "under 2 links"}
         rows.append(row | {new: float(largest[old].mean()) for old, new in names.items()})
-    return pd.DataFrame(rows).fillna({name: "" for name in rows[0] if name[0].isdigit()})
+    return pd.DataFrame(rows)
 
 
 def plot(df):
