@@ -9,12 +9,14 @@ from demheat.evaluate import field_of
 from demheat.network.calibrated import POLICIES, WALL_RULES, contact_facets
 from demheat.network.interface import check_rule, connect
 from demheat.network.laguerre import laguerre, without_hidden
+from demheat.network.platonic import COORDINATION, platonic_facets
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
+from demheat.packing.neighbours import contacts
 from demheat.scene import Flux, Material, Scene
 from demheat.steady import check_solver, solve_steady
 
-LAWS = ("laguerre", "calibrated")
+LAWS = ("laguerre", "calibrated", "platonic")
 LOADINGS = ("isothermal", "flux")
 
 
@@ -28,6 +30,7 @@ def solve(
     interface="harmonic",
     poor="nearest",
     wall="center",
+    coordination=None,
     packing=None,
     solver="auto",
     tolerance=1e-8,
@@ -42,19 +45,22 @@ def solve(
         Number of particles of the packing before twins are added at interfaces.
     seed : int
         Of the packing.
-    law : {"laguerre", "calibrated"}
-        Transmission surfaces: facets of the radical tessellation, or C_t pi R_m^2 between touching particles with C_t
-        from a homogeneous solve (Haddad et al. 2021, eqs. 7-9).
+    law : {"laguerre", "calibrated", "platonic"}
+        Transmission surfaces: facets of the radical tessellation; or C_t pi R_m^2 between touching particles with C_t
+        from a homogeneous solve (Haddad et al. 2021, eqs. 7-9); or faces of regular polyhedra, by the number of
+        contacts of each particle (Terreros et al. 2013, section 4), whose volumes do not add up to that of the body.
     conforming : bool, optional
         Mirror particles across every interface so that facets lie on it; the default for "laguerre".
     interface : {"harmonic", "arithmetic"}
         Rule for links between materials (Haddad et al. 2021, eq. 24).
     poor : {"nearest", "keep", "drop"}
-        Law "calibrated" only: what happens to particles with fewer than 2 links; see
+        Not with "laguerre": what happens to particles with fewer than 2 links; see
         `demheat.network.calibrated.contact_facets`.
     wall : {"center", "surface"}
-        Law "calibrated" only: wall temperatures act in the centres of the particles that touch the wall, as in the
+        Not with "laguerre": wall temperatures act in the centres of the particles that touch the wall, as in the
         papers, or at the wall.
+    coordination : float, optional
+        Not with "laguerre": mean number of contacts, 7.5 with "calibrated" and 6.2 with "platonic" by default.
     packing : Packing, optional
         Used instead of a relaxed one; must have the scene's box and periodicity.
     solver : {"auto", "cg", "amg"}
@@ -72,7 +78,7 @@ def solve(
     ValueError
         If an argument is not as described, before any heavy work.
     NotImplementedError
-        For temperatures on walls that meet, with the calibrated law and wall "center".
+        For temperatures on walls that meet, with wall "center" and a law other than "laguerre".
     RuntimeError
         If the solver does not converge.
 
@@ -86,7 +92,7 @@ def solve(
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
     check_rule(interface)
     check_solver(solver, tolerance)
-    _check_contacts(law, poor, wall)
+    _check_contacts(law, poor, wall, coordination)
     conforming = law == "laguerre" if conforming is None else bool(conforming)
     if conforming and law != "laguerre":
         raise ValueError(
@@ -107,10 +113,10 @@ def solve(
     if law == "laguerre":
         facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
     else:
-        facets = contact_facets(packing, poor=poor, wall=wall)
+        facets = _touching(packing, law, coordination, poor, wall)
     packing, facets = without_hidden(packing, facets)
     clock.append(time.perf_counter())
-    factor = 1.0 if law == "laguerre" else calibration(facets, packing, scene)
+    factor = calibration(facets, packing, scene) if law == "calibrated" else 1.0
     # Wall areas are those of the walls: what scales is the conductance of their links.
     facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
     phase = scene.phase_at(packing.centers)
@@ -146,21 +152,33 @@ def _warn_of_lost_phases(scene, phase):
         )
 
 
-def _check_contacts(law, poor, wall):
+def _touching(packing, law, coordination, poor, wall):
+    """Facets of a law that knows the contacts only."""
+    if law == "platonic":
+        mean = COORDINATION if coordination is None else coordination
+        return platonic_facets(packing, coordination=mean, poor=poor, wall=wall)
+    links = contacts(packing, coordination=7.5 if coordination is None else coordination)
+    return contact_facets(packing, links=links, poor=poor, wall=wall)
+
+
+def _check_contacts(law, poor, wall, coordination):
+    if coordination is not None and not (isinstance(coordination, int | float) and 0 < coordination < float("inf")):
+        raise ValueError(f"coordination = {coordination!r}: must be a finite number > 0")
     for name, value, valid in (("poor", poor, POLICIES), ("wall", wall, WALL_RULES)):
         if value not in valid:
             raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
-    if law != "calibrated" and (poor, wall) != ("nearest", "center"):
+    if law == "laguerre" and (poor, wall, coordination) != ("nearest", "center", None):
         raise ValueError(
-            f"poor = {poor!r}, wall = {wall!r} with law = {law!r}: only law 'calibrated' has these choices"
+            f"poor = {poor!r}, wall = {wall!r}, coordination = {coordination!r} with law = 'laguerre': only the laws "
+            "'calibrated' and 'platonic' have these choices"
         )
 
 
 def _check_walls(scene, law, wall):
     held = {name[0] for name in scene.wall_temperatures}
-    if law == "calibrated" and wall == "center" and len(held) > 1:
+    if law != "laguerre" and wall == "center" and len(held) > 1:
         raise NotImplementedError(
-            "law 'calibrated' with wall 'center' holds the centres of the particles at a wall at its temperature: "
+            f"law {law!r} with wall 'center' holds the centres of the particles at a wall at its temperature: "
             "where two held walls meet, one particle would join them; use wall 'surface'"
         )
 

@@ -1,0 +1,240 @@
+"""Contact network with the surfaces and capacities of regular polyhedra and crystals, by number of neighbours.
+
+Source: Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46, section 4 and table 1.
+"""
+
+import math
+from itertools import product
+
+import numpy as np
+
+from demheat.network.base import Facets
+from demheat.network.calibrated import WALL_RULES, contact_facets, surface_distances
+from demheat.packing.neighbours import contacts
+
+# Edges of a face and faces at a vertex of the regular polyhedra.
+SOLIDS = ((3, 3), (4, 3), (3, 4), (5, 3), (3, 5))
+FACE_CENTRED = ((0, 0, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (0.5, 0.5, 0))
+# Sites in the cubic cell of the crystals that stand for a packing.
+CRYSTALS = {
+    "diamond": (*FACE_CENTRED, *(tuple(x + 0.25 for x in site) for site in FACE_CENTRED)),
+    "simple cubic": ((0, 0, 0),),
+    "body-centred cubic": ((0, 0, 0), (0.5, 0.5, 0.5)),
+    "face-centred cubic": FACE_CENTRED,
+}
+# The paper does not say how many contacts its packings have. At so many the errors of conductance and capacity were
+# found to cancel in the diffusivity (see `studies.table1_platonic`), which is what the paper's tests measure.
+COORDINATION = 6.2
+
+
+def solid_face(edges, meeting):
+    """Number of faces of a regular polyhedron around a unit sphere, and the area of one.
+
+    Half the dihedral angle t has sin t = cos(pi/meeting) / sin(pi/edges); a face that touches the sphere has the
+    inscribed circle of radius cot t.
+
+    Parameters
+    ----------
+    edges, meeting : int
+        Edges of a face; faces that meet at a vertex.
+
+    Returns
+    -------
+    faces : int
+    area : float
+        In units of the squared radius of the inscribed sphere.
+    """
+    faces = 4 * meeting // (4 - (edges - 2) * (meeting - 2))
+    half = math.asin(math.cos(math.pi / meeting) / math.sin(math.pi / edges))
+    return faces, edges * math.tan(math.pi / edges) / math.tan(half) ** 2
+
+
+def crystal_packing(sites):
+    """Contacts of each sphere of a crystal whose spheres touch, and its packing fraction.
+
+    Parameters
+    ----------
+    sites : sequence of (3,) sequences of float
+        In the cubic cell, in units of its edge; all alike.
+
+    Returns
+    -------
+    neighbours : int
+    fraction : float
+    """
+    cells = np.array(list(product((-1, 0, 1), repeat=3)))
+    apart = np.linalg.norm((np.array(sites)[None] + cells[:, None]).reshape(-1, 3) - sites[0], axis=1)
+    nearest = apart[apart > 0].min()
+    # Rounding of distances of order one.
+    neighbours = int(np.sum(abs(apart - nearest) < 1e-9))
+    return neighbours, len(sites) * math.pi / 6 * float(nearest) ** 3
+
+
+SURFACES = np.array(sorted(solid_face(*solid) for solid in SOLIDS)).T
+FRACTIONS = np.array([(0, 0.0), *sorted(crystal_packing(sites) for sites in CRYSTALS.values())]).T
+
+
+def surface_factors(neighbours):
+    """Transmission surface s(n) of one link of a particle with n of them, in units of its squared radius.
+
+    The face of the regular polyhedron with n faces around the unit sphere; linear between those that there are, and
+    along the first and the last of these lines beyond 4 and 20 (Terreros et al. 2013, table 1). The last line reaches
+    zero between 29 and 30, where the packing fraction passes one: more neighbours are refused.
+
+    Parameters
+    ----------
+    neighbours : (n,) int array
+
+    Returns
+    -------
+    (n,) float array
+
+    Raises
+    ------
+    ValueError
+        If a number is negative or the surface would be.
+    """
+    neighbours = _checked(neighbours)
+    return _lines(neighbours, *SURFACES)
+
+
+def fraction_factors(neighbours):
+    """Local packing fraction f(n) around a particle with n neighbours.
+
+    That of the crystal with n contacts, 0 without any; linear between, and along the last line beyond 12 (Terreros et
+    al. 2013, table 1).
+
+    Parameters
+    ----------
+    neighbours : (n,) int array
+
+    Returns
+    -------
+    (n,) float array
+
+    Raises
+    ------
+    ValueError
+        As `surface_factors`.
+    """
+    return _lines(_checked(neighbours), *FRACTIONS)
+
+
+def _checked(neighbours):
+    neighbours = np.asarray(neighbours)
+    if neighbours.dtype.kind not in "iu" or np.any(neighbours < 0):
+        raise ValueError(f"neighbours = {neighbours}: must be integers >= 0")
+    many = neighbours[_lines(neighbours, *SURFACES) <= 0]
+    if len(many):
+        raise ValueError(
+            f"neighbours = {int(many.max())}: the Platonic law has surfaces for at most 29; lower the coordination, or "
+            "use radii that differ less"
+        )
+    return neighbours
+
+
+def _lines(x, knots, values):
+    """Linear between knots, and along the first and last line beyond them."""
+    k = np.clip(np.searchsorted(knots, x, side="right") - 1, 0, len(knots) - 2)
+    slope = np.diff(values) / np.diff(knots)
+    return values[k] + slope[k] * (x - knots[k])
+
+
+def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nearest", wall="center") -> Facets:
+    """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p links of a particle.
+
+    Parameters
+    ----------
+    packing : Packing
+    links : (indptr, indices, gap), optional
+        As `demheat.packing.neighbours.contacts` returns them; the default has `coordination` of them in the bulk.
+    coordination : float
+        Mean number of contacts of the bulk particles. The paper states none.
+    poor, wall : str
+        As in `demheat.network.calibrated.contact_facets`. Walls are no neighbours. A particle without neighbours, whose
+        capacity the paper's table would make infinite, takes no part: with `poor = "keep"` it has neither links nor
+        volume here.
+
+    Returns
+    -------
+    Facets
+        Volumes carry the heat capacity: V_p / f(n_p). They fill the box only by chance, so that mass is not conserved.
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these, or a particle has more than 29 neighbours.
+    """
+    if wall not in WALL_RULES:
+        raise ValueError(f"wall = {wall!r}: must be one of {', '.join(WALL_RULES)}")
+    links = contacts(packing, coordination=coordination) if links is None else links
+    facets = _linked(contact_facets(packing, links=links, poor=poor, wall="center"))
+    neighbours = np.diff(facets.indptr)
+    surface = surface_factors(neighbours) * packing.radii**2
+    area = np.sqrt(np.repeat(surface, neighbours) * surface[facets.indices])
+    facets = facets._replace(area=area, volumes=carrying_volumes(packing, facets.indptr))
+    if wall == "center":
+        return facets
+    axis, far = facets.wall_side // 2, facets.wall_side % 2 == 1
+    x = packing.centers[facets.wall_particle, axis]
+    facets = facets._replace(wall_distance=np.where(far, packing.size[axis] - x, x))
+    return facets._replace(wall_distance=surface_distances(facets, packing))
+
+
+def carrying_volumes(packing, indptr):
+    """Volume whose heat a particle carries, V_p / f(n_p); zero without neighbours.
+
+    Parameters
+    ----------
+    packing : Packing
+    indptr : (n + 1,) int array
+        Row pointers of its links.
+
+    Returns
+    -------
+    (n,) float array, m3
+    """
+    neighbours = np.diff(indptr)
+    spheres = 4 / 3 * np.pi * packing.radii**3
+    return np.divide(spheres, fraction_factors(neighbours), out=np.zeros(packing.number), where=neighbours > 0)
+
+
+def capacities(packing, links, material):
+    """Heat capacities of the particles, rho C V_p / f(n_p) (Terreros et al. 2013, section 4).
+
+    Parameters
+    ----------
+    packing : Packing
+    links : (indptr, indices, ...)
+        As `demheat.packing.neighbours.contacts` returns them.
+    material : Material
+        With density and heat capacity.
+
+    Returns
+    -------
+    (n,) float array, J/K
+        Zero for particles without neighbours, which take no part.
+
+    Raises
+    ------
+    ValueError
+        If the material lacks a density or a heat capacity, or a particle has more than 29 neighbours.
+    """
+    for name in ("density", "heat_capacity"):
+        if getattr(material, name) is None:
+            raise ValueError(f"Material.{name} = None: capacities need it; must be > 0")
+    return material.density * material.heat_capacity * carrying_volumes(packing, links[0])
+
+
+def _linked(facets):
+    """The facets without the wall contacts of particles that have no neighbour; the others share the wall."""
+    kept = (np.diff(facets.indptr) > 0)[facets.wall_particle]
+    side, area = facets.wall_side, facets.wall_area
+    whole, left = (np.bincount(side[which], area[which], minlength=6) for which in (slice(None), kept))
+    share = np.divide(whole, left, out=np.zeros(6), where=left > 0)[side]
+    return facets._replace(
+        wall_particle=facets.wall_particle[kept],
+        wall_side=side[kept],
+        wall_area=(area * share)[kept],
+        wall_distance=facets.wall_distance[kept],
+    )
