@@ -60,7 +60,7 @@ def solve(
         Not with "laguerre": wall temperatures act in the centres of the particles that touch the wall, as in the
         papers, or at the wall.
     coordination : float, optional
-        Not with "laguerre": mean number of contacts, 7.5 with "calibrated" and 6.2 with "platonic" by default.
+        Not with "laguerre": mean number of contacts, 7.5 with "calibrated" and 7.2 with "platonic" by default.
     packing : Packing, optional
         Used instead of a relaxed one; must have the scene's box and periodicity.
     solver : {"auto", "cg", "amg"}

@@ -1,0 +1,230 @@
+from itertools import product
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+import demheat
+from demheat import Flux, Material, Scene
+from demheat.network.base import row_numbers
+from demheat.network.laguerre import without_hidden
+from demheat.network.platonic import (
+    CRYSTALS,
+    capacities,
+    carrying_volumes,
+    crystal_packing,
+    fraction_factors,
+    platonic_facets,
+    surface_factors,
+)
+from demheat.packing.base import make_packing
+from demheat.packing.neighbours import contacts
+from demheat.packing.relax import relax
+
+# Terreros et al. (2013), table 1: neighbours, surface, packing fraction; digits cut off, not rounded.
+PRINTED = ((1, 19.98076, 0.08502), (5, 7.19615, 0.43184), (10, 1.99282, 0.71032), (20, 0.75810, 0.86109))
+ONE = Material(1.0, density=2.0, heat_capacity=3.0)
+
+
+@pytest.fixture(scope="module")
+def packing():
+    return relax(1000, seed=3)
+
+
+def crystal(cells, name="simple cubic", *, periodic=True, edge=1.0):
+    """Touching spheres of a crystal in a box of so many cubic cells."""
+    counts = np.broadcast_to(cells, 3)
+    sites = np.array(CRYSTALS[name])
+    apart = np.linalg.norm(sites[1:], axis=1).min() if len(sites) > 1 else 1.0
+    corners = np.array(list(product(*map(range, counts))))
+    centers = (corners[:, None] + sites[None]).reshape(-1, 3) * edge + 0.5 * edge * (not periodic)
+    return make_packing(centers, np.full(len(centers), apart * edge / 2), counts * edge, periodic, {})
+
+
+@pytest.mark.parametrize(("number", "surface", "fraction"), PRINTED)
+def test_the_printed_rows(number, surface, fraction):
+    # One unit of the last printed digit.
+    assert 0 <= surface_factors(np.array([number]))[0] - surface < 1e-5
+    assert abs(fraction_factors(np.array([number]))[0] - fraction) < 1e-5
+
+
+def hull_faces(vertices):
+    """Areas of the faces of a regular polyhedron over its squared inradius, from its vertices by brute force."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(vertices)
+    normals, label = np.unique(np.round(hull.equations, 9), axis=0, return_inverse=True)
+    corners = hull.points[hull.simplices]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+    return np.bincount(label.ravel(), areas) / normals[0, 3] ** 2
+
+
+def solids():
+    golden = (1 + 5**0.5) / 2
+    signs = np.array(list(product((-1, 1), repeat=3)))
+    ico = np.array([(0, a, b * golden) for a, b in product((-1, 1), repeat=2)])
+    dode = np.array([(0, a / golden, b * golden) for a, b in product((-1, 1), repeat=2)])
+    yield 4, signs[signs.prod(axis=1) > 0]
+    yield 6, signs
+    yield 8, np.vstack([np.eye(3), -np.eye(3)])
+    yield 12, np.vstack([signs, *(np.roll(dode, k, axis=1) for k in range(3))])
+    yield 20, np.vstack([np.roll(ico, k, axis=1) for k in range(3)])
+
+
+@pytest.mark.parametrize(("number", "vertices"), list(solids()))
+def test_surfaces_are_those_of_the_polyhedra(number, vertices):
+    areas = hull_faces(vertices)
+    assert len(areas) == number
+    assert_allclose(surface_factors(np.array([number])), areas.mean(), rtol=1e-7)  # equations rounded to 9 digits
+
+
+def test_fractions_are_those_of_the_crystals():
+    # Diamond, simple cubic, body- and face-centred cubic: textbook values.
+    known = {4: 3**0.5 / 16, 6: 1 / 6, 8: 3**0.5 / 8, 12: 2**0.5 / 6}
+    assert dict(crystal_packing(sites) for sites in CRYSTALS.values()) == pytest.approx(
+        {number: np.pi * value for number, value in known.items()}, rel=1e-14
+    )
+    for number, value in known.items():
+        assert_allclose(fraction_factors(np.array([number])), np.pi * value, rtol=1e-14)
+    assert fraction_factors(np.array([0]))[0] == 0
+
+
+def test_lines_beyond_the_solids_and_where_they_end():
+    surface, fraction = surface_factors(np.arange(30)), fraction_factors(np.arange(30))
+    for part in (slice(0, 7), slice(20, 30)):
+        assert_allclose(np.diff(surface[part], 2), 0, atol=1e-13)  # rounding
+    assert_allclose(np.diff(fraction[8:], 2), 0, atol=1e-14)
+    assert surface[29] > 0 and fraction[29] < 1
+    for factors in (surface_factors, fraction_factors):
+        with pytest.raises(ValueError, match="neighbours = 30: .* at most 29"):
+            factors(np.array([3, 30]))
+        with pytest.raises(ValueError, match="integers >= 0"):
+            factors(np.array([-1]))
+
+
+def test_links_and_volumes_are_the_papers(packing):
+    links = contacts(packing)
+    facets = platonic_facets(packing, links=links, poor="keep")
+    number = np.diff(facets.indptr)
+    assert number.min() < 2 and number.max() > 12
+    for p in range(0, 1000, 50):
+        for e in range(*facets.indptr[p : p + 2]):
+            q = facets.indices[e]
+            s = [
+                np.interp(number[i], range(30), surface_factors(np.arange(30))) * packing.radii[i] ** 2 for i in (p, q)
+            ]
+            assert_allclose(facets.area[e], (s[0] * s[1]) ** 0.5, rtol=1e-13)
+    linked = number > 0
+    f = fraction_factors(number)[linked]
+    assert_allclose(facets.volumes[linked] * f, 4 / 3 * np.pi * packing.radii[linked] ** 3, rtol=1e-13)
+    assert_allclose(capacities(packing, links, ONE), 6.0 * facets.volumes, rtol=1e-14)
+    back = {(p, q): a for p, q, a in zip(row_numbers(facets.indptr), facets.indices, facets.area, strict=True)}
+    assert all(back[q, p] == a for (p, q), a in back.items())
+
+
+def test_default_coordination_and_the_knob(packing):
+    for wanted, facets in (
+        (7.2, platonic_facets(packing, poor="keep")),
+        (6.0, platonic_facets(packing, coordination=6.0, poor="keep")),
+    ):
+        # The gap is the midpoint between two pair distances: Z is met to one pair, 2/n.
+        assert_allclose(np.diff(facets.indptr).mean(), wanted, atol=2 / 1000 + 1e-12)
+
+
+def test_lone_particles_take_no_part():
+    """A chain from wall to wall, a lone sphere inside and one that touches only a wall."""
+    centers = [(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.5, 5.0, 1.5), (8.0, 1.0, 8.0)]
+    packing = make_packing(centers, np.ones(7), (10, 10, 10), (True, False, True), {})
+    facets = platonic_facets(packing, links=contacts(packing, gap=0.02), poor="keep")
+    chain = packing.centers[:, 0] == 5.0
+    assert_array_equal(facets.volumes > 0, chain)
+    assert_array_equal(np.diff(facets.indptr) > 0, chain)
+    assert_array_equal(np.sort(facets.wall_side), (2, 3))
+    # What is left stands for the whole wall.
+    assert_allclose(facets.wall_area, 100.0, rtol=1e-14)
+    rest, facets = without_hidden(packing, facets)
+    assert rest.number == 5 and facets.wall_particle.max() < 5
+
+
+def test_the_simple_cubic_crystal_is_the_difference_stencil():
+    packing = crystal((10, 11, 12), periodic=False, edge=0.5)
+    facets = platonic_facets(packing, links=contacts(packing, gap=1e-6), wall="surface")
+    inside = np.all((packing.centers > 0.5) & (packing.centers < packing.size - 0.5), axis=1)
+    assert_array_equal(np.diff(facets.indptr)[inside], 6)
+    # Area of a cell's face for six neighbours, and its volume; rounding.
+    both = inside[row_numbers(facets.indptr)] & inside[facets.indices]
+    assert_allclose(facets.area[both], 0.25, rtol=1e-14)
+    assert_allclose(facets.volumes[inside], 0.125, rtol=1e-14)
+
+
+@pytest.mark.parametrize("name", CRYSTALS)
+def test_steady_conductivity_of_crystals(name):
+    """Volume of the polyhedron, n s(n) / 3, over that of the cell, 4 pi / (3 f(n)): one where the polyhedra tile."""
+    packing = crystal(3, name)
+    scene = Scene((3, 3, 3), ONE, gradient=(1.0, 2.0, -0.5))
+    number, fraction = crystal_packing(CRYSTALS[name])
+    links = contacts(packing, gap=1e-6)
+    assert_array_equal(np.diff(links[0]), number)
+    field = demheat.solve(scene, law="platonic", packing=packing, coordination=number, allow_few=True)
+    expected = number * surface_factors(np.array([number]))[0] * fraction / (4 * np.pi)
+    assert_allclose(field.conductivity, expected, rtol=1e-7)  # solver tolerance 1e-8
+    assert (abs(expected - 1) < 1e-12) == (name == "simple cubic")
+    # Each sphere of a crystal does stand for its part of the volume.
+    assert_allclose(carrying_volumes(packing, links[0]).sum(), 27.0, rtol=1e-12)
+
+
+def test_mass_is_not_conserved_nor_fractions_wrong(packing):
+    """Poor contacts overestimate capacity and conductance alike; fractions stay fractions."""
+    sums, ratios = [], []
+    for wanted in (6.2, 8.5):
+        field = demheat.solve(
+            Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", packing=packing, coordination=wanted
+        )
+        assert_allclose(field.fractions, [1.0], rtol=1e-14)
+        sums.append(field.samples.volumes.sum())
+        ratios.append(field.conductivity)
+    # Falls with every contact; the law has no calibration that would hold it at one.
+    assert sums[0] > 1.05 > 0.95 > sums[1]
+    assert ratios[0] > 1.03 and ratios[0] > ratios[1] + 0.05
+
+
+def test_walls_and_balance():
+    packing = relax(2000, periodic=(False, False, False), seed=2)
+    for wall in ("center", "surface"):
+        field = demheat.solve(
+            Scene((1, 1, 1), ONE, walls={"y-": 0.0, "y+": Flux(2.0)}), law="platonic", packing=packing, wall=wall
+        )
+        assert_allclose(field.wall_heat["y-"], -2.0, rtol=1e-6)  # solver tolerance, over a sum of walls
+        # 17 % too much inside, less at the walls.
+        assert 0.9 < field.conductivity < 1.5
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"poor": "join"}, "poor = 'join'"),
+        ({"wall": "face"}, "wall = 'face'"),
+        ({"coordination": -1.0}, "coordination = -1.0"),
+    ],
+)
+def test_bad_choices(packing, change, words):
+    with pytest.raises(ValueError, match=words):
+        platonic_facets(packing, **change)
+    with pytest.raises(ValueError, match=words):
+        demheat.solve(Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", **change)
+
+
+def test_capacities_need_a_material(packing):
+    with pytest.raises(ValueError, match="Material.density = None"):
+        capacities(packing, contacts(packing), Material(1.0))
+
+
+def test_the_choices_of_contact_laws_are_not_laguerres():
+    scene = Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0))
+    with pytest.raises(ValueError, match="coordination = 7.0 with law = 'laguerre'"):
+        demheat.solve(scene, coordination=7.0)
+    with pytest.raises(ValueError, match="twins need not touch"):
+        demheat.solve(scene, law="platonic", conforming=True)
+    held = Scene((1, 1, 1), ONE, walls={"y-": 0.0, "x-": 1.0})
+    with pytest.raises(NotImplementedError, match="law 'platonic' with wall 'center'"):
+        demheat.solve(held, law="platonic")
