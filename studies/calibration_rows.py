@@ -95,7 +95,7 @@ def plot(df):
     left.axhspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15, label="range that the paper prints")
     left.plot(list(PRINTED), list(PRINTED.values()), "x", color=BLACK, markersize=9, label="paper")
     left.set(xscale="log", xlabel="particles", ylabel="C_t")
-    left.set_title("C_t drifts with the paper's walls; without walls or with links at the wall it does not")
+    left.set_title("With the paper's walls C_t drifts; without walls,\nor with links at the wall, it does not")
     note = "full: hard spheres (LSA), open: relaxed"
     left.annotate(note, (0.99, 0.02), xycoords="axes fraction", fontsize=8, color=GREY, ha="right")
     if panels == 2:
@@ -119,4 +119,4 @@ def _draw_levels(axes, found):
     axes.axvline(PRINTED[VARIED], color=BLACK, linewidth=1)
     positions = range(len(VARIANTS), 0, -1)
     axes.set(yticks=positions, yticklabels=VARIANTS, ylim=(0.4, len(VARIANTS) + 0.6), xlabel="C_t, 1e5 particles (LSA)")
-    axes.set_title("What moves it towards the paper's 0.806 (line)")
+    axes.set_title("Fewer links or a narrower spread of radii\nreach the paper's 0.806 (line)")
