@@ -21,10 +21,12 @@ class Facets(NamedTuple):
     distance : (m,) float array, m
         From the row's centre to the facet's plane along the link (negative beyond a facet that has passed it).
     wall_particle, wall_side : (w,) int arrays
-        Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+) of each wall facet.
+        Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+; 6 = round) of each wall facet.
     wall_area, wall_distance : (w,) float arrays, m2 and m
     volumes : (n,) float array, m3
         Cell volumes.
+    wall_normal : (w, 3) float array, optional
+        Outward unit vector of each wall facet; laws without it have flat walls only.
     """
 
     indptr: np.ndarray
@@ -37,6 +39,7 @@ class Facets(NamedTuple):
     wall_area: np.ndarray
     wall_distance: np.ndarray
     volumes: np.ndarray
+    wall_normal: np.ndarray | None = None
 
 
 class Network(NamedTuple):

@@ -4,20 +4,25 @@ import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets, row_numbers
+from demheat.network.curved import ROUND_SIDE, round_wall, tangents_within
+from demheat.packing.base import check_domain, domain_volume
 
 # Rows cut at once: bounds the scratch memory (about 1.5 kB a row) without costing speed.
 BLOCK = 65536
 # Planes that may cut a cell: enough for any packing; cells that need more (a large one beside small ones) are redone.
 MOST_PLANES = 80
+# Candidates that a cell may meet at last: bounds the scratch memory of a thread (about 10 MB).
+MOST_ROOM = 1 << 18
 # Facets below this fraction of the squared mean spacing are rounding where more than four cells meet in one point.
 SLIVER = 1e-11
 
 
-def laguerre(centers, weights, size, *, periodic=True):
-    """Cells of the radical tessellation of weighted points in a box.
+def laguerre(centers, weights, size, *, periodic=True, domain="box"):
+    """Cells of the radical tessellation of weighted points in a box, or in a round body inscribed in it.
 
     The facet between p and q lies at (d^2 + w_p - w_q)/(2 d) from p; with w = R^2 it is the radical plane of two
-    spheres. The facet vectors of every cell sum to zero and the cells fill the box.
+    spheres. The facet vectors of every cell sum to zero and the cells fill the body. Cells at a round wall end at
+    tangent planes that enclose its exact volume (see `demheat.network.curved`); a cell may meet several of them.
 
     Parameters
     ----------
@@ -26,30 +31,34 @@ def laguerre(centers, weights, size, *, periodic=True):
     weights : (n,) float array, m2
     size : (3,) float array, m
     periodic : bool or (3,) bool array
-        Per axis; walls where not.
+        Per axis; walls where not. Axes across which the domain is round are not periodic.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
 
     Returns
     -------
     Facets
-        Its rows are the given points; a hidden point has an empty row and no volume.
+        Its rows are the given points; a hidden point has an empty row and no volume. A round wall is side 6.
 
     Raises
     ------
     ValueError
-        If a point is not finite or outside the box.
+        If a point is not finite or outside the domain.
     RuntimeError
-        If a cell cannot be secured (too few points in a periodic box) or the cells do not fill the box.
+        If a cell cannot be secured (too few points in a periodic box) or the cells do not fill the domain.
     """
     centers, weights, size, periodic = _checked(centers, weights, size, periodic)
+    check_domain(domain, size, periodic)
     n = len(centers)
-    spacing = (np.prod(size) / n) ** (1.0 / 3.0)
+    spacing = (domain_volume(domain, size) / n) ** (1.0 / 3.0)
+    wall = round_wall(domain, size, spacing)
+    _check_round(centers, wall, domain)
     counts = np.maximum(1, (size / (1.35 * spacing)).astype(np.int64))
     start, items = kernels.bin_points(centers, size, counts)
-    grid = (centers, weights, size, periodic, counts, start, items)
+    grid = (centers, weights, size, periodic, counts, start, items, wall)
     parts = [_cut_rows(np.arange(a, min(n, a + BLOCK)), grid, spacing) for a in range(0, n, BLOCK)]
     volumes, number, neighbour, image, area, distance = (np.concatenate(column) for column in zip(*parts, strict=True))
-    _check_filled(volumes, size)
-    return _compressed(volumes, number, (neighbour, image, area, distance), spacing)
+    _check_filled(volumes, domain_volume(domain, size), domain)
+    return _compressed(volumes, number, (neighbour, image, area, distance), spacing, wall)
 
 
 def without_hidden(packing, facets):
@@ -83,15 +92,29 @@ def _checked(centers, weights, size, periodic):
     return centers, weights, size, periodic
 
 
+def _check_round(centers, wall, domain):
+    """Raise ValueError for a centre on or beyond the tangent planes, where its wall facet would conduct backwards."""
+    if not len(wall.normals):
+        return
+    off = np.linalg.norm((centers - wall.middle) * wall.across, axis=1)
+    if off.max() >= wall.radius:
+        which = int(np.argmax(off))
+        raise ValueError(
+            f"centers[{which}] = {centers[which].tolist()}: {off[which]:.6g} m off the {domain}'s middle; must be less "
+            f"than {wall.radius:.6g}, that of its facets (demheat.packing.relax.settle pushes particles off the wall)"
+        )
+
+
 def _cut_rows(rows, grid, spacing):
     """Cut some rows, again and wider where a cell was not secured; flat columns of their facets."""
-    size, periodic = grid[2], grid[3]
+    size, periodic, wall = grid[2], grid[3], grid[-1]
     widest = size[periodic].min() if periodic.any() else 2 * size.max()
     reach, room, most, eps = min(2.5 * spacing, widest), 256, MOST_PLANES, 1e-11 * spacing
     done = []
     while len(rows):
         out = _empty_out(len(rows), most)
-        kernels.cut_cells(rows, reach, room, most, eps, *grid, out)
+        near = tangents_within(wall, grid[0][rows], reach)
+        kernels.cut_cells(rows, reach, room, most, eps, near, *grid[:-1], tuple(wall), out)
         status = out[0]
         done.append((rows[status == kernels.OK], _columns(out, status == kernels.OK)))
         if reach >= widest and np.any(status == kernels.UNSECURED):
@@ -99,11 +122,12 @@ def _cut_rows(rows, grid, spacing):
                 f"laguerre: {np.sum(status == kernels.UNSECURED)} cells reach across the periodic box "
                 f"of {len(grid[0])} points; use more points"
             )
-        if room > 1 << 17 or eps > 1e-8 * spacing:
+        overfull = room == MOST_ROOM and np.any(status == kernels.OVERFLOW)
+        if overfull or (eps > 1e-8 * spacing and np.any(status != kernels.OK)):
             raise RuntimeError(f"laguerre: {np.sum(status != kernels.OK)} cells could not be cut")
         rows = rows[status != kernels.OK]
         reach = min(1.35 * reach, widest)
-        room, most = 4 * room, min(3 * most, 2000)
+        room, most = min(4 * room, MOST_ROOM), min(3 * most, 2000)
         if np.any(status == kernels.TANGLED):
             eps *= 4
     return _in_order(done)
@@ -139,19 +163,20 @@ def _in_order(done):
     return [c[order] for c in columns[:2]] + [c[facet_order] for c in columns[2:]]
 
 
-def _check_filled(volumes, size):
-    defect = volumes.sum() / np.prod(size) - 1.0
+def _check_filled(volumes, volume, domain):
+    defect = volumes.sum() / volume - 1.0
     if abs(defect) > 1e-9:
-        raise RuntimeError(f"laguerre: the cells fill the box with a relative defect of {defect:.2e}")
+        raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _compressed(volumes, number, columns, spacing):
+def _compressed(volumes, number, columns, spacing, planes):
     neighbour, image, area, distance = columns
     row = np.repeat(np.arange(len(number)), number)
     big = area > SLIVER * spacing**2
     wall = big & (neighbour < 0)
     link = big & (neighbour >= 0)
-    walls = (row[wall], -1 - neighbour[wall], area[wall], distance[wall])
+    side = -1 - neighbour[wall]
+    walls = (row[wall], np.minimum(side, ROUND_SIDE), area[wall], distance[wall])
     indptr = _pointers(row[link], len(number))
     indices, image, area, distance = neighbour[link].astype(np.uint32), image[link], area[link], distance[link]
     matched = np.empty(len(area))
@@ -161,7 +186,14 @@ def _compressed(volumes, number, columns, spacing):
         raise RuntimeError(f"laguerre: a facet of {lost.max():.2e} m2 is seen by one of its two cells only")
     keep = matched > 0.0
     indptr = _pointers(row_numbers(indptr)[keep], len(number))
-    return Facets(indptr, indices[keep], image[keep], matched[keep], distance[keep], *walls, volumes)
+    links = (indptr, indices[keep], image[keep], matched[keep], distance[keep])
+    return Facets(*links, *walls, volumes, _wall_normals(side, planes))
+
+
+def _wall_normals(side, planes):
+    """Outward unit vectors of the box's sides, 0 to 5, and of the planes of a round wall, 6 and above."""
+    flat = np.array([[sign * (axis == k) for k in range(3)] for axis in range(3) for sign in (-1.0, 1.0)])
+    return np.concatenate([flat, planes.normals])[side]
 
 
 def _pointers(rows, n):

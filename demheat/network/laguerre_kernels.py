@@ -1,12 +1,13 @@
 """Compiled cell cutter of the radical (Laguerre, power) tessellation.
 
-A cell is a convex polyhedron whose every vertex is the meeting of three planes, kept as an oriented triple of plane
-slots; cutting it by a plane removes the vertices beyond the plane and closes the hole by a fan of new ones. Slots 0
-to 5 are the sides of the start box, the others the radical planes with neighbours, nearest first.
+A cell is a convex polyhedron. Its plane slots 0 to 5 are the sides of the start box, the others the radical planes with
+neighbours, nearest first, and planes of a round wall.
 """
 
 import numpy as np
 from numba import njit, prange
+
+from demheat.network.polyhedron_kernels import cut, measure, start_box
 
 OK, UNSECURED, OVERFLOW, TANGLED = 0, 1, 2, 3
 
@@ -99,115 +100,65 @@ def _sift(heap, key, root, count):
 
 
 @njit(cache=True)
-def _start_box(low, high, vertex, triple, owner):
-    """Vertices of the box as oriented plane triples; slots 2k and 2k + 1 are the low and high side of axis k."""
-    v = 0
-    for a in range(2):
-        for b in range(2):
-            for c in range(2):
-                vertex[v, 0] = high[0] if a else low[0]
-                vertex[v, 1] = high[1] if b else low[1]
-                vertex[v, 2] = high[2] if c else low[2]
-                p, q, r = a, 2 + b, 4 + c
-                if (a + b + c) % 2 == 0:  # keep every triple counter-clockwise seen from outside
-                    q, r = r, q
-                _put(v, p, q, r, triple, owner)
-                v += 1
-    return v
+def _cut_wall(count, planes, center, eps, tangents, only, skip, wall, work):
+    """Cut by the planes of a round wall listed in tangents (by one of them if only >= 0, without one if skip >= 0).
+
+    Returns (status, vertex count, number of planes); a plane q is noted as source -1 - q.
+    """
+    vertex, triple, owner, above, edge, follow, normal, distance, source = work[2:11]
+    normals, radius, middle = wall[0], wall[1], wall[2]
+    for q in tangents:
+        if (only >= 0 and q != only) or q == skip:
+            continue
+        if planes == len(distance):
+            return OVERFLOW, 0, 0
+        x, y, z = normals[q]
+        h = radius - x * (center[0] - middle[0]) - y * (center[1] - middle[1]) - z * (center[2] - middle[2])
+        count = cut(count, planes, x, y, z, h, eps, vertex, triple, owner, above, edge, follow)
+        if count < 0:
+            return TANGLED, 0, 0
+        if count == 0:
+            return OK, 0, 0
+        if triple[count - 1, 2] == planes:
+            normal[planes, 0], normal[planes, 1], normal[planes, 2] = x, y, z
+            distance[planes], source[planes] = h, -1 - q
+            planes += 1
+    return OK, count, planes
 
 
 @njit(cache=True)
-def _put(v, p, q, r, triple, owner):
-    triple[v, 0], triple[v, 1], triple[v, 2] = p, q, r
-    owner[p, q] = v
-    owner[q, r] = v
-    owner[r, p] = v
+def _misses_tangents(count, reach, center, vertex, wall):
+    """Whether a plane of a round wall farther than reach from the centre might still cut the cell.
+
+    A plane beyond which a vertex lies touches the round body within sqrt(R_v^2 - R^2) of that vertex, R_v the vertex's
+    distance from the body's middle or axis.
+    """
+    radius, middle, across = wall[1], wall[2], wall[3]
+    for v in range(count):
+        off, far = -(radius**2), 0.0
+        for k in range(3):
+            off += across[k] * (center[k] + vertex[v, k] - middle[k]) ** 2
+            far += vertex[v, k] ** 2
+        if off > 0.0 and np.sqrt(far) + np.sqrt(off) > reach:
+            return True
+    return False
 
 
 @njit(cache=True)
-def _cut(count, slot, nx, ny, nz, h, eps, vertex, triple, owner, above, edge, follow):
-    """Cut the cell by n.x <= h; the new vertex count, or the old one if the plane misses, or -1 where tangled."""
-    removed = 0
-    for v in range(count):
-        above[v] = nx * vertex[v, 0] + ny * vertex[v, 1] + nz * vertex[v, 2] - h
-        if above[v] > eps:
-            removed += 1
-    if removed == 0:
-        return count
-    if removed == count:
-        return 0
-    edges = 0
-    for v in range(count):
-        if above[v] > eps:
-            for k in range(3):
-                a, b = triple[v, k], triple[v, (k + 1) % 3]
-                if above[owner[b, a]] <= eps:
-                    edge[edges, 0], edge[edges, 1], edge[edges, 2], edge[edges, 3] = a, b, v, owner[b, a]
-                    follow[a] = b
-                    edges += 1
-    # The hole must be bounded by one simple loop.
-    a, steps = edge[0, 0], 0
-    while True:
-        a = follow[a]
-        steps += 1
-        if a == edge[0, 0] or steps > edges:
-            break
-    if steps != edges or count + edges > len(vertex):
-        return -1
-    total = count
-    for e in range(edges):
-        v, w = edge[e, 2], edge[e, 3]
-        t = above[v] / (above[v] - min(above[w], 0.0))  # a vertex kept within eps above the plane stands for it
+def _nearest(center, tangents, wall):
+    """The listed plane of a round wall that is nearest to the centre; -1 for an empty list."""
+    normals, best, found = wall[0], -np.inf, -1
+    for q in tangents:
+        along = 0.0
         for k in range(3):
-            vertex[total, k] = vertex[v, k] + t * (vertex[w, k] - vertex[v, k])
-        triple[total, 0], triple[total, 1], triple[total, 2] = edge[e, 0], edge[e, 1], slot
-        above[total] = 0.0
-        total += 1
-    kept = 0
-    for v in range(total):
-        if above[v] <= eps:
-            for k in range(3):
-                vertex[kept, k] = vertex[v, k]
-            _put(kept, triple[v, 0], triple[v, 1], triple[v, 2], triple, owner)
-            kept += 1
-    return kept
+            along += normals[q, k] * (center[k] - wall[2][k])
+        if along > best:
+            best, found = along, q
+    return found
 
 
 @njit(cache=True)
-def _measure(count, normal, distance, vertex, triple, owner, area):
-    """Facet areas by slot; the cell volume."""
-    for v in range(count):
-        for k in range(3):
-            area[triple[v, k]] = 0.0
-    for v in range(count):
-        for k in range(3):
-            f, b = triple[v, k], triple[v, (k + 2) % 3]
-            w = owner[f, b]
-            cx = vertex[v, 1] * vertex[w, 2] - vertex[v, 2] * vertex[w, 1]
-            cy = vertex[v, 2] * vertex[w, 0] - vertex[v, 0] * vertex[w, 2]
-            cz = vertex[v, 0] * vertex[w, 1] - vertex[v, 1] * vertex[w, 0]
-            area[f] += 0.5 * (normal[f, 0] * cx + normal[f, 1] * cy + normal[f, 2] * cz)
-    volume = 0.0
-    for v in range(count):
-        for k in range(3):
-            f = triple[v, k]
-            # Each facet is met once per vertex: count it at its lowest vertex only.
-            first, w = True, owner[f, triple[v, (k + 2) % 3]]
-            while w != v:
-                if w < v:
-                    first = False
-                    break
-                m = 0
-                while triple[w, m] != f:
-                    m += 1
-                w = owner[f, triple[w, (m + 2) % 3]]
-            if first:
-                volume += distance[f] * area[f] / 3.0
-    return volume
-
-
-@njit(cache=True)
-def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, work):
+def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, tangents, wall, work):
     """Cut one cell; (status, vertex count, number of planes)."""
     cand, heap, vertex, triple, owner, above, edge, follow, normal, distance, source, area = work
     m = _gather(i, reach, points, weights, size, periodic, counts, start, items, cand)
@@ -216,15 +167,22 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
     low, high = np.empty(3), np.empty(3)
     for k in range(3):
         low[k], high[k] = -reach, reach
-        if not periodic[k]:
+        # Tangent planes enclose as much as the round body: their corners stand out of its box.
+        if not periodic[k] and wall[3][k] == 0.0:
             low[k], high[k] = max(low[k], -points[i, k]), min(high[k], size[k] - points[i, k])
         for side in range(2):
             for axis in range(3):
                 normal[2 * k + side, axis] = 0.0
             normal[2 * k + side, k] = 2 * side - 1
             distance[2 * k + side] = high[k] if side else -low[k]
-    count = _start_box(low, high, vertex, triple, owner)
+    count = start_box(low, high, vertex, triple, owner)
     planes, plane, offset = 6, cand[3], cand[2]
+    # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
+    first = _nearest(points[i], tangents, wall)
+    if first >= 0:
+        state, count, planes = _cut_wall(count, planes, points[i], eps, tangents, first, -1, wall, work)
+        if state != OK or count == 0:
+            return state, 0, 0
     for c in range(m):
         heap[c] = c
     for root in range(m // 2 - 1, -1, -1):
@@ -243,7 +201,7 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
         for k in range(3):
             normal[planes, k] = offset[c, k] / d
         n = normal[planes]
-        count = _cut(count, planes, n[0], n[1], n[2], h, eps, vertex, triple, owner, above, edge, follow)
+        count = cut(count, planes, n[0], n[1], n[2], h, eps, vertex, triple, owner, above, edge, follow)
         if count < 0:
             return TANGLED, 0, 0
         if count == 0:
@@ -257,15 +215,22 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
             farthest = np.sqrt(farthest)
     if (reach**2 + weights[i] - heaviest) / (2.0 * reach) < farthest:
         return UNSECURED, 0, 0
+    if len(wall[0]) > 0:
+        state, count, planes = _cut_wall(count, planes, points[i], eps, tangents, -1, first, wall, work)
+        if state == OK and count > 0 and _misses_tangents(count, reach, points[i], vertex, wall):
+            state = UNSECURED
+        return state, count, planes
     return OK, count, planes
 
 
 @njit(cache=True, parallel=True)
-def cut_cells(rows, reach, room, most, eps, points, weights, size, periodic, counts, start, items, out):
+def cut_cells(rows, reach, room, most, eps, near, points, weights, size, periodic, counts, start, items, wall, out):
     """Cut the cells of the given rows into out = (status, volume, number, neighbour, image, area, distance).
 
-    A cell may meet `room` candidates and be cut by `most` planes. Neighbour -1 - s stands for side s of the box. Each
-    thread writes its own rows only.
+    A cell may meet `room` candidates and be cut by `most` planes. A round wall = (normals (m, 3), radius, middle (3,),
+    across (3,): 1 on its round axes) is tangent planes normal.(x - middle) <= radius; near = (pointers by row, plane
+    numbers) lists those that touch the body within reach of each centre. Neighbour -1 - s stands for side s of the
+    box, -7 - q for plane q of a round wall. Each thread writes its own rows only.
     """
     status, volume, number, neighbour, image, areas, distances = out
     heaviest = weights.max()
@@ -290,15 +255,16 @@ def cut_cells(rows, reach, room, most, eps, points, weights, size, periodic, cou
             i = rows[row]
             number[row] = 0
             volume[row] = 0.0
+            tangents = near[1][near[0][row] : near[0][row + 1]]
             state, count, planes = _cell(
-                i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, work
+                i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, tangents, wall, work
             )
             status[row] = state
             if state != OK or count == 0:
                 continue
             triple, owner, normal, distance, source, area = work[3], work[4], work[8], work[9], work[10], work[11]
             area[:planes] = 0.0
-            volume[row] = _measure(count, normal, distance, work[2], triple, owner, area)
+            volume[row] = measure(count, normal, distance, work[2], triple, owner, area)
             for f in range(planes):
                 if area[f] <= 0.0:
                     continue
@@ -308,6 +274,8 @@ def cut_cells(rows, reach, room, most, eps, points, weights, size, periodic, cou
                 e = number[row]
                 if f < 6:
                     neighbour[row, e], image[row, e] = -1 - f, 13
+                elif source[f] < 0:
+                    neighbour[row, e], image[row, e] = source[f] - 6, 13
                 else:
                     neighbour[row, e], image[row, e] = cand[0][source[f]], cand[1][source[f]]
                 areas[row, e], distances[row, e] = area[f], distance[f]

@@ -1,0 +1,141 @@
+"""Round walls of radical cells: tangent planes placed so that the volume they enclose is that of the round body.
+
+A cylinder is replaced by the prism over a regular polygon, a sphere by the polyhedron whose planes touch it at the
+points of a spherical Fibonacci lattice, both with facets about as large as those of the cells. Moved inwards until the
+volume is right, the planes lie inside and outside of the round wall by equal parts: what a wall temperature on them
+changes dies away within one facet's width. They do not depend on the packing, so that cells match by construction.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import ConvexHull, cKDTree
+
+from demheat.packing.base import ROUND_AXES
+
+# Width of a wall facet in mean spacings of the particles.
+WIDTH = 1.0
+# Code of a round wall in Facets.wall_side, behind the six sides of a box.
+ROUND_SIDE = 6
+FEWEST_SIDES, FEWEST_FACES = 8, 20
+
+
+class RoundWall(NamedTuple):
+    """Tangent planes normal.(x - middle) = radius of a round wall.
+
+    Attributes
+    ----------
+    normals : (m, 3) float array
+        Outward unit vectors.
+    radius : float, m
+        Distance of every plane from the middle or the axis; a little less than that of the body.
+    middle : (3,) float array, m
+    across : (3,) float array
+        1 on the axes across which the wall is round, else 0.
+    """
+
+    normals: np.ndarray
+    radius: float
+    middle: np.ndarray
+    across: np.ndarray
+
+
+def round_wall(domain, size, spacing, *, width=WIDTH):
+    """Tangent planes of a domain that enclose exactly its volume.
+
+    Parameters
+    ----------
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
+    size : (3,) float array, m
+        Box in which it is inscribed.
+    spacing : float, m
+        Mean spacing of the particles.
+    width : float
+        Of a facet, in spacings.
+
+    Returns
+    -------
+    RoundWall
+        Without planes for a box.
+
+    Raises
+    ------
+    ValueError
+        If the domain is not one of these.
+    """
+    if domain not in ROUND_AXES:
+        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    axes = list(ROUND_AXES[domain])
+    middle, across = np.asarray(size, dtype=float) / 2, np.zeros(3)
+    across[axes] = 1.0
+    if not axes:
+        return RoundWall(np.empty((0, 3)), 0.0, middle, across)
+    radius = float(middle[axes[0]])
+    if len(axes) == 2:
+        sides = max(FEWEST_SIDES, round(2 * np.pi * radius / (width * spacing)))
+        angle = 2 * np.pi * np.arange(sides) / sides
+        normals = np.zeros((sides, 3))
+        normals[:, axes[0]], normals[:, axes[1]] = np.cos(angle), np.sin(angle)
+        # A regular polygon about a circle of radius r has the area n r^2 tan(pi/n).
+        return RoundWall(normals, radius * float(np.sqrt(np.pi / (sides * np.tan(np.pi / sides)))), middle, across)
+    normals = fibonacci(max(FEWEST_FACES, round(4 * np.pi * (radius / (width * spacing)) ** 2)))
+    share = 4 * np.pi / 3 / circumscribed_volume(normals)
+    return RoundWall(normals, radius * float(np.cbrt(share)), middle, across)
+
+
+def fibonacci(number):
+    """Nearly even directions, (number, 3) float array of unit vectors."""
+    index = np.arange(number) + 0.5
+    height = 1.0 - 2.0 * index / number
+    turn = np.pi * (1.0 + np.sqrt(5.0)) * index
+    ring = np.sqrt(1.0 - height**2)
+    return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
+
+
+def circumscribed_volume(normals):
+    """Volume of the polyhedron of the planes normal.x <= 1, exact to rounding.
+
+    Its vertices are the poles of the triangles of the convex hull of the normals. Each triangle and each of its edges
+    make two signed tetrahedra with corners in the middle, a tangent point, the edge's nearest point and the vertex.
+
+    Parameters
+    ----------
+    normals : (m, 3) float array
+        Unit vectors that leave no half space empty.
+
+    Returns
+    -------
+    float
+    """
+    a, b, c = (normals[corner] for corner in ConvexHull(normals).simplices.T)
+    pole = np.cross(b - a, c - a)
+    flip = np.einsum("ij,ij->i", pole, a) < 0  # counter-clockwise seen from outside
+    b, c = np.where(flip[:, None], c, b), np.where(flip[:, None], b, c)
+    pole[flip] *= -1.0
+    vertex = pole / np.einsum("ij,ij->i", pole, a)[:, None]
+    total = 0.0
+    for p, q in ((a, b), (b, c), (c, a)):
+        near = (p + q) / (1.0 + np.einsum("ij,ij->i", p, q))[:, None]
+        total += np.einsum("ij,ij->", np.cross(p, near) + np.cross(near, q), vertex)
+    return total / 6.0
+
+
+def tangents_within(wall, points, reach):
+    """The planes that touch the body within reach of each point (across the axis, for a cylinder).
+
+    Returns
+    -------
+    pointers : (n + 1,) int64 array
+    planes : int64 array
+    """
+    counts, planes = np.zeros(len(points), dtype=np.int64), np.empty(0, dtype=np.int64)
+    if len(wall.normals):
+        axes = np.flatnonzero(wall.across)
+        offsets = (points - wall.middle)[:, axes]
+        near = np.flatnonzero(np.linalg.norm(offsets, axis=1) > wall.radius - reach)
+        tree = cKDTree(wall.radius * wall.normals[:, axes])
+        lists = tree.query_ball_point(offsets[near], reach, return_sorted=True)
+        counts[near] = [len(found) for found in lists]
+        if counts.any():
+            planes = np.concatenate([np.asarray(found, dtype=np.int64) for found in lists])
+    return np.concatenate([[0], np.cumsum(counts)]), planes
