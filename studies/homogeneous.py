@@ -9,8 +9,9 @@ from demheat.network.calibrated import contact_facets
 from demheat.network.laguerre import without_hidden
 from demheat.packing.cache import grown, relaxed
 from demheat.packing.domain import tile
-from demheat.packing.neighbours import contacts, coordination
+from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Gaussian
+from demheat.packing.statistics import coordination
 from demheat.scene import Material, Scene
 
 # A flat wall keeps the bulk as many mean radii away on average (relaxed packings, found at 3e3 to 1e5 particles and
@@ -79,7 +80,7 @@ def calibrated(
     -------
     dict
         ct; bound, 1 over the conductivity under a linear field, below which C_t cannot lie in a periodic cell;
-        formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap, links (mean number), least, under_2, under_4, islands as in
+        formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap; links (mean number), least, under_2, under_4, islands as in
         `coordination`; phi; linked (mean number after poor particles are dealt with); left (particles then).
     """
     as_papers = loading in ("flux", "isothermal")
@@ -91,8 +92,9 @@ def calibrated(
         rest, facets = without_hidden(packing, contact_facets(packing, links=links, mean=mean, poor=poor, wall=wall))
         reached = len(facets.indices) / rest.number
         target += wanted - reached
-    report = coordination(*links)._asdict() | {"phi": packing.phi, "linked": reached, "left": rest.number}
-    report["links"] = report.pop("mean")
+    found, gap = coordination(packing, *links[:2]), links[2]
+    report = {"gap": gap, "links": found.mean, "least": found.least, "under_2": found.under_2, "under_4": found.under_4}
+    report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": rest.number}
     del links
     load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
     scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)

@@ -5,6 +5,7 @@
 
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.cache import cached, grown, relaxed
+from demheat.packing.domain import cut, tile
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal, Uniform
 from demheat.packing.relax import settle
@@ -18,8 +19,10 @@ __all__ = [
     "Uniform",
     "cached",
     "contacts",
+    "cut",
     "grown",
     "make_packing",
     "relaxed",
     "settle",
+    "tile",
 ]

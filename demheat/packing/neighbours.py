@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse import csgraph
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
@@ -20,31 +18,6 @@ PER_CELL = 4.0
 FACTOR, MAX_LEVELS = 4.0, 12
 # First guess of a gap that holds enough contacts: 7.5 of them were found within 0.07 at phi = 0.64.
 FIRST_GAP = 0.12
-
-
-class Coordination(NamedTuple):
-    """How well the particles of a contact network are connected.
-
-    Attributes
-    ----------
-    gap : float
-        Detection gap, as `contacts` returns it.
-    mean : float
-        Mean number of links per particle, all particles counted (walls do not count as links).
-    least : int
-        Smallest number of links.
-    under_2, under_4 : float
-        Fraction of the particles with fewer than 2 and fewer than 4 links.
-    islands : int
-        Particles outside the largest connected cluster.
-    """
-
-    gap: float
-    mean: float
-    least: int
-    under_2: float
-    under_4: float
-    islands: int
 
 
 def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
@@ -127,27 +100,6 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additi
     kept = ratio <= limit
     new = np.concatenate(([0], np.cumsum(kept)))[indptr]
     return new, indices[kept], float(limit - 1.0)
-
-
-def coordination(indptr, indices, gap=math.nan) -> Coordination:
-    """How well a contact network connects its particles; takes what `contacts` returns.
-
-    Parameters
-    ----------
-    indptr : (n + 1,) int array
-    indices : (nnz,) int array
-        Each pair twice.
-    gap : float
-
-    Returns
-    -------
-    Coordination
-    """
-    links = np.diff(indptr)
-    _, cluster = csgraph.connected_components(as_graph(indptr, indices), directed=False)
-    islands = len(links) - int(np.bincount(cluster).max())
-    under_2, under_4 = (float(np.mean(links < few)) for few in (2, 4))
-    return Coordination(float(gap), float(links.mean()), int(links.min()), under_2, under_4, islands)
 
 
 def as_graph(indptr, indices):

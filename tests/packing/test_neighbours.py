@@ -4,7 +4,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.neighbours import contacts, coordination, neighbours
+from demheat.packing.neighbours import contacts, neighbours
 from demheat.packing.relax import relax
 
 
@@ -135,21 +135,6 @@ def test_bad_input(relaxed):
     ):
         with pytest.raises(ValueError, match="scale|skin|coordination|gap|margin"):
             call()
-
-
-def test_coordination_reports_what_brute_force_counts(relaxed):
-    found = coordination(*contacts(relaxed, coordination=5.0))
-    ratio = distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii)
-    near = ratio <= 1 + found.gap
-    links = near.sum(axis=1)
-    assert found.mean == links.mean() and found.least == links.min()
-    assert found.under_2 == np.mean(links < 2) and found.under_4 == np.mean(links < 4)
-    # The largest cluster by spreading from a well-linked particle.
-    reached = np.zeros(2000, dtype=bool)
-    reached[np.argmax(links)] = True
-    while (grown := reached | near[reached].any(axis=0)).sum() > reached.sum():
-        reached = grown
-    assert found.islands == 2000 - reached.sum() > 0
 
 
 @pytest.mark.parametrize("wanted", [3.0, 7.5])

@@ -6,12 +6,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import statistics_kernels as kernels
 from demheat.packing.base import ROUND_AXES, Packing
+from demheat.packing.neighbours import as_graph
 from demheat.packing.statistics.regions import check_margin, wall_distances
 
 
@@ -133,9 +133,7 @@ def coordination(packing: Packing, indptr, indices, *, margin=0.0) -> Coordinati
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
     numbers = np.diff(indptr)[_bulk(packing, margin)]
-    graph = csr_array((np.ones(len(indices), dtype=np.int8), indices.astype(np.int64), indptr))
-    graph.resize(packing.number, packing.number)
-    islands, label = connected_components(graph, directed=False)
+    islands, label = connected_components(as_graph(indptr, indices), directed=False)
     return Coordination(
         mean=float(numbers.mean()),
         least=int(numbers.min()),
