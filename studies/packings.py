@@ -61,7 +61,8 @@ def run(part, maker, particles, radii, seed, method, growth=0.02, **knobs):
 
 def warm_up(**case):
     """Make a small packing the same way."""
-    run(**case | {"particles": 500, "seed": 99} | ({"phi": 0.5} if "phi" in case else {"pressure": 1e3}))
+    small = {"particles": 500, "seed": 99, "radii": "gaussian"}
+    run(**case | small | ({"phi": 0.5} if "phi" in case else {"pressure": 1e3}))
 
 
 def claims(df):
