@@ -39,10 +39,20 @@ def _speed(axes, peers):
         )  # fmt: skip
     number = int(peers["particles"].iloc[0])
     axes.set(xscale="log", xlabel="CPU seconds, points to packing", ylabel="packing fraction at pressure 1e6")
+    _plain_ticks(axes.xaxis)
     means = peers[peers["radii"] == "gaussian"].groupby("maker")["cpu_s"].mean()
     faster = f": {means['spheropack'] / means['lsa']:.1f} times faster" if len(means) > 1 else ""
     axes.set_title(f"{number} spheres jammed{faster}")
     axes.legend()
+
+
+def _plain_ticks(axis):
+    """Ticks 1, 2, 5, 10, ... of a logarithmic axis, as plain numbers."""
+    from matplotlib import ticker
+
+    axis.set_major_locator(ticker.LogLocator(subs=(1.0, 2.0, 5.0)))
+    axis.set_major_formatter(ticker.FormatStrFormatter("%g"))
+    axis.set_minor_locator(ticker.NullLocator())
 
 
 def _contacts(axes, peers):
@@ -55,7 +65,7 @@ def _contacts(axes, peers):
             GAPS, mean, color=colour if radii == "gaussian" else BLACK, linestyle=style, label=f"{label}, {radii}"
         )
     axes.axhline(7.5, color=GREY, linewidth=0.8)
-    axes.annotate("7.5, the paper's", (GAPS[0], 7.5), fontsize=8, color=GREY, va="bottom")
+    axes.annotate("7.5, the paper's", (GAPS[0], 7.45), fontsize=8, color=GREY, va="top")
     axes.set(xscale="log", xlabel="gap over the sum of radii", ylabel="neighbours within the gap")
     axes.set_title("A mean of 7.5 neighbours needs a gap of several %")
     axes.legend()
@@ -115,5 +125,6 @@ def _width(axes, ok):
     peer = ok[(ok["maker"] == "spheropack") & (ok["radii"] == "gaussian")]
     axes.plot(peer["particles"], peer["us_per_collision"], "s", color=BLUE, markerfacecolor="white", label="spheropack")
     axes.set(xscale="log", yscale="log", xlabel="spheres", ylabel="CPU microseconds per collision")
+    _plain_ticks(axes.yaxis)
     axes.set_title("The width of the distribution costs little")
     axes.legend()
