@@ -1,0 +1,1 @@
+"""Integrators of a network in time, each in its own module with its declared `ORDER`."""
