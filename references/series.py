@@ -108,7 +108,13 @@ def _checked_times(times):
         times = np.atleast_1d(np.asarray(times, dtype=float))
     except (TypeError, ValueError):
         raise ValueError(f"times = {times!r}: must be increasing numbers >= 0, in seconds") from None
-    if times.ndim != 1 or not np.all(np.isfinite(times)) or np.any(times < 0) or np.any(np.diff(times) <= 0):
+    if (
+        times.ndim != 1
+        or not len(times)
+        or not np.all(np.isfinite(times))
+        or np.any(times < 0)
+        or np.any(np.diff(times) <= 0)
+    ):
         raise ValueError(f"times = {times.tolist()}: must be increasing numbers >= 0, in seconds")
     return times
 
