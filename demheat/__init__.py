@@ -1,6 +1,7 @@
 """Heat conduction in heterogeneous solids by the discrete element method, and what it is worth.
 
-Importing this package loads NumPy only; the engine and its compiled kernels load with the first `solve`.
+Importing this package loads NumPy only; the engine and its compiled kernels load with the first `solve` or
+`evolve`.
 """
 
 from demheat.field import Field, Samples
@@ -16,14 +17,15 @@ __all__ = [
     "Samples",
     "Scene",
     "Sphere",
+    "evolve",
     "solve",
 ]
 __version__ = "0.1.0"
 
 
 def __getattr__(name):
-    if name == "solve":
-        from demheat.dem import solve
+    if name in ("evolve", "solve"):
+        from demheat import dem
 
-        return solve
+        return getattr(dem, name)
     raise AttributeError(f"module 'demheat' has no attribute {name!r}")

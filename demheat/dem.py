@@ -13,8 +13,11 @@ from demheat.network.platonic import COORDINATION, platonic_facets
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.neighbours import contacts
-from demheat.scene import Flux, Material, Scene
+from demheat.scene import WALLS, Flux, Material, Scene
+from demheat.sources import lost_power, source_power, total_power
 from demheat.steady import check_solver, solve_steady
+from demheat.transient import check_request, mean_flux
+from demheat.transient import evolve as evolve_network
 
 LAWS = ("laguerre", "calibrated", "platonic")
 LOADINGS = ("isothermal", "flux")
@@ -129,6 +132,139 @@ def solve(
     return field_of(
         scene, packing, facets, network, solution, law=law, stats=spent | {"law": law, "calibration": factor}
     )
+
+
+def evolve(
+    scene,
+    times,
+    *,
+    particles=100_000,
+    seed=0,
+    law="laguerre",
+    conforming=None,
+    interface="harmonic",
+    poor="nearest",
+    wall="center",
+    coordination=None,
+    packing=None,
+    integrator="auto",
+    accuracy=1e-3,
+    step=None,
+    allow_few=False,
+):
+    """Conduction in time by the discrete element method, from the scene's initial temperature at time 0.
+
+    Parameters
+    ----------
+    scene : Scene
+        With an initial temperature, densities and heat capacities; its loads may depend on time.
+    times : sequence of float, s
+        Increasing, >= 0.
+    particles, seed, conforming, interface, packing, allow_few
+        As in `solve`; a packing must have the scene's box and domain.
+    law : {"laguerre", "calibrated", "platonic"}
+        As in `solve`; the Platonic law has its own capacities, which sum to the body's only by chance.
+    poor, wall, coordination
+        As in `solve`, for the two contact laws. With `wall = "center"` particles at a wall with a temperature are held
+        at it, as in the papers, and their own heat counts as the wall's.
+    integrator : {"auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid"}
+        The papers' explicit Euler at its largest stable step, Runge-Kutta-Legendre super-steps, or the implicit TR-BDF2
+        with conjugate gradients preconditioned by the diagonal or by multigrid; "auto" takes what should cost least.
+    accuracy : float
+        Temporal error, rms, of the temperature span; explicit Euler has what its step gives.
+    step : float, s, optional
+        Equal steps of at most this size instead of chosen ones.
+
+    Returns
+    -------
+    iterator of Field
+        One at each time. Their stats are those of `demheat.transient.integrate`, with law, calibration and, for clipped
+        sources, lost_power (W). Their mean flux is the volume average of what flows, not what enters.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, before any heavy work; an unstable step once its limit is known.
+    NotImplementedError
+        For contact laws with a round wall that is loaded, and for conforming packings in round bodies.
+    RuntimeError
+        If steps or linear solves do not converge.
+    """
+    times = check_request(times, integrator, accuracy, step)
+    check_rule(interface)
+    contact = {"coordination": coordination, "poor": poor, "wall": wall}
+    conforming = _check_evolution(scene, law, conforming, contact, packing)
+    if packing is None and isinstance(particles, int | float) and particles < 100 and not allow_few:
+        raise ValueError(f"particles = {particles!r}: fewer than 100; pass allow_few=True if you mean it")
+    for time_ in (0.0, float(times[-1])):
+        # Sources move on straight lines: what is inside the body then is inside all the while.
+        total_power(scene, time_)
+    how = {"integrator": integrator, "accuracy": accuracy, "step": step}
+
+    def fields():
+        here = packing
+        if here is None:
+            domain = {} if scene.domain == "box" else {"domain": scene.domain}
+            here = relaxed(particles, size=scene.size, periodic=False, seed=seed, allow_few=allow_few, **domain)
+        if conforming:
+            here = conform(here, scene, seed=seed)
+            _warn_of_gaps(here)
+        yield from _fields(scene, here, times, law, interface, contact, how)
+
+    return fields()
+
+
+def _fields(scene, packing, times, law, interface, contact, how):
+    if law == "laguerre":
+        domain = packing.domain
+        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic, domain=domain)
+    else:
+        facets = _touching(packing, law, **contact)
+    packing, facets = without_hidden(packing, facets)
+    factor = calibration(facets, packing, _loaded_flat(scene)) if law == "calibrated" else 1.0
+    facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
+    phase = scene.phase_at(packing.centers)
+    _warn_of_lost_phases(scene, phase)
+    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities, rule=interface)
+    power = source_power(scene, network.centers, network.volumes)
+    pinned = np.ones(packing.number, dtype=bool) if law != "laguerre" and contact["wall"] == "center" else None
+    more = {"law": law, "calibration": factor}
+    clipped = any(getattr(source, "clip", False) for source in scene.sources)
+    for now, solution in evolve_network(network, scene, times, power=power, pinned=pinned, **how):
+        stats = more | ({"lost_power": lost_power(scene, now)} if clipped else {})
+        flux = mean_flux(network, scene, solution)
+        yield field_of(scene, packing, facets, network, solution, law=law, stats=stats, mean_flux=flux, time=now)
+
+
+def _check_evolution(scene, law, conforming, contact, packing):
+    """Refuse what a transient cannot do; whether twins are wanted."""
+    if law not in LAWS:
+        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
+    _check_contacts(law, **contact)
+    wanted = (law == "laguerre" and bool(scene.inclusions)) if conforming is None else bool(conforming)
+    if wanted and law != "laguerre":
+        raise ValueError(f"conforming = True with law = {law!r}: twins need not touch; must be False")
+    if wanted and scene.domain != "box":
+        raise NotImplementedError(f"inclusions in a {scene.domain} have no conforming packing; pass conforming=False")
+    if law != "laguerre" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
+        raise NotImplementedError(f"law {law!r} has no links to a round wall; use 'laguerre'")
+    scene.check_transient()
+    _check_walls(scene, law, contact["wall"])
+    if packing is not None and (
+        packing.domain != scene.domain or packing.periodic.any() or not np.allclose(packing.size, scene.size, rtol=1e-9)
+    ):
+        raise ValueError(
+            f"packing of size {packing.size.tolist()} in a {packing.domain}, periodic {packing.periodic.tolist()}: "
+            f"must be walled in the scene's {scene.domain} of size {scene.size}"
+        )
+    return wanted
+
+
+def _loaded_flat(scene):
+    """A scene of the same size with a load along the first flat wall of this one, or along its axis, or y."""
+    flat = [name for name in (scene.walls or {}) if name in WALLS]
+    letter = flat[0][0] if flat else scene.domain[-1] if scene.domain.startswith("cylinder") else "y"
+    return Scene(size=scene.size, matrix=Material(1.0), walls={letter + "-": 0.0, letter + "+": 1.0})
 
 
 def _warn_of_gaps(packing):

@@ -10,8 +10,8 @@ from demheat.field import Field, Samples
 from demheat.scene import WALLS
 
 
-def field_of(scene, packing, facets, network, solution, *, law, stats):
-    """The Field of a solved network."""
+def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux=None, time=None):
+    """The Field of a solved network; a transient's brings its own mean flux, since what enters need not leave."""
     walls = scene.walls or {}
     temperature, heat = {}, {}
     for name in walls:
@@ -21,7 +21,7 @@ def field_of(scene, packing, facets, network, solution, *, law, stats):
     sampler, temperature_at, flux_at = _samplers(scene, packing, facets, network, solution, law)
     return Field(
         scene=scene,
-        mean_flux=_mean_flux(scene, facets, network, solution, heat, law),
+        mean_flux=_mean_flux(scene, facets, network, solution, heat, law) if mean_flux is None else mean_flux,
         fractions=np.bincount(network.phase, network.volumes, len(scene.materials)) / network.volumes.sum(),
         sampler=sampler,
         temperature_at=temperature_at,
@@ -29,6 +29,7 @@ def field_of(scene, packing, facets, network, solution, *, law, stats):
         wall_temperature=temperature,
         wall_heat=heat,
         stats={**solution.stats, **stats, "cached": packing.provenance.get("cached"), "packing": packing.provenance},
+        time=time,
     )
 
 

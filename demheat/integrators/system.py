@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat import transient_kernels as kernels
 from demheat.network.base import row_numbers
 from demheat.parts import finite
