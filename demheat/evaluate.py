@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from demheat import steady_kernels as kernels
 from demheat.field import Field, Samples
-from demheat.scene import WALLS
+from demheat.network.base import SIDES, wall_normals
 
 
 def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux=None, time=None):
@@ -15,7 +15,7 @@ def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux
     walls = scene.walls or {}
     temperature, heat = {}, {}
     for name in walls:
-        here = network.wall_side == WALLS.index(name)
+        here = network.wall_side == SIDES.index(name)
         temperature[name] = float(np.average(solution.wall_temperature[here], weights=network.wall_area[here]))
         heat[name] = float(solution.wall_heat[here].sum())
     sampler, temperature_at, flux_at = _samplers(scene, packing, facets, network, solution, law)
@@ -80,9 +80,10 @@ def cell_fluxes(facets, network, solution, *, law="laguerre"):
     kernels.reconstruct(
         *_links(network), facets.area, network.conductance, solution.gradient, _filled(solution), shape, flow
     )
-    axis, sign = network.wall_side // 2, 2 * (network.wall_side % 2) - 1
-    np.add.at(shape, (network.wall_particle, axis, axis), network.wall_area)
-    np.add.at(flow, (network.wall_particle, axis), sign * solution.wall_heat)
+    normal = wall_normals(facets)
+    outer = normal[:, :, None] * normal[:, None, :]
+    np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
+    np.add.at(flow, network.wall_particle, normal * solution.wall_heat[:, None])
     return -np.linalg.solve(shape, flow[..., None])[..., 0]
 
 

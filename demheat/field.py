@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Scene
+from demheat.scene import ROUND_AXES, Scene
 
 
 class Samples(NamedTuple):
@@ -52,7 +52,7 @@ class Field:
         NaN where the method has no temperature (the DEM in pores, which exchange no heat).
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
         Both take one (3,) point too, and raise ValueError if the points are anything else, not finite, or outside a
-        box with walls.
+        body with walls.
     wall_temperature : mapping of str to float, K
         Area-averaged temperature of each loaded wall; empty in a periodic cell.
     wall_heat : mapping of str to float, W
@@ -115,10 +115,15 @@ def _guarded(evaluate, scene):
         size = np.array(scene.size)
         # 1e-9 of the box: points computed to lie on a wall.
         outside = np.any((points < -1e-9 * size) | (points > (1 + 1e-9) * size), axis=1)
+        axes = list(ROUND_AXES[scene.domain])
+        if axes:
+            off = np.linalg.norm((points - size / 2)[:, axes], axis=1)
+            outside |= off > (0.5 + 1e-9) * size[axes[0]]
         if not scene.periodic and outside.any():
             first = points[outside][0].tolist()
             raise ValueError(
-                f"points: {outside.sum()} lie outside the box with walls, 0 to {scene.size}; the first is {first}"
+                f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
+                f"{first}"
             )
         return evaluate(points)
 

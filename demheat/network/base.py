@@ -4,6 +4,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.scene import WALLS
+
+# Names of the walls by their codes in `wall_side`.
+SIDES = (*WALLS, "round")
+
 
 class Facets(NamedTuple):
     """Surfaces between particles and towards walls, in compressed rows (each link stands in both of its rows).
@@ -58,6 +63,7 @@ class Network(NamedTuple):
     wall_area, wall_distance : (w,) float arrays, m2 and m
     volumes : (n,) float array, m3
     phase : (n,) int array
+    wall_normal : (w, 3) float array, optional
     """
 
     centers: np.ndarray
@@ -73,6 +79,16 @@ class Network(NamedTuple):
     wall_distance: np.ndarray
     volumes: np.ndarray
     phase: np.ndarray
+    wall_normal: np.ndarray | None = None
+
+
+def wall_normals(walls):
+    """Outward unit vectors of the wall facets of a Facets or a Network, (w, 3) float array."""
+    if walls.wall_normal is not None:
+        return walls.wall_normal
+    normals = np.zeros((len(walls.wall_side), 3))
+    normals[np.arange(len(normals)), walls.wall_side // 2] = 2.0 * (walls.wall_side % 2) - 1.0
+    return normals
 
 
 def image_shifts(image, size):

@@ -11,12 +11,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 
+from demheat.network.base import SIDES
 from demheat.packing.base import ROUND_AXES
 
 # Width of a wall facet in mean spacings of the particles.
 WIDTH = 1.0
-# Code of a round wall in Facets.wall_side, behind the six sides of a box.
-ROUND_SIDE = 6
+ROUND_SIDE = SIDES.index("round")
 FEWEST_SIDES, FEWEST_FACES = 8, 20
 
 
@@ -111,7 +111,6 @@ def circumscribed_volume(normals):
     pole = np.cross(b - a, c - a)
     flip = np.einsum("ij,ij->i", pole, a) < 0  # counter-clockwise seen from outside
     b, c = np.where(flip[:, None], c, b), np.where(flip[:, None], b, c)
-    pole[flip] *= -1.0
     vertex = pole / np.einsum("ij,ij->i", pole, a)[:, None]
     total = 0.0
     for p, q in ((a, b), (b, c), (c, a)):

@@ -76,6 +76,7 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
         facets.wall_distance,
         facets.volumes,
         phase,
+        facets.wall_normal,
     )
 
 

@@ -1,4 +1,4 @@
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -7,14 +7,16 @@ from scipy import sparse
 from scipy.sparse.linalg import cg, eigsh, expm_multiply
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
-from demheat.network.base import branches, row_numbers
+from demheat.evaluate import field_of
+from demheat.network.base import SIDES, branches, row_numbers
 from demheat.network.curved import ROUND_SIDE, circumscribed_volume, fibonacci, round_wall, tangents_within
 from demheat.network.interface import connect, link_lengths
 from demheat.network.laguerre import laguerre
 from demheat.packing.base import ROUND_AXES, domain_volume
 from demheat.packing.domain import cut
 from demheat.packing.relax import relax, settle
-from demheat.steady import matrix
+from demheat.scene import Material, Scene
+from demheat.steady import Solution, matrix
 
 BODIES = [("sphere", (2.0, 2.0, 2.0)), ("cylinder-x", (3.0, 1.0, 1.0)), ("cylinder-z", (1.0, 1.0, 0.7))]
 
@@ -88,6 +90,15 @@ def test_cells_close_and_fill_the_body(domain, size, through):
     assert_allclose(facets.wall_area[curved].sum(), area, rtol=1e-12)
     flat = 0.0 if domain == "sphere" or through else np.pi / 2 * size[ROUND_AXES[domain][0]] ** 2
     assert_allclose(facets.wall_area[~curved].sum(), flat, rtol=1e-12)
+
+
+def test_wide_facets(monkeypatch):
+    """Where a plane that cuts a cell touches the body beyond the cell's first reach, the reach must grow."""
+    monkeypatch.setattr("demheat.network.laguerre.round_wall", partial(round_wall, width=4.0))
+    centers, weights, spacing = cloud("sphere", (2, 2, 2), 4000)
+    inside = np.linalg.norm(centers - 1.0, axis=1) < 0.9
+    facets = laguerre(centers[inside], weights[inside], (2, 2, 2), periodic=False, domain="sphere")
+    assert_allclose(facets.volumes.sum(), domain_volume("sphere", np.full(3, 2.0)), rtol=1e-12)
 
 
 @pytest.mark.parametrize("domain, size", BODIES)
@@ -245,3 +256,31 @@ def test_bad_input(change, words):
     good = dict(centers=centers, weights=weights, size=(2, 2, 2), periodic=False, domain="sphere")
     with pytest.raises(ValueError, match=words):
         laguerre(**good | change)
+
+
+@pytest.mark.parametrize("domain, size", BODIES)
+def test_linear_fields_at_points(domain, size):
+    """Temperature and flux wherever they are asked for in the body, also between the facets and the round wall."""
+    packing, (facets, made, _, _) = packed(domain, size, 400), network((domain, size, 400))
+    gradient, names = np.array([1.0, 0.3, -0.7]), {SIDES[side]: 0.0 for side in np.unique(facets.wall_side)}
+    scene = Scene(size=size, matrix=Material(1.0), domain=domain, initial=0.0, walls=names)
+    there = (packing.centers[facets.wall_particle] + facets.wall_distance[:, None] * facets.wall_normal) @ gradient
+    here = packing.centers @ gradient
+    heat = made.wall_conductance * (there - here[facets.wall_particle])
+    solution = Solution(here, np.zeros(3), there, heat, {})
+    field = field_of(scene, packing, facets, made, solution, law="laguerre", stats={})
+    axes, rng = list(ROUND_AXES[domain]), np.random.default_rng(4)
+    points = rng.random((500, 3)) * size
+    points = points[np.linalg.norm((points - np.array(size) / 2)[:, axes], axis=1) < size[axes[0]] / 2]
+    rim = np.array(size) / 2
+    rim[axes[1]] = size[axes[1]]
+    points = np.vstack([points, rim])
+    # Sums of some twenty heat flows of the size of the spacing squared: rounding.
+    assert_allclose(field.flux_at(points), np.tile(-gradient, (len(points), 1)), atol=1e-10)
+    assert_allclose(field.temperature_at(points), points @ gradient, atol=1e-10)
+    assert_allclose(field.mean_flux, -gradient, atol=1e-10)
+    assert_allclose(sum(field.wall_heat.values()), 0.0, atol=1e-10)
+    assert set(field.wall_temperature) == set(names)
+    with pytest.raises(ValueError, match=f"1 lie outside the {domain}"):
+        rim[axes[1]] *= 1 + 1e-6
+        field.temperature_at(rim)
