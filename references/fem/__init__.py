@@ -1,4 +1,4 @@
-"""Steady conduction by finite elements: linear or quadratic tetrahedra that conform to the scene's interfaces.
+"""Conduction by finite elements: linear or quadratic tetrahedra that conform to the scene's interfaces, or bricks.
 
 The only home of scikit-fem. The mesh is gmsh's, the equations are assembled in blocks of elements (memory stays near
 that of the matrix) and solved by conjugate gradients with a multigrid preconditioner.
@@ -9,12 +9,12 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field
-from references.fem.elements import at_quadrature
 from references.fem.lookup import Solution
 from references.fem.system import solve_nodes
+from references.fem.transient import evolve
 from references.mesh import make
 
-__all__ = ["solve"]
+__all__ = ["evolve", "solve"]
 
 
 def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
@@ -63,7 +63,7 @@ def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
     stats = {"elements": len(mesh.cells), "nodes": len(mesh.points)} | mesh.stats | solved.stats
     return Field(
         scene=scene,
-        mean_flux=_mean_flux(solution),
+        mean_flux=solution.mean_flux(),
         fractions=fractions,
         sampler=solution.samples,
         temperature_at=solution.temperature_at,
@@ -72,10 +72,3 @@ def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
         wall_heat=solved.wall_heat,
         stats=stats,
     )
-
-
-def _mean_flux(solution):
-    scene, total = solution.scene, np.zeros(3)
-    for ids, _, volumes, _, gradient in at_quadrature(solution.mesh, solution.temperature):
-        total -= scene.conductivities[solution.mesh.phase[ids]] @ np.einsum("bq,bqx->bx", volumes, gradient)
-    return total / scene.volume

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Samples
-from demheat.scene import Scene
+from demheat.scene import ROUND_AXES, Scene
 from references.fem.elements import at_quadrature, inverse, shapes
 from references.mesh import Mesh
 
@@ -25,11 +25,12 @@ CHUNK = 50_000
 
 @dataclass(frozen=True)
 class Solution:
-    """Nodal temperatures (n,) of a scene on a mesh."""
+    """Nodal temperatures (n,) of a scene on a mesh; `lost` is how far out, in local coordinates, is in no element."""
 
     scene: Scene
     mesh: Mesh
     temperature: np.ndarray
+    lost: float = LOST
 
     def samples(self):
         """`Samples` at quadrature points inside all elements."""
@@ -64,6 +65,23 @@ class Solution:
             flux[part] = -self.scene.conductivities[self.mesh.phase[ids], None] * gradient
         return flux
 
+    def mean_flux(self):
+        """Flux density averaged over the volume of the body, (3,) float array, W/m2."""
+        total = np.zeros(3)
+        for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
+            conductivity = self.scene.conductivities[self.mesh.phase[ids]]
+            total -= conductivity @ np.einsum("bq,bqx->bx", volumes, gradient)
+        return total / self.scene.volume
+
+    def spread(self, points, amounts):
+        """Share amounts (p,) at points (p, 3) in metres among the nodes by their shape functions, (n,) float array."""
+        total = np.zeros(len(self.mesh.points))
+        for part, ids, X in self._located(self._inside(np.asarray(points, dtype=float))):
+            values, _ = shapes(self.mesh.cells.shape[1], X.T)
+            shares = amounts[part, None] * values
+            total += np.bincount(self.mesh.cells[ids].ravel(), shares.ravel(), len(total))
+        return total
+
     def _inside(self, points):
         """The points, in a periodic cell moved into the box."""
         box = np.array(self.scene.size)
@@ -72,6 +90,10 @@ class Solution:
         outside = ~np.all((points >= -INSIDE * box) & (points <= (1 + INSIDE) * box), axis=1)
         if outside.any():
             raise ValueError(f"points: {points[outside][0]} lies outside the box {self.scene.size}")
+        across = list(ROUND_AXES[self.scene.domain])
+        beyond = np.linalg.norm((points - box / 2)[:, across], axis=1) if across else np.zeros(1)
+        if across and beyond.max(initial=0.0) > (0.5 + INSIDE) * box[across[0]]:
+            raise ValueError(f"points: {points[np.argmax(beyond)]} lies outside the {self.scene.domain}")
         return np.clip(points, 0, box)
 
     def _located(self, points):
@@ -115,7 +137,7 @@ class Solution:
             elements = np.flatnonzero(np.all((points[row] >= low) & (points[row] <= high), axis=1))
             for element in elements:
                 attempt(np.array([row]), np.array([element]))
-        if depth.min(initial=0.0) < -LOST:
+        if depth.min(initial=0.0) < -self.lost:
             raise RuntimeError(f"no element contains the point {points[np.argmin(depth)]}")
         return ids, X
 

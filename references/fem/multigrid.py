@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pyamg
@@ -51,8 +52,8 @@ def solve_free(mesh, system, fixed, dof, tolerance):
         return solution, stats
     scale = diags(1 / np.sqrt(diagonal[free]))
     A, b = (scale @ matrix[free][:, free] @ scale).tocsr(), scale @ load[free]
-    multigrid = _multigrid(A, np.sqrt(diagonal[free]), _prolongation(mesh, free, dof))
-    x, stats["iterations"], stats["residual"] = _conjugate_gradients(A, b, multigrid, tolerance)
+    precondition = multigrid(A, np.sqrt(diagonal[free]), prolongation(mesh, free, dof))
+    x, stats["iterations"], stats["residual"] = conjugate_gradients(A, b, precondition, tolerance)
     if not stats["residual"] <= tolerance:
         raise RuntimeError(
             f"finite elements: residual {stats['residual']:.2e} > tolerance {tolerance:.2e} after "
@@ -62,8 +63,26 @@ def solve_free(mesh, system, fixed, dof, tolerance):
     return solution, stats
 
 
-def _conjugate_gradients(A, b, multigrid, tolerance):
-    """Solution, iterations and the true relative residual."""
+def conjugate_gradients(A, b, precondition, tolerance):
+    """Solve A x = b from x = 0.
+
+    Parameters
+    ----------
+    A : (n, n) CSR matrix
+    b : (n,) float array
+        Not zero.
+    precondition : callable (n,) -> (n,)
+    tolerance : float
+        Largest relative residual.
+
+    Returns
+    -------
+    (n,) float array
+    int
+        Iterations.
+    float
+        The true relative residual; above the tolerance if the iterations did not suffice.
+    """
     x, scale, iterations = np.zeros_like(b), math.sqrt(_dot(b, b)), 0
     # Rounding can part the recursive residual from the true one: start again from there, twice at most.
     for _ in range(3):
@@ -73,7 +92,7 @@ def _conjugate_gradients(A, b, multigrid, tolerance):
             break
         p, old = np.zeros_like(b), np.inf
         while math.sqrt(_dot(r, r)) > tolerance * scale and iterations < MOST_ITERATIONS:
-            z = _cycle(multigrid, r)
+            z = precondition(r)
             new = _dot(r, z)
             p = z + (new / old) * p
             Ap = A @ p
@@ -90,19 +109,19 @@ def _dot(a, b):
     return float(np.einsum("i,i->", a, b))
 
 
-def _cycle(multigrid, b, number=0):
+def _cycle(levels, b, number=0):
     """One V-cycle from zero, without the residual norms of pyamg's own driver."""
-    level = multigrid.levels[number]
-    if number == len(multigrid.levels) - 1:
-        return multigrid.coarse_solver(level.A, b)
+    level = levels.levels[number]
+    if number == len(levels.levels) - 1:
+        return levels.coarse_solver(level.A, b)
     x = np.zeros_like(b)
     level.presmoother(level.A, x, b)
-    x += level.P @ _cycle(multigrid, level.R @ (b - level.A @ x), number + 1)
+    x += level.P @ _cycle(levels, level.R @ (b - level.A @ x), number + 1)
     level.postsmoother(level.A, x, b)
     return x
 
 
-def _prolongation(mesh, free, dof):
+def prolongation(mesh, free, dof):
     """From corners to all free nodes: a middle is the mean of its edge's ends. None for linear elements."""
     if mesh.cells.shape[1] == 4:
         return None
@@ -120,8 +139,26 @@ def _prolongation(mesh, free, dof):
     return csr_matrix((np.full(kept.sum(), 0.5), (rows[kept], columns[kept])), shape=(len(free), len(coarse)))
 
 
-def _multigrid(A, constant, prolongation):
-    """Hierarchy for the scaled matrix; `constant` is what a constant temperature is there."""
+def multigrid(A, constant, quadratic=None):
+    """One V-cycle as a preconditioner.
+
+    Parameters
+    ----------
+    A : (n, n) CSR matrix
+        Scaled to a unit diagonal.
+    constant : (n,) float array
+        What a constant temperature is in that scale.
+    quadratic : (n, k) CSR matrix, optional
+        `prolongation` of quadratic elements.
+
+    Returns
+    -------
+    callable (n,) -> (n,)
+    """
+    return partial(_cycle, _hierarchy(A, constant, quadratic))
+
+
+def _hierarchy(A, constant, prolongation):
     # pyamg estimates spectral radii with NumPy's global generator: same start each time, and put back afterwards.
     state = np.random.get_state()  # noqa: NPY002
     np.random.seed(0)  # noqa: NPY002

@@ -1,0 +1,118 @@
+"""Meshes of round bodies: the cylinder and the sphere inscribed in the box, by gmsh, with curved tetrahedra."""
+
+from __future__ import annotations
+
+import time
+from concurrent.futures import ThreadPoolExecutor
+from itertools import combinations
+
+import numpy as np
+
+from references.mesh import EDGE_COLUMN, Mesh, Wall, cad
+from references.mesh.cells import bent, snap, straighten, volumes_of
+
+# Of the volume; chords of elements as long as the radius lose about this much.
+LARGEST_LOSS = 0.2
+
+
+def make_round(scene, *, size, order):
+    """Mesh a round body.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without inclusions, domain "sphere" or a cylinder.
+    size : float, m
+        Longest wanted edge.
+    order : {1, 2}
+        Straight elements whose corners lie on the surface, or curved ones.
+
+    Returns
+    -------
+    Mesh
+        Its walls are "round" and the flat ends; `stats["volume_error"]` is relative to the exact body.
+
+    Raises
+    ------
+    NotImplementedError
+        If there are inclusions.
+    RuntimeError
+        If gmsh fails at four neighbouring sizes.
+    ImportError
+        If gmsh or a system library that it needs is missing.
+    """
+    if scene.inclusions:
+        raise NotImplementedError(f"inclusions in a {scene.domain}: only boxes can have them here")
+    size = cad._checked_size(scene, size, order)
+    begin, errors = time.perf_counter(), []
+    cad.load_gmsh()
+    for number, (factor, algorithm) in enumerate(cad.ATTEMPTS, start=1):
+        try:
+            # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
+            with ThreadPoolExecutor(1) as pool:
+                mesh = pool.submit(_attempt, scene, factor * size, algorithm, order).result()
+        except Exception as error:
+            if type(error) not in (Exception, RuntimeError):  # gmsh raises plain Exception
+                raise
+            errors.append(f"{factor * size:.3g} m: {error}")
+            continue
+        stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
+        return mesh._replace(stats=stats | mesh.stats)
+    raise RuntimeError(f"gmsh could not mesh the {scene.domain} ({'; '.join(errors)})")
+
+
+def _attempt(scene, size, algorithm, order):
+    """One try: geometry, mesh, arrays, checks."""
+    scale = max(scene.size)
+    box = np.array(scene.size) / scale
+    with cad._session() as gmsh:
+        tag = _body(gmsh.model.occ, scene.domain, box)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size / scale)
+        gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
+        gmsh.option.setNumber("Mesh.SecondOrderLinear", 0)
+        gmsh.model.mesh.generate(3)
+        if order == 2:
+            gmsh.model.mesh.setOrder(2)
+        points, cells, phase = cad._arrays(gmsh, {tag: 0}, order == 2)
+    pairs = snap(points, box, False)
+    straightened, jacobian = straighten(points, cells, pairs) if order == 2 else (0, 1.0)
+    volumes, curved = volumes_of(points[cells]) * scale**3, bent(points[cells])
+    error = float(volumes.sum() / scene.volume - 1)
+    if volumes.min() <= 0 or abs(error) > LARGEST_LOSS:
+        raise RuntimeError(f"smallest element {volumes.min():.3g} m3, volume off by {error:.3g}")
+    stats = {"straightened": straightened, "jacobian": jacobian, "volume_error": error}
+    return Mesh(points * scale, cells, phase, volumes, curved, _walls(scene, points, cells, box), pairs, stats)
+
+
+def _body(occ, domain, box):
+    """Add the body, in unit lengths; its tag."""
+    if domain == "sphere":
+        tag = occ.addSphere(*(box / 2), box[0] / 2)
+    else:
+        axis = "xyz".index(domain[-1])
+        low, along = box / 2, np.zeros(3)
+        low[axis], along[axis] = 0, box[axis]
+        tag = occ.addCylinder(*low, *along, min(np.delete(box, axis)) / 2)
+    occ.synchronize()
+    return tag
+
+
+def _walls(scene, points, cells, box):
+    """Faces of one element only, by wall."""
+    faces, owners = [], []
+    for a, b, c in combinations(range(4), 3):
+        middles = [EDGE_COLUMN[a, b], EDGE_COLUMN[b, c], EDGE_COLUMN[a, c]] if cells.shape[1] == 10 else []
+        faces.append(cells[:, [a, b, c, *middles]])
+        owners.append(np.arange(len(cells)))
+    faces, owners = np.concatenate(faces), np.concatenate(owners)
+    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    outer = first[count == 1]
+    faces, owners = faces[outer], owners[outer]
+    walls, rest = {}, np.ones(len(faces), bool)
+    if scene.domain != "sphere":
+        axis = "xyz".index(scene.domain[-1])
+        for side, at in (("-", 0.0), ("+", box[axis])):
+            on = np.all(points[faces[:, :3], axis] == at, axis=1)
+            walls["xyz"[axis] + side] = Wall(faces[on], owners[on])
+            rest &= ~on
+    return walls | {"round": Wall(faces[rest], owners[rest])}

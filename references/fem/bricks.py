@@ -1,0 +1,221 @@
+"""Structured hexahedra: a grid of bricks with trilinear temperatures, assembled diagonal by diagonal."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import partial
+from itertools import product
+
+import numpy as np
+from scipy.sparse import dia_matrix
+
+from demheat.field import Samples
+from demheat.scene import WALLS, Layer, Scene
+from references.fem.space import Space, capacities
+
+# Cube root of the box volume over the default edge.
+EDGES = 32
+MOST_CELLS = 2_000_000
+# Coordinates of layers closer than this, of the box, are one plane.
+SAME = 1e-10
+# Points of a moving source per edge.
+RESOLVE = 6
+CORNERS = tuple(product((0, 1), repeat=3))
+# Of one element of unit length: integrals of products of the two shape functions and of their slopes.
+MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6
+STIFFNESS = np.array([[1.0, -1.0], [-1.0, 1.0]])
+GAUSS = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
+
+
+@dataclass(frozen=True)
+class Bricks:
+    """Nodal temperatures (n,) of a scene on a grid.
+
+    Parameters
+    ----------
+    scene : Scene
+    grid : three float arrays, m
+        Coordinates of the nodes along each axis.
+    phase : (a, b, c) int array
+        Of each brick.
+    temperature : (n,) float array, K
+        The last axis runs fastest.
+    """
+
+    scene: Scene
+    grid: tuple
+    phase: np.ndarray
+    temperature: np.ndarray
+
+    def temperature_at(self, points):
+        """Temperature at (n, 3) points in metres, (n,) float array."""
+        nodes, shares, _ = self._corners(points)
+        return np.einsum("cp,cp->p", self.temperature[nodes], shares)
+
+    def flux_at(self, points):
+        """Flux density at (n, 3) points in metres, (n, 3) float array, W/m2; on a face that of one side."""
+        nodes, _, slopes = self._corners(points)
+        gradient = np.einsum("cp,cpx->px", self.temperature[nodes], slopes)
+        return -self.scene.conductivities[self.phase[self._bricks(points)], None] * gradient
+
+    def spread(self, points, amounts):
+        """Share amounts (p,) at points (p, 3) in metres among the nodes by their shape functions, (n,) float array."""
+        nodes, shares, _ = self._corners(points)
+        return np.bincount(nodes.ravel(), (shares * amounts).ravel(), len(self.temperature))
+
+    def samples(self):
+        """`Samples` at the eight Gauss points of each brick."""
+        axes = [(x[:-1, None] + np.diff(x)[:, None] * GAUSS).ravel() for x in self.grid]
+        widths = [np.repeat(np.diff(x), 2) / 2 for x in self.grid]
+        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        phase = self.phase[self._bricks(points)]
+        return Samples(points, outer(*widths).ravel(), self.temperature_at(points), phase, self.flux_at(points))
+
+    def mean_flux(self):
+        """Flux density averaged over the volume, (3,) float array, W/m2."""
+        samples = self.samples()
+        return samples.volumes @ samples.flux / self.scene.volume
+
+    def _bricks(self, points):
+        """Index of the brick of each point along each axis."""
+        return tuple(
+            np.clip(np.searchsorted(x, points[:, axis], "right") - 1, 0, len(x) - 2) for axis, x in enumerate(self.grid)
+        )
+
+    def _corners(self, points):
+        """Nodes (8, p), shape functions (8, p) and their gradients (8, p, 3) in 1/m at points."""
+        bricks = self._bricks(points)
+        shape, values, slopes = [len(x) for x in self.grid], [], []
+        for axis, (x, i) in enumerate(zip(self.grid, bricks, strict=True)):
+            width = np.diff(x)[i]
+            local = (points[:, axis] - x[i]) / width
+            values.append((1 - local, local))
+            slopes.append((-1 / width, 1 / width))
+        nodes = [
+            np.ravel_multi_index([i + c for i, c in zip(bricks, corner, strict=True)], shape) for corner in CORNERS
+        ]
+        shares, gradients = [], []
+        for p, q, r in CORNERS:
+            a, b, c = values[0][p], values[1][q], values[2][r]
+            shares.append(a * b * c)
+            gradients.append(np.stack([slopes[0][p] * b * c, a * slopes[1][q] * c, a * b * slopes[2][r]], axis=-1))
+        return np.stack(nodes), np.stack(shares), np.stack(gradients)
+
+
+def hexahedra(scene, size=None):
+    """`Space` of bricks.
+
+    Parameters
+    ----------
+    scene : Scene
+        A box, with layers at most: grid planes lie on their surfaces.
+    size : float, m, optional
+        Longest edge. Default: the cube root of the volume over 32.
+
+    Returns
+    -------
+    Space
+
+    Raises
+    ------
+    ValueError
+        If the size is not as described or asks for more than 2e6 bricks.
+    NotImplementedError
+        If the body is not a box of layers.
+    """
+    if scene.domain != "box" or not all(isinstance(inclusion, Layer) for inclusion in scene.inclusions):
+        what = scene.domain if scene.domain != "box" else "sphere"
+        raise NotImplementedError(f"hexahedra do not follow a {what}: use tetrahedra")
+    grid = tuple(_grid(scene, axis, checked_size(scene, size)) for axis in range(3))
+    centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
+    phase = scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])
+    widths = [np.diff(x) for x in grid]
+    stiffness, mass = _matrices(widths, scene.conductivities[phase], capacities(scene)[phase])
+    view = partial(Bricks, scene, grid, phase)
+    lumped = [(np.append(w, 0) + np.append(0, w)) / 2 for w in widths]
+    points = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
+    return Space(
+        points=points,
+        mass=mass,
+        stiffness=stiffness,
+        volumes=outer(*lumped).ravel(),
+        walls={name: _wall(name, lumped) for name in WALLS},
+        quadratic=lambda free: None,
+        spread=view(np.zeros(len(points))).spread,
+        planes=lambda axis: grid[axis],
+        spacing=min(w.min() for w in widths) / RESOLVE,
+        view=view,
+        fractions=np.bincount(phase.ravel(), outer(*widths).ravel(), len(scene.materials)) / scene.volume,
+        stats={"elements": phase.size, "nodes": len(points), "size": float(max(w.max() for w in widths))},
+    )
+
+
+def outer(a, b, c):
+    """Products a_i b_j c_k."""
+    return a[:, None, None] * b[:, None] * c
+
+
+def checked_size(scene, size):
+    """Longest edge in metres, or ValueError."""
+    if size is None:
+        return scene.volume ** (1 / 3) / EDGES
+    if isinstance(size, bool) or not isinstance(size, int | float) or not (math.isfinite(size) and size > 0):
+        raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
+    if math.prod(math.ceil(length / size * (1 - SAME)) for length in scene.size) > MOST_CELLS:
+        least = (scene.volume / MOST_CELLS) ** (1 / 3)
+        raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} bricks; must be >= about {least:.3g} m")
+    return float(size)
+
+
+def _grid(scene, axis, size):
+    """Nodes along an axis: ends and surfaces of layers, and equal parts between them."""
+    length = scene.size[axis]
+    layers = [layer for layer in scene.inclusions if layer.axis == axis]
+    planes = np.unique(np.clip([0.0, length, *(x.start for x in layers), *(x.stop for x in layers)], 0, length))
+    planes = planes[np.append(True, np.diff(planes) > SAME * length)]
+    planes[-1] = length
+    parts = [
+        np.linspace(a, b, max(1, math.ceil((b - a) / size * (1 - SAME))), endpoint=False)
+        for a, b in zip(planes[:-1], planes[1:], strict=True)
+    ]
+    return np.concatenate([*parts, [length]])
+
+
+def _matrices(widths, conductivity, capacity):
+    """Stiffness, W/K, and consistent mass, J/K, of a grid as CSR matrices."""
+    shape = np.array(conductivity.shape) + 1
+    strides = np.array([shape[1] * shape[2], shape[2], 1])
+    unit = [np.ones(len(w)) for w in widths]
+    stiffness, mass = {}, {}
+    for p, q in product(CORNERS, repeat=2):
+        m = [MASS[a, b] for a, b in zip(p, q, strict=True)]
+        k = [STIFFNESS[a, b] for a, b in zip(p, q, strict=True)]
+        volume = outer(*widths)
+        flow = sum(
+            k[a]
+            * m[a - 1]
+            * m[a - 2]
+            * volume
+            / outer(*(w if i == a else u for i, (w, u) in enumerate(zip(widths, unit, strict=True)))) ** 2
+            for a in range(3)
+        )
+        offset = int(strides @ (np.array(q) - p))
+        # A diagonal matrix of scipy keeps each entry in the place of its column.
+        columns = tuple(slice(c, c + n) for c, n in zip(q, conductivity.shape, strict=True))
+        for parts, block in ((stiffness, conductivity * flow), (mass, capacity * volume * m[0] * m[1] * m[2])):
+            parts.setdefault(offset, np.zeros(shape))[columns] += block
+    count = int(np.prod(shape))
+    return tuple(
+        dia_matrix((np.array([d.ravel() for d in parts.values()]), list(parts)), shape=(count, count)).tocsr()
+        for parts in (stiffness, mass)
+    )
+
+
+def _wall(name, lumped):
+    """Nodes of a face of the box and the integrals of their shape functions over it."""
+    axis, ends = "xyz".index(name[0]), [w.copy() for w in lumped]
+    ends[axis] = np.zeros(len(lumped[axis]))
+    ends[axis][0 if name[1] == "-" else -1] = 1.0
+    weights = outer(*ends).ravel()
+    return np.flatnonzero(weights), weights

@@ -1,0 +1,101 @@
+"""What drives a transient at a time: temperatures and fluxes of walls, heat sources."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Heating
+from references.fem.sources import deposit
+
+
+class Loading(NamedTuple):
+    """The loads at one time.
+
+    Attributes
+    ----------
+    temperature : (k,) float array, K
+        Of the held nodes, from the level of the run.
+    heat : (n,) float array, W
+        Into each node.
+    powers : (m,) float array, W
+        Of each of `Loads.names`; 0 for held walls.
+    wall_temperature : dict of str to float, K
+        Of held walls.
+    """
+
+    temperature: np.ndarray
+    heat: np.ndarray
+    powers: np.ndarray
+    wall_temperature: dict[str, float]
+
+
+class Loads:
+    """Loads of a scene on the nodes of a space.
+
+    Parameters
+    ----------
+    scene : Scene
+    space : Space
+    level : float, K
+        Temperatures are counted from it: a large common offset then costs no digits.
+
+    Attributes
+    ----------
+    names : tuple of str
+        The loaded walls, then "sources" and "lost".
+    held : (k,) int array
+        Nodes of walls held at a temperature.
+    """
+
+    def __init__(self, scene, space, *, level):
+        self.scene, self.space, self.level = scene, space, level
+        self.names = (*scene.walls, "sources", "lost")
+        self.walls = {name: space.walls[name][0] for name in scene.wall_temperatures}
+        self.count = np.zeros(len(space.points))  # held walls that meet at each node
+        for nodes in self.walls.values():
+            self.count[nodes] += 1
+        self.held = np.flatnonzero(self.count)
+        steady = sum(source.power_density for source in scene.sources if isinstance(source, Heating))
+        self.heating = steady * space.volumes
+        self.moving = [source for source in scene.sources if not isinstance(source, Heating)]
+        self._known = {}
+
+    def at(self, time):
+        """`Loading` at a time in seconds."""
+        if time not in self._known:
+            if len(self._known) > 3:  # a step asks for two times, each of them twice at most
+                self._known.clear()
+            self._known[time] = self._at(time)
+        return self._known[time]
+
+    def _at(self, time):
+        now = self.scene.at(time)
+        temperature, heat = np.zeros(len(self.count)), self.heating.copy()
+        powers = dict.fromkeys(self.names, 0.0)
+        for name, value in now.wall_temperatures.items():
+            temperature[self.walls[name]] += value - self.level
+        # On an edge where two held walls meet, the mean of both.
+        temperature[self.held] /= self.count[self.held]
+        for name, value in now.wall_fluxes.items():
+            entering = value * self.space.walls[name][1]
+            heat += entering
+            powers[name] = entering.sum()
+        powers["sources"] = self.heating.sum()
+        for source in self.moving:
+            made = deposit(self.scene, self.space, source, time)
+            heat += made.heat
+            powers["sources"] += made.power
+            powers["lost"] += made.lost
+        return Loading(temperature[self.held], heat, np.array(list(powers.values())), now.wall_temperatures)
+
+    def shares(self, entering, loading):
+        """Heat of each of the names, (m,) float array: held walls by what their nodes draw in, the rest as loaded."""
+        powers = loading.powers.copy()
+        for place, name in enumerate(self.names):
+            if name in self.walls:
+                nodes = self.walls[name]
+                # Where held walls meet they share the heat.
+                powers[place] = np.sum(entering[nodes] / self.count[nodes])
+        return powers

@@ -1,0 +1,121 @@
+"""What a transient needs of a mesh, whatever its elements; here of tetrahedra."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTet
+
+from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
+from references.fem.lookup import LOST, Solution
+from references.fem.multigrid import prolongation
+
+# A quadratic boundary leaves a point of the true surface this far, in local coordinates, outside: an edge as long as
+# the radius has a sagitta of 1/8, and the quadratic arc misses the circle by under a tenth of that.
+LOST_ON_ROUND = 0.05
+LOST_ON_CHORDS = 0.3
+# Points of a moving source per edge.
+RESOLVE = 3
+
+
+class Space(NamedTuple):
+    """Equations C dT/dt + K T = heat of the n nodes of a mesh.
+
+    Attributes
+    ----------
+    points : (n, 3) float array, m
+    mass : (n, n) CSR matrix, J/K
+        Consistent.
+    stiffness : (n, n) CSR matrix, W/K
+    volumes : (n,) float array, m3
+        Integrals of the shape functions.
+    walls : mapping of str to ((k,) int array, (n,) float array, m2)
+        Nodes of each wall, and the integrals of the shape functions over it.
+    quadratic : callable (free nodes) -> CSR matrix or None
+        From the corners to all free nodes of quadratic elements.
+    spread : callable (points, amounts) -> (n,) float array
+        Amounts at points shared among the nodes by their shape functions.
+    planes : callable (axis) -> (p,) float array, m
+        Coordinates along an axis; one point between each two resolves the shape functions.
+    spacing : float, m
+        Distance between points in a plane that resolves them.
+    view : callable (temperature) -> object
+        With `temperature_at`, `flux_at`, `samples` and `mean_flux`.
+    fractions : (1 + number of inclusions,) float array
+    stats : dict
+    """
+
+    points: np.ndarray
+    mass: csr_matrix
+    stiffness: csr_matrix
+    volumes: np.ndarray
+    walls: dict[str, tuple[np.ndarray, np.ndarray]]
+    quadratic: Callable
+    spread: Callable
+    planes: Callable
+    spacing: float
+    view: Callable
+    fractions: np.ndarray
+    stats: dict[str, object]
+
+
+def tetrahedra(scene, mesh):
+    """`Space` of a scene on a mesh of tetrahedra."""
+    count, dof = len(mesh.points), np.arange(len(mesh.points))
+    stiffness, _ = assemble(mesh, scene.conductivities[mesh.phase], dof, np.zeros(count))
+    mass, volumes = _mass(mesh, capacities(scene)[mesh.phase])
+    lost = LOST if scene.domain == "box" else LOST_ON_ROUND if mesh.cells.shape[1] == 10 else LOST_ON_CHORDS
+    # Distance of nodes that are neighbours.
+    edge = mesh.stats["size"] / (2 if mesh.cells.shape[1] == 10 else 1)
+    view = partial(Solution, scene, mesh, lost=lost)
+    walls = {name: (np.unique(t), wall_weights(mesh, t)) for name, (t, _) in mesh.walls.items()}
+    return Space(
+        points=mesh.points,
+        mass=mass,
+        stiffness=stiffness,
+        volumes=volumes,
+        walls=walls,
+        quadratic=lambda free: prolongation(mesh, free, dof),
+        spread=view(np.zeros(count)).spread,
+        planes=partial(_planes, scene, edge / 2),
+        spacing=edge / RESOLVE,
+        view=view,
+        fractions=np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / mesh.volumes.sum(),
+        stats={"elements": len(mesh.cells), "nodes": count} | mesh.stats,
+    )
+
+
+def _planes(scene, spacing, axis):
+    return np.linspace(0, scene.size[axis], 1 + math.ceil(scene.size[axis] / spacing))
+
+
+def capacities(scene):
+    """Heat capacity of each phase per volume, (1 + number of inclusions,) float array, J/(m3 K)."""
+    return np.array([material.density * material.heat_capacity for material in scene.materials])
+
+
+def _mass(mesh, capacity):
+    """Consistent mass matrix, J/K, and the integrals of the shape functions, m3."""
+    nodes, count = mesh.cells.shape[1], len(mesh.points)
+    total, volumes = csr_matrix((count, count)), np.zeros(count)
+    # Degree of a product of two shape functions; the Jacobian of a curved element adds a cubic.
+    straight = 2 if nodes == 4 else 4
+    for curved, degree in ((False, straight), (True, straight + 3)):
+        chosen, (X, weights) = np.flatnonzero(mesh.curved == curved), get_quadrature(RefTet, degree)
+        values = shapes(nodes, X)[0]
+        products = (values[:, :, None] * values[:, None, :]).reshape(len(weights), -1)
+        for start in range(0, len(chosen), BLOCK):
+            ids = chosen[start : start + BLOCK]
+            parts = gradients(mesh, ids, (X, weights))[1] if curved else 6 * mesh.volumes[ids, None] * weights
+            cells, blocks = mesh.cells[ids], (capacity[ids, None] * parts) @ products
+            shape = (len(ids), nodes, nodes)
+            i, j = (np.broadcast_to(index, shape).ravel() for index in (cells[:, :, None], cells[:, None, :]))
+            total = total + coo_matrix((blocks.ravel(), (i, j)), shape=(count, count)).tocsr()
+            volumes += np.bincount(cells.ravel(), (parts @ values).ravel(), count)
+    return total, volumes

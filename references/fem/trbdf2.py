@@ -1,0 +1,212 @@
+"""TR-BDF2: half a trapezoidal step, then a backward difference; second order and L-stable, with an estimate of error.
+
+Source: Bank et al., IEEE Trans. Electron Devices 32 (1985) 1992; as a Runge-Kutta method with three stages, the first
+explicit and equal to the last of the step before: Hosea and Shampine, Appl. Numer. Math. 20 (1996) 21.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from references.fem.loads import Loads
+
+GAMMA = 2 - math.sqrt(2)  # place of the middle stage: both stages then have the same matrix
+DIAGONAL = GAMMA / 2
+WEIGHTS = np.array([math.sqrt(2) / 4, math.sqrt(2) / 4, DIAGONAL])
+# Weights of the third-order method on the same stages (Hosea and Shampine): the difference estimates the error.
+THIRD = np.array([1 - WEIGHTS[0], 1 + 3 * WEIGHTS[0], DIAGONAL]) / 3
+# A step grows by at least the first factor (else all that is set up is kept) and at most the second.
+GROWTH = (1.25, 4.0)
+SHRINK, SAFETY = 0.2, 0.9
+# The error itself needs two digits only.
+ERROR_TOLERANCE = 1e-2
+# Estimates below this part of the temperature's own size are rounding.
+LEAST_SPAN = 1e-9
+SHORTEST = 1e-12
+
+
+class State(NamedTuple):
+    """All at one time.
+
+    Attributes
+    ----------
+    time : float, s
+    temperature : (n,) float array, K
+    rate : (n,) float array, K/s
+    entering : (n,) float array, W
+        Heat that nodes of held walls draw in; elsewhere the residual.
+    rates : (m,) float array, W
+        Heat through each wall, from the sources, and lost by clipped sources.
+    heats : (m,) float array, J
+        The same since the start, integrated with the weights of the stages.
+    turnover : float, J
+        Sum of the absolute values of what enters.
+    span : (2,) float array, K
+        Lowest and highest temperature so far.
+    """
+
+    time: float
+    temperature: np.ndarray
+    rate: np.ndarray
+    entering: np.ndarray
+    rates: np.ndarray
+    heats: np.ndarray
+    turnover: float
+    span: np.ndarray
+
+
+class Problem(NamedTuple):
+    """Equations, loads and solver."""
+
+    loads: Loads
+    solver: object
+    free: np.ndarray
+
+
+def begin(problem, temperature, time, hint):
+    """State at the start, walls at their temperatures; `hint` is a short time in seconds."""
+    loads, free, held = problem.loads, problem.free, problem.loads.held
+    loading = loads.at(time)
+    y, rate = temperature.copy(), np.zeros_like(temperature)
+    y[held] = loading.temperature
+    # What the walls give at once to their nodes: what each weighs times its jump.
+    jump = np.asarray(loads.space.mass.sum(axis=1)).ravel()
+    heats = loads.shares(jump * (y - temperature), loading._replace(powers=0 * loading.powers))
+    if len(held):
+        soon, later = (loads.at(time + part * hint).temperature for part in (1, 2))
+        rate[held] = (4 * soon - 3 * loading.temperature - later) / (2 * hint)
+    load = loading.heat - loads.space.stiffness @ y - loads.space.mass @ rate
+    rate[free] = problem.solver.rates(load[free])
+    entering = loads.space.mass @ rate + loads.space.stiffness @ y - loading.heat
+    span = np.array([min(temperature.min(), y.min()), max(temperature.max(), y.max())])
+    return State(time, y, rate, entering, loads.shares(entering, loading), heats, float(np.abs(heats[:-1]).sum()), span)
+
+
+def advance(problem, state, step, *, estimate):
+    """One step.
+
+    Parameters
+    ----------
+    problem : Problem
+    state : State
+    step : float, s
+    estimate : bool
+        Whether the error is wanted: one more solve.
+
+    Returns
+    -------
+    State
+    float, K
+        Estimated error of this step, root mean square over the heat capacity; 0 if not wanted.
+    """
+    y, tau = state.temperature, DIAGONAL * step
+    half = y + tau * state.rate
+    middle = _stage(problem, state, (state.time + GAMMA * step, tau), half, half + tau * state.rate)
+    start = y + step * WEIGHTS[0] * (state.rate + middle.rate)
+    slope = state.rate + (middle.rate - state.rate) / GAMMA
+    last = _stage(problem, state, (state.time + step, tau), start, start + tau * slope)
+    stages = (state, middle, last)
+    heat = [step * w * s.rates for w, s in zip(WEIGHTS, stages, strict=True)]
+    new = last._replace(
+        heats=state.heats + sum(heat),
+        turnover=state.turnover + float(np.abs(heat)[:, :-1].sum()),
+        span=np.array([min(state.span[0], last.temperature.min()), max(state.span[1], last.temperature.max())]),
+    )
+    return new, _error(problem, stages, step) if estimate else 0.0
+
+
+def _stage(problem, state, when, start, guess):
+    """Solve M (y - start) / tau + K y = heat at a time."""
+    loads, free, (time, tau) = problem.loads, problem.free, when
+    mass, stiffness, loading = loads.space.mass, loads.space.stiffness, loads.at(time)
+    y = guess
+    y[loads.held] = loading.temperature
+    load = loading.heat - stiffness @ y - mass @ ((y - start) / tau)
+    scale = mass @ state.rate
+    y[free] += problem.solver.solve(tau, load[free], scale=scale[free], level=y[free])
+    rate = (y - start) / tau
+    entering = mass @ rate + stiffness @ y - loading.heat
+    return State(time, y, rate, entering, loads.shares(entering, loading), state.heats, 0.0, state.span)
+
+
+def _error(problem, stages, step):
+    """Estimated error, damped by one solve with the matrix of the stages as Hosea and Shampine do."""
+    mass, free = problem.solver.mass, problem.free
+    raw = step * sum(w * s.rate[free] for w, s in zip(WEIGHTS - THIRD, stages, strict=True))
+    if not raw.any():
+        return 0.0
+    tau = DIAGONAL * step
+    error = problem.solver.solve(tau, mass @ raw / tau, tolerance=ERROR_TOLERANCE)
+    return math.sqrt(max(error @ (mass @ error), 0.0) / problem.loads.space.mass.sum())
+
+
+class Clock:
+    """Steps from asked time to asked time: given ones, or as long as the wanted accuracy allows.
+
+    Parameters
+    ----------
+    problem : Problem
+    accuracy : float
+        Largest estimated error of one step, root mean square, as a part of the temperature span so far.
+    step : float, s, optional
+        Longest step; no error is then estimated.
+    """
+
+    def __init__(self, problem, accuracy, step=None):
+        self.problem, self.accuracy, self.given, self.wanted = problem, accuracy, step, None
+        self.steps, self.rejected, self.last = 0, 0, 0.0
+
+    def run(self, state, time):
+        """State at a later time."""
+        if self.given is not None:
+            return self._equal(state, time)
+        if self.wanted is None:
+            self.wanted = first_step(state, time)
+        while state.time < time:
+            left = time - state.time
+            step = left if self.wanted >= left * (1 - 1e-9) else min(self.wanted, left / 2)
+            if step < SHORTEST * time:
+                raise RuntimeError(
+                    f"finite elements: step {step:.2e} s at {state.time:.6g} s after {self.steps} steps: the estimated "
+                    "error does not fall; a load changes too fast"
+                )
+            new, error = advance(self.problem, state, step, estimate=True)
+            if self._accepts(new, error, step):
+                self.steps, self.last = self.steps + 1, float(step)
+                state = new._replace(time=time) if step == left else new
+            else:
+                self.rejected += 1
+        return state
+
+    def _equal(self, state, time):
+        count = max(1, math.ceil((time - state.time) / self.given * (1 - 1e-9)))
+        begin, step = state.time, (time - state.time) / count
+        for number in range(1, count + 1):
+            state = advance(self.problem, state, step, estimate=False)[0]
+            state = state._replace(time=time if number == count else begin + number * step)
+        self.steps, self.last = self.steps + count, step
+        return state
+
+    def _accepts(self, new, error, step):
+        low, high = new.span
+        limit = self.accuracy * max(high - low, LEAST_SPAN * max(abs(low), abs(high), 1.0))
+        factor = SAFETY * (limit / error) ** (1 / 3) if error > 0 else GROWTH[1]
+        accepted = error <= limit
+        if not accepted:
+            self.wanted = step * max(min(factor, SAFETY), SHRINK)
+        elif factor > GROWTH[0]:
+            # A step cut short to end at an asked time says nothing against longer ones.
+            self.wanted = max(self.wanted, step * min(factor, GROWTH[1]))
+        elif factor < 1 and step == self.wanted:
+            self.wanted *= factor
+        return accepted
+
+
+def first_step(state, time):
+    """A short first step: a hundredth of the way, or what the fastest node takes for a twentieth of the span."""
+    step, fastest = (time - state.time) / 100, np.abs(state.rate).max()
+    span = state.span[1] - state.span[0]
+    return min(step, 0.05 * span / fastest) if span > 0 and fastest > 0 else step
