@@ -9,7 +9,8 @@ from itertools import product
 import numpy as np
 
 from demheat.network.base import Facets
-from demheat.network.calibrated import WALL_RULES, contact_facets, surface_distances
+from demheat.network.calibrated import TOUCH, WALL_RULES, contact_facets, surface_distances
+from demheat.packing.base import ROUND_AXES
 from demheat.packing.neighbours import contacts
 
 # Edges of a face and faces at a vertex of the regular polyhedra.
@@ -141,7 +142,7 @@ def _lines(x, knots, values):
 
 
 def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nearest", wall="center") -> Facets:
-    """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p links of a particle.
+    """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p neighbours of a particle.
 
     Parameters
     ----------
@@ -151,14 +152,14 @@ def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nea
     coordination : float
         Mean number of contacts of the bulk particles. The paper states none.
     poor, wall : str
-        As in `demheat.network.calibrated.contact_facets`. Walls are no neighbours. A particle without neighbours, whose
-        capacity the paper's table would make infinite, takes no part: with `poor = "keep"` it has neither links nor
-        volume here.
+        As in `demheat.network.calibrated.contact_facets`. A particle without any neighbour, whose capacity the paper's
+        table would make infinite, takes no part: with `poor = "keep"` it has neither links nor volume here.
 
     Returns
     -------
     Facets
-        Volumes carry the heat capacity: V_p / f(n_p). They fill the box only by chance, so that mass is not conserved.
+        Volumes carry the heat capacity: V_p / f(n_p), see `carrying_volumes`. They fill the box only by chance, so that
+        mass is not conserved.
 
     Raises
     ------
@@ -168,11 +169,12 @@ def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nea
     if wall not in WALL_RULES:
         raise ValueError(f"wall = {wall!r}: must be one of {', '.join(WALL_RULES)}")
     links = contacts(packing, coordination=coordination) if links is None else links
-    facets = _linked(contact_facets(packing, links=links, poor=poor, wall="center"))
-    neighbours = np.diff(facets.indptr)
+    facets = contact_facets(packing, links=links, poor=poor, wall="center")
+    # What is taken out has no volume there.
+    neighbours = np.where(facets.volumes > 0, count_neighbours(packing, facets.indptr, links[2]), 0)
     surface = surface_factors(neighbours) * packing.radii**2
-    area = np.sqrt(np.repeat(surface, neighbours) * surface[facets.indices])
-    facets = facets._replace(area=area, volumes=carrying_volumes(packing, facets.indptr))
+    area = np.sqrt(np.repeat(surface, np.diff(facets.indptr)) * surface[facets.indices])
+    facets = facets._replace(area=area, volumes=carrying_volumes(packing.radii, neighbours))
     if wall == "center":
         return facets
     axis, far = facets.wall_side // 2, facets.wall_side % 2 == 1
@@ -181,22 +183,50 @@ def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nea
     return facets._replace(wall_distance=surface_distances(facets, packing))
 
 
-def carrying_volumes(packing, indptr):
-    """Volume whose heat a particle carries, V_p / f(n_p); zero without neighbours.
+def count_neighbours(packing, indptr, gap=0.0):
+    """Neighbours n_p of each particle: its links, and the walls within the gap of it.
+
+    The paper does not say whether a wall is one. With it the simple cubic crystal of the paper's section 3 is the
+    finite-difference stencil up to its faces; without it particles there would get larger surfaces and volumes.
 
     Parameters
     ----------
     packing : Packing
     indptr : (n + 1,) int array
-        Row pointers of its links.
+        Row pointers of the links.
+    gap : float
+        As a part of the radius; at least 0.001.
+
+    Returns
+    -------
+    (n,) int array
+    """
+    reach = packing.radii * (1.0 + max(gap, TOUCH))
+    round_axes = list(ROUND_AXES[packing.domain])
+    neighbours = np.diff(indptr)
+    for k in (k for k in range(3) if not packing.periodic[k] and k not in round_axes):
+        x = packing.centers[:, k]
+        neighbours = neighbours + (x <= reach) + (packing.size[k] - x <= reach)
+    if round_axes:
+        middle = packing.size[round_axes] / 2
+        neighbours = neighbours + (middle[0] - np.linalg.norm(packing.centers[:, round_axes] - middle, axis=1) <= reach)
+    return neighbours
+
+
+def carrying_volumes(radii, neighbours):
+    """Volume whose heat a particle carries, V_p / f(n_p); none without neighbours.
+
+    Parameters
+    ----------
+    radii : (n,) float array, m
+    neighbours : (n,) int array
 
     Returns
     -------
     (n,) float array, m3
     """
-    neighbours = np.diff(indptr)
-    spheres = 4 / 3 * np.pi * packing.radii**3
-    return np.divide(spheres, fraction_factors(neighbours), out=np.zeros(packing.number), where=neighbours > 0)
+    spheres = 4 / 3 * np.pi * radii**3
+    return np.divide(spheres, fraction_factors(neighbours), out=np.zeros(len(radii)), where=neighbours > 0)
 
 
 def capacities(packing, links, material):
@@ -205,7 +235,7 @@ def capacities(packing, links, material):
     Parameters
     ----------
     packing : Packing
-    links : (indptr, indices, ...)
+    links : (indptr, indices, gap)
         As `demheat.packing.neighbours.contacts` returns them.
     material : Material
         With density and heat capacity.
@@ -223,18 +253,5 @@ def capacities(packing, links, material):
     for name in ("density", "heat_capacity"):
         if getattr(material, name) is None:
             raise ValueError(f"Material.{name} = None: capacities need it; must be > 0")
-    return material.density * material.heat_capacity * carrying_volumes(packing, links[0])
-
-
-def _linked(facets):
-    """The facets without the wall contacts of particles that have no neighbour; the others share the wall."""
-    kept = (np.diff(facets.indptr) > 0)[facets.wall_particle]
-    side, area = facets.wall_side, facets.wall_area
-    whole, left = (np.bincount(side[which], area[which], minlength=6) for which in (slice(None), kept))
-    share = np.divide(whole, left, out=np.zeros(6), where=left > 0)[side]
-    return facets._replace(
-        wall_particle=facets.wall_particle[kept],
-        wall_side=side[kept],
-        wall_area=(area * share)[kept],
-        wall_distance=facets.wall_distance[kept],
-    )
+    neighbours = count_neighbours(packing, links[0], links[2])
+    return material.density * material.heat_capacity * carrying_volumes(packing.radii, neighbours)

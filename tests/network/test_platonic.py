@@ -11,7 +11,7 @@ from demheat.network.laguerre import without_hidden
 from demheat.network.platonic import (
     CRYSTALS,
     capacities,
-    carrying_volumes,
+    count_neighbours,
     crystal_packing,
     fraction_factors,
     platonic_facets,
@@ -132,29 +132,42 @@ def test_default_coordination_and_the_knob(packing):
 
 
 def test_lone_particles_take_no_part():
-    """A chain from wall to wall, a lone sphere inside and one that touches only a wall."""
+    """A chain from wall to wall, a lone sphere inside and one that touches only a wall, its neighbour."""
     centers = [(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.5, 5.0, 1.5), (8.0, 1.0, 8.0)]
     packing = make_packing(centers, np.ones(7), (10, 10, 10), (True, False, True), {})
     facets = platonic_facets(packing, links=contacts(packing, gap=0.02), poor="keep")
-    chain = packing.centers[:, 0] == 5.0
-    assert_array_equal(facets.volumes > 0, chain)
-    assert_array_equal(np.diff(facets.indptr) > 0, chain)
-    assert_array_equal(np.sort(facets.wall_side), (2, 3))
-    # What is left stands for the whole wall.
-    assert_allclose(facets.wall_area, 100.0, rtol=1e-14)
+    lone = packing.centers[:, 0] == 1.5
+    assert_array_equal(facets.volumes == 0, lone)
+    number = np.where(packing.centers[:, 0] == 5.0, 2, 1)[~lone]
+    # Walls count: two neighbours all along the chain, one for the sphere at the wall.
+    assert_allclose(facets.volumes[~lone], 4 / 3 * np.pi / fraction_factors(number), rtol=1e-14)
+    assert_allclose(facets.area, surface_factors(np.array([2]))[0], rtol=1e-14)
+    assert_array_equal(np.sort(facets.wall_side), (2, 2, 3))
     rest, facets = without_hidden(packing, facets)
-    assert rest.number == 5 and facets.wall_particle.max() < 5
+    assert rest.number == 6 and facets.wall_particle.max() < 6
+
+
+def test_walls_are_neighbours():
+    centers = np.array([(1.0, 2.0, 2.0), (1.0, 1.0, 1.0), (2.0, 2.0, 2.0), (3.0, 2.0, 2.2)])
+    at = {tuple(x): n for x, n in zip(centers, (1, 3, 0, 1), strict=True)}
+    box = make_packing(centers, np.ones(4), (4, 4, 4), False, {})
+    found = count_neighbours(box, np.zeros(5, int))
+    assert {tuple(x): n for x, n in zip(box.centers, found, strict=True)} == at
+    inside = np.linalg.norm(centers[:, :2] - 2, axis=1) <= 1.01
+    drum = make_packing(centers[inside], np.ones(3), (4, 4, 4), (False, False, True), {}, domain="cylinder-z")
+    found = count_neighbours(drum, np.arange(4))
+    assert_array_equal(found, np.where(abs(drum.centers[:, 0] - 2) == 1, 2, 1))
+    assert_array_equal(count_neighbours(drum, np.zeros(4, int), gap=1.1), 1)
 
 
 def test_the_simple_cubic_crystal_is_the_difference_stencil():
     packing = crystal((10, 11, 12), periodic=False, edge=0.5)
     facets = platonic_facets(packing, links=contacts(packing, gap=1e-6), wall="surface")
-    inside = np.all((packing.centers > 0.5) & (packing.centers < packing.size - 0.5), axis=1)
-    assert_array_equal(np.diff(facets.indptr)[inside], 6)
-    # Area of a cell's face for six neighbours, and its volume; rounding.
-    both = inside[row_numbers(facets.indptr)] & inside[facets.indices]
-    assert_allclose(facets.area[both], 0.25, rtol=1e-14)
-    assert_allclose(facets.volumes[inside], 0.125, rtol=1e-14)
+    # Area of a cell's face for six neighbours, walls included, and its volume; rounding.
+    assert_allclose(facets.area, 0.25, rtol=1e-14)
+    assert_allclose(facets.volumes, 0.125, rtol=1e-14)
+    assert_allclose(facets.wall_area, 0.25, rtol=1e-14)
+    assert_allclose(facets.wall_distance, 0.25, rtol=1e-13)
 
 
 @pytest.mark.parametrize("name", CRYSTALS)
@@ -170,7 +183,7 @@ def test_steady_conductivity_of_crystals(name):
     assert_allclose(field.conductivity, expected, rtol=1e-7)  # solver tolerance 1e-8
     assert (abs(expected - 1) < 1e-12) == (name == "simple cubic")
     # Each sphere of a crystal does stand for its part of the volume.
-    assert_allclose(carrying_volumes(packing, links[0]).sum(), 27.0, rtol=1e-12)
+    assert_allclose(capacities(packing, links, ONE).sum(), 6.0 * 27.0, rtol=1e-12)
 
 
 def test_mass_is_not_conserved_nor_fractions_wrong(packing):
