@@ -12,6 +12,7 @@ from scipy.sparse import dia_matrix
 
 from demheat.field import Samples
 from demheat.scene import WALLS, Layer, Scene
+from references.fem.separable import MASS, STIFFNESS, separable
 from references.fem.space import Space, capacities
 
 # Cube root of the box volume over the default edge.
@@ -22,9 +23,6 @@ SAME = 1e-10
 # Points of a moving source per edge.
 RESOLVE = 6
 CORNERS = tuple(product((0, 1), repeat=3))
-# Of one element of unit length: integrals of products of the two shape functions and of their slopes.
-MASS = np.array([[2.0, 1.0], [1.0, 2.0]]) / 6
-STIFFNESS = np.array([[1.0, -1.0], [-1.0, 1.0]])
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
 
 
@@ -50,19 +48,19 @@ class Bricks:
 
     def temperature_at(self, points):
         """Temperature at (n, 3) points in metres, (n,) float array."""
-        nodes, shares, _ = self._corners(points)
-        return np.einsum("cp,cp->p", self.temperature[nodes], shares)
+        nodes, local, _ = self._local(points)
+        return np.einsum("cp,cp->p", self.temperature[nodes], _shares(local))
 
     def flux_at(self, points):
         """Flux density at (n, 3) points in metres, (n, 3) float array, W/m2; on a face that of one side."""
-        nodes, _, slopes = self._corners(points)
-        gradient = np.einsum("cp,cpx->px", self.temperature[nodes], slopes)
+        nodes, local, widths = self._local(points)
+        gradient = np.einsum("cp,cpx->px", self.temperature[nodes], _slopes(local, widths))
         return -self.scene.conductivities[self.phase[self._bricks(points)], None] * gradient
 
     def spread(self, points, amounts):
         """Share amounts (p,) at points (p, 3) in metres among the nodes by their shape functions, (n,) float array."""
-        nodes, shares, _ = self._corners(points)
-        return np.bincount(nodes.ravel(), (shares * amounts).ravel(), len(self.temperature))
+        nodes, local, _ = self._local(points)
+        return np.bincount(nodes.ravel(), (_shares(local) * amounts).ravel(), len(self.temperature))
 
     def samples(self):
         """`Samples` at the eight Gauss points of each brick."""
@@ -83,24 +81,28 @@ class Bricks:
             np.clip(np.searchsorted(x, points[:, axis], "right") - 1, 0, len(x) - 2) for axis, x in enumerate(self.grid)
         )
 
-    def _corners(self, points):
-        """Nodes (8, p), shape functions (8, p) and their gradients (8, p, 3) in 1/m at points."""
-        bricks = self._bricks(points)
-        shape, values, slopes = [len(x) for x in self.grid], [], []
-        for axis, (x, i) in enumerate(zip(self.grid, bricks, strict=True)):
-            width = np.diff(x)[i]
-            local = (points[:, axis] - x[i]) / width
-            values.append((1 - local, local))
-            slopes.append((-1 / width, 1 / width))
-        nodes = [
-            np.ravel_multi_index([i + c for i, c in zip(bricks, corner, strict=True)], shape) for corner in CORNERS
-        ]
-        shares, gradients = [], []
-        for p, q, r in CORNERS:
-            a, b, c = values[0][p], values[1][q], values[2][r]
-            shares.append(a * b * c)
-            gradients.append(np.stack([slopes[0][p] * b * c, a * slopes[1][q] * c, a * b * slopes[2][r]], axis=-1))
-        return np.stack(nodes), np.stack(shares), np.stack(gradients)
+    def _local(self, points):
+        """Nodes (8, p) around points, local coordinates (3, p) and widths (3, p) in m of their bricks."""
+        bricks, shape = self._bricks(points), [len(x) for x in self.grid]
+        low = np.stack([x[i] for x, i in zip(self.grid, bricks, strict=True)])
+        widths = np.stack([x[i + 1] for x, i in zip(self.grid, bricks, strict=True)]) - low
+        first = np.ravel_multi_index(bricks, shape)
+        steps = np.array([np.ravel_multi_index(corner, shape) for corner in CORNERS])
+        return first + steps[:, None], (points.T - low) / widths, widths
+
+
+def _shares(local):
+    """Shape functions (8, p) at local coordinates (3, p)."""
+    x, y, z = ((1 - t, t) for t in local)
+    return np.stack([x[a] * y[b] * z[c] for a, b, c in CORNERS])
+
+
+def _slopes(local, widths):
+    """Gradients (8, p, 3) of the shape functions, 1/m."""
+    x, y, z = ((1 - t, t) for t in local)
+    u, v, w = ((-1 / h, 1 / h) for h in widths)
+    rows = [(u[a] * y[b] * z[c], x[a] * v[b] * z[c], x[a] * y[b] * w[c]) for a, b, c in CORNERS]
+    return np.moveaxis(np.array(rows), 1, 2)
 
 
 def hexahedra(scene, size=None):
@@ -131,7 +133,8 @@ def hexahedra(scene, size=None):
     centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
     phase = scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])
     widths = [np.diff(x) for x in grid]
-    stiffness, mass = _matrices(widths, scene.conductivities[phase], capacities(scene)[phase])
+    materials = scene.conductivities, capacities(scene)
+    stiffness, mass = _matrices(widths, *(values[phase] for values in materials))
     view = partial(Bricks, scene, grid, phase)
     lumped = [(np.append(w, 0) + np.append(0, w)) / 2 for w in widths]
     points = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -142,6 +145,7 @@ def hexahedra(scene, size=None):
         volumes=outer(*lumped).ravel(),
         walls={name: _wall(name, lumped) for name in WALLS},
         quadratic=lambda free: None,
+        separable=None if scene.inclusions else partial(separable, grid, *(v[0] for v in materials)),
         spread=view(np.zeros(len(points))).spread,
         planes=lambda axis: grid[axis],
         spacing=min(w.min() for w in widths) / RESOLVE,

@@ -39,6 +39,8 @@ class Space(NamedTuple):
         Nodes of each wall, and the integrals of the shape functions over it.
     quadratic : callable (free nodes) -> CSR matrix or None
         From the corners to all free nodes of quadratic elements.
+    separable : callable (free nodes) -> callable (tau, load) -> solution, or None
+        Exact inverse of mass / tau + stiffness, where there is a fast one.
     spread : callable (points, amounts) -> (n,) float array
         Amounts at points shared among the nodes by their shape functions.
     planes : callable (axis) -> (p,) float array, m
@@ -57,6 +59,7 @@ class Space(NamedTuple):
     volumes: np.ndarray
     walls: dict[str, tuple[np.ndarray, np.ndarray]]
     quadratic: Callable
+    separable: Callable | None
     spread: Callable
     planes: Callable
     spacing: float
@@ -82,6 +85,7 @@ def tetrahedra(scene, mesh):
         volumes=volumes,
         walls=walls,
         quadratic=lambda free: prolongation(mesh, free, dof),
+        separable=None,
         spread=view(np.zeros(count)).spread,
         planes=partial(_planes, scene, edge / 2),
         spacing=edge / RESOLVE,

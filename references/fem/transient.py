@@ -92,7 +92,8 @@ def _fields(scene, times, mesh, knobs):
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
     blocks = (matrix[free][:, free] for matrix in (space.mass, space.stiffness))
-    solver = Shifted(*blocks, space.quadratic(free), tolerance)
+    inverse = space.separable(free) if space.separable and len(free) else None
+    solver = Shifted(*blocks, space.quadratic(free), tolerance, inverse)
     problem = Problem(loads, solver, free)
     ticks, begun = Clock(problem, accuracy, step), clock.perf_counter()
     # A thousandth of the first step asked for, or of the time to the first field.

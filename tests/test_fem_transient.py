@@ -1,0 +1,417 @@
+"""Finite elements in time: exact series, declared orders, conserved heat, sources, round bodies, bad input."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from references import fem, mesh
+from references.fem import bodies, bricks, sources, space, trbdf2
+
+try:
+    mesh.load_gmsh()
+except ImportError as error:
+    pytest.skip(str(error), allow_module_level=True)
+
+UNIT = Material(1.0, 1.0, 1.0)
+STEEL = Material(33.0, 7800.0, 0.9)  # Haddad et al. 2021, table 1
+KINDS = [{"elements": "hexahedra"}, {"order": 1}, {"order": 2}]
+SIZE = {"hexahedra": 0.25, 1: 0.34, 2: 0.5}
+
+
+def kind_size(kind):
+    return SIZE[kind.get("order", "hexahedra")]
+
+
+def cube(material=UNIT, side=1.0, **parts):
+    return Scene((side,) * 3, material, **({"initial": 0.0} | parts))
+
+
+def last(scene, times, **knobs):
+    return list(fem.evolve(scene, times, **knobs))[-1]
+
+
+def modes(x):
+    return np.sin(np.pi * x[:, 1])
+
+
+# ---------------------------------------------------------------- exact series
+
+
+def slab(fraction, fourier):
+    """Temperature between walls at 0 (x = 0) and 1 (x = L), from 0: x/L plus sines (Haddad et al. 2021, eq. 17)."""
+    n = np.arange(1, 200)
+    terms = 2 / np.pi * (-1.0) ** n / n * np.exp(-((n * np.pi) ** 2) * fourier)
+    return fraction + np.sin(np.pi * np.outer(fraction, n)) @ terms
+
+
+# In K of a span of 10, at the earliest time, where the layer of heat is 1.5 edges of the bricks or 1.2 of the
+# tetrahedra thick: found .21 and .018.
+@pytest.mark.parametrize(
+    ("knobs", "limit"), [({"elements": "hexahedra", "size": 0.0099}, 0.3), ({"size": 0.0125}, 0.03)]
+)
+def test_slab_of_haddad(knobs, limit):
+    of = cube(STEEL, 0.1, walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
+    fractions = np.linspace(0.05, 0.95, 19)
+    points = np.column_stack([np.full(19, 0.03), 0.1 * fractions, np.full(19, 0.06)])
+    times = [0.0, 0.05, 0.1, 0.2]
+    for field, time in zip(fem.evolve(of, times, **knobs), times, strict=True):
+        assert field.time == time
+        if time:
+            exact = 25 + 10 * slab(fractions, 33 / (7800 * 0.9) * time / 0.01)
+            assert_allclose(field.temperature_at(points), exact, atol=limit)
+            assert field.stats["energy_error"] < 1e-8
+    assert_allclose(exact[[4, 9, 14, 17]], [25.7976, 27.4834, 30.6420, 33.1761], atol=1e-4)
+    # Heat through the walls is less accurate by one order.
+    n = np.arange(1, 99)
+    sums = [np.sum(sign**n * np.exp(-((n * np.pi) ** 2) * 0.0940171)) for sign in (-1, 1)]
+    exact = 33 * 10 * 0.1 * (1 + 2 * np.array(sums)) * [-1, 1]
+    assert_allclose([field.wall_heat["y-"], field.wall_heat["y+"]], exact, rtol=0.03)
+
+
+def test_sphere_of_haddad():
+    of = Scene((0.1,) * 3, Material(185.0, 2700.0, 900.0), walls={"round": 200.0}, initial=20.0, domain="sphere")
+    exact = [20.31666, 120.77809, 182.17817, 199.95631]
+    fields = list(fem.evolve(of, [1, 5, 10, 30], size=0.0125))
+    center = [f.temperature_at(np.full(3, 0.05))[0] for f in fields]
+    # Of a span of 180 K: this coarse mesh errs by .35 K, one of edges of 1 cm by .17 K.
+    assert_allclose(center, exact, atol=0.6)
+    surface = np.array([[0.05, 0.05, 0.1], [0.0, 0.05, 0.05], 0.05 + 0.05 / math.sqrt(3) * np.ones(3)])
+    # Beyond the quadratic surface the temperature goes on from inside.
+    assert_allclose(fields[0].temperature_at(surface), 200, atol=1.0)
+    with pytest.raises(ValueError, match="outside the sphere"):
+        fields[0].temperature_at(np.full((1, 3), 0.01))
+
+
+def test_beam_of_terreros():
+    length, radius = 2.184e-3, 0.116e-3
+    of = Scene(
+        (2 * radius, 2 * radius, length),
+        Material(134.0, 2790.0, 880.0),
+        walls={"z-": 798.0},
+        initial=298.0,
+        domain="cylinder-z",
+    )
+    fields = fem.evolve(of, [0.01, 0.05, 0.1], size=radius / 2, accuracy=1e-4)
+    end = [field.temperature_at(np.array([radius, radius, length]))[0] for field in fields]
+    # Of a span of 500 K: found .02 K off at a finer accuracy, and .1 K of error in time at this one.
+    assert_allclose(end, [334.582, 642.828, 760.178], atol=0.3)
+
+
+# ---------------------------------------------------------------- orders
+
+
+def fitted(errors):
+    return np.log2(np.array(errors[:-1]) / errors[1:])
+
+
+def test_second_order_in_time_to_the_exact_decay_of_the_grid():
+    """A sine is an eigenvector of the equations of a uniform grid, whose decay in time is known exactly."""
+    of, angle = cube(walls={"y-": 0.0, "y+": 0.0}, initial=modes), np.pi / 4
+    rate = 3 * 16 * 2 * (1 - math.cos(angle)) / (2 + math.cos(angle)) / 1
+    errors = []
+    for count in (4, 8, 16):
+        field = last(of, [0.2], elements="hexahedra", size=0.25, step=0.2 / count, tolerance=1e-12)
+        assert field.stats["steps"] == count
+        errors.append(abs(field.temperature_at(np.full(3, 0.5))[0] - math.exp(-rate * 0.2)))
+    # The slope nears 2 from either side by a term of the relative size of a step.
+    assert_allclose(fitted(errors), 2, atol=0.15)
+
+
+def test_second_order_in_time_under_loads_that_change():
+    walls = {"y-": lambda t: math.sin(5 * t), "y+": Flux(lambda t: math.cos(9 * t))}
+    of = cube(walls=walls, sources=(MovingCylinder(2, 0.3, 20.0, (0.3, 0.4), (0.5, 0.3)),), initial=modes)
+    knobs = {"elements": "hexahedra", "size": 0.34, "tolerance": 1e-12}
+    at = [last(of, [0.5], step=0.5 / n, **knobs).temperature_at(np.full(3, 0.7))[0] for n in (20, 40, 80, 160)]
+    # Differences of successive solutions fall like the error; kinks where source points change bricks blur it.
+    assert np.all(fitted(np.abs(np.diff(at))) > 1.7)
+
+
+@pytest.mark.parametrize(
+    ("knobs", "sizes", "order"),
+    [({"elements": "hexahedra"}, (0.25, 0.125), 2), ({"order": 1}, (0.25, 0.125), 2), ({"order": 2}, (0.25, 0.125), 3)],
+)
+def test_declared_order_in_space(knobs, sizes, order):
+    of, errors = cube(walls={"y-": 0.0, "y+": 0.0}, initial=modes), []
+    for size in sizes:
+        field = last(of, [0.05], size=size, step=0.005, tolerance=1e-11, **knobs)
+        s = field.samples
+        exact = modes(s.points) * math.exp(-(np.pi**2) * 0.05)
+        errors.append(math.sqrt(s.volumes @ (s.temperature - exact) ** 2))
+    # Unstructured meshes do not refine evenly: their sizes alone shift a slope by some tenths. Ten steps leave an error
+    # in time of 3e-5, under a tenth of the finest in space.
+    assert fitted(errors)[0] > order - 0.3
+
+
+def test_accuracy_asked_for_is_nearly_met():
+    """The estimated error of one step is the limit; those of all steps add up to a few times as much."""
+    of, knobs = cube(walls={"y-": 0.0, "y+": 1.0}), {"elements": "hexahedra", "size": 0.125, "tolerance": 1e-11}
+    fine = last(of, [0.1], accuracy=1e-7, **knobs)
+    for accuracy in (1e-3, 1e-4, 1e-5):
+        field = last(of, [0.1], accuracy=accuracy, **knobs)
+        error = math.sqrt(np.mean((field.samples.temperature - fine.samples.temperature) ** 2))
+        assert error < 10 * accuracy
+        # An estimate a hundred times too careful would waste 5 times the steps.
+        assert error > 0.02 * accuracy
+        assert field.stats["steps"] < fine.stats["steps"]
+
+
+def test_a_load_that_jumps_is_followed():
+    of = cube(walls={"y-": Flux(lambda t: 0.0 if t < 0.0503 else 1.0)})
+    field = last(of, [0.1], elements="hexahedra", size=0.25, accuracy=1e-4)
+    assert field.stats["rejected"] > 0
+    # The step that holds the jump errs by itself times the flux, and was cut until that was small.
+    assert_allclose(field.stats["heat_change"], 0.0497, rtol=1e-2)
+
+
+# ---------------------------------------------------------------- heat
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_heat_is_conserved(kind):
+    """To ten times the linear tolerance, whatever loads it."""
+    walls = {"x-": lambda t: 3 * t, "y-": 0.0, "z+": Flux(lambda t: 2 - t), "z-": 1.0}
+    source = MovingCylinder(2, 0.3, 50.0, (0.3, 0.5), (3.0, 0.0))
+    of = cube(walls=walls, sources=(Heating(2.0), source), initial=lambda x: x[:, 0] - 0.5)
+    for tolerance in (1e-6, 1e-10):
+        for field in fem.evolve(of, [0.05, 0.1], size=kind_size(kind), tolerance=tolerance, accuracy=1e-3, **kind):
+            stats = field.stats
+            assert stats["residual"] <= tolerance
+            assert stats["energy_error"] <= 10 * tolerance
+            # The integral of 2 - t over time, exact by the weights, and the power of both sources.
+            assert_allclose(stats["heat_in"]["z+"], 2 * field.time - field.time**2 / 2, rtol=1e-12)
+            power = 2 + 50 * math.pi * 0.15**2
+            assert_allclose(stats["heat_in"]["sources"], power * field.time, rtol=1e-12)
+            change = field.samples.volumes @ field.samples.temperature
+            assert_allclose(stats["heat_change"], change, atol=1e-9)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_uniform_heating_of_an_insulated_body_is_exact(kind):
+    of = cube(Material(2.0, 3.0, 4.0), sources=(Heating(24.0),), initial=7.0)
+    field = last(of, [0.0, 1.5], size=kind_size(kind), **kind)
+    assert_allclose(field.samples.temperature, 7 + 24 / 12 * 1.5, rtol=1e-9)  # linear tolerance
+    assert field.stats["steps"] < 20
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_capacities_and_conductivities_of_layers(kind):
+    layers = [Layer(1, 0.0, 0.3, Material(4.0, 2.0, 5.0)), Layer(1, 0.6, 0.9, Material(0.5, 1.0, 3.0))]
+    of = cube(inclusions=layers, walls={"y-": 0.0, "y+": 1.0})
+    field = last(of, [400.0], size=kind_size(kind), accuracy=1e-3, **kind)
+    resistance = 0.3 / 4 + 0.3 + 0.3 / 0.5 + 0.1
+    # Steady by then; piecewise linear temperatures are exact.
+    y = np.array([0.3, 0.6, 0.9])
+    expected = np.array([0.075, 0.375, 0.975]) / resistance
+    points = np.column_stack([np.full(3, 0.3), y, np.full(3, 0.4)])
+    assert_allclose(field.temperature_at(points), expected, atol=1e-6)
+    assert_allclose(field.mean_flux, [0, -1 / resistance, 0], atol=1e-6)
+    mean = np.array([expected[0] / 2, expected[:2].mean(), expected[1:].mean(), (1 + expected[2]) / 2])
+    assert_allclose(field.stats["heat_change"], mean @ [0.3 * 10, 0.3, 0.3 * 3, 0.1], rtol=1e-5)
+    assert_allclose(field.fractions, [0.4, 0.3, 0.3], rtol=1e-9)
+
+
+def test_field_at_the_start_and_temperatures_of_walls_in_time():
+    of = cube(walls={"x-": lambda t: 1 + t, "x+": Flux(2.0)}, initial=lambda x: 1 + x[:, 1])
+    first, second = fem.evolve(of, [0.0, 0.01], size=0.25, elements="hexahedra")
+    points = np.array([[0.6, 0.25, 0.1], [1.0, 1.0, 1.0]])
+    assert_allclose(first.temperature_at(points), 1 + points[:, 1], rtol=1e-12)
+    assert first.time == 0 and first.stats["steps"] == 0
+    assert_allclose([first.wall_temperature["x-"], second.wall_temperature["x-"]], [1.0, 1.01], rtol=1e-12)
+    assert_allclose(first.wall_temperature["x+"], 1.5, rtol=1e-12)
+    assert_allclose(second.wall_heat["x+"], 2.0, rtol=1e-12)
+
+
+def test_flux_of_bricks_is_minus_conductivity_times_the_slope_of_their_temperature():
+    of = cube(Material(3.0, 1.0, 1.0), initial=lambda x: x @ [1.0, 2.0, -4.0])
+    (field,) = fem.evolve(of, [0.0], elements="hexahedra", size=0.3)
+    points = np.random.default_rng(0).random((50, 3))
+    assert_allclose(field.flux_at(points), np.tile([-3.0, -6.0, 12.0], (50, 1)), rtol=1e-10)
+    assert_allclose(field.mean_flux, [-3.0, -6.0, 12.0], rtol=1e-10)
+
+
+# ---------------------------------------------------------------- moving source
+
+
+@pytest.mark.parametrize("axis", [0, 2])
+@pytest.mark.parametrize("kind", KINDS)
+def test_a_source_is_where_it_should_be_with_all_its_power(axis, kind):
+    of = Scene((1.0, 0.8, 0.7), UNIT, initial=0.0)
+    elements = kind.get("elements")
+    if elements:
+        on = bricks.hexahedra(of, 0.15)
+    else:
+        on = space.tetrahedra(of, mesh.make(of, size=0.3, order=kind["order"]))
+    source = MovingCylinder(axis, 0.3, 5.0, (0.4, 0.3), (0.1, 0.05))
+    made = sources.deposit(
+        of,
+        on,
+        source,
+        2.0,
+    )
+    power = 5 * math.pi * 0.15**2 * of.size[axis]
+    assert_allclose([made.heat.sum(), made.power, made.lost], [power, power, 0], atol=1e-14)
+    # Shape functions reproduce linear functions: the centre of the heat is that of the cylinder.
+    center = np.insert([0.6, 0.4], axis, of.size[axis] / 2)
+    assert_allclose(made.heat @ on.points / power, center, atol=1e-12)
+
+
+def test_second_moments_of_the_points_of_a_disc():
+    points = sources.disc_points(9)
+    assert len(points) == 3 * 81
+    assert_allclose(points.T @ points / len(points), np.eye(2) / 4, atol=1e-12)
+    assert np.linalg.norm(points, axis=1).max() < 1
+
+
+def test_overlap_of_disc_and_rectangle():
+    rng = np.random.default_rng(3)
+    fine = (np.arange(800) + 0.5) / 800
+    x, y = np.meshgrid(1.3 * fine, 0.7 * fine)
+    for center in [*(rng.random((12, 2)) * [2.1, 1.5] - 0.4), np.array([0.0, 0.35])]:
+        for radius in (0.1, 0.3, 0.9):
+            brute = np.mean((x - center[0]) ** 2 + (y - center[1]) ** 2 < radius**2) * 1.3 * 0.7
+            # Cells that the rim cuts: two times its length over the number of cells per length, half of them wrong by
+            # chance; found below 2e-4.
+            assert_allclose(sources.overlap(center, radius, (1.3, 0.7)), brute, atol=1e-3)
+    assert_allclose(sources.overlap((0.0, 0.35), 0.3, (1.3, 0.7)), math.pi * 0.045, rtol=1e-12)
+    assert_allclose(sources.overlap((0.65, 0.35), 9.0, (1.3, 0.7)), 0.91, rtol=1e-12)
+
+
+def test_clipped_power_is_reported():
+    source = MovingCylinder(2, 0.4, 10.0, (0.7, 0.5), (1.0, 0.0), clip=True)
+    field = last(cube(sources=(source,)), [0.1, 0.3], elements="hexahedra", size=0.2, step=0.002)
+    total = 10 * math.pi * 0.04 * 0.3
+    heat = field.stats["heat_in"]["sources"]
+    assert_allclose(heat + field.stats["heat_lost"], total, rtol=1e-12)
+    # The axis ends on the wall: the part outside grows from nothing at .1 s to half at .3 s.
+    distance = np.linspace(0.2, 0.0, 2001)
+    outside = 0.04 * np.arccos(np.minimum(distance / 0.2, 1)) - distance * np.sqrt(np.maximum(0.04 - distance**2, 0))
+    # Steps of 2 ms against a square root in time at .1 s.
+    assert_allclose(field.stats["heat_lost"], 10 * np.mean(outside) * 0.2, rtol=2e-3)
+    assert_allclose(field.stats["heat_change"], heat, rtol=1e-8)
+
+
+def test_a_source_that_leaves_is_refused_before_any_work(monkeypatch):
+    monkeypatch.setattr("references.fem.transient.make", lambda *a, **k: pytest.fail("meshed"))
+    source = MovingCylinder(2, 0.4, 1.0, (0.3, 0.5), (1.0, 0.0))
+    with pytest.raises(ValueError, match=r"leaves the body at 0\.5\d* s.*0\.8.*clip"):
+        fem.evolve(cube(sources=(source,)), [0.1, 0.6])
+    with pytest.raises(ValueError, match=r"leaves the body at 0 s"):
+        fem.evolve(cube(sources=(MovingCylinder(1, 0.4, 1.0, (0.1, 0.5)),)), [0.1])
+    # Its rim may touch the edge.
+    sources.check_sources(cube(sources=(source,)), 0.5)
+
+
+# ---------------------------------------------------------------- round bodies
+
+
+@pytest.mark.parametrize(("domain", "walls"), [("sphere", ["round"]), ("cylinder-y", ["y-", "y+", "round"])])
+def test_round_bodies(domain, walls):
+    of = Scene((1.0, 0.7, 1.0) if domain != "sphere" else (1.0,) * 3, UNIT, initial=0.0, domain=domain)
+    lids = {"y-": math.pi / 4, "y+": math.pi / 4, "round": 0.7 * math.pi if domain != "sphere" else math.pi}
+    loss = []
+    for size in (0.25, 0.125):
+        made = bodies.make_round(of, size=size, order=2)
+        on = space.tetrahedra(of, made)
+        assert sorted(made.walls) == sorted(walls)
+        areas = [on.walls[name][1].sum() for name in walls]
+        assert_allclose(areas, [lids[name] for name in walls], rtol=0.02 * size)
+        assert_allclose(on.volumes.sum(), made.volumes.sum(), rtol=1e-12)
+        loss.append(abs(made.stats["volume_error"]))
+    # A quadratic surface errs by the fourth power of the edge in volume; chords would by the second.
+    assert loss[1] < 1e-4 and fitted(loss)[0] > 3
+    straight = bodies.make_round(of, size=0.125, order=1)
+    assert 1e-3 < -straight.stats["volume_error"] < 0.03
+
+
+def test_flux_through_a_round_wall():
+    of = Scene((0.4, 1.0, 1.0), UNIT, walls={"round": Flux(2.0)}, initial=0.0, domain="cylinder-x")
+    field = last(of, [0.1], size=0.25, accuracy=1e-3)
+    assert_allclose(field.stats["heat_change"], 2 * 0.4 * math.pi * 0.1, rtol=1e-3)  # area of the coarse surface
+    assert field.stats["energy_error"] < 1e-8
+
+
+# ---------------------------------------------------------------- bad input
+
+
+@pytest.mark.parametrize(
+    ("parts", "knobs", "words"),
+    [
+        ({}, {"times": []}, r"times = \[\]: must be"),
+        ({}, {"times": [0.2, 0.1]}, r"times = \[0.2, 0.1\].*increasing"),
+        ({}, {"times": [-1.0]}, r"times = \[-1.0\].*>= 0"),
+        ({}, {"times": "soon"}, "times = 'soon'"),
+        ({}, {"order": 3}, "order = 3: must be 1 or 2 with tetrahedra"),
+        ({}, {"order": 2, "elements": "hexahedra"}, "order = 2: must be 1 with hexahedra"),
+        ({}, {"elements": "prisms"}, "elements = 'prisms': must be"),
+        ({}, {"step": 0.0}, "step = 0.0: must be"),
+        ({}, {"accuracy": 1.0}, "accuracy = 1.0: must be"),
+        ({}, {"tolerance": "tight"}, "tolerance = 'tight': must be"),
+        ({}, {"elements": "hexahedra", "size": -1}, "size = -1: must be"),
+        ({}, {"elements": "hexahedra", "size": 1e-3}, "size = 0.001 m: more than 2e"),
+        ({"initial": None, "walls": {"x-": 0.0}}, {}, "Scene.initial = None"),
+        ({"matrix": Material(1.0)}, {}, "Material.density = None in phase 0"),
+    ],
+)
+def test_bad_input_is_refused_before_any_work(parts, knobs, words, monkeypatch):
+    for name in ("make", "hexahedra"):
+        monkeypatch.setattr(f"references.fem.transient.{name}", lambda *a, **k: pytest.fail("meshed"))
+    of = Scene(**({"size": (1, 1, 1), "matrix": UNIT, "initial": 0.0} | parts))
+    with pytest.raises(ValueError, match=words):
+        fem.evolve(of, **({"times": [1.0]} | knobs))
+
+
+def test_what_is_not_known_is_refused():
+    ball = Sphere((0.5, 0.5, 0.5), 0.2, UNIT)
+    hot = MovingCylinder(2, 0.2, 1.0, (0.5, 0.5))
+    for parts, knobs, words in [
+        ({"matrix": Material(0.0, 1.0, 1.0)}, {}, "pores"),
+        ({"domain": "sphere", "sources": (hot,)}, {}, "MovingCylinder in a sphere"),
+        ({"domain": "sphere", "inclusions": (ball,)}, {}, "inclusions in a sphere"),
+        ({"inclusions": (ball,)}, {"elements": "hexahedra"}, "do not follow a sphere"),
+        ({"domain": "cylinder-x"}, {"elements": "hexahedra"}, "do not follow a cylinder-x"),
+    ]:
+        of = Scene(**({"size": (1, 1, 1), "matrix": UNIT, "initial": 0.0} | parts))
+        with pytest.raises(NotImplementedError, match=words):
+            last(of, [1.0], **knobs)
+
+
+def test_an_initial_temperature_of_wrong_shape_is_named():
+    with pytest.raises(ValueError, match=r"Scene.initial: gave values of shape \(3,\)"):
+        last(cube(initial=lambda x: np.zeros(3)), [1.0], elements="hexahedra", size=0.5)
+
+
+def test_no_convergence_is_no_result(monkeypatch):
+    monkeypatch.setattr("references.fem.multigrid.MOST_ITERATIONS", 1)
+    monkeypatch.setattr("references.fem.implicit.DIRECT", 0)
+    with pytest.raises(RuntimeError, match=r"residual .* > tolerance 1.00e-09 after 1 iterations on \d+ unknowns"):
+        last(cube(walls={"x-": 1.0}), [1.0], size=0.3)
+
+
+def test_a_step_that_shrinks_to_nothing_is_an_error():
+    rng = np.random.default_rng(0)
+    of = cube(walls={"x-": Flux(lambda t: 1e3 * rng.standard_normal())})
+    with pytest.raises(RuntimeError, match=r"after \d+ steps: the estimated error does not fall"):
+        last(of, [1.0], elements="hexahedra", size=0.5, accuracy=1e-9, tolerance=1e-12)
+
+
+def test_multigrid_and_factors_agree(monkeypatch):
+    ball = Sphere((0.5, 0.5, 0.5), 0.3, Material(9.0, 2.0, 1.0))
+    of, knobs = cube(walls={"x-": 1.0}, inclusions=(ball,)), {"size": 0.34, "order": 1}
+    field = last(of, [0.05], step=0.01, **knobs)
+    monkeypatch.setattr("references.fem.implicit.DIRECT", 0)
+    other = last(of, [0.05], step=0.01, **knobs)
+    # Residuals of 1e-9 times the condition number of the equations, at most some hundreds.
+    assert_allclose(other.samples.temperature, field.samples.temperature, atol=1e-6)
+    assert other.stats["iterations"] > field.stats["iterations"]
+
+
+def test_weights_of_the_integrator():
+    """Second and third order conditions of the two sets of weights (Hosea and Shampine 1996)."""
+    places = np.array([0, trbdf2.GAMMA, 1])
+    for weights, order in ((trbdf2.WEIGHTS, 2), (trbdf2.THIRD, 3)):
+        for power in range(order):
+            assert_allclose(weights @ places**power, 1 / (power + 1), rtol=1e-14)
+    assert abs(trbdf2.WEIGHTS @ places**2 - 1 / 3) > 0.01
