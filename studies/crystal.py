@@ -237,7 +237,8 @@ def plot(df):
         one["crystal"], one["conductivity"], color=[BLUE if c == "simple cubic" else ORANGE for c in one["crystal"]]
     )
     for place, (value, n) in enumerate(zip(one["conductivity"], one["neighbours"], strict=True)):
-        right.annotate(f"{value:.4f}\n{n:.0f} neighbours", (place, max(value, 1.0)), ha="center", va="bottom", fontsize=9)
+        text = f"{value:.4f}\n{n:.0f} neighbours"
+        right.annotate(text, (place, max(value, 1.0)), ha="center", va="bottom", fontsize=9)
     right.axhline(1.0, color=GREY, linewidth=1)
     right.set(ylabel="conductivity of the network over the material's", ylim=(0, 1.35))
     right.set_axisbelow(True)

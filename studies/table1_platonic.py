@@ -1,0 +1,207 @@
+"""Platonic law: its table from geometry, and what each law makes of a packing's heat capacity and conductivity.
+
+Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46, section 4 and table 1: surface s(n) of a link in units
+of R^2 and packing fraction f(n) of a particle with n neighbours. On periodic packings of one material, radii +-7.5 %
+("lsa": hard spheres grown until they jam; "relaxed": overlapping spheres pushed apart), relative to the material: the
+sum of the particles' heat capacities (is mass conserved?), the steady conductivity, and their quotient, the
+diffusivity, which is all that a transient between temperatures shows. The paper states neither the number of contacts
+nor a packing fraction; contacts are detected within a gap that gives the wanted mean number.
+"""
+
+from demheat.scene import Material, Scene
+from studies.figures import BLUE, GREEN, GREY, ORANGE, PINK
+from studies.pick import pick, present
+from studies.store import printed
+
+PAPER = printed("table1_platonic")
+WANTED = (6.2, 7.2, 7.5)  # the middle one is the law's default
+SCANNED = (5.5, 6.0, 6.8, 8.0, 8.5)
+NUMBERS, SEEDS = (1_000, 10_000), (0, 1, 2)
+LAWS = ("platonic", "calibrated", "laguerre")
+PHI = 0.64
+TIMEOUT = 3600.0
+
+
+def _case(law, packing, particles, seed, contacts=None):
+    wanted = {} if contacts is None else {"contacts": contacts}
+    return {"part": "packing", "law": law, "packing": packing, "particles": particles, "seed": seed, **wanted,
+            "method": "demheat.dem"}  # fmt: skip
+
+
+def _cases():
+    for neighbours in range(1, 21):
+        yield {"part": "table", "neighbours": neighbours, "method": "demheat.network.platonic"}
+    for number in NUMBERS:
+        for packing in ("relaxed", "lsa"):
+            for seed in SEEDS:
+                for law in LAWS:
+                    for wanted in (None,) if law == "laguerre" else WANTED:
+                        yield _case(law, packing, number, seed, wanted)
+            for wanted in SCANNED if number == NUMBERS[-1] else ():
+                yield _case("platonic", packing, number, 0, wanted)
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """What the paper's table prints that we have; one packing of each kind of 1000 particles."""
+    if case["part"] == "table":
+        return f"s_{case['neighbours']}" in PAPER
+    return case["particles"] == NUMBERS[0] and case["seed"] == 0
+
+
+def run(part, method, **case):
+    """One line of the table, or one law on one packing."""
+    return _line(**case) if part == "table" else _homogeneous(**case)
+
+
+def _line(neighbours):
+    import numpy as np
+
+    from demheat.network.platonic import fraction_factors, surface_factors
+
+    n = np.array([neighbours])
+    row = {"surface": float(surface_factors(n)[0]), "fraction": float(fraction_factors(n)[0])}
+    for name, letter in (("surface", "s"), ("fraction", "f")):
+        row[f"printed_{name}"] = PAPER.get(f"{letter}_{neighbours}")
+    return row
+
+
+def _homogeneous(law, packing, particles, seed, contacts=None):
+    """Sum of the capacities, steady conductivity and diffusivity of one packing, relative to the material."""
+    import numpy as np
+
+    from demheat import dem
+    from demheat.packing.neighbours import contacts as linked
+
+    sample = packed(packing, particles, seed)
+    scene = Scene(tuple(sample.size), Material(1.0), gradient=(0.0, 1.0, 0.0))
+    knobs = {} if contacts is None else {"coordination": contacts}
+    field = dem.solve(scene, law=law, packing=sample, conforming=False, tolerance=1e-10, **knobs)
+    row = {"phi": sample.phi, "capacity": float(field.samples.volumes.sum() / sample.volume)}
+    row["conductivity"] = field.conductivity
+    row["diffusivity"] = row["conductivity"] / row["capacity"]
+    if contacts is not None:
+        indptr, _, gap = linked(sample, coordination=contacts)
+        number = np.diff(indptr)
+        row |= {"gap": gap, "most": int(number.max()), "under_2": float(np.mean(number < 2))}
+    return row | {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
+
+
+def packed(packing, particles, seed):
+    """Periodic packing of radii +-7.5 %, kept in the cache."""
+    from demheat.packing.cache import grown, relaxed
+    from demheat.packing.radii import Uniform
+
+    if packing == "lsa":
+        return grown(particles, radii=Uniform(0.075), seed=seed, pressure=1e6)
+    return relaxed(particles, phi=PHI, radii=Uniform(0.075), seed=seed)
+
+
+def warm_up(part, **case):
+    """Load the solver; the packing, kept or made anew, is not part of what is compared."""
+    run(part, **case | ({} if part == "table" else {"packing": "relaxed", "particles": 1_000, "seed": 0}))
+
+
+def claims(df):
+    """The printed digits; who conserves mass; how the errors of the Platonic law cancel."""
+    return present([*_printed_claims(df), *_law_claims(df), *_platonic_claims(df)])
+
+
+def _printed_claims(df):
+    lines = pick(df, part="table")
+    for name in ("surface", "fraction"):
+        off = (lines[name] - lines[f"printed_{name}"]).abs()
+        # The paper cuts digits off.
+        yield f"Table 1 of the paper, {name}: largest difference from what is printed", off.max(), 1e-5
+        # NaN does not count above: the four lines must be there.
+        yield f"Table 1 of the paper, {name}: lines compared", off.notna().sum(), "= 4"
+
+
+def _law_claims(df):
+    for law, limit in (("laguerre", 1e-8), ("calibrated", 1e-6)):
+        rows = pick(df, law=law)
+        text = f"Law {law}, any packing:"
+        yield f"{text} sum of heat capacities off that of the body, relative", _most(rows, "capacity"), 1e-12
+        yield f"{text} steady conductivity off the material's, relative", _most(rows, "conductivity"), limit
+
+
+def _platonic_claims(df):
+    rows = pick(df, law="platonic")
+    at = {wanted: pick(rows, contacts=wanted) for wanted in WANTED}
+    text = "Platonic law, 6.2 contacts:"
+    yield f"{text} least excess of heat capacity", at[6.2]["capacity"].min(skipna=False) - 1, ">= 0.15"
+    yield f"{text} least excess of the steady conductivity", at[6.2]["conductivity"].min(skipna=False) - 1, ">= 0.1"
+    text = "Platonic law, 7.2 contacts:"
+    yield f"{text} least excess of the steady conductivity", at[7.2]["conductivity"].min(skipna=False) - 1, ">= 0.05"
+    yield f"{text} largest error of the diffusivity: a transient does not show it", _most(at[7.2], "diffusivity"), 0.03
+    for wanted, here in at.items():
+        share = (here["diffusivity"] - 1).abs() / (here[["capacity", "conductivity"]] - 1).abs().max(axis=1)
+        text = f"Platonic law, {wanted} contacts: error of the diffusivity over the larger of the two that it hides"
+        yield text, share.max(skipna=False), 0.6
+
+
+def _most(rows, column):
+    return (rows[column] - 1).abs().max(skipna=False)
+
+
+def table(df):
+    """Means over packings of one size, relative to the material; below, the Platonic law's table and what is printed.
+
+    gap is the detection gap over the sum of two radii, most the largest number of contacts, under_2 the part of the
+    particles with fewer than two, which are joined to their two nearest.
+    """
+    import pandas as pd
+
+    keys = ["law", "packing", "particles", "contacts"]
+    rows = pick(df, part="packing")
+    columns = ["phi", "capacity", "conductivity", "diffusivity", "gap", "most", "under_2"]
+    grouped = rows.groupby(keys, sort=False, dropna=False)
+    found = grouped[columns].mean().reset_index()
+    found[columns[:4]] = found[columns[:4]].map(lambda value: f"{value:.4f}")
+    lines = pick(df, part="table")[["neighbours", "surface", "printed_surface", "fraction", "printed_fraction"]]
+    lines = lines.map(lambda value: "" if value != value else f"{value:.5f}").assign(
+        neighbours=lines["neighbours"].map(lambda n: f"n = {n:.0f}")
+    )
+    lines.columns = ["law", "capacity", "conductivity", "diffusivity", "gap"]
+    head = pd.DataFrame([dict(zip(lines.columns, ("", "s(n)", "printed", "f(n)", "printed"), strict=True))])
+    whole = pd.concat([found.astype(object), head, lines]).reset_index(drop=True)
+    return whole.fillna("")
+
+
+def plot(df):
+    """The law's table; its errors against the number of contacts."""
+    from matplotlib import pyplot
+
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(12, 4.8))
+    _draw_table(left, pick(df, part="table").sort_values("neighbours"))
+    rows = pick(df, part="packing")
+    rows = pick(rows, law="platonic", particles=rows["particles"].max()).sort_values("contacts")
+    looks = (("capacity", "heat capacity", ORANGE), ("conductivity", "conductivity", PINK),
+             ("diffusivity", "diffusivity, the quotient", BLUE))  # fmt: skip
+    for column, label, colour in looks:
+        for packing, marker, dashes in (("lsa", "o", "-"), ("relaxed", "s", "--")):
+            here = pick(rows, packing=packing).groupby("contacts")[column].mean()
+            right.plot(here.index, 100 * (here - 1), marker + dashes, color=colour, label=f"{label}, {packing}")
+    right.axhline(0.0, color=GREY, linewidth=1)
+    right.annotate("Laguerre: 0 in all three", (rows["contacts"].max(), 0.0), fontsize=9, color=GREEN, ha="right",
+                   va="bottom")  # fmt: skip
+    right.set(xlabel="mean number of contacts", ylabel="error of the Platonic network, %")
+    right.set_title("Two errors cancel in what a transient shows")
+    right.legend()
+    return figure
+
+
+def _draw_table(axes, lines):
+    axes.plot(lines["neighbours"], lines["surface"], "o-", color=PINK, label="surface s(n), in R^2")
+    axes.set(xlabel="neighbours n", ylabel="surface of a link, R^2", yscale="log")
+    other = axes.twinx()
+    other.plot(lines["neighbours"], lines["fraction"], "s-", color=BLUE, label="packing fraction f(n)")
+    axes.plot(lines["neighbours"], lines["printed_surface"], "x", color="black", markersize=10, label="printed")
+    other.plot(lines["neighbours"], lines["printed_fraction"], "x", color="black", markersize=10)
+    other.set(ylabel="local packing fraction", ylim=(0, 1))
+    other.grid(False)
+    handles = [*axes.get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
+    axes.legend(handles=handles, loc="center right")
+    axes.set_title("Table 1 of the paper, from geometry")
