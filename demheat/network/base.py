@@ -28,6 +28,7 @@ class Facets(NamedTuple):
     wall_particle, wall_side : (w,) int arrays
         Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+; 6 = round) of each wall facet.
     wall_area, wall_distance : (w,) float arrays, m2 and m
+        Distance to the wall along the facet's normal.
     volumes : (n,) float array, m3
         Cell volumes.
     wall_normal : (w, 3) float array, optional

@@ -1,9 +1,12 @@
 """Round walls of radical cells: tangent planes placed so that the volume they enclose is that of the round body.
 
 A cylinder is replaced by the prism over a regular polygon, a sphere by the polyhedron whose planes touch it at the
-points of a spherical Fibonacci lattice, both with facets about as large as those of the cells. Moved inwards until the
-volume is right, the planes lie inside and outside of the round wall by equal parts: what a wall temperature on them
-changes dies away within one facet's width. They do not depend on the packing, so that cells match by construction.
+points of a spherical Fibonacci lattice, both with facets about as large as those of the cells, moved inwards until the
+volume is right. They do not depend on the packing, so that cells match by construction.
+
+The wall's temperature acts where the round wall is seen from a centre along the facet's normal, not on the plane: the
+heating of a sphere then does not depend on how wide the facets are (found for half, one and two spacings and for facets
+in front of each particle), while planes alone are too far from centres to their sides.
 """
 
 from typing import NamedTuple
@@ -28,7 +31,7 @@ class RoundWall(NamedTuple):
     normals : (m, 3) float array
         Outward unit vectors.
     radius : float, m
-        Distance of every plane from the middle or the axis; a little less than that of the body.
+        Distance of every plane from the middle or the axis; a little less than the radius of the body.
     middle : (3,) float array, m
     across : (3,) float array
         1 on the axes across which the wall is round, else 0.
@@ -117,6 +120,15 @@ def circumscribed_volume(normals):
         near = (p + q) / (1.0 + np.einsum("ij,ij->i", p, q))[:, None]
         total += np.einsum("ij,ij->", np.cross(p, near) + np.cross(near, q), vertex)
     return total / 6.0
+
+
+def round_distances(wall, points, normals):
+    """Distance from points inside a round body to its wall along outward normals of planes, (n,) float array, m."""
+    radius = (wall.middle * wall.across).max()
+    offsets = (points - wall.middle) * wall.across
+    along = np.einsum("ij,ij->i", offsets, normals)
+    aside = np.einsum("ij,ij->i", offsets, offsets) - along**2
+    return np.sqrt(radius**2 - aside) - along
 
 
 def tangents_within(wall, points, reach):

@@ -4,7 +4,7 @@ import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets, row_numbers
-from demheat.network.curved import ROUND_SIDE, round_wall, tangents_within
+from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
 from demheat.packing.base import check_domain, domain_volume
 
 # Rows cut at once: bounds the scratch memory (about 1.5 kB a row) without costing speed.
@@ -58,7 +58,8 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     parts = [_cut_rows(np.arange(a, min(n, a + BLOCK)), grid, spacing) for a in range(0, n, BLOCK)]
     volumes, number, neighbour, image, area, distance = (np.concatenate(column) for column in zip(*parts, strict=True))
     _check_filled(volumes, domain_volume(domain, size), domain)
-    return _compressed(volumes, number, (neighbour, image, area, distance), spacing, wall)
+    facets, side = _compressed(volumes, number, (neighbour, image, area, distance), spacing)
+    return _with_normals(facets, side, centers, wall)
 
 
 def without_hidden(packing, facets):
@@ -93,15 +94,14 @@ def _checked(centers, weights, size, periodic):
 
 
 def _check_round(centers, wall, domain):
-    """Raise ValueError for a centre on or beyond the tangent planes, where its wall facet would conduct backwards."""
-    if not len(wall.normals):
-        return
+    """Raise ValueError for a centre on or beyond a round wall."""
     off = np.linalg.norm((centers - wall.middle) * wall.across, axis=1)
-    if off.max() >= wall.radius:
+    radius = (wall.middle * wall.across).max()
+    if len(wall.normals) and off.max() >= radius:
         which = int(np.argmax(off))
         raise ValueError(
-            f"centers[{which}] = {centers[which].tolist()}: {off[which]:.6g} m off the {domain}'s middle; must be less "
-            f"than {wall.radius:.6g}, that of its facets (demheat.packing.relax.settle pushes particles off the wall)"
+            f"centers[{which}] = {centers[which].tolist()}: {off[which]:.6g} m off the middle of the {domain}; must be "
+            f"less than its radius {radius:.6g} (demheat.packing.relax.settle pushes particles off a wall)"
         )
 
 
@@ -169,7 +169,8 @@ def _check_filled(volumes, volume, domain):
         raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _compressed(volumes, number, columns, spacing, planes):
+def _compressed(volumes, number, columns, spacing):
+    """Facets, round walls with the distances to their planes; the side or plane of each wall facet."""
     neighbour, image, area, distance = columns
     row = np.repeat(np.arange(len(number)), number)
     big = area > SLIVER * spacing**2
@@ -187,13 +188,17 @@ def _compressed(volumes, number, columns, spacing, planes):
     keep = matched > 0.0
     indptr = _pointers(row_numbers(indptr)[keep], len(number))
     links = (indptr, indices[keep], image[keep], matched[keep], distance[keep])
-    return Facets(*links, *walls, volumes, _wall_normals(side, planes))
+    return Facets(*links, *walls, volumes), side
 
 
-def _wall_normals(side, planes):
-    """Outward unit vectors of the box's sides, 0 to 5, and of the planes of a round wall, 6 and above."""
+def _with_normals(facets, side, centers, wall):
+    """Facets with outward normals of the box's sides, 0 to 5, and planes of a round wall, 6 on, and distances to it."""
     flat = np.array([[sign * (axis == k) for k in range(3)] for axis in range(3) for sign in (-1.0, 1.0)])
-    return np.concatenate([flat, planes.normals])[side]
+    normal, distance = np.concatenate([flat, wall.normals])[side], facets.wall_distance.copy()
+    curved = side >= ROUND_SIDE
+    if curved.any():
+        distance[curved] = round_distances(wall, centers[facets.wall_particle[curved]], normal[curved])
+    return facets._replace(wall_distance=distance, wall_normal=normal)
 
 
 def _pointers(rows, n):

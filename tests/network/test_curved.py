@@ -84,6 +84,9 @@ def test_cells_close_and_fill_the_body(domain, size, through):
     assert_allclose(facets.volumes.sum(), domain_volume(domain, size), rtol=1e-12)
     assert_allclose(closure(facets, centers, np.array(size)), 0.0, atol=1e-10 * spacing**2)
     assert facets.volumes.min() >= 0 and facets.wall_distance.min() > 0
+    feet = (centers - np.array(size) / 2)[facets.wall_particle] + facets.wall_distance[:, None] * facets.wall_normal
+    feet = feet[facets.wall_side == ROUND_SIDE][:, list(ROUND_AXES[domain])]
+    assert_allclose(np.linalg.norm(feet, axis=1), size[ROUND_AXES[domain][0]] / 2, rtol=1e-12)
     # Planes tangent to a sphere or a cylinder of radius r about a volume V: area 3 V/r or 2 V/r.
     curved, wall = facets.wall_side == ROUND_SIDE, round_wall(domain, size, spacing)
     area = len(ROUND_AXES[domain]) * domain_volume(domain, size) / wall.radius
@@ -94,10 +97,9 @@ def test_cells_close_and_fill_the_body(domain, size, through):
 
 def test_wide_facets(monkeypatch):
     """Where a plane that cuts a cell touches the body beyond the cell's first reach, the reach must grow."""
-    monkeypatch.setattr("demheat.network.laguerre.round_wall", partial(round_wall, width=4.0))
+    monkeypatch.setattr("demheat.network.laguerre.round_wall", partial(round_wall, width=6.0))
     centers, weights, spacing = cloud("sphere", (2, 2, 2), 4000)
-    inside = np.linalg.norm(centers - 1.0, axis=1) < 0.9
-    facets = laguerre(centers[inside], weights[inside], (2, 2, 2), periodic=False, domain="sphere")
+    facets = laguerre(centers, weights, (2, 2, 2), periodic=False, domain="sphere")
     assert_allclose(facets.volumes.sum(), domain_volume("sphere", np.full(3, 2.0)), rtol=1e-12)
 
 
@@ -217,15 +219,9 @@ def test_no_slivers():
     """Found 7 in periodic boxes, 10 to 18 between flat or round walls, where the smallest spheres touch the wall."""
     assert spectral_radius(packed("sphere", (2.0, 2.0, 2.0), 3200)) < 25
     clipped = cut(relax(3000, size=(2, 2, 2), seed=3, overlap=0.01), "sphere", keep="center")
-    with pytest.raises(ValueError, match="settle"):
-        assembled(clipped)
-    # Drawn just inside the planes their cells are slivers; pushed off the wall they are not.
-    offset = clipped.centers - 1.0
-    most = round_wall("sphere", clipped.size, np.cbrt(clipped.volume / clipped.number)).radius - 1e-6
-    shrunk = np.minimum(1.0, most / np.linalg.norm(offset, axis=1))
-    drawn = clipped._replace(centers=1.0 + shrunk[:, None] * offset)
-    assert spectral_radius(drawn) > 50  # found 65
-    assert spectral_radius(settle(clipped, steps=100)) < 25
+    # Centres just inside the wall make slivers; pushed off it by half their radius or more they do not.
+    assert spectral_radius(clipped) > 250  # found 980, with two other seeds 300 and 560
+    assert spectral_radius(settle(clipped, steps=100)) < 25  # found 8
 
 
 def test_bits_do_not_depend_on_threads():
@@ -248,7 +244,7 @@ def test_bits_do_not_depend_on_threads():
         (dict(domain="cone"), "must be one of box"),
         (dict(periodic=True), "not periodic"),
         (dict(size=(2, 2, 3)), "must be equal"),
-        (dict(centers=np.array([[1.0, 1.0, 1.0], [1.0, 1.0, 0.001]]), weights=np.zeros(2)), r"centers\[1\].*less than"),
+        (dict(centers=np.array([[1.0, 1.0, 1.0], [0.1, 0.1, 0.1]]), weights=np.zeros(2)), r"centers\[1\].*less than"),
     ],
 )
 def test_bad_input(change, words):
