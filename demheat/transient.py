@@ -11,8 +11,13 @@ from demheat.integrators.spectrum import spectrum as spectrum_of
 from demheat.integrators.system import SIDES, initial_state, load_at, semi_discrete
 from demheat.steady import Solution
 
-# Error of each implicit solve relative to what a step may err.
-LINEAR = 0.3
+# Error that an implicit solve may leave, in units of the accuracy; less for more accuracy, as steps become more.
+LINEAR = 0.2
+
+
+def linear_tolerance(accuracy):
+    """Error that an implicit solve may leave, in units of the span."""
+    return LINEAR * accuracy * min(1.0, math.sqrt(accuracy / control.USUAL))
 
 
 class State(NamedTuple):
@@ -106,7 +111,7 @@ def _stepper(method, system, rates, integrator, accuracy, span):
     if method is not trbdf2:
         return method.stepper(system, rates)
     kind = "multigrid" if integrator.endswith("multigrid") else "jacobi"
-    return method.stepper(system, rates, limit=lambda: LINEAR * accuracy * span(), preconditioner=kind)
+    return method.stepper(system, rates, limit=lambda: linear_tolerance(accuracy) * span(), preconditioner=kind)
 
 
 def _marched(system, x, times, method, advance, rates, integrator, accuracy, step, span):
@@ -121,7 +126,7 @@ def _marched(system, x, times, method, advance, rates, integrator, accuracy, ste
     for time, now, ledger in states:
         stats = {"integrator": integrator, "order": method.ORDER, "unknowns": int((system.capacity > 0).sum())}
         stats |= _account(system, start, now, ledger) | _limits(rates)
-        stats["residual"] = LINEAR * accuracy if method is trbdf2 else 0.0
+        stats["residual"] = linear_tolerance(accuracy) if method is trbdf2 else 0.0
         yield State(float(time), now[: system.particles] + system.level, stats)
 
 

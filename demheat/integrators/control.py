@@ -7,11 +7,13 @@ import numpy as np
 
 from demheat.integrators.system import ACCOUNTS
 
-# What a step cannot resolve it damps, and so does the rest of the way: a local error made early is worth less at the
-# asked time. The error allowed in a step is therefore `SAFETY` times the accuracy times the number of such steps still
-# to go to the power `DAMPED`. Found on slabs of 3e3 to 1e5 particles heated from one wall at once, accuracies 1e-4 to
-# 1e-2: final errors are 0.1 to 0.6 of the accuracy asked for.
-SAFETY, DAMPED = 1.0, 1.0
+# Local errors of third order add up to a final error of second: for a final error in proportion to the accuracy they
+# must go with its power 3/2. And what a step cannot resolve it damps, as does the rest of the way, so that an error
+# made early is worth less at the asked time: allowed is more by the power `DAMPED` of the number of such steps to go,
+# which the power of the accuracy makes up for. Found with accuracies 1e-2 to 1e-4 on slabs heated from one wall at once
+# (Laguerre, spheres of size ratio 10, contacts; 600 to 1e5 particles) and under swinging loads: final errors are 0.1 to
+# 0.8 of the accuracy asked for.
+SAFETY, DAMPED, USUAL = 0.3, 0.5, 1e-3
 # Step factors: cautious, and at most and least from one step to the next.
 CAUTION, GROW, CUT = 0.9, 4.0, 0.2
 # Give up when steps become smaller than this part of the interval.
@@ -91,7 +93,7 @@ def fixed_steps(advance, system, x, times, *, step, span, start=0.0):
             x, memory = done.x, done.memory
             ledger.add(done, size, True)
         now = end
-        _check_finite(x, span, ledger, now)
+        _check_finite(x, ledger, now)
         yield end, x, ledger
 
 
@@ -113,13 +115,14 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, firs
         If no step is small enough.
     """
     ledger, memory, now, wanted = Ledger(), None, start, first
+    allowed = SAFETY * accuracy * (accuracy / USUAL) ** (0.5 * (1.0 + DAMPED))
     for end in times:
         while end - now > TINIEST * end:
             left = end - now
             size = left / max(1, math.ceil(left / wanted * (1 - 1e-9))) if left < 3 * wanted else wanted
             done = advance(x, now, size, memory, True)
             span.widened(done.x)
-            share = _size(system, done.error) / (span() * SAFETY * accuracy * (left / size) ** DAMPED)
+            share = _size(system, done.error) / (span() * allowed * (left / size) ** DAMPED)
             accepted = share <= 1.0
             ledger.add(done, size, accepted)
             wanted = size * min(GROW, max(CUT, CAUTION * share ** (-1 / 3) if share > 0 else GROW))
@@ -130,7 +133,7 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, firs
                     f"steps of {wanted:.1e} s at {now:.3e} s after {ledger.rejected} rejections: error not met"
                 )
         now = end
-        _check_finite(x, span, ledger, now)
+        _check_finite(x, ledger, now)
         yield end, x, ledger
 
 
@@ -141,6 +144,6 @@ def _size(system, error):
     return math.sqrt(float(np.einsum("i,i,i->", system.capacity, error, error)) / float(system.capacity.sum()))
 
 
-def _check_finite(x, span, ledger, now):
-    if not np.isfinite(span.widened(x)):
+def _check_finite(x, ledger, now):
+    if not np.all(np.isfinite(x)):
         raise RuntimeError(f"temperatures are not finite at {now:.3e} s after {ledger.steps} steps")
