@@ -137,7 +137,8 @@ def _platonic_claims(df):
     yield f"{text} least excess of the steady conductivity", at[7.2]["conductivity"].min(skipna=False) - 1, ">= 0.05"
     yield f"{text} largest error of the diffusivity: a transient does not show it", _most(at[7.2], "diffusivity"), 0.03
     for wanted, here in at.items():
-        share = (here["diffusivity"] - 1).abs() / (here[["capacity", "conductivity"]] - 1).abs().max(axis=1)
+        hidden = (here[["capacity", "conductivity"]] - 1).abs().max(axis=1, skipna=False)
+        share = (here["diffusivity"] - 1).abs() / hidden
         text = f"Platonic law, {wanted} contacts: error of the diffusivity over the larger of the two that it hides"
         yield text, share.max(skipna=False), 0.6
 
@@ -185,7 +186,7 @@ def plot(df):
             here = pick(rows, packing=packing).groupby("contacts")[column].mean()
             right.plot(here.index, 100 * (here - 1), marker + dashes, color=colour, label=f"{label}, {packing}")
     right.axhline(0.0, color=GREY, linewidth=1)
-    right.annotate("Laguerre: 0 in all three", (rows["contacts"].max(), 0.0), fontsize=9, color=GREEN, ha="right",
+    right.annotate("Laguerre: 0 in all three", (rows["contacts"].min(), 0.0), fontsize=9, color=GREEN, ha="left",
                    va="bottom")  # fmt: skip
     right.set(xlabel="mean number of contacts", ylabel="error of the Platonic network, %")
     right.set_title("Two errors cancel in what a transient shows")
