@@ -8,7 +8,8 @@ import numpy as np
 from demheat import steady_kernels
 from demheat.integrators import choose, control, euler, rkl2, trbdf2
 from demheat.integrators.spectrum import spectrum as spectrum_of
-from demheat.integrators.system import SIDES, initial_state, load_at, semi_discrete
+from demheat.integrators.system import initial_state, load_at, semi_discrete
+from demheat.network.base import SIDES, wall_normals
 from demheat.steady import Solution
 
 # Error that an implicit solve may leave, in units of the accuracy; less for more accuracy, as steps become more.
@@ -248,21 +249,5 @@ def mean_flux(network, scene, solution):
     first = np.empty((len(network.volumes), 3))
     links = network.centers, network.size, network.indptr, network.indices, network.image
     steady_kernels.moments(*links, network.conductance, np.zeros(3), solution.fluctuation, first)
-    towards = _normals(network, scene) * network.wall_distance[:, None]
+    towards = wall_normals(network) * network.wall_distance[:, None]
     return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
-
-
-def _normals(network, scene):
-    """Outward normals of wall facets, (w, 3) float array; that of a round wall by the direction of its particle."""
-    normals = np.zeros((len(network.wall_side), 3))
-    flat = np.flatnonzero(network.wall_side < 6)
-    side = network.wall_side[flat]
-    normals[flat, side // 2] = 2.0 * (side % 2) - 1.0
-    round_ = network.wall_side == 6
-    if round_.any():
-        axes = "xyz".replace(scene.domain[-1], "") if scene.domain.startswith("cylinder") else "xyz"
-        columns = ["xyz".index(letter) for letter in axes]
-        outward = np.zeros((int(round_.sum()), 3))
-        outward[:, columns] = (network.centers[network.wall_particle[round_]] - network.size / 2)[:, columns]
-        normals[round_] = outward / np.linalg.norm(outward, axis=1, keepdims=True)
-    return normals

@@ -3,14 +3,16 @@
 import math
 
 from demheat.integrators import rkl2
-from demheat.integrators.linear import jacobi_iterations
 
 INTEGRATORS = ("auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
 # Steps of equal size that a second-order method needs for an error of 1e-3 of the span, and what growing from small
 # first steps costs besides; found on slabs of 3e3 to 1e5 particles.
 STEPS, GRADED = 5.0, 2.0
-# Work of one stage, or of one iteration, in passes over the network.
-STAGE, ITERATION, SOLVES, MULTIGRID = 1.2, 1.5, 2.5, 100.0
+# Work in passes over the network: of a stage of Legendre polynomials, of an iteration of conjugate gradients, of an
+# implicit solve besides its iterations, of one by multigrid; and the solves of a step. Found on the same slabs.
+STAGE, ITERATION, SOLVE, MULTIGRID, SOLVES = 1.2, 1.5, 3.0, 70.0, 2.0
+# Iterations of an implicit solve over the square root of its condition, from the good guesses that old steps give.
+JACOBI = 1.5
 
 
 def costs(spectrum, interval, accuracy, outputs):
@@ -31,15 +33,15 @@ def costs(spectrum, interval, accuracy, outputs):
     """
     count = max(outputs, math.ceil(STEPS * math.sqrt(1e-3 / accuracy)))
     size = interval / count
-    # First order: about half an accuracy's inverse steps, whatever the stable step is.
-    euler = max(interval / spectrum.limit, 0.5 / accuracy, outputs)
     solves = GRADED * count * SOLVES
-    work = {
-        "euler": euler,
+    iterations = JACOBI * math.sqrt(1.0 + size / 3.0 * spectrum.mean_row)
+    return {
+        # First order: about half an accuracy's inverse steps, whatever the stable step is.
+        "euler": max(interval / spectrum.limit, 0.5 / accuracy, outputs),
         "rkl2": GRADED * count * STAGE * rkl2.stages_of(size, spectrum.radius, rkl2.LEAST_ESTIMATED),
-        "tr-bdf2": solves * ITERATION * jacobi_iterations(size / 3, spectrum),
+        "tr-bdf2": solves * (SOLVE + ITERATION * iterations),
+        "tr-bdf2-multigrid": solves * MULTIGRID,
     }
-    return work | {"tr-bdf2-multigrid": MULTIGRID * (1.5 + solves)}
 
 
 def chosen(spectrum, interval, accuracy, outputs):

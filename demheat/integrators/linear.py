@@ -9,24 +9,9 @@ from scipy.sparse.linalg import LinearOperator, cg
 from demheat import steady_kernels, transient_kernels
 from demheat.network.base import row_numbers
 
-PRECONDITIONERS = ("auto", "jacobi", "multigrid")
 MOST = 5000
 # A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.
 REUSE = 3.0
-# Jacobi iterations reach the usual reduction of 1e4 in about 4.5 sqrt(1 + g rho / 2), found on slabs of 3e3 to 1e5; one
-# multigrid iteration costs about as much as 8 of them, takes 10 to 15, and its set-up costs about 150.
-JACOBI_FACTOR, MULTIGRID_SOLVE, MULTIGRID_SETUP = 4.5, 100.0, 150.0
-
-
-def jacobi_iterations(g, spectrum):
-    """Iterations that conjugate gradients with Jacobi preconditioner are expected to take."""
-    # The radius in units of the mean row, which the preconditioner takes out, is at most 2 for equal rows.
-    return JACOBI_FACTOR * math.sqrt(1.0 + g * spectrum.mean_row)
-
-
-def prefers_multigrid(g, spectrum, solves):
-    """Whether multigrid costs less for a number of solves."""
-    return solves * jacobi_iterations(g, spectrum) > MULTIGRID_SETUP + solves * MULTIGRID_SOLVE
 
 
 def solver(system, preconditioner):

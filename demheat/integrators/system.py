@@ -12,11 +12,10 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat import transient_kernels as kernels
-from demheat.network.base import row_numbers
+from demheat.network.base import SIDES, row_numbers
 from demheat.parts import finite
-from demheat.scene import WALLS, Flux
+from demheat.scene import Flux
 
-SIDES = (*WALLS, "round")
 # Columns of every account of heat: one per side, then the sources.
 ACCOUNTS = len(SIDES) + 1
 

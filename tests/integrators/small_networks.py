@@ -45,11 +45,11 @@ def network_of(kind, number=600, seed=1):
 
 
 @cache
-def system_of(kind, scene=JUMP, number=600, level=0.0):
-    """Balance of a network of a kind under a scene; contacts have their wall particles held, as in the papers."""
+def system_of(kind, number=600):
+    """Balance of a network of a kind, heated at once; contacts have their wall particles held, as in the papers."""
     network = network_of(kind, number)
     pinned = np.ones(len(network.volumes), dtype=bool) if kind == "calibrated" else None
-    return semi_discrete(network, scene, capacities(network, scene), pinned=pinned, level=level)
+    return semi_discrete(network, JUMP, capacities(network, JUMP), pinned=pinned)
 
 
 def dense(system):

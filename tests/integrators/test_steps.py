@@ -104,7 +104,7 @@ def test_heat_of_loads_is_their_integral(name, tolerance):
     flux = 6.0 * END + 5.0 / 4.0 * np.sin(4.0 * END)
     phase = np.arange(SOURCED)
     sources = 0.02 * np.sum(END + np.cos(phase) - np.cos(END + phase))
-    # Quadrature over the steps h. Euler: h/2 times the flux's change, 8.3, over 5: 1e-3. The others: h^2 times the change
+    # Quadrature over steps h. Euler: h/2 times the flux's change, 8.3, over 5: 1e-3. The others: h^2 times the change
     # of its slope, 15, over 18 (stages of Legendre polynomials) or 25: 5e-4 in 5.
     assert_allclose(ledger.inflow[[1, 7]], [flux, sources], rtol=tolerance)
 
