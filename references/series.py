@@ -83,8 +83,7 @@ def evolve(scene, times, *, points_per_axis=24):
     -------
     iterator of Field
         One at each time. Truncation is below 1e-16 of what the loads change. At time 0 the temperature is the initial
-        one everywhere; heat then enters through a wall at another temperature at an infinite rate. Outside of a round
-        body, temperature and flux are NaN.
+        one everywhere; heat then enters through a wall at another temperature at an infinite rate.
 
     Raises
     ------
@@ -229,8 +228,8 @@ def _field(scene, body, time, solved, n):
         mean_flux=solved.mean_flux,
         fractions=_fractions(scene, n),
         sampler=lambda: _samples(scene, solved, n),
-        temperature_at=lambda points: np.where(_inside(scene, points), solved.temperature(points), np.nan),
-        flux_at=lambda points: np.where(_inside(scene, points)[:, None], solved.flux(points), np.nan),
+        temperature_at=solved.temperature,
+        flux_at=solved.flux,
         wall_temperature={name: solved.wall_temperature[name] for name in scene.walls} | scene.wall_temperatures,
         wall_heat=heat,
         stats={
@@ -251,15 +250,6 @@ def _fractions(scene, n):
     if not scene.inclusions:
         return np.ones(1)
     return np.bincount(scene.phase_at(_midpoints(scene, n)), minlength=len(scene.materials)) / n**3
-
-
-def _inside(scene, points):
-    """Which points lie in a round body; 1e-9 of it beyond for points computed to lie on its wall."""
-    axes = list(ROUND_AXES[scene.domain])
-    if not axes:
-        return np.ones(len(points), dtype=bool)
-    radius = scene.size[axes[0]] / 2
-    return np.linalg.norm(points[:, axes] - radius, axis=1) <= radius * (1 + 1e-9)
 
 
 def _samples(scene, solved, n):
