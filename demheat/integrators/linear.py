@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse import csgraph
 from scipy.sparse.linalg import LinearOperator, cg
 
 from demheat import steady_kernels, transient_kernels
@@ -26,12 +27,14 @@ def solver(system, preconditioner):
     -------
     solve : callable (g, known, heat, y, limit) -> iterations
         Finds y, in place, with C (known - y) / g + (heat received at y) = 0 up to an error whose root mean square,
-        weighted by capacity, is at most `limit`, K. The sum of the residuals, which would be heat lost, is zero to
-        rounding. Raises RuntimeError if it does not get there.
+        weighted by capacity, is at most `limit`, K. The sum of the residuals over each cluster of particles, which
+        would be heat lost, is zero to rounding. Raises RuntimeError if it does not get there.
     """
     free = system.capacity > 0
     total = float(system.capacity.sum())
-    ties = float(system.tie_conductance.sum())
+    cluster = _clusters(system)
+    capacities = np.bincount(cluster, system.capacity)
+    ties = np.bincount(cluster[system.tie_row], system.tie_conductance, minlength=len(capacities))
     kept = {}
 
     def residual(g, known, heat, y):
@@ -42,11 +45,13 @@ def solver(system, preconditioner):
         return r
 
     def balance(g, r, y):
-        """Shift the temperature so that no heat is lost."""
-        shift = r.sum() / (total / g + ties)
-        y[free] += shift
+        """Shift the temperature of each cluster so that it neither loses nor gains heat."""
+        heat = np.bincount(cluster, r, minlength=len(capacities))
+        whole = capacities / g + ties
+        shift = np.divide(heat, whole, out=np.zeros_like(heat), where=whole > 0)[cluster] * free
+        y += shift
         r -= shift / g * system.capacity
-        np.subtract.at(r, system.tie_row, shift * system.tie_conductance)
+        np.subtract.at(r, system.tie_row, shift[system.tie_row] * system.tie_conductance)
 
     def size(g, r):
         # A is positive semidefinite: |error| <= g |C^-1 r| in the norm weighted by capacity.
@@ -71,6 +76,16 @@ def solver(system, preconditioner):
         )
 
     return solve
+
+
+def _clusters(system):
+    """Number of the cluster of particles that each node belongs to; held nodes join none."""
+    row = row_numbers(system.indptr)
+    inside = system.capacity[system.indices] > 0
+    pair = (row[inside], system.indices[inside].astype(np.int64))
+    n = len(system.capacity)
+    graph = sparse.csr_matrix((np.ones(len(pair[0]), np.int8), pair), shape=(n, n))
+    return csgraph.connected_components(graph, directed=False)[1]
 
 
 def _jacobi(system):

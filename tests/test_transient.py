@@ -1,0 +1,231 @@
+"""Transients by the discrete element method: against exact series, its heat balance, and what it refuses."""
+
+import re
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Flux, Heating, Material, MovingCylinder, Scene, Sphere, evolve
+from demheat.packing.cache import relaxed
+from references import series
+
+METAL = Material(33.0, density=7800.0, heat_capacity=0.9)
+BOX = (0.1, 0.1, 0.1)
+SLAB = Scene(size=BOX, matrix=METAL, walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
+INTEGRATORS = ("euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
+
+
+def last(scene, times, **knobs):
+    *_, field = evolve(scene, times, **{"particles": 1000} | knobs)
+    return field
+
+
+@pytest.mark.parametrize("integrator", ["auto", *INTEGRATORS])
+def test_slab_against_the_series(integrator):
+    times = [0.05, 0.1, 0.2]
+    fields = list(evolve(SLAB, times, particles=3000, integrator=integrator))
+    for field, exact in zip(fields, series.evolve(SLAB, times), strict=True):
+        assert field.time == exact.time
+        points, _, temperature, _, _ = field.samples
+        error = temperature - exact.temperature_at(points)
+        # Second order in the spacing, 0.07 L against a front of about 0.15 L at .05 s; found .004, .0025, .0016.
+        assert np.sqrt(np.mean(error**2)) < 10 * {0.05: 0.006, 0.1: 0.004, 0.2: 0.0025}[field.time]
+        # The mean gradient is that between the walls, whatever the profile.
+        assert_allclose(field.mean_flux[1], -3300.0, rtol=1e-10)
+        assert_allclose(field.wall_heat["y+"], exact.wall_heat["y+"], rtol=0.05)
+    assert fields[-1].stats["integrator"] != "auto" and fields[-1].stats["steps"] >= 3
+
+
+def test_errors_fall_at_second_order_in_the_spacing():
+    errors = []
+    for number in (700, 5600):
+        field = last(SLAB, [0.2], particles=number, accuracy=1e-5)
+        exact = next(iter(series.evolve(SLAB, [0.2])))
+        points, _, temperature, _, _ = field.samples
+        errors.append(np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)))
+    # A factor of 8 in number is 2 in spacing: 4 times less; one packing each, so less is asked.
+    assert errors[0] / errors[1] > 2.5
+
+
+def test_a_field_at_points():
+    field = last(SLAB, [0.2], particles=3000)
+    points = np.array([[0.05, y, 0.05] for y in (0.025, 0.05, 0.075, 0.09)])
+    # Haddad et al. 2021, eq. 17, at these points; linear inside cells, so about as good as in the centres.
+    assert_allclose(field.temperature_at(points), [25.7976, 27.4834, 30.6420, 33.1761], atol=0.06)
+    assert field.flux_at(points).shape == (4, 3)
+
+
+@pytest.mark.parametrize("law", ["calibrated", "platonic"])
+@pytest.mark.parametrize("wall", ["center", "surface"])
+def test_contact_laws(law, wall):
+    field = last(SLAB, [0.2], particles=3000, law=law, wall=wall)
+    exact = next(iter(series.evolve(SLAB, [0.2])))
+    points, _, temperature, _, _ = field.samples
+    # Not exact for linear fields: a few per cent of the span of 10 K; found 0.3 to 0.6 K at this size.
+    assert np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)) < 1.0
+    assert field.stats["energy_error"] < 1e-10
+    held = np.isclose(temperature, 35.0, atol=1e-9).sum()
+    assert held > 50 if wall == "center" else held == 0
+    assert 30.0 < field.wall_heat["y+"] < 100.0 and (field.stats["calibration"] == 1.0) == (law == "platonic")
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_uniform_heating_of_an_insulated_body(integrator):
+    scene = Scene(size=BOX, matrix=METAL, initial=20.0, sources=[Heating(7020.0)])
+    for field in evolve(scene, [0.5, 2.0], particles=300, integrator=integrator):
+        # 7020 W/m3 over 7020 J/(m3 K) is 1 K/s, the same everywhere; rounding, and the linear solver's tolerance.
+        assert_allclose(field.samples.temperature, 20.0 + field.time, atol=3e-4 if "bdf2" in integrator else 1e-10)
+    assert_allclose(field.stats["heat_in"]["sources"], 7020.0 * 1e-3 * 2.0, rtol=1e-12)
+    assert field.stats["energy_error"] < 1e-10
+
+
+@pytest.mark.parametrize("integrator", INTEGRATORS)
+def test_heat_is_conserved_with_a_moving_source_and_a_flux_in_time(integrator):
+    scene = Scene(
+        size=(0.05, 0.03, 0.01),
+        matrix=Material(134.0, density=2790.0, heat_capacity=880.0),
+        walls={"x-": lambda t: 25.0 + 5.0 * t, "x+": Flux(lambda t: 1e4 * np.cos(t))},
+        initial=25.0,
+        sources=[MovingCylinder(2, 0.008, 1e8, start=(0.01, 0.015), velocity=(0.005, 0.0))],
+    )
+    field = last(scene, [1.0, 2.0], particles=600, integrator=integrator)
+    stats = field.stats
+    # Conserved to rounding; also by the implicit steps, whose solver takes out the sum of its residual.
+    assert stats["energy_error"] < 1e-10
+    # The power is the same at all times: pi/4 d^2 times the thickness.
+    assert_allclose(stats["heat_in"]["sources"], 1e8 * np.pi / 4 * 0.008**2 * 0.01 * 2.0, rtol=1e-9)
+    # The flux's integral by the steps taken: second order for all but Euler, whose steps are many.
+    assert_allclose(stats["heat_in"]["x+"], 1e4 * np.sin(2.0) * 3e-4, rtol=0.01)
+    assert "y-" not in stats["heat_in"] and stats["heat_in"]["x-"] != 0
+    whole = 2790.0 * 880.0 * field.samples.volumes @ (field.samples.temperature - 25.0)
+    assert_allclose(whole, stats["heat_change"], rtol=1e-10)
+
+
+def test_lost_power_of_a_clipped_source_is_reported():
+    source = MovingCylinder(2, 0.008, 1e8, start=(0.0, 0.015), clip=True)
+    scene = Scene(size=(0.05, 0.03, 0.01), matrix=METAL, initial=25.0, sources=[source])
+    field = last(scene, [1e-3], particles=300)
+    # Half of it is outside.
+    assert_allclose(field.stats["lost_power"], 1e8 * np.pi / 8 * 0.008**2 * 0.01, rtol=1e-9)
+    with pytest.raises(ValueError, match="clip"):
+        evolve(Scene(**vars(scene) | {"sources": [MovingCylinder(2, 0.008, 1e8, start=(0.0, 0.015))]}), [1e-3])
+
+
+def test_capacities_are_those_of_the_phases():
+    ball = Sphere((0.05, 0.05, 0.05), 0.03, Material(33.0, density=7800.0, heat_capacity=9.0))
+    scene = Scene(size=BOX, matrix=METAL, inclusions=[ball], initial=lambda x: 20.0 + 100.0 * x[:, 0])
+    start, end = evolve(scene, [0.0, 50.0], particles=1000)
+    assert_allclose(start.samples.temperature, 20.0 + 100.0 * start.samples.points[:, 0], rtol=1e-14)
+    assert start.stats["steps"] == 0
+    inside = end.samples.volumes[end.samples.phase == 1].sum()
+    capacity = 7020.0 * (1e-3 - inside) + 70200.0 * inside
+    assert_allclose(inside, 4 / 3 * np.pi * 0.03**3, rtol=0.02)
+    # The long run leaves the mean over heat capacities: heat is kept, and the rest has decayed.
+    weights = np.where(start.samples.phase == 1, 70200.0, 7020.0) * start.samples.volumes
+    mean = weights @ start.samples.temperature / capacity
+    assert_allclose(end.samples.temperature, mean, atol=1e-3)  # accuracy, 1e-3 of 10 K, and a decay by 1e-4
+    assert abs(end.stats["heat_change"]) < 1e-9 * capacity * 10
+
+
+def test_pores_keep_their_temperature():
+    pore = Sphere((0.05, 0.05, 0.05), 0.03, Material(0.0, density=1.0, heat_capacity=1.0))
+    field = last(Scene(size=BOX, matrix=METAL, inclusions=[pore], walls={"y+": 35.0}, initial=25.0), [10.0])
+    inside = field.samples.phase == 1
+    assert inside.sum() > 50
+    assert_allclose(field.samples.temperature[inside], 25.0, rtol=1e-12)
+    assert_allclose(field.samples.temperature[~inside], 35.0, atol=0.02)  # accuracy, 1e-3 of 10 K, and its tail
+
+
+def test_a_sphere_against_the_series():
+    metal = Material(185.0, density=2700.0, heat_capacity=900.0)
+    scene = Scene(size=BOX, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
+    times = [5.0, 10.0]
+    for field, exact in zip(evolve(scene, times, particles=3000), series.evolve(scene, times), strict=True):
+        points, volumes, temperature, _, _ = field.samples
+        assert_allclose(volumes.sum(), np.pi / 6 * 1e-3, rtol=1e-9)
+        # Second order in the spacing; found 1.5 K rms at 5 s of a span of 180 K.
+        assert np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)) < 3.0
+        assert field.stats["energy_error"] < 1e-10 and field.stats["spectral_ratio"] < 20
+        assert_allclose(np.linalg.norm(field.mean_flux), 0.0, atol=0.02 * 185.0 * 180.0 / 0.05)
+
+
+def test_a_step_by_hand():
+    limit = last(SLAB, [1e-4], integrator="euler").stats["step_limit"]
+    field = last(SLAB, [0.02], integrator="euler", step=0.9 * limit)
+    assert field.stats["step"] <= 0.9 * limit and field.stats["steps"] == np.ceil(0.02 / (0.9 * limit))
+    found = pytest.raises(ValueError, next, evolve(SLAB, [0.02], particles=1000, integrator="euler", step=1.1 * limit))
+    assert "explicit Euler is unstable above" in str(found.value)
+    assert float(re.search(r"above (\S+) s", str(found.value))[1]) == pytest.approx(limit, rel=1e-5)
+    assert last(SLAB, [0.02], integrator="rkl2", step=0.005).stats["steps"] == 4
+
+
+def test_the_same_packing_gives_the_same_bits():
+    packing = relaxed(1000, size=BOX, periodic=False, seed=5)
+    first, second = (last(SLAB, [0.02, 0.1], packing=packing).samples.temperature for _ in range(2))
+    assert np.array_equal(first, second)
+    assert not np.array_equal(first, last(SLAB, [0.02, 0.1], seed=6).samples.temperature)
+
+
+BAD = [
+    ({"times": []}, "times"),
+    ({"times": [0.2, 0.1]}, "times"),
+    ({"times": [-1.0, 0.1]}, "times"),
+    ({"times": [0.1, float("nan")]}, "times"),
+    ({"integrator": "magic"}, "integrator = 'magic'"),
+    ({"accuracy": 0.0}, "accuracy = 0.0"),
+    ({"accuracy": 1.0}, "accuracy = 1.0"),
+    ({"step": -1.0}, "step = -1.0"),
+    ({"step": float("inf")}, "step = inf"),
+    ({"law": "magic"}, "law = 'magic'"),
+    ({"law": "calibrated", "conforming": True}, "conforming = True"),
+    ({"poor": "drop"}, "poor = 'drop'"),
+    ({"interface": "magic"}, "interface = 'magic'"),
+    ({"particles": 50}, "particles = 50"),
+    ({"packing": relaxed(100, size=(0.1, 0.1, 0.2), periodic=False)}, "packing of size"),
+    ({"packing": relaxed(100, size=BOX, periodic=True)}, "packing of size"),
+]
+
+
+@pytest.mark.parametrize(("change", "words"), BAD)
+def test_bad_input_before_any_work(change, words):
+    knobs = {"times": [0.1]} | change
+    with pytest.raises(ValueError, match=re.escape(words)):
+        evolve(SLAB, knobs.pop("times"), **knobs)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"initial": None}, "Scene.initial = None"),
+        ({"matrix": Material(1.0, density=1.0)}, "Material.heat_capacity = None"),
+        ({"matrix": Material(1.0, heat_capacity=1.0)}, "Material.density = None"),
+    ],
+)
+def test_scenes_that_lack_something(change, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        evolve(Scene(**vars(SLAB) | change), [0.1])
+
+
+def test_a_load_that_is_no_number_names_wall_and_time():
+    scene = Scene(size=BOX, matrix=METAL, walls={"y+": lambda t: float("nan")}, initial=25.0)
+    with pytest.raises(ValueError, match=re.escape("Scene.walls['y+'] at 0.0 s")):
+        last(scene, [0.1], particles=300)
+
+
+def test_an_initial_temperature_that_is_no_number():
+    scene = Scene(size=BOX, matrix=METAL, walls={}, initial=lambda x: x)
+    with pytest.raises(ValueError, match="Scene.initial"):
+        last(scene, [0.1], particles=300)
+
+
+def test_what_is_not_supported_says_why():
+    sphere = Scene(size=BOX, matrix=METAL, domain="sphere", walls={"round": 200.0}, initial=20.0)
+    with pytest.raises(NotImplementedError, match="round wall"):
+        evolve(sphere, [1.0], law="calibrated")
+    ball = Sphere((0.05, 0.05, 0.05), 0.01, METAL)
+    with pytest.raises(NotImplementedError, match="conforming"):
+        evolve(Scene(**vars(sphere) | {"inclusions": [ball]}), [1.0])
+    with pytest.raises(NotImplementedError, match="two held walls meet|held walls meet"):
+        corner = Scene(size=BOX, matrix=METAL, walls={"x-": 1.0, "y-": 2.0}, initial=25.0)
+        evolve(corner, [1.0], law="calibrated")
