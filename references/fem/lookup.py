@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Samples
-from demheat.scene import ROUND_AXES, Scene
+from demheat.scene import Scene
 from references.fem.elements import at_quadrature, inverse, shapes
 from references.mesh import Mesh
 
@@ -90,10 +90,6 @@ class Solution:
         outside = ~np.all((points >= -INSIDE * box) & (points <= (1 + INSIDE) * box), axis=1)
         if outside.any():
             raise ValueError(f"points: {points[outside][0]} lies outside the box {self.scene.size}")
-        across = list(ROUND_AXES[self.scene.domain])
-        beyond = np.linalg.norm((points - box / 2)[:, across], axis=1) if across else np.zeros(1)
-        if across and beyond.max(initial=0.0) > (0.5 + INSIDE) * box[across[0]]:
-            raise ValueError(f"points: {points[np.argmax(beyond)]} lies outside the {self.scene.domain}")
         return np.clip(points, 0, box)
 
     def _located(self, points):

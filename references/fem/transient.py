@@ -44,7 +44,8 @@ def evolve(scene, times, *, order=None, size=None, elements="tetrahedra", step=N
     elements : {"tetrahedra", "hexahedra"}
         The latter are the bricks of a grid, for boxes with layers at most.
     step : float, s, optional
-        Longest time step; steps are then equal between two asked times. Default: by the estimated error.
+        Longest time step; steps are then equal between two asked times. Default: by the estimated error, which sees
+        loads only at the times it tries: a short pulse after long rest needs an asked time at its start.
     accuracy : float
         Largest estimated error of one step, root mean square over the body, as a part of the span of all temperatures
         so far; unused if a step is given.
