@@ -6,8 +6,9 @@ volume is right. They do not depend on the packing, so that cells match by const
 
 The wall's temperature acts where the round wall is seen from a centre along the facet's normal, not on the plane: the
 heating of a sphere then does not depend on how wide the facets are (found for half, one and two spacings and for facets
-in front of each particle), while planes alone are too far from centres to their sides. The area of all facets exceeds that of a sphere or a
-cylinder as much as their distance from the middle falls short of its radius (3e-4 with 2e4 particles in a sphere).
+in front of each particle), while planes alone are too far from centres to their sides. The area of all facets exceeds
+that of a sphere or a cylinder as much as their distance from the middle falls short of its radius (3e-4 with 2e4
+particles in a sphere).
 """
 
 from typing import NamedTuple
