@@ -20,7 +20,7 @@ LAYERS = {
     "demheat.referee": (),
     "demheat.gallery": ("demheat.scene",),
     "demheat.sources": ("demheat.scene",),
-    "demheat.packing": ("demheat.scene", "demheat.threads", "demheat.packing"),
+    "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
     "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
     "demheat.steady": ("demheat.scene", "demheat.threads", "demheat.network", "demheat.steady_kernels"),
     "demheat.integrators": (

@@ -52,7 +52,9 @@ class Packing(NamedTuple):
         return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / self.volume)
 
     def scaled(self, factor) -> Packing:
-        """The same packing with every length multiplied by `factor`."""
+        """The same packing with every length multiplied by `factor`, which must be > 0."""
+        if not (np.isfinite(factor) and factor > 0):
+            raise ValueError(f"factor = {factor!r}: must be a finite number > 0")
         return self._replace(centers=self.centers * factor, radii=self.radii * factor, size=self.size * factor)
 
 
@@ -101,7 +103,10 @@ def make_packing(centers, radii, size, periodic, provenance, *, domain="box") ->
 
 def check_box(size, periodic):
     """Cast the sides and the periodicity of a box to (3,) arrays, or raise ValueError."""
-    sides = np.array(size, dtype=float)
+    try:
+        sides = np.array(size, dtype=float)
+    except (TypeError, ValueError):
+        sides = np.empty(0)
     if sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0):
         raise ValueError(f"size = {size!r}: must be three finite lengths > 0")
     flags = np.asarray(periodic)
@@ -112,7 +117,7 @@ def check_box(size, periodic):
 
 def check_domain(domain, size, periodic):
     """Raise ValueError unless the domain is known, and its box square and without periods across the round axes."""
-    if domain not in ROUND_AXES:
+    if not isinstance(domain, str) or domain not in ROUND_AXES:
         raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
     axes = list(ROUND_AXES[domain])
     if axes and (np.ptp(size[axes]) > 0 or np.any(periodic[axes])):

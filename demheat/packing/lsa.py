@@ -15,6 +15,7 @@ from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
+from demheat.parts import finite
 
 # Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the
 # spheres have no time to arrange themselves: 1e4 of them with spread 0.3 then jam at 0.6538 (start at 0.55) or 0.651
@@ -22,6 +23,10 @@ from demheat.packing.relax import FEWEST, relax
 START, START_OF_TARGET, START_OVERLAP = 0.4, 0.6, 1e-4
 # Reduced pressure at which packings count as jammed: the radii could grow by some 1e-6 more.
 JAMMED = 1e6
+# Below this the first windows of 10 collisions per sphere, from the start at phi = 0.4, are beyond it already.
+LEAST_PRESSURE = 10.0
+# No mixture of up to 1 : 10 was found to jam denser.
+DENSEST = 0.85
 
 
 def lsa(
@@ -49,8 +54,9 @@ def lsa(
     phi : float, optional
         Stop at this packing fraction, met to rounding.
     pressure : float, optional
-        Stop at this reduced pressure P V / (N k T), averaged over 10 collisions per sphere; default 1e6 (jammed) unless
-        `phi` is given. With both, what comes first stops.
+        Stop after the first 10 collisions per sphere whose mean reduced pressure P V / (N k T) reaches this; at least
+        10, default 1e6 (jammed) unless `phi` is given. With both, what comes first stops. Radii of very unequal
+        spheres, of which few collide often, overshoot.
     radii : Gaussian, Uniform, Lognormal, Bidisperse, Listed or (n,) array_like, optional
         Only ratios count. Default Gaussian(spread=0.3, cut=2.5).
     periodic : bool or (3,) sequence of bool
@@ -62,8 +68,9 @@ def lsa(
         Growth rate of the mean diameter over the thermal velocity; of a sequence, each rate holds from its pressure on.
         Slower growth jams denser and takes longer.
     start : Packing, optional
-        Begin from these spheres (domain, radii and seed included, radii shrunk as far as they overlap) instead of a
-        relaxed packing at phi = 0.4 or 0.6 of the one asked for.
+        Begin from these spheres in their domain (`number`, `size`, `radii`, `periodic` and `domain` are then left out)
+        instead of a relaxed packing at phi = 0.4 or 0.6 of the one asked for. All radii are shrunk until no two
+        overlap, at most by half.
     allow_few : bool
         Fewer than 100 spheres are refused unless this is True.
     progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
@@ -78,7 +85,8 @@ def lsa(
     Raises
     ------
     ValueError
-        If an argument is not as described, or the box is too small for the largest spheres.
+        If an argument is not as described, the box is too small for the largest spheres, or those of `start` overlap
+        by more than half.
     RuntimeError
         If the spheres jam (reduced pressure 1e6) before `phi`; the message says at which packing fraction. If events
         go on without end.
@@ -88,27 +96,27 @@ def lsa(
     UserWarning
         If the sphere radii had to be shrunk by more than rounding to leave no overlap.
     """
-    radii = Gaussian() if radii is None else distribution(radii)
     stages, phi, pressure = _check_targets(growth, phi, pressure)
     _check_seed(seed)
     if start is None:
+        radii = Gaussian() if radii is None else distribution(radii)
         size, periodic = _check_request(number, size, periodic, domain, radii, allow_few)
         begin = START if phi is None else min(START, START_OF_TARGET * phi)
         start = relax(
             number, size=size, phi=begin, radii=radii, periodic=periodic, domain=domain, seed=seed,
             overlap=START_OVERLAP, allow_few=allow_few,
         )  # fmt: skip
-    elif number not in (None, start.number):
-        raise ValueError(f"number = {number!r} with a start of {start.number} spheres: must be the same, or left out")
-    _check_start(start, phi)
+    else:
+        _check_alone(start, number, size, radii, periodic, domain)
     motion = Motion(start, np.random.default_rng([seed, 1]))
+    _check_room(start, motion.phi, phi)
     stopped = _grow(motion, stages, phi, pressure, progress)
     centers, radii_now, shrunk = motion.packing()
     if shrunk > 1e-10:
         warnings.warn(f"radii were shrunk by {shrunk:.1e} of themselves to leave no overlap", stacklevel=2)
     provenance = {"algorithm": "lsa", "seed": int(seed), "number": start.number, "start": start.provenance}
     provenance |= {"growth": [list(stage) for stage in stages], "stopped_by": stopped} | motion.reached()
-    provenance |= {"shrunk": shrunk}
+    provenance |= {"start_shrunk": motion.start_shrunk, "shrunk": shrunk}
     return make_packing(centers, radii_now, start.size, start.periodic, provenance, domain=start.domain)
 
 
@@ -134,6 +142,17 @@ def _grow(motion, stages, phi, pressure, progress):
     return "phi"
 
 
+def _check_alone(start, number, size, radii, periodic, domain):
+    """A start brings its own spheres and domain: raise ValueError for anything else that says so too."""
+    if not isinstance(start, Packing):
+        raise ValueError(f"start = {start!r}: must be a Packing")
+    given = {"number": number not in (None, start.number), "size": tuple(size) != (1.0, 1.0, 1.0)}
+    given |= {"radii": radii is not None, "periodic": periodic is not True, "domain": domain != "box"}
+    if any(given.values()):
+        names = ", ".join(name for name, is_given in given.items() if is_given)
+        raise ValueError(f"{names}: must be left out with a start, which has its own")
+
+
 def _check_request(number, size, periodic, domain, radii, allow_few):
     if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 2:
         raise ValueError(f"number = {number!r}: must be an integer >= 2")
@@ -153,22 +172,26 @@ def _check_seed(seed):
 
 def _check_targets(growth, phi, pressure):
     """Growth as stages (reduced pressure from which it holds, rate), and the targets."""
-    stages = np.array([(0.0, growth)] if np.ndim(growth) == 0 else growth, dtype=float)
+    try:
+        stages = np.array([(0.0, growth)] if np.ndim(growth) == 0 else growth, dtype=float)
+    except (TypeError, ValueError):
+        stages = np.empty(0)
     good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
     if not (good and np.all(stages[:, 1] > 0) and np.all(np.diff(stages[:, 0]) > 0)):
         raise ValueError(f"growth = {growth!r}: must be a rate > 0, or pairs of ascending pressures and rates > 0")
-    if phi is not None and not (math.isfinite(phi) and 0 < phi <= 0.74):
-        raise ValueError(f"phi = {phi!r}: must be > 0 and <= 0.74, the densest packing of equal spheres")
-    if pressure is not None and not (math.isfinite(pressure) and pressure > 1):
-        raise ValueError(f"pressure = {pressure!r}: must be a reduced pressure > 1, that of points")
+    if phi is not None:
+        phi = finite("phi", phi, "> 0 and < 1", lambda v: 0 < v < 1)
+    if pressure is not None:
+        valid = f">= {LEAST_PRESSURE:g}; give phi for a thinner gas"
+        pressure = finite("pressure", pressure, valid, lambda v: v >= LEAST_PRESSURE)
     return stages.tolist(), phi, JAMMED if phi is None and pressure is None else pressure
 
 
-def _check_start(start, phi):
+def _check_room(start, now, phi):
     """Raise ValueError if the start is denser than the target, or its largest spheres would meet both ways round."""
-    if phi is not None and start.phi > phi:
-        raise ValueError(f"phi = {phi}: must be at least that of the start, {start.phi:.6g}")
-    most = 0.74 if phi is None else phi
+    if phi is not None and now > phi:
+        raise ValueError(f"phi = {phi}: must be at least that of the start without overlaps, {now:.6g}")
+    most = DENSEST if phi is None else phi
     largest = float(np.max(start.radii)) * math.cbrt(most / start.phi)
     for axis in range(3):
         # Along a period only the nearest image is seen; a little room, since lists reach beyond contact.
@@ -176,5 +199,6 @@ def _check_start(start, phi):
         if start.size[axis] < least:
             raise ValueError(
                 f"size = {start.size.tolist()}: side {axis} must be >= {least:.6g} for spheres of radius up to "
-                f"{largest:.6g} at phi = {most}; use more spheres, a narrower distribution or a thicker box"
+                f"{largest:.6g} at phi = {most}{'' if phi else ' (as dense as they may jam)'}; use more spheres, a "
+                "narrower distribution or a thicker box"
             )

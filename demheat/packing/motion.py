@@ -22,6 +22,8 @@ WINDOW = 10
 SKIN, SKIN_MOST, SKIN_LEAST, LONGER, SHORTER = 0.5, 2.0, 1e-7, 1.4, 0.6
 # Likewise the growth of the radii that lists provide for, relative.
 GROWTH_MOST, GROWTH_LEAST = 0.02, 1e-12
+# Spheres that overlap more than this are no start: one bad pair would make all others a thin gas.
+LEAST_RATIO = 0.5
 
 
 class Motion:
@@ -38,8 +40,15 @@ class Motion:
         self.spheres[:, 3:6] -= self.spheres[:, 3:6].mean(axis=0)
         self.spheres[:, 6] = 0.0
         self.spheres[:, 7] = start.radii / self.unit
+        ratio = min(1.0, tightest(self.points, self.box, self.periodic, self.domain))
+        if ratio < LEAST_RATIO:
+            raise ValueError(
+                f"start: two of its spheres, or one and a wall, are at {ratio:.3g} of their contact distance, must be "
+                f">= {LEAST_RATIO}; push them apart first (demheat.packing.settle)"
+            )
+        self.start_shrunk = 1.0 - ratio
         # A hair of room: spheres that touch exactly would all collide at once.
-        self.spheres[:, 7] *= min(1.0, tightest(self.points, self.box, self.periodic, self.domain)) * (1 - 1e-12)
+        self.spheres[:, 7] *= ratio * (1 - 1e-12)
         self.times, self.levels = _tree(n)
         self.partner = np.empty(n, dtype=np.int32)
         self.skin, self.room, self.row = SKIN, GROWTH_MOST, 16.0
@@ -126,7 +135,7 @@ class Motion:
         """What the motion came to, for a packing's provenance."""
         n = len(self.spheres)
         counts = {"collisions": self.collisions / n, "events": self.events / n, "lists": self.lists}
-        return {"phi": self.phi, "pressure": None if math.isnan(self.pressure) else self.pressure} | counts
+        return {"phi": self.phi, "pressure": None if math.isnan(self.pressure) else float(self.pressure)} | counts
 
 
 def tightest(points, size, periodic, domain):

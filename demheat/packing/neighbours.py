@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from scipy import sparse
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import ROUND_AXES, Packing, wrap
+from demheat.parts import finite
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0
@@ -41,8 +40,7 @@ def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
         If scale or skin is negative or not finite.
     """
     for name, value in (("scale", scale), ("skin", skin)):
-        if not (math.isfinite(value) and value >= 0):
-            raise ValueError(f"{name} = {value!r}: must be a finite number >= 0")
+        finite(name, value, "a finite number >= 0", lambda v: v >= 0)
     points = np.column_stack((packing.centers, packing.radii))
     indptr, indices = near_rows(points, packing.size, packing.periodic, scale=scale, skin=skin)
     kernels.sort_rows(indptr, indices)
@@ -51,6 +49,8 @@ def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
 
 def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additive=False):
     """Contact network: pairs with |x_i - x_j| <= (1 + gap)(r_i + r_j), gap chosen for a mean coordination number.
+
+    Of a neighbour's periodic images only the nearest counts: boxes should be at least twice as thick as pairs reach.
 
     Parameters
     ----------
@@ -79,24 +79,23 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additi
         If an argument is out of range, or no particle is bulk, or there are too few particles for that coordination.
     """
     if gap is not None:
-        if not (math.isfinite(gap) and gap > -1):
-            raise ValueError(f"gap = {gap!r}: must be a finite part of r_i + r_j > -1")
+        finite("gap", gap, "a finite part of r_i + r_j > -1", lambda v: v > -1)
         return *_closer(packing, 1.0 + gap, additive)[:2], float(gap)
     bulk = _bulk(packing, margin)
-    if not (math.isfinite(coordination) and 0 < coordination <= packing.number - 1):
-        raise ValueError(f"coordination = {coordination!r}: must be > 0 and <= {packing.number - 1}, all others")
+    others = packing.number - 1
+    finite("coordination", coordination, f"> 0 and <= {others}, all others", lambda v: 0 < v <= others)
     # Twice the links of the bulk that are wanted; a pair inside the bulk is met twice.
     wanted = max(1, round(coordination * np.count_nonzero(bulk)))
     scale = 1.0 + FIRST_GAP
     while True:
         indptr, indices, ratio = _closer(packing, scale, additive)
         counted = ratio[np.repeat(bulk, np.diff(indptr))]
-        if len(counted) > wanted:
+        if len(counted) > wanted or len(indices) == packing.number * others:
             break
         scale *= 1.2
-    below, above = np.partition(counted, (wanted - 1, wanted))[wanted - 1 : wanted + 1]
-    # Midway to the next pair, so that rounding decides nothing.
-    limit = (below + above) / 2
+    # Midway to the next pair, so that rounding decides nothing; all pairs have no next one.
+    last = min(wanted, len(counted) - 1)
+    limit = np.partition(counted, (wanted - 1, last))[[wanted - 1, last]].mean()
     kept = ratio <= limit
     new = np.concatenate(([0], np.cumsum(kept)))[indptr]
     return new, indices[kept], float(limit - 1.0)
@@ -124,8 +123,7 @@ def _closer(packing, scale, additive):
 
 def _bulk(packing, margin):
     """Which particles lie at least `margin` mean radii away from every wall, flat or round."""
-    if not (math.isfinite(margin) and margin >= 0):
-        raise ValueError(f"margin = {margin!r}: must be a finite number of mean radii >= 0")
+    finite("margin", margin, "a finite number of mean radii >= 0", lambda v: v >= 0)
     axes = list(ROUND_AXES[packing.domain])
     depth = np.where(packing.periodic, np.inf, np.minimum(packing.centers, packing.size - packing.centers)).min(axis=1)
     if axes:

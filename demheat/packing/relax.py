@@ -24,6 +24,7 @@ from demheat.packing.base import (
 )
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
+from demheat.parts import finite
 
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).
@@ -253,8 +254,7 @@ def _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few)
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} particles; pass allow_few=True if you mean it")
-    if not (math.isfinite(phi) and 0 < phi <= 0.74):
-        raise ValueError(f"phi = {phi!r}: must be > 0 and <= 0.74, the densest packing of equal spheres")
+    finite("phi", phi, "> 0 and <= 0.74, the densest packing of equal spheres", lambda v: 0 < v <= 0.74)
     if not isinstance(seed, int | np.integer) or seed < 0:
         raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
     _check_stop(overlap, steps)
@@ -262,7 +262,6 @@ def _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few)
 
 
 def _check_stop(overlap, steps):
-    if not (math.isfinite(overlap) and overlap >= 0):
-        raise ValueError(f"overlap = {overlap!r}: must be a finite part of the mean diameter >= 0")
+    finite("overlap", overlap, "a finite part of the mean diameter >= 0", lambda v: v >= 0)
     if not isinstance(steps, int | np.integer) or steps < 0:
         raise ValueError(f"steps = {steps!r}: must be an integer >= 0")

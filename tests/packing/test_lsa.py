@@ -114,6 +114,27 @@ def test_a_start_is_used():
         lsa(start=packing, phi=0.4)
 
 
+def test_a_start_has_its_own_spheres_and_domain():
+    start = relax(500, phi=0.45, seed=1, overlap=1e-3)
+    for name, value in (("radii", Gaussian(0.0)), ("size", (2, 2, 2)), ("periodic", False), ("domain", "sphere")):
+        with pytest.raises(ValueError, match=f"{name}: must be left out with a start"):
+            lsa(start=start, phi=0.55, **{name: value})
+    with pytest.raises(ValueError, match="number"):
+        lsa(400, start=start, phi=0.55)
+
+
+@pytest.mark.parametrize("centers", [[[0.5] * 3, [0.5] * 3, [0.2] * 3], [[0.0, 0.5, 0.5], [0.5, 0.5, 0.6], [0.2] * 3]])
+def test_a_start_that_overlaps_too_much(centers):
+    start = make_packing(centers, [0.1] * 3, (1, 1, 1), False, {})
+    with pytest.raises(ValueError, match="start: two of its spheres, or one and a wall, are at 0 of"):
+        lsa(start=start, phi=0.1)
+
+
+def test_unequal_spheres_may_be_denser_than_equal_ones():
+    packing = lsa(1500, radii=Bidisperse(5.0, 0.02), phi=0.745, growth=0.005)
+    assert packing.phi > 0.74048 and least_gap(packing) >= -1e-14
+
+
 def test_growth_schedule():
     """A fast end saves collisions; its first rate decides as long as its pressure is not reached."""
     slow = lsa(500, seed=1)
@@ -133,10 +154,16 @@ def test_unreachable_phi_says_what_was_reached():
         ({"number": 50}, "fewer than 100"),
         ({"number": 2.5}, "number"),
         ({"number": True}, "number"),
-        ({"phi": 0.75}, "phi"),
+        ({"phi": 1.0}, "phi"),
+        ({"phi": "0.5"}, "phi"),
         ({"phi": 0.0}, "phi"),
         ({"phi": float("nan")}, "phi"),
-        ({"pressure": 0.5}, "pressure"),
+        ({"pressure": 9.0}, "pressure = 9.0: must be >= 10"),
+        ({"pressure": "high"}, "pressure"),
+        ({"growth": "slow"}, "growth"),
+        ({"domain": ["box"]}, "domain"),
+        ({"size": "abc"}, "size"),
+        ({"start": "x.dump"}, "start"),
         ({"growth": 0.0}, "growth"),
         ({"growth": [(5.0, 0.1), (1.0, 0.1)]}, "growth"),
         ({"growth": [1.0, 2.0, 3.0]}, "growth"),

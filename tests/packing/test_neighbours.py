@@ -137,6 +137,12 @@ def test_bad_input(relaxed):
             call()
 
 
+def test_all_others_may_be_asked_for():
+    packing = make_packing(np.random.default_rng(0).random((6, 3)), [0.05] * 6, (1, 1, 1), True, {})
+    indptr, _, _ = contacts(packing, coordination=5)
+    assert np.diff(indptr).tolist() == [5] * 6
+
+
 @pytest.mark.parametrize("wanted", [3.0, 7.5])
 def test_additive_gap_is_one_length_for_all_pairs(relaxed, wanted):
     indptr, indices, gap = contacts(relaxed, coordination=wanted, additive=True)

@@ -36,7 +36,8 @@ class RadialDistribution(NamedTuple):
     g : (bins,) float array
         1 without correlation.
     error : (bins,) float array
-        Poisson standard deviation, from the number of pairs counted; 0 where there are none.
+        Poisson standard deviation, from the number of pairs counted; 0 where there are none. That of the density itself
+        (1 / sqrt(origins) with walls) is not in it.
     origins : int
         Centres that were looked from.
     density : float, 1/m^3
