@@ -19,6 +19,7 @@ from studies.cost import measured
 GAPS = np.logspace(-6, -1, 16)
 # Contacts that hold a jammed packing: closed to some 1 / pressure, but for those that growth to the end leaves open.
 TOUCH = 1e-4
+STRAIN = 0.03
 
 
 def packed(maker, particles, radii, seed, *, growth=0.02, pressure=None, phi=None, domain="box"):
@@ -52,7 +53,8 @@ def packed(maker, particles, radii, seed, *, growth=0.02, pressure=None, phi=Non
         return packing, {**cost, "mean_overlap": packing.provenance["mean_overlap"]}
     packing, cost = measured(lsa, particles, radii=drawn, seed=seed, growth=growth, pressure=pressure, phi=phi, **where)
     reached = packing.provenance
-    return packing, _counted(cost, reached["pressure"], reached["collisions"], particles)
+    row = _counted(cost, reached["pressure"], reached["collisions"], particles)
+    return packing, row | {"shrunk": reached["shrunk"]}
 
 
 def _spheropack(drawn, seed, growth, pressure):
@@ -102,6 +104,10 @@ def described(packing, row, *, curves):
     found |= {"gap_7.5": gap, "under_2": links.under_2, "under_4": links.under_4, "islands": links.islands}
     fabric = statistics.fabric(packing, indptr, indices, margin=margin)
     found |= {"fabric_sd": fabric.deviation, "fourth_sd": fabric.fourth_deviation}
+    # The same links in a packing stretched along x: what an anisotropic one would show.
+    stretch = np.array([1.0 + STRAIN, 1.0, 1.0])
+    strained = packing._replace(centers=packing.centers * stretch, size=packing.size * stretch, domain="box")
+    found |= {"strained_sd": statistics.fabric(strained, indptr, indices).deviation}
     return found | (_curves(packing, indptr, indices) if curves else {})
 
 
