@@ -156,7 +156,7 @@ def plot(df):
         label = f"{law} {'(wall: ' + wall + ')' if wall else ''}"
         right.plot(means.index, means, marker=marker, color=colour, markerfacecolor=open_, label=label)
     right.set(xscale="log", yscale="log", xlabel="particles", ylabel="error rms at 0.2 s, % of the span")
-    right.set_title("Laguerre: second order; contacts hardly converge")
+    right.set_title("Error against the number of particles")
     right.legend()
     return figure
 
