@@ -82,7 +82,8 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
     Yields
     ------
     State
-        With stats integrator, order, steps, rejected, stages, iterations, residual (linear tolerance over the span),
+        With stats integrator, order, steps, rejected, stages, iterations, residual (the largest error that a linear
+        solve left, by its recomputed residual, over the span),
         step (the last), step_limit (largest stable step of explicit Euler), positivity_limit, spectral_radius,
         spectral_ratio (to the mean row), heat_change (J), heat_in (J by side and "sources") and energy_error: heat
         change minus heat in, over the heat that came in or moved.
@@ -127,7 +128,7 @@ def _marched(system, x, times, method, advance, rates, integrator, accuracy, ste
     for time, now, ledger in states:
         stats = {"integrator": integrator, "order": method.ORDER, "unknowns": int((system.capacity > 0).sum())}
         stats |= _account(system, start, now, ledger) | _limits(rates)
-        stats["residual"] = linear_tolerance(accuracy) if method is trbdf2 else 0.0
+        stats["residual"] = ledger.residual / span()
         yield State(float(time), now[: system.particles] + system.level, stats)
 
 

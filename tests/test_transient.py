@@ -34,7 +34,10 @@ def test_slab_against_the_series(integrator):
         # The mean gradient is that between the walls, whatever the profile.
         assert_allclose(field.mean_flux[1], -3300.0, rtol=1e-10)
         assert_allclose(field.wall_heat["y+"], exact.wall_heat["y+"], rtol=0.05)
-    assert fields[-1].stats["integrator"] != "auto" and fields[-1].stats["steps"] >= 3
+    stats = fields[-1].stats
+    assert stats["integrator"] != "auto" and stats["steps"] >= 3
+    # Linear solves are asked for a fifth of the accuracy, 1e-3 of the span, and stop below it.
+    assert 1e-7 < stats["residual"] <= 2.1e-4 if stats["integrator"].startswith("tr-bdf2") else stats["residual"] == 0
 
 
 def test_errors_fall_at_second_order_in_the_spacing():

@@ -20,6 +20,8 @@ class Step(NamedTuple):
         Evaluations of the rate, and iterations of the linear solver.
     memory : object
         What the next step may use, if this one is accepted.
+    residual : float, K
+        Bound on the error that the linear solver left, from its recomputed residual.
     """
 
     x: np.ndarray
@@ -28,3 +30,4 @@ class Step(NamedTuple):
     stages: int
     iterations: int = 0
     memory: object = None
+    residual: float = 0.0

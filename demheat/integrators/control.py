@@ -22,13 +22,14 @@ TINIEST = 1e-12
 
 @dataclass
 class Ledger:
-    """What was done so far, and the heat that came in, J, by side with sources last."""
+    """What was done so far, the largest linear residual, K, and the heat that came in, J, by side with sources last."""
 
     steps: int = 0
     rejected: int = 0
     stages: int = 0
     iterations: int = 0
     step: float = 0.0
+    residual: float = 0.0
     inflow: np.ndarray = field(default_factory=lambda: np.zeros(ACCOUNTS))
 
     def add(self, done, step, accepted):
@@ -36,6 +37,7 @@ class Ledger:
         self.stages += done.stages
         self.iterations += done.iterations
         if accepted:
+            self.residual = max(self.residual, done.residual)
             self.steps += 1
             self.step = step
             self.inflow = self.inflow + done.inflow

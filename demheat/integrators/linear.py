@@ -25,10 +25,11 @@ def solver(system, preconditioner):
 
     Returns
     -------
-    solve : callable (g, known, heat, y, limit) -> iterations
+    solve : callable (g, known, heat, y, limit) -> iterations, bound
         Finds y, in place, with C (known - y) / g + (heat received at y) = 0 up to an error whose root mean square,
         weighted by capacity, is at most `limit`, K. The sum of the residuals over each cluster of particles, which
-        would be heat lost, is zero to rounding. Raises RuntimeError if it does not get there.
+        would be heat lost, is zero to rounding. The bound on that error, K, is from the residual as recomputed. Raises
+        RuntimeError if it does not get there.
     """
     free = system.capacity > 0
     total = float(system.capacity.sum())
@@ -69,7 +70,7 @@ def solver(system, preconditioner):
             balance(g, r, y)
             reached = size(g, r)
             if reached <= 1.01 * limit:
-                return iterations
+                return iterations, reached
         raise RuntimeError(
             f"implicit stage ({preconditioner}): error bound {reached:.2e} K after {iterations} iterations, "
             f"asked for {limit:.1e} K"

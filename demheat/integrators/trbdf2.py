@@ -52,15 +52,15 @@ def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
         rate = _rate(system, heat, x) if memory is None else memory.rate
         start_flow = system.inflow(x, totals)
         known, y = x + g * rate, x.copy() if memory is None else _extrapolated(*memory[1:], middle)
-        middle_flow, count = _stage(system, solve, g, known, y, middle, limit())
+        middle_flow, count, left = _stage(system, solve, g, known, y, middle, limit())
         known = x + W * step * (rate + (y - known) / g)
         before = ((), ()) if memory is None else (memory.times[:1], memory.values[:1])
         z = _extrapolated((*before[0], time, middle), (*before[1], x, y), end)
-        end_flow, more = _stage(system, solve, g, known, z, end, limit())
+        end_flow, more, still = _stage(system, solve, g, known, z, end, limit())
         inflow = step * (W * start_flow + W * middle_flow + D * end_flow)
         error = _error((*before[0], time, middle, end), (*before[1], x, y, z), step) if estimate else None
         kept = _Memory((z - known) / g, (time, middle, end), (x, y, z))
-        return Step(z, inflow, error, 3, count + more, kept)
+        return Step(z, inflow, error, 3, count + more, kept, max(left, still))
 
     return advance
 
@@ -72,11 +72,11 @@ def _rate(system, heat, x):
 
 
 def _stage(system, solve, g, known, y, time, limit):
-    """Solve one implicit stage from the guess y, in place; the heat flow then, and the iterations."""
+    """Solve one implicit stage from the guess y, in place; the heat flow then, the iterations and the error left."""
     heat, totals = system.heat_at(time)
     system.hold(y, time)
-    iterations = solve(g, known, heat, y, limit)
-    return system.inflow(y, totals), iterations
+    iterations, left = solve(g, known, heat, y, limit)
+    return system.inflow(y, totals), iterations, left
 
 
 def _extrapolated(times, values, time):
