@@ -36,7 +36,7 @@ LINES = {
 
 def unchanged(df):
     """Rows without a change, default in everything."""
-    return np.logical_and.reduce([df[name].isna() for name in KNOBS if name in df])
+    return df.reindex(columns=list(KNOBS)).isna().all(axis=1)
 
 
 def variant(df, loading, change, column="ct"):
