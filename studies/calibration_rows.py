@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from studies.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK
 from studies.pick import pick
 from studies.store import printed
