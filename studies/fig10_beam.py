@@ -1,0 +1,257 @@
+"""A beam heated at one end: temperatures in time, by all laws, against the exact series.
+
+Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46, figure 10: an aluminium cylinder, 2.184 mm long and
+0.116 mm in radius, at 298 K, 798 K at x = 0 from time 0 on, insulated elsewhere; 19465 elements, radii +-7.5 %; 1, 10,
+50 and 100 ms. Errors are over all particles or nodes, in per cent of the span of 500 K. Laws: facets of the radical
+tessellation ("laguerre"); contacts calibrated between the beam's ends ("calibrated"); the paper's regular polyhedra
+("platonic") with a mean of 7.2 contacts, where its errors of capacity and conductance nearly cancel, and of 6.2: the
+paper states none. Temperatures of the contact laws act in the centres of the particles at the end, as in the papers.
+
+A beam between a temperature and insulation shows the diffusivity alone. Beside it stand the network's steady
+conductivity between its two ends, and its heat capacity, both over the material's. Temporal accuracy is 1e-5 of the
+span. Packings are relaxed ones, at a packing fraction of 0.64; the paper names neither an algorithm nor a fraction.
+"""
+
+from studies.pick import pick, present
+from studies.store import printed
+
+PAPER = printed("fig10_beam")
+TIMES = (0.001, 0.01, 0.05, 0.1)
+NUMBERS = (2_000, 6_000, int(PAPER["particles"]))
+SEEDS = (0, 1, 2)
+LAWS = (("laguerre", None), ("calibrated", 7.5), ("platonic", 7.2), ("platonic", 6.2))
+ACCURACY = 1e-5
+# Of one step: that of all steps together stays below the smallest error of the particles, about a thousandth of a %.
+FEM_ACCURACY = 5e-7
+SIZES = (0.08e-3, 0.05e-3)
+TIMEOUT = 3600.0
+
+
+def _cases():
+    for particles in NUMBERS:
+        for law, coordination in LAWS:
+            for seed in SEEDS:
+                yield {"law": law, "coordination": coordination, "particles": particles, "seed": seed,
+                       "method": "demheat.dem"}  # fmt: skip
+    for size in SIZES:
+        yield {"law": "tetrahedra", "size": size, "method": "references.fem"}
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """One packing of 2000 for each law."""
+    return case.get("particles") == NUMBERS[0] and case["seed"] == 0
+
+
+def run(law, method, **case):
+    """Errors at the four times, the profile, and of a network its steady conductivity and heat capacity."""
+    return _elements(**case) if method == "references.fem" else _particles(law, **case)
+
+
+def _particles(law, coordination, particles, seed):
+    from demheat.dem import evolve
+    from studies.terreros import beam, packing_of, steady_conductivity
+
+    scene = beam()
+    packing = packing_of(scene, particles, seed)
+    contact = {} if coordination is None else {"coordination": coordination}
+    row = {"mean_radius": 1e6 * packing.radii.mean(), "phi": packing.phi}
+    for field in _compared(evolve(scene, TIMES, packing=packing, law=law, accuracy=ACCURACY, **contact), row):
+        last = field
+    # Of a calibrated network the steady solve is the one that calibrates it.
+    steady = steady_conductivity(packing, law, **contact) * last.stats["calibration"]
+    capacity = float(last.samples.volumes.sum() / scene.volume)
+    row |= {"conductivity": steady, "capacity": capacity, "diffusivity": steady / capacity}
+    names = ("unknowns", "iterations", "residual", "integrator", "steps", "spectral_ratio", "energy_error")
+    return row | {name: last.stats[name] for name in (*names, "calibration")}
+
+
+def _elements(size):
+    from references import fem
+    from studies.terreros import beam
+
+    row = {}
+    for field in _compared(fem.evolve(beam(), TIMES, size=size, accuracy=FEM_ACCURACY), row):
+        last = field
+    names = ("unknowns", "iterations", "residual", "steps", "energy_error")
+    return row | {name: last.stats[name] for name in names}
+
+
+def _compared(fields, row):
+    """The fields, with their errors put into the row one by one."""
+    import numpy as np
+
+    from references import series
+    from studies.terreros import COLD, HOT, beam, binned
+
+    for field, exact in zip(fields, series.evolve(beam(), TIMES, points_per_axis=1), strict=True):
+        points, volumes, temperature, _, _ = field.samples
+        off, t = 100 * (temperature - exact.temperature_at(points)) / (HOT - COLD), f"{field.time:g}"
+        row[f"worst_{t}"] = np.abs(off).max()
+        row[f"rms_{t}"] = np.sqrt(volumes @ off**2 / volumes.sum())
+        middle, mean = binned(points[:, 0], temperature)
+        row["profile_x"], row[f"profile_{t}"] = _text(middle), _text(mean)
+        row[f"profile_error_{t}"] = _text(binned(points[:, 0], off)[1])
+        yield field
+
+
+def _text(values):
+    return " ".join(f"{value:.6g}" for value in values)
+
+
+def warm_up(law, method, **case):
+    """Load and compile; the packing, kept or made anew, is not part of what is compared."""
+    if method == "references.fem":
+        return
+    from studies.terreros import beam, packing_of
+
+    packing_of(beam(), case["particles"], case["seed"])
+    run(law, method, **case | {"particles": 1_000, "seed": 99})
+
+
+def claims(df):
+    """What issue 4 asks for."""
+    return present([*_accuracy(df), *_referee(df), *_hidden(df), *_balance(df)])
+
+
+def _accuracy(df):
+    full = pick(df, law="laguerre", particles=NUMBERS[-1])
+    for t in TIMES:
+        value = full[f"worst_{t:g}"].max(skipna=False) if len(full) else None
+        yield f"Laguerre, the paper's 19465 particles, {1e3 * t:g} ms: largest error, % of the span", value, 0.1
+    if len(full):
+        off = (full["mean_radius"] / PAPER["mean_radius"] - 1).abs().max(skipna=False)
+        # 0.5 %: a packing fraction of 0.64 for the paper's 0.647 is 0.4 % in the radius.
+        yield "Mean radius of 19465 particles off the paper's, relative", off, 0.005
+    small = pick(df, law="laguerre", particles=NUMBERS[0])
+    # Errors go with N^(-2/3): five times those of 19465 particles.
+    for t, limit in zip(TIMES, (0.2, 0.03, 0.02, 0.01), strict=True):
+        value = small[f"worst_{t:g}"].max(skipna=False)
+        yield f"Laguerre, 2000 particles, {1e3 * t:g} ms: largest error, % of the span", value, limit
+    for name, law, contacts in (("calibrated", "calibrated", 7.5), ("Platonic", "platonic", 7.2)):
+        theirs = _means(df, law, contacts)["rms_0.01"] / _means(df, "laguerre", None)["rms_0.01"]
+        text = f"Error rms at 10 ms, {name} over Laguerre, equal number of particles: least"
+        yield text, theirs.min(skipna=False), ">= 10"
+
+
+def _means(df, law, contacts):
+    columns = [f"rms_{t:g}" for t in TIMES]
+    return pick(df, law=law, coordination=contacts).groupby("particles")[columns].mean()
+
+
+def _referee(df):
+    rows = pick(df, method="references.fem")
+    worst = rows[[f"worst_{t:g}" for t in TIMES]].max(axis=1, skipna=False)
+    # A fifth of what is asked of the particles.
+    yield "Finite elements against the series: largest error, % of the span", worst.min() if len(rows) else None, 0.02
+
+
+def _hidden(df):
+    """What the transient does not show of the Platonic law."""
+    for contacts, steady in ((7.2, 0.05), (6.2, 0.1)):
+        rows = pick(df, law="platonic", coordination=contacts)
+        text = f"Platonic law, {contacts} contacts:"
+        yield (
+            f"{text} least excess of the steady conductivity",
+            rows["conductivity"].min(skipna=False) - 1,
+            (f">= {steady:g}"),
+        )
+        yield f"{text} least excess of the heat capacity", rows["capacity"].min(skipna=False) - 1, f">= {steady:g}"
+    full = pick(df, law="platonic", coordination=7.2, particles=NUMBERS[-1])
+    if len(full):
+        share = full[["worst_0.05", "worst_0.1"]].max(axis=1, skipna=False) / (100 * (full["conductivity"] - 1))
+        text = "Platonic law, 7.2 contacts, 19465 particles: largest error at 50 and 100 ms over that of the steady"
+        yield f"{text} conductivity", share.max(skipna=False), 0.1
+    off = (pick(df, law="laguerre")["conductivity"] - 1).abs().max(skipna=False)
+    # Ten times the tolerance of the steady solve.
+    yield "Laguerre: steady conductivity off the material's, relative", off, 1e-7
+
+
+def _balance(df):
+    rows = pick(df, method="demheat.dem")
+    # Rounding of sums over particles and steps.
+    yield "Largest heat lost over heat moved, networks", rows["energy_error"].max(skipna=False), 1e-10
+
+
+def table(df):
+    """Errors in per cent of the span, means over packings of one size.
+
+    `worst` is the largest over particles or nodes; conductivity (steady, between the beam's ends), capacity and
+    diffusivity are the network's over the material's, 1 by construction with calibrated contacts. Size is the
+    elements' edge, m.
+    """
+    shown = [f"{kind}_{t:g}" for kind in ("worst", "rms") for t in TIMES]
+    relative = ["conductivity", "capacity", "diffusivity"]
+    for column in ("size", "coordination", "particles", *relative):
+        df = df if column in df else df.assign(**{column: float("nan")})
+    keys = ["law", "coordination", "particles", "size"]
+    found = df.groupby(keys, sort=False, dropna=False)[[*shown, *relative]].mean().reset_index()
+    found[relative] = found[relative].map(lambda value: "" if value != value else f"{value:.4f}")
+    return found
+
+
+def plot(df):
+    """Profiles of the largest packings; their errors; transient error beside what it hides."""
+    from matplotlib import pyplot
+
+    from studies.figures import BLUE, PINK, RED, SKY
+
+    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.6))
+    looks = {("laguerre", None): (RED, "o"), ("calibrated", 7.5): (PINK, "s"), ("platonic", 7.2): (BLUE, "^"),
+             ("platonic", 6.2): (SKY, "v")}  # fmt: skip
+    _profiles(left, middle, df, looks)
+    _shown_and_hidden(right, df, looks)
+    return figure
+
+
+def _profiles(left, middle, df, looks):
+    import numpy as np
+
+    from references import series
+    from studies.figures import BLACK
+    from studies.terreros import LENGTH, RADIUS, beam
+
+    x = np.linspace(0.0, 1.0, 201)
+    points = np.column_stack([x * LENGTH, np.full(201, RADIUS), np.full(201, RADIUS)])
+    for t, exact in zip(TIMES, series.evolve(beam(), TIMES, points_per_axis=1), strict=True):
+        left.plot(x, exact.temperature_at(points), color=BLACK, linewidth=0.8)
+        left.annotate(f"{1e3 * t:g} ms", (0.5, exact.temperature_at(points)[100] + 5), fontsize=8)
+    for (law, contacts), (colour, marker) in looks.items():
+        rows = pick(df, law=law, coordination=contacts)
+        row = rows.loc[rows["particles"].idxmax()]
+        label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
+        for t, style in zip(TIMES, ("-", "--", "-.", ":"), strict=True):
+            at, values, errors = (
+                np.array([float(word) for word in row[name].split()])
+                for name in ("profile_x", f"profile_{t:g}", f"profile_error_{t:g}")
+            )
+            first = label if t == TIMES[0] else None
+            left.plot(at, values, marker, color=colour, markersize=3, label=first)
+            middle.plot(at, np.maximum(np.abs(errors), 1e-5), style, color=colour, linewidth=1, label=first)
+    left.set(xlabel="x / L", ylabel="temperature, K", title="Lines: exact; points: means over slices")
+    left.legend()
+    middle.set(xlabel="x / L", ylabel="|mean error| in a slice, % of the span", yscale="log", ylim=(1e-5, 10))
+    middle.set_title("Error: 1 (solid), 10, 50, 100 ms (dotted)")
+
+
+def _shown_and_hidden(axes, df, looks):
+    import numpy as np
+
+    names = ("worst_0.05", "worst_0.1", "conductivity", "capacity", "diffusivity")
+    for number, ((law, contacts), (colour, _)) in enumerate(looks.items()):
+        rows = pick(df, law=law, coordination=contacts)
+        rows = rows[rows["particles"] == rows["particles"].max()]
+        heights = [
+            rows[name].mean() if name.startswith("worst") else 100 * abs(rows[name].mean() - 1) for name in names
+        ]
+        label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
+        axes.bar(np.arange(5) + 0.2 * (number - 1.5), np.maximum(heights, 1e-4), 0.18, color=colour, label=label)
+    axes.set_xticks(
+        range(5), ["at 50 ms", "at 100 ms", "steady\nconductivity", "heat\ncapacity", "diffusivity"], fontsize=8
+    )
+    axes.set(
+        yscale="log", ylim=(1e-4, 200), ylabel="largest error, %", title="What a transient shows, and what it hides"
+    )
+    axes.legend(fontsize=8)

@@ -1,0 +1,169 @@
+"""The beam and the sheet of Terreros et al. (2013), their packings, and the laws of contacts in a body without bulk."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from demheat import dem, sources, transient
+from demheat.evaluate import field_of
+from demheat.network.calibrated import contact_facets
+from demheat.network.interface import connect
+from demheat.network.laguerre import laguerre, without_hidden
+from demheat.network.platonic import platonic_facets
+from demheat.packing.cache import relaxed
+from demheat.packing.neighbours import contacts
+from demheat.packing.radii import Uniform
+from demheat.scene import WALLS, Material, MovingCylinder, Scene
+
+# Comput. Mater. Sci. 69 (2013) 46: material of both bodies, and spread of the radii.
+METAL = Material(134.0, density=2790.0, heat_capacity=880.0)
+SPREAD = Uniform(0.075)
+# Section on the beam.
+LENGTH, RADIUS, COLD, HOT = 2.184e-3, 0.116e-3, 298.0, 798.0
+# Section on the sheet. The paper's y runs from -15 to 15 mm; the box's from 0 to 30.
+SHEET, START, SPEED, POWER, DIAMETER, AMBIENT = (50e-3, 30e-3, 2e-3), (20e-3, 15e-3), 3.3e-3, 1e11, 8e-3, 25.0
+POINTS = {"A": (9.5e-3, 14.5e-3, 1e-3), "B": (31e-3, 15e-3, 1e-3), "C": (41.5e-3, 5.5e-3, 1e-3)}
+# Spheres of the periodic packing that gives the gap at which contacts are detected in the sheet.
+BULK = 4_000
+
+
+def beam():
+    """Cylinder along x, 798 K at x = 0 from time 0 on, insulated elsewhere."""
+    size = (LENGTH, 2 * RADIUS, 2 * RADIUS)
+    return Scene(size=size, matrix=METAL, walls={"x-": HOT}, initial=COLD, domain="cylinder-x")
+
+
+def sheet():
+    """Insulated sheet with a cylinder of heat through its thickness that moves along its middle line."""
+    source = MovingCylinder(axis=2, diameter=DIAMETER, power_density=POWER, start=START, velocity=(SPEED, 0.0))
+    return Scene(size=SHEET, matrix=METAL, initial=AMBIENT, sources=(source,))
+
+
+def packing_of(scene, particles, seed):
+    """Packing between the walls of a body, radii as in the paper, kept in the cache."""
+    domain = {} if scene.domain == "box" else {"domain": scene.domain}
+    return relaxed(particles, size=scene.size, periodic=False, radii=SPREAD, seed=seed, **domain)
+
+
+def steady_conductivity(packing, law, **contact):
+    """Conductivity of a law's network between the ends of the beam over the material's; with "calibrated", of C_t = 1.
+
+    Parameters
+    ----------
+    packing : Packing
+        Of the beam.
+    law : {"laguerre", "calibrated", "platonic"}
+    contact : coordination
+        As in `demheat.dem.evolve`; end temperatures act in the centres of particles, as its default has it.
+
+    Returns
+    -------
+    float
+    """
+    if law == "laguerre":
+        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain=packing.domain)
+    elif law == "platonic":
+        facets = platonic_facets(packing, **contact)
+    else:
+        facets = contact_facets(packing, links=contacts(packing, **contact))
+    packing, facets = without_hidden(packing, facets)
+    # Steady solves know flat walls only; the insulated side takes no part.
+    flat = facets.wall_side < len(WALLS)
+    walls = ("wall_particle", "wall_side", "wall_area", "wall_distance")
+    facets = facets._replace(**{name: getattr(facets, name)[flat] for name in walls}, wall_normal=None)
+    return 1.0 / dem.calibration(facets, packing, _between_ends(packing))
+
+
+def _between_ends(packing):
+    return Scene(size=tuple(packing.size), matrix=Material(1.0), walls={"x-": 0.0, "x+": 1.0})
+
+
+@cache
+def bulk_gap(coordination):
+    """Gap, over r_i + r_j, at which a periodic packing of such spheres has a mean number of contacts."""
+    return contacts(relaxed(BULK, radii=SPREAD, seed=0), coordination=coordination)[2]
+
+
+def evolve(scene, times, *, packing, law, coordination=None, accuracy=1e-4):
+    """`demheat.dem.evolve` also for laws of contacts in a box that is nowhere far from its walls.
+
+    `dem.evolve` counts the mean number of contacts of particles four radii away from every wall, of which a sheet has
+    none. Here contacts are those within the gap that gives that number in a periodic packing.
+
+    Parameters
+    ----------
+    scene : Scene
+        A homogeneous box.
+    times : sequence of float, s
+    packing : Packing
+    law : {"laguerre", "calibrated", "platonic"}
+    coordination : float, optional
+        Mean number of contacts in bulk, for the laws of contacts only.
+    accuracy : float
+        As in `dem.evolve`.
+
+    Yields
+    ------
+    Field
+    """
+    if law == "laguerre":
+        yield from dem.evolve(scene, times, packing=packing, accuracy=accuracy)
+        return
+    links = contacts(packing, gap=bulk_gap(coordination))
+    facets = (platonic_facets if law == "platonic" else contact_facets)(packing, links=links)
+    packing, facets = without_hidden(packing, facets)
+    if law == "calibrated":
+        facets = facets._replace(area=facets.area * dem.calibration(facets, packing, _between_ends(packing)))
+    phase = np.zeros(packing.number, dtype=np.int32)
+    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
+    power = sources.source_power(scene, network.centers, network.volumes)
+    for now, solution in transient.evolve(network, scene, times, power=power, accuracy=accuracy):
+        flux = transient.mean_flux(network, scene, solution)
+        parts = scene, packing, facets, network, solution
+        yield field_of(*parts, law=law, stats={"law": law}, mean_flux=flux, time=now)
+
+
+def binned(x, values, bins=20):
+    """Mean of values in equal slices of the beam, and the slices' middles in its lengths; NaN in empty ones."""
+    edges = np.linspace(0.0, 1.0, bins + 1)
+    place = np.clip(np.digitize(x / LENGTH, edges) - 1, 0, bins - 1)
+    count = np.bincount(place, minlength=bins)
+    mean = np.full(bins, np.nan)
+    np.divide(np.bincount(place, values, bins), count, out=mean, where=count > 0)
+    return (edges[1:] + edges[:-1]) / 2, mean
+
+
+def dispersion(curves):
+    """Mean over time of (max - min)/max over packings, in per cent: the paper's measure.
+
+    Parameters
+    ----------
+    curves : (packings, times) float array, degrees Celsius
+
+    Returns
+    -------
+    float
+    """
+    curves = np.asarray(curves, dtype=float)
+    highest = curves.max(axis=0)
+    return float(100 * np.mean((highest - curves.min(axis=0)) / highest))
+
+
+def largest_difference(curve, reference):
+    """Where two curves differ most: its index, and the difference there in per cent of the reference.
+
+    Parameters
+    ----------
+    curve, reference : (times,) float array, degrees Celsius
+
+    Returns
+    -------
+    at : int
+    percent : float
+        Signed.
+    """
+    off = np.asarray(curve) - np.asarray(reference)
+    at = int(np.argmax(np.abs(off)))
+    return at, float(100 * off[at] / reference[at])
