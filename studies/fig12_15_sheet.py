@@ -1,0 +1,247 @@
+"""A sheet under a moving source: temperatures at three points, their scatter over packings, against finite elements.
+
+Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46, figures 12 to 15: an insulated aluminium sheet of 50 x
+30 x 2 mm at 25 C; a cylinder of heat through its thickness, 8 mm in diameter, 1e11 W/m3, starts at x = 20 mm on the
+middle line and moves along +x at 3.3 mm/s. Its rim reaches the edge at 7.8788 s; here it stops at 7.878 s. Checkpoints
+A (9.5, -0.5), B (31, 0), C (41.5, -9.5) mm at half the thickness (the axes and the stop are inferred: the paper prints
+neither). Five packings each of 1000, 5000 and 20000 particles, radii +-7.5 %; the paper's dispersion is the mean over
+time of (max - min)/max over the five, in degrees Celsius, below 4 % at 20000. Finite elements are trilinear bricks of
+0.5 mm as in the paper, compared with the mean of the five, per checkpoint, where the two differ most in time.
+
+The source is unphysical: it heats the metal inside of it by 40730 K/s and the sheet on average by 1365 K/s, to more
+than 10000 C. The problem is linear, so the comparison does not mind. A thousand particles are 1.3 diameters through the
+thickness: there is no bulk, where contacts could be counted. Contacts are therefore those within the gap that gives
+7.5 (law "calibrated", between the sheet's ends) or 7.2 (the paper's law, "platonic") of them in a periodic packing.
+All laws get the same power, whatever heat capacity they make of the sheet.
+"""
+
+from studies.pick import pick, present
+from studies.store import printed
+
+PAPER = printed("fig12_15_sheet")
+STOP, OUTPUTS = 7.878, 60
+TIMES = tuple(STOP * (k + 1) / OUTPUTS for k in range(OUTPUTS))
+NUMBERS = (1_000, 5_000, int(PAPER["particles"]))
+SEEDS = (0, 1, 2, 3, 4)
+LAWS = (("laguerre", None), ("platonic", 7.2), ("calibrated", 7.5))
+# Edges of the bricks; the paper's is the middle one.
+COARSE, ELEMENT, FINE = 1e-3, 1e-3 * PAPER["element"], 0.25e-3
+NAMES = ("A", "B", "C")
+ACCURACY = 1e-4
+TIMEOUT = 3600.0
+
+
+def _cases():
+    for particles in NUMBERS:
+        for law, coordination in LAWS:
+            for seed in SEEDS:
+                yield {"law": law, "coordination": coordination, "particles": particles, "seed": seed,
+                       "method": "demheat.dem"}  # fmt: skip
+    for size in (COARSE, ELEMENT, FINE):
+        yield {"law": "hexahedra", "size": size, "method": "references.fem"}
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Two packings of 1000 for the tessellation and the paper's law; bricks of 1 mm."""
+    if case["method"] == "references.fem":
+        return case["size"] == COARSE
+    return case["particles"] == NUMBERS[0] and case["seed"] < 2 and case["law"] != "calibrated"
+
+
+def run(law, method, **case):
+    """Temperatures at the checkpoints in time, heat capacity and heat of the sheet."""
+    import numpy as np
+
+    from studies.terreros import POINTS, sheet
+
+    scene, curves = sheet(), []
+    points = np.array([POINTS[name] for name in NAMES])
+    for field in _fields(scene, law, method, **case):
+        curves.append(field.temperature_at(points))
+        last = field
+    row = {
+        name: " ".join(f"{value:.6g}" for value in curve)
+        for name, curve in zip(NAMES, np.transpose(curves), strict=True)
+    }
+    volumes, temperature = last.samples.volumes, last.samples.temperature
+    row |= {"capacity": float(volumes.sum() / scene.volume), "mean": float(volumes @ temperature / volumes.sum())}
+    stats = last.stats
+    names = ("unknowns", "iterations", "residual", "integrator", "steps", "rejected", "energy_error")
+    return row | {"heat": stats["heat_in"]["sources"]} | {name: stats[name] for name in names if name in stats}
+
+
+def _fields(scene, law, method, **case):
+    if method == "references.fem":
+        from references import fem
+
+        return fem.evolve(scene, TIMES, elements=law, size=case["size"], accuracy=ACCURACY / 5)
+    from studies.terreros import evolve, packing_of
+
+    packing = packing_of(scene, case["particles"], case["seed"])
+    return evolve(scene, TIMES, packing=packing, law=law, coordination=case["coordination"], accuracy=ACCURACY)
+
+
+def warm_up(law, method, **case):
+    """Load and compile; the packing, kept or made anew, is not part of what is compared."""
+    from studies.terreros import packing_of, sheet
+
+    if method == "references.fem":
+        run(law, method, size=4 * COARSE)
+        return
+    packing_of(sheet(), case["particles"], case["seed"])
+    run(law, method, **case | {"particles": NUMBERS[0], "seed": 99})
+
+
+def curves_of(rows, name):
+    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius."""
+    import numpy as np
+
+    return np.array([[float(word) for word in text.split()] for text in rows[name]])
+
+
+def reference(df):
+    """Row of the bricks to compare with: the paper's if it is there, else the finest."""
+    rows = pick(df, law="hexahedra")
+    rows = rows[rows["status"] == "ok"]
+    return rows.iloc[(rows["size"] - ELEMENT).abs().argsort()[:1]]
+
+
+def compared(df, law, particles, name):
+    """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time.
+
+    Returns
+    -------
+    dict
+        dispersion (%), off (% of the mean of the packings there), at (s), span (the same as off, but % of the highest
+        mean), end (% at the last time).
+    """
+    from studies.terreros import dispersion, largest_difference
+
+    curves = curves_of(pick(df, law=law, particles=particles), name)
+    bricks, mean = curves_of(reference(df), name)[0], curves.mean(axis=0)
+    at, off = largest_difference(bricks, mean)
+    end, span = 100 * (bricks[-1] - mean[-1]) / mean[-1], abs(off) * mean[at] / mean.max()
+    return {"dispersion": dispersion(curves), "off": off, "at": TIMES[at], "span": span, "end": end}
+
+
+def claims(df):
+    """What issue 4 asks for."""
+    return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
+
+
+def _scatter(df):
+    # The paper's limit is for 20000 of its law; it is kept there with 1000 of the tessellation.
+    for particles, limit in zip(NUMBERS, (1.5, 1.5, 0.5), strict=True):
+        for name in NAMES if len(pick(df, law="laguerre", particles=particles)) else ():
+            value = compared(df, "laguerre", particles, name)["dispersion"]
+            text = f"Laguerre, {particles} particles, {name}: dispersion over packings, %"
+            yield f"{text} (paper, 20000: {PAPER['dispersion']:g})", value, limit
+    if len(pick(df, law="platonic", particles=NUMBERS[-1])):
+        for name in NAMES:
+            value = compared(df, "platonic", NUMBERS[-1], name)["dispersion"]
+            yield f"Platonic, 20000 particles, {name}: dispersion over packings, %", value, PAPER["dispersion"]
+
+
+def _against_bricks(df):
+    # Where the difference is largest early, when a checkpoint is barely warm, a kelvin is some per cent of it.
+    for particles, *limits in zip(NUMBERS, (4.0, 4.0, 1.0), (0.6, 0.5, 0.2), strict=True):
+        for name in NAMES if len(pick(df, law="laguerre", particles=particles)) else ():
+            here = compared(df, "laguerre", particles, name)
+            text = f"Laguerre, {particles} particles, {name}: largest difference from bricks,"
+            yield f"{text} % of the temperature then", abs(here["off"]), limits[0]
+            yield f"{text} % of the highest temperature", here["span"], limits[1]
+    for name in NAMES:
+        ours, theirs = (compared(df, law, NUMBERS[0], name)["span"] for law in ("laguerre", "platonic"))
+        text = f"{name}, 1000 particles: largest difference from bricks, Platonic over Laguerre"
+        # Platonic temperatures lack what its excess of heat capacity, a tenth, takes up.
+        yield text, theirs / ours, ">= 5"
+
+
+def _bricks(df):
+    from studies.terreros import largest_difference
+
+    fine, paper = (pick(df, law="hexahedra", size=size) for size in (FINE, ELEMENT))
+    if len(fine) and len(paper):
+        for name in NAMES:
+            off = largest_difference(curves_of(paper, name)[0], curves_of(fine, name)[0])[1]
+            yield f"Bricks of 0.5 mm against 0.25 mm, {name}: largest difference, %", abs(off), 0.2
+
+
+def _balance(df):
+    import math
+
+    from studies.terreros import DIAMETER, METAL, POWER, SHEET
+
+    given = POWER * math.pi / 4 * DIAMETER**2 * SHEET[2] * STOP
+    off = (df["heat"] / given - 1).abs().max(skipna=False)
+    # Rounding of sums over steps; the power does not change.
+    yield "Heat received off power times time, relative, all methods", off, 1e-10
+    yield "Heat lost over heat moved, all methods", df["energy_error"].max(skipna=False), 1e-10
+    warmer = given / (METAL.density * METAL.heat_capacity * math.prod(SHEET))
+    laguerre = pick(df, law="laguerre")
+    off = ((laguerre["mean"] - 25.0) / warmer - 1).abs().max(skipna=False)
+    # The same balance, read from the temperatures.
+    yield "Laguerre: mean warming at the end off heat over capacity, relative", off, 1e-9
+    platonic = pick(df, law="platonic")
+    yield (
+        "Platonic law: least excess of the sheet's heat capacity",
+        platonic["capacity"].min(skipna=False) - 1,
+        ">= 0.01",
+    )
+
+
+def table(df):
+    """Scatter over packings and difference from bricks at the checkpoints, in per cent; capacity over the body's.
+
+    `off` is bricks minus mean of the packings, over that mean, at the time, s, at which the two differ most; `span` its
+    size over the highest mean; `end` as off, at the last time.
+    """
+    import pandas as pd
+
+    df, found = df[df["status"] == "ok"], []
+    for (law, particles), rows in pick(df, method="demheat.dem").groupby(["law", "particles"], sort=False):
+        line = {"law": law, "particles": particles, "packings": len(rows), "capacity": f"{rows['capacity'].mean():.4f}"}
+        for name in NAMES:
+            here = compared(df, law, particles, name)
+            line |= {f"{name} {key}": here[key] for key in here}
+        found.append(line)
+    return pd.DataFrame(found)
+
+
+def plot(df):
+    """Curves at the checkpoints, band over packings; scatter and difference from bricks against their number."""
+    from matplotlib import pyplot
+
+    from studies.figures import BLACK, BLUE, PINK, RED
+
+    df = df[df["status"] == "ok"]
+    figure, axes = pyplot.subplots(2, 3, figsize=(14, 8))
+    colours = {"laguerre": RED, "platonic": BLUE, "calibrated": PINK}
+    counts = pick(df, method="demheat.dem").groupby("law")["particles"]
+    for name, curves, scatter in zip(NAMES, *axes, strict=True):
+        curves.plot(TIMES, curves_of(reference(df), name)[0], color=BLACK, linewidth=0.9, label="bricks")
+        for law, most in counts.max().items():
+            mine = curves_of(pick(df, law=law, particles=most), name)
+            curves.fill_between(TIMES, mine.min(axis=0), mine.max(axis=0), color=colours[law], alpha=0.3)
+            curves.plot(
+                TIMES, mine.mean(axis=0), "--", color=colours[law], label=f"{law}, {most:.0f}, {len(mine)} packings"
+            )
+            numbers = sorted(counts.get_group(law).unique())
+            lines = [compared(df, law, number, name) for number in numbers]
+            scatter.plot(
+                numbers, [line["dispersion"] for line in lines], "o-", color=colours[law], label=f"{law}: dispersion"
+            )
+            scatter.plot(
+                numbers, [abs(line["off"]) for line in lines], "x--", color=colours[law], label="off the bricks"
+            )
+        curves.set(xlabel="time, s", ylabel="temperature, C", title=f"Checkpoint {name}")
+        scatter.axhline(
+            PAPER["dispersion"], color=BLACK, linestyle=":", linewidth=1, label="paper's dispersion, at most"
+        )
+        scatter.set(xscale="log", yscale="log", xlabel="particles", ylabel="%")
+    axes[0, 0].legend(fontsize=8)
+    axes[1, 0].legend(fontsize=8)
+    return figure
