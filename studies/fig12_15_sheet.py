@@ -25,7 +25,7 @@ NUMBERS = (1_000, 5_000, int(PAPER["particles"]))
 SEEDS = (0, 1, 2, 3, 4)
 LAWS = (("laguerre", None), ("platonic", 7.2), ("calibrated", 7.5))
 # Edges of the bricks; the paper's is the middle one.
-COARSE, ELEMENT, FINE = 1e-3, 1e-3 * PAPER["element"], 0.25e-3
+COARSE, ELEMENT, FINE = 1e-3, 1e-3 * PAPER["element"], 0.334e-3
 NAMES = ("A", "B", "C")
 ACCURACY = 1e-4
 TIMEOUT = 3600.0
@@ -167,7 +167,8 @@ def _bricks(df):
     if len(fine) and len(paper):
         for name in NAMES:
             off = largest_difference(curves_of(paper, name)[0], curves_of(fine, name)[0])[1]
-            yield f"Bricks of 0.5 mm against 0.25 mm, {name}: largest difference, %", abs(off), 0.2
+            # Of second order: half of what 0.5 mm are off, which by the bricks of 1 mm is some 0.07 %.
+            yield f"Bricks of 0.5 mm against a third of a mm, {name}: largest difference, %", abs(off), 0.15
 
 
 def _balance(df):
