@@ -126,5 +126,5 @@ def _width(axes, ok):
     axes.plot(peer["particles"], peer["us_per_collision"], "s", color=BLUE, markerfacecolor="white", label="spheropack")
     axes.set(xscale="log", yscale="log", xlabel="spheres", ylabel="CPU microseconds per collision")
     _plain_ticks(axes.yaxis)
-    axes.set_title("Spread 0.3 costs little; 1 : 10 has hundreds of neighbours")
+    axes.set_title("Spread 0.3 costs little, radii 1 : 10 more")
     axes.legend()
