@@ -19,6 +19,8 @@ __all__ = ["WALLS", "Flux", "Heating", "Layer", "Material", "MovingCylinder", "S
 WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
 # Axes across which each domain is round.
 ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z": (0, 1), "sphere": (0, 1, 2)}
+# Part of the box that a domain with so many round axes fills.
+SHARES = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
 
@@ -95,8 +97,7 @@ class Scene:
     @property
     def volume(self) -> float:
         """Volume of the body, m3."""
-        share = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}[len(ROUND_AXES[self.domain])]
-        return share * math.prod(self.size)
+        return domain_volume(self.domain, self.size)
 
     @property
     def wall_temperatures(self) -> dict[str, float]:
@@ -199,6 +200,11 @@ class Scene:
             for name in ("density", "heat_capacity"):
                 if getattr(material, name) is None:
                     raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
+
+
+def domain_volume(domain, size):
+    """Volume of a domain inscribed in a box, m3."""
+    return SHARES[len(ROUND_AXES[domain])] * math.prod(float(side) for side in size)
 
 
 def _plain(load):

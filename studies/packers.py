@@ -8,11 +8,12 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.packing import statistics
-from demheat.packing.base import ROUND_AXES, make_packing
+from demheat.packing.base import make_packing
 from demheat.packing.lsa import lsa
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian
 from demheat.packing.relax import relax
+from demheat.scene import ROUND_AXES
 from studies.cost import measured
 
 # Surface distances, as parts of r_i + r_j, at which contacts are counted.

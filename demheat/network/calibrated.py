@@ -8,8 +8,8 @@ from scipy.sparse import csgraph
 from scipy.spatial import cKDTree
 
 from demheat.network.base import Facets, row_numbers
-from demheat.packing.base import ROUND_AXES
 from demheat.packing.neighbours import as_graph, contacts
+from demheat.scene import ROUND_AXES
 
 MEANS = {
     "arithmetic": lambda a, b: 0.5 * (a + b),

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, cKDTree
 
 from demheat.network.base import SIDES
-from demheat.packing.base import ROUND_AXES
+from demheat.scene import ROUND_AXES
 
 # Width of a wall facet in mean spacings of the particles.
 WIDTH = 1.0

@@ -5,7 +5,8 @@ import numpy as np
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets, row_numbers
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
-from demheat.packing.base import check_domain, domain_volume
+from demheat.packing.base import check_domain
+from demheat.scene import domain_volume
 
 # Rows cut at once: bounds the scratch memory (about 1.5 kB a row) without costing speed.
 BLOCK = 65536

@@ -10,8 +10,8 @@ import numpy as np
 
 from demheat.network.base import Facets
 from demheat.network.calibrated import TOUCH, WALL_RULES, contact_facets, surface_distances
-from demheat.packing.base import ROUND_AXES
 from demheat.packing.neighbours import contacts
+from demheat.scene import ROUND_AXES
 
 # Edges of a face and faces at a vertex of the regular polyhedra.
 SOLIDS = ((3, 3), (4, 3), (3, 4), (5, 3), (3, 5))

@@ -6,10 +6,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.scene import ROUND_AXES, domain_volume
+
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21
-# Axes across which each domain is round: it is inscribed in its box.
-ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z": (0, 1), "sphere": (0, 1, 2)}
 
 
 class Packing(NamedTuple):
@@ -125,12 +125,6 @@ def check_domain(domain, size, periodic):
             f"domain = {domain!r} with size {size.tolist()} and periodic {periodic.tolist()}: sides across its round "
             f"axes {axes} must be equal and not periodic"
         )
-
-
-def domain_volume(domain, size):
-    """Volume of a domain inscribed in a box, m^3."""
-    share = {0: 1.0, 2: np.pi / 4, 3: np.pi / 6}[len(ROUND_AXES[domain])]
-    return float(share * np.prod(size))
 
 
 def wrap(centers, size, periodic):

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from demheat.packing.base import ROUND_AXES, Packing, check_box, check_domain, make_packing, morton_order
+from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
+from demheat.scene import ROUND_AXES
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.

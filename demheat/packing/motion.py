@@ -12,8 +12,9 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import lsa_kernels as kernels
-from demheat.packing.base import ROUND_AXES, domain_volume, wrap
+from demheat.packing.base import wrap
 from demheat.packing.neighbours import near_rows
+from demheat.scene import ROUND_AXES, domain_volume
 
 # Collisions per sphere (each counted for one of the two) over which the pressure is averaged.
 WINDOW = 10

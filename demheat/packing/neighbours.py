@@ -7,8 +7,9 @@ from scipy import sparse
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
-from demheat.packing.base import ROUND_AXES, Packing, wrap
+from demheat.packing.base import Packing, wrap
 from demheat.parts import finite
+from demheat.scene import ROUND_AXES
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0

@@ -12,10 +12,9 @@ from demheat.network.base import SIDES, branches, row_numbers
 from demheat.network.curved import ROUND_SIDE, circumscribed_volume, fibonacci, round_wall, tangents_within
 from demheat.network.interface import connect, link_lengths
 from demheat.network.laguerre import laguerre
-from demheat.packing.base import ROUND_AXES, domain_volume
 from demheat.packing.domain import cut
 from demheat.packing.relax import relax, settle
-from demheat.scene import Material, Scene
+from demheat.scene import ROUND_AXES, Material, Scene, domain_volume
 from demheat.steady import Solution, matrix
 
 BODIES = [("sphere", (2.0, 2.0, 2.0)), ("cylinder-x", (3.0, 1.0, 1.0)), ("cylinder-z", (1.0, 1.0, 0.7))]

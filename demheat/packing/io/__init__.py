@@ -26,10 +26,11 @@ import zlib
 from numbers import Integral
 from pathlib import Path
 
-from demheat.packing.base import ROUND_AXES, Packing, check_box, make_packing
+from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
 from demheat.packing.io.text import Lines, broken
+from demheat.scene import ROUND_AXES
 
 __all__ = ["read", "write"]
 

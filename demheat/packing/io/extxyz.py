@@ -6,9 +6,9 @@ import re
 
 import numpy as np
 
-from demheat.packing.base import ROUND_AXES
 from demheat.packing.io.found import Found
 from demheat.packing.io.text import floats, read_table, whole, write_rows
+from demheat.scene import ROUND_AXES
 
 PAIR = re.compile(r"""([\w-]+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"']+))""")
 TRUE, FALSE = ("T", "TRUE", "1"), ("F", "FALSE", "0")

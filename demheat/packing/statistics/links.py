@@ -10,9 +10,10 @@ from scipy.sparse.csgraph import connected_components
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import statistics_kernels as kernels
-from demheat.packing.base import ROUND_AXES, Packing
+from demheat.packing.base import Packing
 from demheat.packing.neighbours import as_graph
 from demheat.packing.statistics.regions import check_margin, wall_distances
+from demheat.scene import ROUND_AXES
 
 
 class Coordination(NamedTuple):

@@ -7,7 +7,8 @@ from itertools import product
 
 import numpy as np
 
-from demheat.packing.base import ROUND_AXES, Packing
+from demheat.packing.base import Packing
+from demheat.scene import ROUND_AXES
 
 # Nodes along the axis of a cylinder, per sphere. Largest error of 2000 spheres cut at random, against 1000 nodes: 6e-11
 # of a sphere up to half as wide as the core, 8e-5 of wider ones.
