@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 
 from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
 from references import fem, mesh
-from references.fem import bodies, bricks, implicit, loads, separable, sources, space, trbdf2
+from references.fem import bricks, implicit, loads, separable, sources, space, trbdf2
 
 try:
     mesh.load_gmsh()
@@ -305,25 +305,6 @@ def test_a_source_that_leaves_is_refused_before_any_work(monkeypatch):
 
 
 # ---------------------------------------------------------------- round bodies
-
-
-@pytest.mark.parametrize(("domain", "walls"), [("sphere", ["round"]), ("cylinder-y", ["y-", "y+", "round"])])
-def test_round_bodies(domain, walls):
-    of = Scene((1.0, 0.7, 1.0) if domain != "sphere" else (1.0,) * 3, UNIT, initial=0.0, domain=domain)
-    lids = {"y-": math.pi / 4, "y+": math.pi / 4, "round": 0.7 * math.pi if domain != "sphere" else math.pi}
-    loss = []
-    for size in (0.25, 0.125):
-        made = bodies.make_round(of, size=size, order=2)
-        on = space.tetrahedra(of, made)
-        assert sorted(made.walls) == sorted(walls)
-        areas = [on.walls[name][1].sum() for name in walls]
-        assert_allclose(areas, [lids[name] for name in walls], rtol=0.02 * size)
-        assert_allclose(on.volumes.sum(), made.volumes.sum(), rtol=1e-12)
-        loss.append(abs(made.stats["volume_error"]))
-    # A quadratic surface errs by the fourth power of the edge in volume; chords would by the second.
-    assert loss[1] < 1e-4 and fitted(loss)[0] > 3
-    straight = bodies.make_round(of, size=0.125, order=1)
-    assert 1e-3 < -straight.stats["volume_error"] < 0.03
 
 
 def test_flux_through_a_round_wall():

@@ -6,12 +6,13 @@ import threading
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from threadpoolctl import threadpool_info, threadpool_limits
 
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
 from references.mesh import cad
 from references.mesh.cells import bent, check, jacobian_coefficients, straighten, volumes_of
-from references.mesh.sizes import wanted_sizes
+from references.mesh.sizes import checked_size, wanted_sizes
 
 ROCK, METAL = Material(1.0), Material(10.0)
 WALLS = {"y-": 0.0, "y+": 1.0}
@@ -204,6 +205,16 @@ def test_a_failed_size_is_tried_again_then_refused(monkeypatch):
         mesh.make(scene(ball()), size=0.25)
 
 
+def test_the_callers_openmp_threads_stay_as_they_were():
+    def threads():
+        return [library["num_threads"] for library in threadpool_info() if library["user_api"] == "openmp"]
+
+    with threadpool_limits(2, user_api="openmp"):
+        before = threads()
+        mesh.make(scene(), size=0.5)
+        assert threads() == before and 2 in before
+
+
 @pytest.mark.parametrize(
     "inclusions",
     [
@@ -316,11 +327,11 @@ def test_inverted_elements_and_their_periodic_twins_are_straightened():
 
 def test_default_size_follows_order_and_number_of_spheres():
     few, many = scene(ball()), scene(*(ball((x / 10, 0.5, 0.5), 0.01) for x in range(1, 10)), size=(2.0, 2.0, 2.0))
-    assert cad._checked_size(few, None, 2) == pytest.approx(1 / 26)
-    assert cad._checked_size(few, None, 1) == pytest.approx(1 / 50)
-    assert cad._checked_size(many, None, 2) == pytest.approx(2 / 26)
+    assert checked_size(few, None, 2) == pytest.approx(1 / 26)
+    assert checked_size(few, None, 1) == pytest.approx(1 / 50)
+    assert checked_size(many, None, 2) == pytest.approx(2 / 26)
     grid = [(i / 5 - 0.1, j / 5 - 0.1, k / 5 - 0.1) for i in range(1, 6) for j in range(1, 6) for k in range(1, 6)]
-    assert cad._checked_size(scene(*(ball(c, 0.05) for c in grid)), None, 2) == pytest.approx(1 / 40)
+    assert checked_size(scene(*(ball(c, 0.05) for c in grid)), None, 2) == pytest.approx(1 / 40)
 
 
 def test_write_for_other_programs(tmp_path):

@@ -10,14 +10,13 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.scene import Sphere
-from references.fem.bodies import make_round
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
 from references.fem.sources import check_sources
 from references.fem.space import tetrahedra
 from references.fem.trbdf2 import Clock, Problem, begin
-from references.mesh import make
+from references.mesh import make, make_round
 
 # Cube root of the body's volume over the default edge: 2.5e4 unknowns at either order, each solved some hundred times.
 EDGES = {1: 30, 2: 16}

@@ -1,7 +1,9 @@
 """Tetrahedral meshes of a scene: `make` one, `write` one. The only home of gmsh and meshio."""
 
-from references.mesh.cad import PACKAGES, load_gmsh, make
+from references.mesh.cad import make
 from references.mesh.cells import EDGE_COLUMN, Mesh, Wall, twins
 from references.mesh.export import write
+from references.mesh.gmsh_session import PACKAGES, load_gmsh
+from references.mesh.round import make_round
 
-__all__ = ["EDGE_COLUMN", "PACKAGES", "Mesh", "Wall", "load_gmsh", "make", "twins", "write"]
+__all__ = ["EDGE_COLUMN", "PACKAGES", "Mesh", "Wall", "load_gmsh", "make", "make_round", "twins", "write"]

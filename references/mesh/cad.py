@@ -1,4 +1,4 @@
-"""Tetrahedra that conform to every interface of a scene, by gmsh's OpenCASCADE kernel (the only home of gmsh).
+"""Tetrahedra that conform to every interface of a scene, by gmsh's OpenCASCADE kernel.
 
 The box, its layers and its spheres (with their periodic images) are cut into one another, so no element straddles an
 interface; second-order elements follow the spheres. All lengths are divided by the longest edge of the box before they
@@ -7,61 +7,16 @@ reach gmsh, whose tolerances are absolute.
 
 from __future__ import annotations
 
-import ctypes
-import importlib
-import math
-import threading
-import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
-
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import WALLS, Layer, Sphere
+from demheat.scene import WALLS, Layer
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
-from references.mesh.sizes import estimated_cells, unit_lengths, wanted_sizes
+from references.mesh.gmsh_session import attempts, session, tetrahedra
+from references.mesh.sizes import checked_size, unit_lengths, wanted_sizes
 
-# Debian and Ubuntu packages of the libraries that gmsh's wheel links to and a bare system lacks (readelf -d, dpkg -S).
-PACKAGES = {
-    "libGLU.so.1": "libglu1-mesa",
-    "libGL.so.1": "libgl1",
-    "libX11.so.6": "libx11-6",
-    "libXext.so.6": "libxext6",
-    "libXrender.so.1": "libxrender1",
-    "libXcursor.so.1": "libxcursor1",
-    "libXfixes.so.3": "libxfixes3",
-    "libXft.so.2": "libxft2",
-    "libXinerama.so.1": "libxinerama1",
-    "libfontconfig.so.1": "libfontconfig1",
-    "libgomp.so.1": "libgomp1",
-}
-# Cube root of the box volume over the default size: about 1e5 nodes at either order,
-EDGES = {1: 50, 2: 26}
-# or if that is more, this times the cube root of the number of spheres (found: 0.07 % on 83 of them at order 2).
-EDGES_APART = 8
-MOST_CELLS = 3e7
-# Factor on the size, gmsh's 3-D algorithm (10 = HXT, 1 = Delaunay): a size that fails often has neighbours that work.
-ATTEMPTS = ((1.0, 10), (0.93, 10), (0.86, 10), (0.93, 1))
 # How much longer edges may be one metre farther from a feature, in metres.
 GROWTH = 0.3
-OPTIONS = {
-    "General.Terminal": 0,
-    "Mesh.MeshSizeExtendFromBoundary": 0,
-    "Mesh.MeshSizeFromPoints": 0,
-    "Mesh.MeshSizeFromCurvature": 0,
-    "Mesh.MeshSizeMin": 0,
-    "Mesh.Algorithm": 6,
-    "Mesh.Optimize": 1,
-    # Below it slivers on the spheres cannot be curved; above it elements in narrow gaps cost much time in vain.
-    "Mesh.OptimizeThreshold": 0.2,
-    "Mesh.ElementOrder": 1,
-    "Mesh.MaxNumThreads1D": 1,
-    "Mesh.MaxNumThreads2D": 1,
-    "Mesh.MaxNumThreads3D": 1,
-}
-SET_LATER = ("Mesh.MeshSizeMax", "Mesh.Algorithm3D", "Mesh.SecondOrderLinear")
-_LOCK = threading.Lock()
 
 
 def make(scene, *, size=None, order=2, curved=True):
@@ -93,117 +48,25 @@ def make(scene, *, size=None, order=2, curved=True):
     ImportError
         If gmsh or a system library that it needs is missing; the message lists the packages.
     """
-    size = _checked_size(scene, size, order)
+    size = checked_size(scene, size, order)
     sizes = unit_lengths(wanted_sizes(scene, size), max(scene.size))
-    load_gmsh()
-    begin, errors = time.perf_counter(), []
-    for number, (factor, algorithm) in enumerate(ATTEMPTS, start=1):
-        knobs = sizes._replace(size=factor * sizes.size), algorithm, order == 2, bool(curved)
-        try:
-            # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
-            with ThreadPoolExecutor(1) as pool:
-                mesh = pool.submit(_attempt, scene, *knobs).result()
-        except Exception as error:
-            if type(error) not in (Exception, RuntimeError):  # gmsh raises plain Exception
-                raise
-            errors.append(f"{factor * size:.3g} m: {error}")
-            continue
-        stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
-        return mesh._replace(stats=stats | mesh.stats)
-    raise RuntimeError(f"gmsh could not mesh the scene at any of {len(ATTEMPTS)} sizes ({'; '.join(errors)})")
 
+    def attempt(factor, algorithm):
+        return _attempt(scene, sizes._replace(size=factor * sizes.size), algorithm, order == 2, bool(curved))
 
-def load_gmsh():
-    """Import gmsh.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    ImportError
-        If the package or a system library that it needs is missing; the message names what to install.
-    """
-    try:
-        return importlib.import_module("gmsh")
-    except ModuleNotFoundError as error:
-        raise ImportError("gmsh is not installed: pip install gmsh") from error
-    except OSError as error:
-        missing = [name for name in PACKAGES if not _loads(name)]
-        packages = " ".join(PACKAGES[name] for name in missing) or "none of the usual ones is missing"
-        raise ImportError(
-            f"gmsh cannot load its library ({error}). Missing system libraries: {', '.join(missing) or 'unknown'}. "
-            f"On Debian or Ubuntu: apt-get install {packages}"
-        ) from error
-
-
-def _checked_size(scene, size, order):
-    if order not in (1, 2):
-        raise ValueError(f"order = {order!r}: must be 1 or 2")
-    if size is None:
-        spheres = sum(isinstance(inclusion, Sphere) for inclusion in scene.inclusions)
-        return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * spheres ** (1 / 3))
-    try:
-        good = math.isfinite(size) and size > 0
-    except TypeError:
-        good = False
-    if not good:
-        raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
-    if estimated_cells(scene, size) > MOST_CELLS:
-        least = (estimated_cells(scene, 1.0) / MOST_CELLS) ** (1 / 3)
-        raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} tetrahedra; must be >= {least:.3g} m")
-    return float(size)
-
-
-def _loads(name):
-    try:
-        ctypes.CDLL(name)
-    except OSError:
-        return False
-    return True
-
-
-@contextmanager
-def _session():
-    """A fresh gmsh model; options, model and the caller's own gmsh session are afterwards as before."""
-    gmsh = load_gmsh()
-    with _LOCK:
-        mine = not gmsh.isInitialized()
-        if mine:
-            gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
-        before = {name: gmsh.option.getNumber(name) for name in (*OPTIONS, *SET_LATER)}
-        current = gmsh.model.getCurrent()
-        try:
-            for name, value in OPTIONS.items():
-                gmsh.option.setNumber(name, value)
-            gmsh.model.add("demheat")
-            yield gmsh
-        finally:
-            if mine:
-                gmsh.finalize()
-            else:
-                gmsh.model.remove()
-                gmsh.model.setCurrent(current)
-                for name, value in before.items():
-                    gmsh.option.setNumber(name, value)
+    return attempts(attempt, size)
 
 
 def _attempt(scene, sizes, algorithm, quadratic, curved):
     """One try: geometry, mesh, arrays, checks."""
     scale = max(scene.size)
     box = np.array(scene.size) / scale
-    with _session() as gmsh:
+    with session() as gmsh:
         phases = _geometry(gmsh, scene, scale)
         if scene.periodic:
             _tie_faces(gmsh, box)
         _set_sizes(gmsh, sizes, box)
-        gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
-        gmsh.option.setNumber("Mesh.SecondOrderLinear", not curved)
-        gmsh.model.mesh.generate(3)
-        if quadratic:
-            gmsh.model.mesh.setOrder(2)
-        points, cells, phase = _arrays(gmsh, phases, quadratic)
+        points, cells, phase = tetrahedra(gmsh, phases, algorithm, quadratic=quadratic, curved=curved)
     pairs = snap(points, box, scene.periodic)
     straightened, jacobian = straighten(points, cells, pairs) if quadratic else (0, 1.0)
     volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
@@ -297,21 +160,3 @@ def _set_sizes(gmsh, sizes, box):
         least = field.add("Min")
         field.setNumbers(least, "FieldsList", tags)
         field.setAsBackgroundMesh(least)
-
-
-def _arrays(gmsh, phases, quadratic):
-    """Points, cells and the phase of each cell, in unit lengths, nodes of cells only."""
-    kind, width = (11, 10) if quadratic else (4, 4)
-    parts = {tag: gmsh.model.mesh.getElementsByType(kind, tag)[1].reshape(-1, width) for tag in phases}
-    cells = np.concatenate(list(parts.values())).astype(np.int64)
-    phase = np.repeat(np.array(list(phases.values()), np.int32), [len(part) for part in parts.values()])
-    if not len(cells):
-        raise RuntimeError("no tetrahedra were made")
-    tags, coordinates, _ = gmsh.model.mesh.getNodes()
-    place = np.zeros(int(tags.max()) + 1, dtype=np.int64)
-    place[tags.astype(np.int64)] = np.arange(len(tags))
-    used, cells = np.unique(place[cells], return_inverse=True)
-    cells = cells.reshape(-1, width).astype(np.int32)
-    if quadratic:
-        cells[:, [8, 9]] = cells[:, [9, 8]]  # gmsh lists edge 23 before 13
-    return coordinates.reshape(-1, 3)[used], cells, phase

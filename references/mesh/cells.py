@@ -23,7 +23,7 @@ EDGE_COLUMN = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
 
 
 class Wall(NamedTuple):
-    """Triangles on one face of the box.
+    """Triangles on one face of the box, or on one wall of a round body.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class Mesh(NamedTuple):
     curved : (m,) bool array
         Which elements have a curved edge.
     walls : mapping of str to Wall
-        All six faces.
+        All six faces, or "round" and the flat ends of a round body.
     pairs : (p, 2) int32 array
         Node on a face "+" and its periodic twin on the face "-"; empty in a walled box.
     stats : mapping

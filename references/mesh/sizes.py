@@ -10,6 +10,11 @@ import numpy as np
 
 from demheat.scene import Layer, Sphere
 
+# Cube root of the box volume over the default size: about 1e5 nodes at either order,
+EDGES = {1: 50, 2: 26}
+# or if that is more, this times the cube root of the number of spheres (found: 0.07 % on 83 of them at order 2).
+EDGES_APART = 8
+MOST_CELLS = 3e7
 # Of the longest edge. Closer surfaces touch: the cusp between them has no valid elements (2e-6 meshes, 0 does not).
 TOUCH = 1e-6
 _WHY = "the cusp between touching surfaces has no valid elements; leave a gap or let them overlap clearly"
@@ -39,6 +44,42 @@ class Sizes(NamedTuple):
     balls: np.ndarray
     shells: np.ndarray
     slabs: np.ndarray
+
+
+def checked_size(scene, size, order):
+    """Longest edge for a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    size : float, m, or None
+        As asked for.
+    order : {1, 2}
+
+    Returns
+    -------
+    float, m
+
+    Raises
+    ------
+    ValueError
+        If the order or the size is not as described, or asks for more than 3e7 elements.
+    """
+    if order not in (1, 2):
+        raise ValueError(f"order = {order!r}: must be 1 or 2")
+    if size is None:
+        spheres = sum(isinstance(inclusion, Sphere) for inclusion in scene.inclusions)
+        return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * spheres ** (1 / 3))
+    try:
+        good = math.isfinite(size) and size > 0
+    except TypeError:
+        good = False
+    if not good:
+        raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
+    if estimated_cells(scene, size) > MOST_CELLS:
+        least = (estimated_cells(scene, 1.0) / MOST_CELLS) ** (1 / 3)
+        raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} tetrahedra; must be >= {least:.3g} m")
+    return float(size)
 
 
 def wanted_sizes(scene, size):

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import time
-from concurrent.futures import ThreadPoolExecutor
 from itertools import combinations
 
 import numpy as np
 
-from references.mesh import EDGE_COLUMN, Mesh, Wall, cad
-from references.mesh.cells import bent, snap, straighten, volumes_of
+from references.mesh.cells import EDGE_COLUMN, Mesh, Wall, bent, snap, straighten, volumes_of
+from references.mesh.gmsh_session import attempts, session, tetrahedra
+from references.mesh.sizes import checked_size
 
 # Of the volume; chords of elements as long as the radius lose about this much.
 LARGEST_LOSS = 0.2
@@ -34,6 +33,8 @@ def make_round(scene, *, size, order):
 
     Raises
     ------
+    ValueError
+        If the size or the order is not as described, or asks for more than 3e7 elements.
     NotImplementedError
         If there are inclusions.
     RuntimeError
@@ -43,37 +44,18 @@ def make_round(scene, *, size, order):
     """
     if scene.inclusions:
         raise NotImplementedError(f"inclusions in a {scene.domain}: only boxes can have them here")
-    size = cad._checked_size(scene, size, order)
-    begin, errors = time.perf_counter(), []
-    cad.load_gmsh()
-    for number, (factor, algorithm) in enumerate(cad.ATTEMPTS, start=1):
-        try:
-            # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
-            with ThreadPoolExecutor(1) as pool:
-                mesh = pool.submit(_attempt, scene, factor * size, algorithm, order).result()
-        except Exception as error:
-            if type(error) not in (Exception, RuntimeError):  # gmsh raises plain Exception
-                raise
-            errors.append(f"{factor * size:.3g} m: {error}")
-            continue
-        stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
-        return mesh._replace(stats=stats | mesh.stats)
-    raise RuntimeError(f"gmsh could not mesh the {scene.domain} ({'; '.join(errors)})")
+    size = checked_size(scene, size, order)
+    return attempts(lambda factor, algorithm: _attempt(scene, factor * size, algorithm, order), size)
 
 
 def _attempt(scene, size, algorithm, order):
     """One try: geometry, mesh, arrays, checks."""
     scale = max(scene.size)
     box = np.array(scene.size) / scale
-    with cad._session() as gmsh:
+    with session() as gmsh:
         tag = _body(gmsh.model.occ, scene.domain, box)
         gmsh.option.setNumber("Mesh.MeshSizeMax", size / scale)
-        gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
-        gmsh.option.setNumber("Mesh.SecondOrderLinear", 0)
-        gmsh.model.mesh.generate(3)
-        if order == 2:
-            gmsh.model.mesh.setOrder(2)
-        points, cells, phase = cad._arrays(gmsh, {tag: 0}, order == 2)
+        points, cells, phase = tetrahedra(gmsh, {tag: 0}, algorithm, quadratic=order == 2, curved=True)
     pairs = snap(points, box, False)
     straightened, jacobian = straighten(points, cells, pairs) if order == 2 else (0, 1.0)
     volumes, curved = volumes_of(points[cells]) * scale**3, bent(points[cells])

@@ -1,0 +1,193 @@
+"""gmsh in a session of its own: loaded, set up, tried at several sizes, its tetrahedra as arrays."""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import threading
+import time
+from concurrent.futures import ThreadPoolExecutor
+from contextlib import contextmanager
+
+import numpy as np
+
+# Debian and Ubuntu packages of the libraries that gmsh's wheel links to and a bare system lacks (readelf -d, dpkg -S).
+PACKAGES = {
+    "libGLU.so.1": "libglu1-mesa",
+    "libGL.so.1": "libgl1",
+    "libX11.so.6": "libx11-6",
+    "libXext.so.6": "libxext6",
+    "libXrender.so.1": "libxrender1",
+    "libXcursor.so.1": "libxcursor1",
+    "libXfixes.so.3": "libxfixes3",
+    "libXft.so.2": "libxft2",
+    "libXinerama.so.1": "libxinerama1",
+    "libfontconfig.so.1": "libfontconfig1",
+    "libgomp.so.1": "libgomp1",
+}
+# Factor on the size, gmsh's 3-D algorithm (10 = HXT, 1 = Delaunay): a size that fails often has neighbours that work.
+ATTEMPTS = ((1.0, 10), (0.93, 10), (0.86, 10), (0.93, 1))
+OPTIONS = {
+    "General.Terminal": 0,
+    "Mesh.MeshSizeExtendFromBoundary": 0,
+    "Mesh.MeshSizeFromPoints": 0,
+    "Mesh.MeshSizeFromCurvature": 0,
+    "Mesh.MeshSizeMin": 0,
+    "Mesh.Algorithm": 6,
+    "Mesh.Optimize": 1,
+    # Below it slivers on the spheres cannot be curved; above it elements in narrow gaps cost much time in vain.
+    "Mesh.OptimizeThreshold": 0.2,
+    "Mesh.ElementOrder": 1,
+    "Mesh.MaxNumThreads1D": 1,
+    "Mesh.MaxNumThreads2D": 1,
+    "Mesh.MaxNumThreads3D": 1,
+}
+SET_LATER = ("Mesh.MeshSizeMax", "Mesh.Algorithm3D", "Mesh.SecondOrderLinear")
+_LOCK = threading.Lock()
+
+
+def load_gmsh():
+    """Import gmsh.
+
+    Returns
+    -------
+    module
+
+    Raises
+    ------
+    ImportError
+        If the package or a system library that it needs is missing; the message names what to install.
+    """
+    try:
+        return importlib.import_module("gmsh")
+    except ModuleNotFoundError as error:
+        raise ImportError("gmsh is not installed: pip install gmsh") from error
+    except OSError as error:
+        missing = [name for name in PACKAGES if not _loads(name)]
+        packages = " ".join(PACKAGES[name] for name in missing) or "none of the usual ones is missing"
+        raise ImportError(
+            f"gmsh cannot load its library ({error}). Missing system libraries: {', '.join(missing) or 'unknown'}. "
+            f"On Debian or Ubuntu: apt-get install {packages}"
+        ) from error
+
+
+def _loads(name):
+    try:
+        ctypes.CDLL(name)
+    except OSError:
+        return False
+    return True
+
+
+def attempts(attempt, size):
+    """Mesh at the size asked for, or if gmsh fails at neighbouring ones.
+
+    Parameters
+    ----------
+    attempt : callable (factor on the size, number of gmsh's 3-D algorithm)
+        One try; returns a Mesh.
+    size : float, m
+        That a factor of 1 stands for.
+
+    Returns
+    -------
+    Mesh
+        Its stats begin with the `size` used, the number of `attempts` and the time, `mesh_s`.
+
+    Raises
+    ------
+    RuntimeError
+        If gmsh fails at four neighbouring sizes.
+    ImportError
+        If gmsh or a system library that it needs is missing.
+    """
+    load_gmsh()
+    begin, errors = time.perf_counter(), []
+    for number, (factor, algorithm) in enumerate(ATTEMPTS, start=1):
+        try:
+            # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
+            with ThreadPoolExecutor(1) as pool:
+                mesh = pool.submit(attempt, factor, algorithm).result()
+        except Exception as error:
+            if type(error) not in (Exception, RuntimeError):  # gmsh raises plain Exception
+                raise
+            errors.append(f"{factor * size:.3g} m: {error}")
+            continue
+        stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
+        return mesh._replace(stats=stats | mesh.stats)
+    raise RuntimeError(f"gmsh could not mesh the scene at any of {len(ATTEMPTS)} sizes ({'; '.join(errors)})")
+
+
+@contextmanager
+def session():
+    """A fresh gmsh model; options, model and the caller's own gmsh session are afterwards as before."""
+    gmsh = load_gmsh()
+    with _LOCK:
+        mine = not gmsh.isInitialized()
+        if mine:
+            gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
+        before = {name: gmsh.option.getNumber(name) for name in (*OPTIONS, *SET_LATER)}
+        current = gmsh.model.getCurrent()
+        try:
+            for name, value in OPTIONS.items():
+                gmsh.option.setNumber(name, value)
+            gmsh.model.add("demheat")
+            yield gmsh
+        finally:
+            if mine:
+                gmsh.finalize()
+            else:
+                gmsh.model.remove()
+                gmsh.model.setCurrent(current)
+                for name, value in before.items():
+                    gmsh.option.setNumber(name, value)
+
+
+def tetrahedra(gmsh, phases, algorithm, *, quadratic, curved):
+    """Mesh the volumes of the current model.
+
+    Parameters
+    ----------
+    gmsh : module
+        In a `session`, with its sizes set.
+    phases : mapping of int to int
+        Phase of each volume tag.
+    algorithm : int
+        Number of gmsh's 3-D algorithm.
+    quadratic : bool
+        With nodes at the middles of the edges.
+    curved : bool
+        Put those onto the surfaces.
+
+    Returns
+    -------
+    points : (n, 3) float array
+        In the unit of the model, nodes of cells only.
+    cells : (m, 4) or (m, 10) int32 array
+        As in `Mesh`.
+    phase : (m,) int32 array
+
+    Raises
+    ------
+    RuntimeError
+        If no tetrahedra were made.
+    """
+    gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
+    gmsh.option.setNumber("Mesh.SecondOrderLinear", not curved)
+    gmsh.model.mesh.generate(3)
+    if quadratic:
+        gmsh.model.mesh.setOrder(2)
+    kind, width = (11, 10) if quadratic else (4, 4)
+    parts = {tag: gmsh.model.mesh.getElementsByType(kind, tag)[1].reshape(-1, width) for tag in phases}
+    cells = np.concatenate(list(parts.values())).astype(np.int64)
+    phase = np.repeat(np.array(list(phases.values()), np.int32), [len(part) for part in parts.values()])
+    if not len(cells):
+        raise RuntimeError("no tetrahedra were made")
+    tags, coordinates, _ = gmsh.model.mesh.getNodes()
+    place = np.zeros(int(tags.max()) + 1, dtype=np.int64)
+    place[tags.astype(np.int64)] = np.arange(len(tags))
+    used, cells = np.unique(place[cells], return_inverse=True)
+    cells = cells.reshape(-1, width).astype(np.int32)
+    if quadratic:
+        cells[:, [8, 9]] = cells[:, [9, 8]]  # gmsh lists edge 23 before 13
+    return coordinates.reshape(-1, 3)[used], cells, phase

@@ -1,0 +1,75 @@
+"""Meshes of cylinders and spheres: surfaces and volumes, and what is tried when gmsh fails."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat.scene import Material, Scene
+from references import mesh
+from references.fem import space
+from references.mesh import make_round
+from references.mesh import round as module
+
+try:
+    mesh.load_gmsh()
+except ImportError as error:
+    pytest.skip(str(error), allow_module_level=True)
+
+UNIT = Material(1.0, 1.0, 1.0)
+
+
+@pytest.mark.parametrize(("domain", "walls"), [("sphere", ["round"]), ("cylinder-y", ["y-", "y+", "round"])])
+def test_round_bodies(domain, walls):
+    of = Scene((1.0, 0.7, 1.0) if domain != "sphere" else (1.0,) * 3, UNIT, initial=0.0, domain=domain)
+    lids = {"y-": math.pi / 4, "y+": math.pi / 4, "round": 0.7 * math.pi if domain != "sphere" else math.pi}
+    loss = []
+    for size in (0.25, 0.125):
+        made = make_round(of, size=size, order=2)
+        on = space.tetrahedra(of, made)
+        assert sorted(made.walls) == sorted(walls)
+        areas = [on.walls[name][1].sum() for name in walls]
+        assert_allclose(areas, [lids[name] for name in walls], rtol=0.02 * size)
+        assert_allclose(on.volumes.sum(), made.volumes.sum(), rtol=1e-12)
+        loss.append(abs(made.stats["volume_error"]))
+    # A quadratic surface errs by the fourth power of the edge in volume; chords would by the second.
+    assert loss[1] < 1e-4 and np.log2(loss[0] / loss[1]) > 3
+    straight = make_round(of, size=0.125, order=1)
+    assert 1e-3 < -straight.stats["volume_error"] < 0.03
+
+
+def test_a_failed_size_is_tried_again_then_refused(monkeypatch):
+    of = Scene((1.0,) * 3, UNIT, initial=0.0, domain="sphere")
+    attempt, calls = module._attempt, []
+
+    def fails_once(of, size, *knobs):
+        calls.append(size)
+        if len(calls) == 1:
+            raise Exception("no elements in volume 1")
+        return attempt(of, size, *knobs)
+
+    monkeypatch.setattr(module, "_attempt", fails_once)
+    made = make_round(of, size=0.4, order=1)
+    assert calls == [0.4, 0.93 * 0.4]
+    assert made.stats["attempts"] == 2 and made.stats["size"] == 0.93 * 0.4
+
+    def fails(*_):
+        raise Exception("PLC Error")
+
+    monkeypatch.setattr(module, "_attempt", fails)
+    with pytest.raises(RuntimeError, match="4 sizes.*0.4 m: PLC Error"):
+        make_round(of, size=0.4, order=1)
+
+
+def test_other_errors_are_not_tried_again(monkeypatch):
+    calls = []
+
+    def wrong(*_):
+        calls.append(1)
+        raise TypeError("ours")
+
+    monkeypatch.setattr(module, "_attempt", wrong)
+    with pytest.raises(TypeError, match="ours"):
+        make_round(Scene((1.0,) * 3, UNIT, initial=0.0, domain="sphere"), size=0.4, order=1)
+    assert len(calls) == 1
