@@ -19,7 +19,8 @@ class Samples(NamedTuple):
     ----------
     points : (n, 3) float array, m
     volumes : (n,) float array, m3
-        Sum to the volume of the body.
+        Sum to the volume of the body as the method has it: those of the Platonic law, which carry the heat, do not fill
+        it.
     temperature : (n,) float array, K or degrees Celsius
     phase : (n,) int array
         Phase number as the method saw it.

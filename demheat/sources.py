@@ -31,7 +31,7 @@ def source_power(scene, centers, volumes):
     Returns
     -------
     callable (time, s) -> (n,) float array, W, or None without sources
-        At every time a moving cylinder gives `total_power` to rounding, wherever its cells are. Continuous in time,
+        All together give `total_power` at every time to rounding, wherever the cells are. Continuous in time,
         with its slope: cells gain and lose over the time in which the rim crosses them. An integrator sees it at the
         times of its stages; steps longer than that time displace heat, but do not lose any. The function raises
         ValueError at a time when a source that is not to be clipped has left the body.
@@ -45,7 +45,8 @@ def source_power(scene, centers, volumes):
     steady, moving = np.zeros(len(volumes)), []
     for number, source in enumerate(scene.sources):
         if isinstance(source, Heating):
-            steady += source.power_density * volumes
+            # Volumes that carry the capacity need not fill the body: the Platonic law's do not.
+            steady += source.power_density * scene.volume / volumes.sum() * volumes
         else:
             _check_through(scene, source)
             moving.append(_deposit(scene, number, centers, volumes))
@@ -95,9 +96,11 @@ def check_sources(scene, stop):
         From time 0 on.
     """
     for number, source in enumerate(scene.sources):
-        if isinstance(source, Heating) or source.clip:
+        if isinstance(source, Heating):
             continue
         _check_through(scene, source)
+        if source.clip:
+            continue
         # The body is convex and the motion straight: inside at both ends is inside all the time.
         if _clearance(scene, source, 0.0) < 0 or _clearance(scene, source, stop) < 0:
             _refuse(scene, number, source, _leaving(scene, source, stop))

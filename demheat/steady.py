@@ -8,8 +8,7 @@ from scipy.sparse import csgraph
 from scipy.sparse.linalg import cg
 
 from demheat import steady_kernels as kernels
-from demheat.network.base import Network, row_numbers
-from demheat.scene import WALLS
+from demheat.network.base import SIDES, Network, row_numbers
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond these sizes multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with the size and with
@@ -129,7 +128,7 @@ def _reached(network, scene):
     ones = np.ones(len(indices), np.int8)
     graph = sparse.csr_matrix((ones, indices.astype(np.int32), indptr), shape=(n, n))
     _, label = csgraph.connected_components(graph, directed=False)
-    held = [WALLS.index(name) for name in scene.wall_temperatures]
+    held = [SIDES.index(name) for name in scene.wall_temperatures]
     anchors = network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]
     return np.isin(label, np.unique(label[anchors]))
 
@@ -142,7 +141,7 @@ def _system(network, scene, reached):
         received = np.empty(n)
         kernels.flows(*_links(network), gradient, np.zeros(n), received, np.empty(n))
         return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
-    held = np.array([scene.wall_temperatures.get(name, np.nan) for name in WALLS])[network.wall_side]
+    held = np.array([scene.wall_temperatures.get(name, np.nan) for name in SIDES])[network.wall_side]
     ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
     level = float(np.mean(list(scene.wall_temperatures.values())))
     held = np.nan_to_num(held - level)
@@ -164,7 +163,7 @@ def _links(network):
 
 def _imposed(network, scene):
     """Heat that imposed fluxes bring in through each wall facet, W."""
-    return np.array([scene.wall_fluxes.get(name, 0.0) for name in WALLS])[network.wall_side] * network.wall_area
+    return np.array([scene.wall_fluxes.get(name, 0.0) for name in SIDES])[network.wall_side] * network.wall_area
 
 
 def _start(network, scene, reached):
@@ -273,7 +272,7 @@ def _at_walls(system, scene, x):
     there, imposed = x[network.wall_particle] - system.level, _imposed(network, scene)
     conductance = network.wall_conductance
     rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
-    is_held = np.array([name in scene.wall_temperatures for name in WALLS])[network.wall_side]
+    is_held = np.array([name in scene.wall_temperatures for name in SIDES])[network.wall_side]
     temperature = system.level + np.where(is_held, system.held, there + rise)
     heat = np.where(is_held, system.ties * (system.held - there), imposed)
     return temperature, np.where(np.isnan(heat), 0.0, heat)

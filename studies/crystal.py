@@ -71,7 +71,7 @@ def spheres(cells, crystal="simple cubic", *, periodic):
 
 def _compared(cells, walls, sphere):
     """Largest differences between network and grid, relative to the largest value or the span of temperature."""
-    from demheat import dem
+    from demheat import solve
     from studies import stencil
 
     size = np.array(cells) * EDGE
@@ -92,7 +92,7 @@ def _compared(cells, walls, sphere):
     after = rough[place] + dt / capacity * _received(network, scene, rough[place])
     row["step"] = float(abs(after - stencil.explicit_step(grid, rough, dt)[place]).max() / SPAN)
     knobs = {"law": "platonic", "coordination": 6.0, "wall": "surface"}
-    field = dem.solve(scene, packing=packing, tolerance=1e-14, **knobs)
+    field = solve(scene, packing=packing, tolerance=1e-14, **knobs)
     at = tuple(np.floor(field.samples.points / EDGE).astype(int).T)
     row["steady"] = float(abs(field.samples.temperature - stencil.steady(grid)[at]).max() / SPAN)
     return row | {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
@@ -167,13 +167,13 @@ def _off(ours, theirs):
 
 def _conducting(cells, crystal):
     """Steady conductivity and heat capacity of a periodic crystal."""
-    from demheat import dem
+    from demheat import solve
     from demheat.network.platonic import CRYSTALS, crystal_packing, fraction_factors, surface_factors
 
     packing = spheres(cells, crystal, periodic=True)
     number, _ = crystal_packing(CRYSTALS[crystal])
     scene = Scene(tuple(packing.size), MATRIX, gradient=(0.0, 1.0, 0.0))
-    field = dem.solve(scene, law="platonic", packing=packing, coordination=number, tolerance=1e-13, allow_few=True)
+    field = solve(scene, law="platonic", packing=packing, coordination=number, tolerance=1e-13, allow_few=True)
     n = np.array([number])
     formula = float(number * surface_factors(n)[0] * fraction_factors(n)[0] / (4 * math.pi))
     row = {"particles": packing.number, "neighbours": number, "conductivity": field.conductivity / MATRIX.conductivity}

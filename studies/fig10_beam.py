@@ -12,6 +12,7 @@ conductivity between its two ends, and its heat capacity, both over the material
 span. Packings are relaxed ones, at a packing fraction of 0.64; the paper names neither an algorithm nor a fraction.
 """
 
+from studies.cases import laws_by_size
 from studies.pick import pick, present
 from studies.store import printed
 
@@ -28,11 +29,7 @@ TIMEOUT = 3600.0
 
 
 def _cases():
-    for particles in NUMBERS:
-        for law, coordination in LAWS:
-            for seed in SEEDS:
-                yield {"law": law, "coordination": coordination, "particles": particles, "seed": seed,
-                       "method": "demheat.dem"}  # fmt: skip
+    yield from laws_by_size(NUMBERS, LAWS, SEEDS)
     for size in SIZES:
         yield {"law": "tetrahedra", "size": size, "method": "references.fem"}
 
@@ -51,7 +48,7 @@ def run(law, method, **case):
 
 
 def _particles(law, coordination, particles, seed):
-    from demheat.dem import evolve
+    from demheat import evolve
     from studies.terreros import beam, packing_of, steady_conductivity
 
     scene = beam()

@@ -15,6 +15,7 @@ thickness: there is no bulk, where contacts could be counted. Contacts are there
 All laws get the same power, whatever heat capacity they make of the sheet.
 """
 
+from studies.cases import laws_by_size
 from studies.pick import pick, present
 from studies.store import printed
 
@@ -32,11 +33,7 @@ TIMEOUT = 3600.0
 
 
 def _cases():
-    for particles in NUMBERS:
-        for law, coordination in LAWS:
-            for seed in SEEDS:
-                yield {"law": law, "coordination": coordination, "particles": particles, "seed": seed,
-                       "method": "demheat.dem"}  # fmt: skip
+    yield from laws_by_size(NUMBERS, LAWS, SEEDS)
     for size in (COARSE, ELEMENT, FINE):
         yield {"law": "hexahedra", "size": size, "method": "references.fem"}
 
@@ -78,10 +75,13 @@ def _fields(scene, law, method, **case):
         from references import fem
 
         return fem.evolve(scene, TIMES, elements=law, size=case["size"], accuracy=ACCURACY / 5)
-    from studies.terreros import evolve, packing_of
+    from demheat import evolve
+    from studies.terreros import bulk_gap, packing_of
 
-    packing = packing_of(scene, case["particles"], case["seed"])
-    return evolve(scene, TIMES, packing=packing, law=law, coordination=case["coordination"], accuracy=ACCURACY)
+    packing, contact = packing_of(scene, case["particles"], case["seed"]), {}
+    if case["coordination"] is not None:
+        contact = {"gap": bulk_gap(case["coordination"])}
+    return evolve(scene, TIMES, packing=packing, law=law, accuracy=ACCURACY, **contact)
 
 
 def warm_up(law, method, **case):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.dem import calibration
+from demheat.calibration import calibration
 from demheat.network.calibrated import contact_facets
 from demheat.network.laguerre import without_hidden
 from demheat.packing.cache import grown, relaxed

@@ -72,13 +72,13 @@ def _homogeneous(law, packing, particles, seed, contacts=None):
     """Sum of the capacities, steady conductivity and diffusivity of one packing, relative to the material."""
     import numpy as np
 
-    from demheat import dem
+    from demheat import solve
     from demheat.packing.neighbours import contacts as linked
 
     sample = packed(packing, particles, seed)
     scene = Scene(tuple(sample.size), Material(1.0), gradient=(0.0, 1.0, 0.0))
     knobs = {} if contacts is None else {"coordination": contacts}
-    field = dem.solve(scene, law=law, packing=sample, conforming=False, tolerance=1e-10, **knobs)
+    field = solve(scene, law=law, packing=sample, conforming=False, tolerance=1e-10, **knobs)
     row = {"phi": sample.phi, "capacity": float(field.samples.volumes.sum() / sample.volume)}
     row["conductivity"] = field.conductivity
     row["diffusivity"] = row["conductivity"] / row["capacity"]

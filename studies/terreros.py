@@ -1,4 +1,4 @@
-"""The beam and the sheet of Terreros et al. (2013), their packings, and the laws of contacts in a body without bulk."""
+"""The beam and the sheet of Terreros et al. (2013), their packings, and what is read off their fields."""
 
 from __future__ import annotations
 
@@ -6,16 +6,14 @@ from functools import cache
 
 import numpy as np
 
-from demheat import dem, sources, transient
-from demheat.evaluate import field_of
+from demheat.calibration import calibration
 from demheat.network.calibrated import contact_facets
-from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.network.platonic import platonic_facets
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Uniform
-from demheat.scene import WALLS, Material, MovingCylinder, Scene
+from demheat.scene import Material, MovingCylinder, Scene
 
 # Comput. Mater. Sci. 69 (2013) 46: material of both bodies, and spread of the radii.
 METAL = Material(134.0, density=2790.0, heat_capacity=880.0)
@@ -69,60 +67,17 @@ def steady_conductivity(packing, law, **contact):
     else:
         facets = contact_facets(packing, links=contacts(packing, **contact))
     packing, facets = without_hidden(packing, facets)
-    # Steady solves know flat walls only; the insulated side takes no part.
-    flat = facets.wall_side < len(WALLS)
-    walls = ("wall_particle", "wall_side", "wall_area", "wall_distance")
-    facets = facets._replace(**{name: getattr(facets, name)[flat] for name in walls}, wall_normal=None)
-    return 1.0 / dem.calibration(facets, packing, _between_ends(packing))
-
-
-def _between_ends(packing):
-    return Scene(size=tuple(packing.size), matrix=Material(1.0), walls={"x-": 0.0, "x+": 1.0})
+    between_ends = Scene(size=tuple(packing.size), matrix=Material(1.0), walls={"x-": 0.0, "x+": 1.0})
+    return 1.0 / calibration(facets, packing, between_ends)
 
 
 @cache
 def bulk_gap(coordination):
-    """Gap, over r_i + r_j, at which a periodic packing of such spheres has a mean number of contacts."""
-    return contacts(relaxed(BULK, radii=SPREAD, seed=0), coordination=coordination)[2]
+    """Gap, over r_i + r_j, at which a periodic packing of such spheres has a mean number of contacts.
 
-
-def evolve(scene, times, *, packing, law, coordination=None, accuracy=1e-4):
-    """`demheat.dem.evolve` also for laws of contacts in a box that is nowhere far from its walls.
-
-    `dem.evolve` counts the mean number of contacts of particles four radii away from every wall, of which a sheet has
-    none. Here contacts are those within the gap that gives that number in a periodic packing.
-
-    Parameters
-    ----------
-    scene : Scene
-        A homogeneous box.
-    times : sequence of float, s
-    packing : Packing
-    law : {"laguerre", "calibrated", "platonic"}
-    coordination : float, optional
-        Mean number of contacts in bulk, for the laws of contacts only.
-    accuracy : float
-        As in `dem.evolve`.
-
-    Yields
-    ------
-    Field
+    The sheet has no particle four radii away from every wall, whose contacts could be counted.
     """
-    if law == "laguerre":
-        yield from dem.evolve(scene, times, packing=packing, accuracy=accuracy)
-        return
-    links = contacts(packing, gap=bulk_gap(coordination))
-    facets = (platonic_facets if law == "platonic" else contact_facets)(packing, links=links)
-    packing, facets = without_hidden(packing, facets)
-    if law == "calibrated":
-        facets = facets._replace(area=facets.area * dem.calibration(facets, packing, _between_ends(packing)))
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
-    power = sources.source_power(scene, network.centers, network.volumes)
-    for now, solution in transient.evolve(network, scene, times, power=power, accuracy=accuracy):
-        flux = transient.mean_flux(network, scene, solution)
-        parts = scene, packing, facets, network, solution
-        yield field_of(*parts, law=law, stats={"law": law}, mean_flux=flux, time=now)
+    return contacts(relaxed(BULK, radii=SPREAD, seed=0), coordination=coordination)[2]
 
 
 def binned(x, values, bins=20):

@@ -9,10 +9,11 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere
-from demheat.dem import LOADINGS, calibration
+from demheat.calibration import LOADINGS, calibration
 from demheat.network.calibrated import contact_facets
-from demheat.network.laguerre import without_hidden
+from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.cache import relaxed
+from demheat.packing.neighbours import contacts
 from references import exact
 
 ONE, TEN = Material(1.0), Material(10.0)
@@ -320,3 +321,42 @@ def test_points_that_are_none(points):
 def test_packing_of_another_box_is_refused():
     with pytest.raises(ValueError, match="packing of size"):
         demheat.solve(ball(), packing=relaxed(200, seed=0))
+
+
+def test_a_gap_takes_the_place_of_a_number_of_contacts():
+    scene = ball(periodic=True)
+    packing = relaxed(500, seed=0)
+    gap = contacts(packing, coordination=7.0)[2]
+    by_number, by_gap = (
+        demheat.solve(scene, packing=packing, law="calibrated", **knob).conductivity
+        for knob in ({"coordination": 7.0}, {"gap": gap})
+    )
+    assert by_gap == by_number
+    # A sheet two particles thick has none away from its walls: only a gap says who is in contact.
+    sheet = Scene(size=(1, 1, 0.2), matrix=ONE, walls={"x-": 0.0, "x+": 1.0})
+    with pytest.raises(ValueError, match="margin = 4.0"):
+        demheat.solve(sheet, particles=300, law="calibrated")
+    assert_allclose(demheat.solve(sheet, particles=300, law="calibrated", gap=0.1).conductivity, 1.0, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("knobs", "words"),
+    [
+        ({"gap": 0.1}, "gap = 0.1 with law = 'laguerre'"),
+        ({"gap": -1.0, "law": "calibrated"}, "gap = -1.0: must be"),
+        ({"gap": True, "law": "platonic"}, "gap = True: must be"),
+        ({"gap": 0.1, "coordination": 7.0, "law": "platonic"}, "pass one of them"),
+    ],
+)
+def test_gaps_that_make_no_sense(knobs, words):
+    with pytest.raises(ValueError, match=words):
+        demheat.solve(ball(), **knobs)
+
+
+def test_calibration_in_a_round_body():
+    """The tessellation of a cylinder conducts exactly between its ends; its round wall is insulated."""
+    packing = relaxed(300, size=(2.0, 1.0, 1.0), periodic=False, domain="cylinder-x", seed=0)
+    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain="cylinder-x")
+    ends = Scene(size=(2, 1, 1), matrix=ONE, walls={"x-": 0.0, "x+": 1.0})
+    # What is compared with has the area of the packing's own ends; the solver leaves 1e-8.
+    assert_allclose(calibration(facets, packing, ends), 1.0, rtol=1e-7)

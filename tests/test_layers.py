@@ -47,6 +47,14 @@ LAYERS = {
         "demheat.network",
         "demheat.steady_kernels",
     ),
+    "demheat.calibration": (
+        "demheat.scene",
+        "demheat.threads",
+        "demheat.network",
+        "demheat.steady",
+        "demheat.evaluate",
+    ),
+    "demheat.checks": ("demheat.scene", "demheat.network", "demheat.sources"),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
@@ -58,6 +66,8 @@ LAYERS = {
         "demheat.transient",
         "demheat.integrators",
         "demheat.evaluate",
+        "demheat.calibration",
+        "demheat.checks",
     ),
     "references": ("demheat.scene", "demheat.field", "references"),
     "studies": ("demheat", "references", "studies"),

@@ -38,7 +38,7 @@ def cells():
 def test_uniform_heating(cells):
     centers, _, volumes = cells
     scene = sheet(Heating(5e6))
-    assert_allclose(source_power(scene, centers, volumes)(3.0), 5e6 * volumes, rtol=1e-15)
+    assert_allclose(source_power(scene, centers, volumes)(3.0), 5e6 * volumes, rtol=1e-12)
     # Volumes sum to the body's to 1e-12.
     assert_allclose(source_power(scene, centers, volumes)(3.0).sum(), total_power(scene, 3.0), rtol=1e-12)
     assert lost_power(scene, 3.0) == 0.0
@@ -171,3 +171,13 @@ def test_ways_that_are_not_straight_through(domain, axis):
     for ask in (lambda: source_power(scene, np.zeros((1, 3)), np.ones(1)), lambda: check_sources(scene, 1.0)):
         with pytest.raises(NotImplementedError, match=f"along z in a {domain}"):
             ask()
+
+
+def test_volumes_that_do_not_fill_the_body_get_its_power(cells):
+    """The Platonic law's volumes carry the heat capacity and sum to more than the body."""
+    centers, _, volumes = cells
+    scene = sheet(Heating(5e6))
+    given = source_power(scene, centers, 1.1 * volumes)(0.0)
+    # A quotient of sums.
+    assert_allclose(given.sum(), 5e6 * scene.volume, rtol=1e-14)
+    assert_allclose(given / volumes, given[0] / volumes[0], rtol=1e-13)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
+import demheat
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 from studies import terreros
@@ -60,7 +61,8 @@ def test_the_gap_gives_the_wanted_contacts_in_bulk():
 def test_every_law_gets_the_power_of_the_source(law, coordination):
     scene = terreros.sheet()
     packing = terreros.packing_of(scene, 1_000, 0)
-    (field,) = terreros.evolve(scene, [0.5], packing=packing, law=law, coordination=coordination)
+    contact = {} if coordination is None else {"gap": terreros.bulk_gap(coordination)}
+    (field,) = demheat.evolve(scene, [0.5], packing=packing, law=law, accuracy=1e-4, **contact)
     given = terreros.POWER * math.pi / 4 * terreros.DIAMETER**2 * terreros.SHEET[2] * 0.5
     # Rounding of sums over a thousand cells and some tens of steps.
     assert_allclose(field.stats["heat_in"]["sources"], given, rtol=1e-12)

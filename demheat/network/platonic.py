@@ -227,31 +227,3 @@ def carrying_volumes(radii, neighbours):
     """
     spheres = 4 / 3 * np.pi * radii**3
     return np.divide(spheres, fraction_factors(neighbours), out=np.zeros(len(radii)), where=neighbours > 0)
-
-
-def capacities(packing, links, material):
-    """Heat capacities of the particles, rho C V_p / f(n_p) (Terreros et al. 2013, section 4).
-
-    Parameters
-    ----------
-    packing : Packing
-    links : (indptr, indices, gap)
-        As `demheat.packing.neighbours.contacts` returns them.
-    material : Material
-        With density and heat capacity.
-
-    Returns
-    -------
-    (n,) float array, J/K
-        Zero for particles without neighbours, which take no part.
-
-    Raises
-    ------
-    ValueError
-        If the material lacks a density or a heat capacity, or a particle has more than 29 neighbours.
-    """
-    for name in ("density", "heat_capacity"):
-        if getattr(material, name) is None:
-            raise ValueError(f"Material.{name} = None: capacities need it; must be > 0")
-    neighbours = count_neighbours(packing, links[0], links[2])
-    return material.density * material.heat_capacity * carrying_volumes(packing.radii, neighbours)

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 
 from demheat import Flux, Material, Scene
-from demheat.dem import calibration
+from demheat.calibration import calibration
 from demheat.integrators.system import semi_discrete
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect

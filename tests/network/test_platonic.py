@@ -10,7 +10,6 @@ from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import without_hidden
 from demheat.network.platonic import (
     CRYSTALS,
-    capacities,
     count_neighbours,
     crystal_packing,
     fraction_factors,
@@ -117,7 +116,6 @@ def test_links_and_volumes_are_the_papers(packing):
     linked = number > 0
     f = fraction_factors(number)[linked]
     assert_allclose(facets.volumes[linked] * f, 4 / 3 * np.pi * packing.radii[linked] ** 3, rtol=1e-13)
-    assert_allclose(capacities(packing, links, ONE), 6.0 * facets.volumes, rtol=1e-14)
     back = {(p, q): a for p, q, a in zip(row_numbers(facets.indptr), facets.indices, facets.area, strict=True)}
     assert all(back[q, p] == a for (p, q), a in back.items())
 
@@ -183,7 +181,7 @@ def test_steady_conductivity_of_crystals(name):
     assert_allclose(field.conductivity, expected, rtol=1e-7)  # solver tolerance 1e-8
     assert (abs(expected - 1) < 1e-12) == (name == "simple cubic")
     # Each sphere of a crystal does stand for its part of the volume.
-    assert_allclose(capacities(packing, links, ONE).sum(), 6.0 * 27.0, rtol=1e-12)
+    assert_allclose(field.samples.volumes.sum(), 27.0, rtol=1e-12)
 
 
 def test_mass_is_not_conserved_nor_fractions_wrong(packing):
@@ -240,11 +238,6 @@ def test_bad_choices(packing, change, words):
         platonic_facets(packing, **change)
     with pytest.raises(ValueError, match=words):
         demheat.solve(Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", **change)
-
-
-def test_capacities_need_a_material(packing):
-    with pytest.raises(ValueError, match="Material.density = None"):
-        capacities(packing, contacts(packing), Material(1.0))
 
 
 def test_the_choices_of_contact_laws_are_not_laguerres():

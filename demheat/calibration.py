@@ -1,0 +1,75 @@
+"""C_t, the factor that gives a homogeneous contact network the conductivity of its material.
+
+Source: Haddad et al. 2021, eqs. 7-9.
+"""
+
+import numpy as np
+
+from demheat.evaluate import field_of
+from demheat.network.interface import connect
+from demheat.scene import WALLS, Flux, Material, Scene
+from demheat.steady import solve_steady
+
+LOADINGS = ("isothermal", "flux")
+
+
+def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", tolerance=1e-8):
+    """C_t of a contact network: conductivity over that of the homogeneous lattice with C_t = 1, under a like load.
+
+    Source: Haddad et al. 2021, eqs. 7-9.
+
+    Parameters
+    ----------
+    facets : Facets
+        With S = pi R_m^2.
+    packing : Packing
+        In any domain; axes without a load may be periodic or not, round walls are insulated.
+    scene : Scene
+        Its box and load; a wall load calibrates between the two walls along its axis.
+    loading : {"isothermal", "flux"}
+        Between walls: two temperatures, or as in the paper a temperature below and a flux that enters above, where the
+        temperature is then read.
+    solver, tolerance
+        As in `demheat.steady.solve_steady`.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        If `loading` is none of these, or no particle conducts between the two walls.
+    """
+    if loading not in LOADINGS:
+        raise ValueError(f"loading = {loading!r}: must be one of {', '.join(LOADINGS)}")
+    walls = None
+    if not scene.periodic:
+        letter = next(iter(scene.walls))[0]
+        walls = {letter + "-": 0.0, letter + "+": 1.0 if loading == "isothermal" else Flux(1.0)}
+    unit = Scene(size=scene.size, matrix=Material(1.0), gradient=scene.gradient, walls=walls)
+    phase = np.zeros(packing.number, dtype=np.int32)
+    network = connect(facets, packing.centers, packing.size, phase, unit.conductivities)
+    solution = solve_steady(network, unit, solver=solver, tolerance=tolerance)
+    if scene.periodic:
+        return 1.0 / field_of(unit, packing, facets, network, solution, law="calibrated", stats={}).conductivity
+    return 1.0 / _between_walls(network, solution, "xyz".index(letter))
+
+
+def loaded_flat(scene):
+    """A scene of the same size with a load along the first flat wall of this one, or its axis, or its longest side."""
+    flat = [name for name in (scene.walls or {}) if name in WALLS]
+    longest = "xyz"[int(np.argmax(scene.size))]
+    letter = flat[0][0] if flat else scene.domain[-1] if scene.domain.startswith("cylinder") else longest
+    return Scene(size=scene.size, matrix=Material(1.0), walls={letter + "-": 0.0, letter + "+": 1.0})
+
+
+def _between_walls(network, solution, axis):
+    """Conductivity between the two walls across an axis: heat times length over area and temperature difference."""
+    low, high = (network.wall_side == 2 * axis + end for end in (0, 1))
+    area, heat = network.wall_area[high].sum(), solution.wall_heat[high].sum()
+    if not (low.any() and abs(heat) > 0):
+        raise ValueError(f"packing: no heat passes between its walls along {'xyz'[axis]}; no particle joins them")
+    drop = np.average(solution.wall_temperature[high], weights=network.wall_area[high])
+    drop -= np.average(solution.wall_temperature[low], weights=network.wall_area[low])
+    return heat * network.size[axis] / (area * drop)
