@@ -8,7 +8,7 @@ import numpy as np
 from demheat import steady_kernels
 from demheat.integrators import choose, control, euler, rkl2, trbdf2
 from demheat.integrators.spectrum import spectrum as spectrum_of
-from demheat.integrators.system import initial_state, load_at, semi_discrete
+from demheat.integrators.system import initial_state, load_at, loaded_areas, semi_discrete
 from demheat.network.base import SIDES, wall_normals
 from demheat.steady import Solution
 
@@ -223,7 +223,7 @@ def _walls(network, scene, system, state):
                 held = at & pinned
                 heat[held] = given[network.wall_particle[held]]
         else:
-            heat[at] = value * network.wall_area[at]
+            heat[at] = value * loaded_areas(network, scene, name)
             temperature[at] += np.divide(heat[at], conductance, out=np.zeros_like(conductance), where=conductance > 0)
     return temperature, heat
 
