@@ -4,20 +4,13 @@ import math
 
 import numpy as np
 import pytest
+from fem_scenes import UNIT
 from numpy.testing import assert_allclose
 
-from demheat.scene import Material, Scene
-from references import mesh
+from demheat.scene import Scene
 from references.fem import space
 from references.mesh import make_round
 from references.mesh import round as module
-
-try:
-    mesh.load_gmsh()
-except ImportError as error:
-    pytest.skip(str(error), allow_module_level=True)
-
-UNIT = Material(1.0, 1.0, 1.0)
 
 
 @pytest.mark.parametrize(("domain", "walls"), [("sphere", ["round"]), ("cylinder-y", ["y-", "y+", "round"])])

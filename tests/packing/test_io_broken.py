@@ -1,0 +1,241 @@
+"""Packing files that are broken, and bad arguments: errors that name the file, the line and what is wrong."""
+
+import numpy as np
+import pytest
+from packing_files import (
+    ASE,
+    BOUNDS,
+    DATA,
+    DUMP,
+    FORMATS,
+    OVITO,
+    VTK_APPENDED,
+    VTK_ASCII,
+    VTK_BINARY,
+    YADE,
+    YADE_IDS,
+    assert_same,
+    awkward,
+    put,
+)
+
+from demheat.packing import io
+
+
+def swapped(text, old, new):
+    assert text.count(old) >= 1
+    return text.replace(old, new, 1)
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        (swapped(DATA, "2500 -0.005 0.012 0.004 0 0 0", "2500 -0.005 0.012"), 18, "found 6 columns.*id type diameter"),
+        (swapped(DATA, "3 atoms", "2 atoms"), 19, "found '2 2 0.0051.*the header says 2 atoms"),
+        (swapped(DATA, "3 atoms", "4 atoms"), 20, "found 0 columns.*row 4 of 4"),
+        (DATA.partition("\n2 2 0.0051")[0] + "\n", 19, "the end of the file; expected row 3 of 3"),
+        (swapped(DATA, "2500 -0.005", "2500 -O.005"), 18, "x = '-O.005'; expected a number in column 5"),
+        (swapped(DATA, "1 1 0.004", "1 1 0"), 18, r"found radius 0\.0; expected a radius > 0"),
+        (swapped(DATA, "1 1 0.004", "1 1 -0.004"), 18, r"found radius -0\.002"),
+        (swapped(DATA, "2500 -0.005", "2500 nan"), 18, "finite"),
+        (swapped(DATA, "2500 -0.005", "2500 1e999"), 18, "finite"),
+        (swapped(DATA, "2 2 0.0051", "1 2 0.0051"), 19, "id 1 once more"),
+        (swapped(DATA, "2 2 0.0051", "1.5 2 0.0051"), 19, "id 1.5; expected an integer"),
+        (swapped(DATA, "0.0151 0 0 0", "0.0251 0 0 0"), 19, "between the walls"),
+        (swapped(DATA, "0.001 0.01 ", "0.001 -0.01 "), 17, "between the walls"),
+        (swapped(DATA, "# sphere", "# atomic"), 15, "Atoms # atomic; expected Atoms # sphere"),
+        (swapped(DATA, "# sphere\n\n", "# sphere\n"), 16, "a blank line after Atoms"),
+        (swapped(DATA, "Atoms", "Bonds"), 26, "the end of the file; expected a section Atoms"),
+        (swapped(DATA, "3 atoms", "three atoms"), 3, "'three'; expected the number of atoms"),
+        (swapped(DATA, "3 atoms", "0 atoms"), 3, ">= 1"),
+        (swapped(DATA, "3 atoms", ""), 15, "expected number of atoms before it"),
+        (swapped(DATA, "0 0.03 ylo yhi", ""), 15, "expected ylo yhi before it"),
+        (swapped(DATA, "0 0.03 ylo", "0.03 0 ylo"), 7, "expected ylo < yhi"),
+        (swapped(DATA, "0 0.03 ylo", "a 0.03 ylo"), 7, "two numbers"),
+        (swapped(DATA, "0 0.03 ylo", "0 inf ylo"), 7, "two numbers"),
+        (swapped(DATA, "zhi\n", "zhi\n0.1 0 0 xy xz yz\n"), 9, "triclinic"),
+        (swapped(DATA, "zhi\n", "zhi\n1 0 0 avec\n"), 9, "triclinic"),
+        ("", 1, "the end of the file"),
+    ],
+)
+def test_broken_lammps_data(tmp_path, text, line, message):
+    path = put(tmp_path, text, ".data")
+    with pytest.raises(ValueError, match=f"some.data, line {line}: .*{message}"):
+        io.read(path, periodic=(True, True, False))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        (swapped(DUMP, "ff\n", "ff\nITEM: UNITS\n"), 10, "found 'ITEM: UNITS'; expected xlo xhi"),
+        (swapped(DUMP, "ATOMS radius x", "ATOMS mass x"), 13, "mass x y z id; expected radius or diameter"),
+        (swapped(DUMP, "radius x y", "radius x v"), 13, "expected one of y, yu, ys, ysu"),
+        (swapped(DUMP, "ATOMS\n3", "ATOMS\n5"), 17, "the end of the file; expected row 4 of 5"),
+        (swapped(DUMP, "ATOMS\n3", "ATOMS\n2"), 16, "expected a line ITEM"),
+        (swapped(DUMP, "ATOMS\n3", "ATOMS\nx"), 8, "'x'; expected the integer of ITEM: NUMBER OF ATOMS"),
+        (swapped(DUMP, "ATOMS\n3", "ATOMS\n-3"), 8, ">= 0"),
+        (DUMP.partition("0.00255")[0] + "0.00255 0.00", 16, "found 2 columns.*row 3 of 3, 5 columns"),
+        (DUMP.partition("ITEM: ATOMS")[0], 13, "expected ITEM: ATOMS"),
+        (swapped(DUMP, "ITEM: TIMESTEP\n0\n", ""), 11, "expected ITEM: TIMESTEP before it"),
+        (swapped(DUMP, "BOUNDS pp", "BOUNDS xy xz yz pp"), 10, "xlo xhi"),
+        (swapped(DUMP, "BOUNDS pp", "BOUNDS abc origin pp"), 9, "triclinic"),
+        (swapped(DUMP, "2.9999999999999999e-02", "0.0"), 11, "ylo < yhi"),
+        (swapped(DUMP, "0.002 -0.005", "zwei -0.005"), 15, "radius = 'zwei'; expected a number in column 1"),
+        (swapped(DUMP, "0.002 -0.005", "0 -0.005"), 15, "a radius > 0"),
+        (DUMP.partition("ITEM: BOX")[0], 9, "the end of the file"),
+        (DUMP.partition("0.0000")[0], 11, "the end of the file; expected ylo yhi"),
+        ("", 1, "expected ITEM: TIMESTEP"),
+        (DATA, 1, "found 'LAMMPS data file via.*expected a line ITEM"),
+    ],
+)
+def test_broken_dump(tmp_path, text, line, message):
+    with pytest.raises(ValueError, match=f"some.dump, line {line}: .*{message}"):
+        io.read(put(tmp_path, text, ".dump"))
+
+
+def test_tilted_dump(tmp_path):
+    rows = [row + " 0.0" for row in BOUNDS.splitlines()]
+    text = DUMP.replace("BOUNDS pp", "BOUNDS xy xz yz pp").replace(BOUNDS, "\n".join(rows) + "\n")
+    assert_same(io.read(put(tmp_path, text, ".dump")), io.read(put(tmp_path, DUMP, ".lammpstrj")))
+    with pytest.raises(ValueError, match="line 12: .*triclinic"):
+        io.read(put(tmp_path, text.replace("e-02 0.0\nITEM: ATOMS", "e-02 0.1\nITEM: ATOMS"), ".dump"))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("#format x_y_z\n1 2 3\n", 1, "expected #format and one of x_y_z_r, x_y"),
+        ("1 2 3 .5\n1 2 3\n", 2, "found 3 columns, '1 2 3'; expected row 2, 4 columns: x y z r"),
+        ("1 2 3 .5 1\n", 1, "found 5 columns"),
+        ("# x\n\n1 2 3 .5\n\n# y\n1 2 three .5\n", 6, "z = 'three'; expected a number in column 3"),
+        ("1 2 3 .5\n1 2 3 0 # no\n", 2, r"radius 0\.0"),
+        ("#format x_y_z_r_matId\n1 2 3 .5\n", 2, "5 columns: x y z r matId"),
+        ("# nothing\n", 2, "the end of the file"),
+        (YADE_IDS.replace("\n4\t", "\n7\t"), 4, "id 7 once more"),
+        (DATA, 1, "found .* columns, 'LAMMPS data"),
+    ],
+)
+def test_broken_yade(tmp_path, text, line, message):
+    with pytest.raises(ValueError, match=f"some.yade, line {line}: .*{message}"):
+        io.read(put(tmp_path, text, ".yade"))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        (swapped(ASE, "2\n", "two\n"), 1, "the number of spheres of a frame"),
+        (swapped(ASE, "2\n", "0\n"), 1, ">= 1"),
+        (swapped(ASE, "2\n", "3\n"), 5, "the end of the file; expected row 3 of 3"),
+        (swapped(ASE, "2\n", "1\n"), 4, "the number of spheres of a frame"),
+        (swapped(ASE, ":radius:R:1", ""), 2, "expected Properties=... with pos:R:3 and radius:R:1"),
+        (swapped(ASE, "radius:R:1", "radius:R"), 2, "expected Properties"),
+        (swapped(ASE, "Properties", "Property"), 2, "found no Properties"),
+        (swapped(ASE, "2.0 0.0 0.0 0.0 3", "2.0 0.1 0.0 0.0 3"), 2, "along the axes"),
+        (swapped(ASE, "3.0 0.0", "-3.0 0.0"), 2, "along the axes"),
+        (swapped(ASE, "2.0 0.0 ", "2.0 "), 2, "nine numbers"),
+        (swapped(ASE, "T T F", "T F"), 2, "pbc"),
+        (swapped(OVITO, "-1 0 0.5", "-1 0"), 2, "Origin"),
+        (swapped(ASE, "0.30000000       0.5", "0.30000000"), 3, "found 4 columns"),
+        (swapped(ASE, "0.30000000  ", "0.3000000O  "), 3, "z = '0.3000000O'; expected a number in column 4"),
+        (swapped(ASE, "0.25000000", "-.25000000"), 4, "radius -0.25"),
+        (swapped(ASE, "3.00000000 ", "5.00000000 "), 4, "between the walls"),
+        ("2\n", 2, "the end of the file"),
+        ("", 1, "the end of the file"),
+    ],
+)
+def test_broken_xyz(tmp_path, text, line, message):
+    with pytest.raises(ValueError, match=f"some.xyz, line {line}: .*{message}"):
+        io.read(put(tmp_path, text, ".xyz"))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (swapped(VTK_ASCII, "</Points>", "</Point>"), "line 15: .*expected well-formed XML"),
+        (swapped(VTK_ASCII, '"radius"', '"mass"'), "found 2 points with the data mass"),
+        (swapped(VTK_ASCII, "0.5 0.25", "0.5"), "found 1 values of radius; expected 2"),
+        (swapped(VTK_ASCII, "0.5 0.25", "0.5 x"), "could not convert"),
+        (swapped(VTK_ASCII, "0.5 0.25", "0.5 -1"), "sphere 2: found radius -1"),
+        (swapped(VTK_ASCII, 'type="PolyData"', 'type="ImageData"'), "ImageData"),
+        (swapped(VTK_ASCII, "vtkZLib", "vtkLZ4"), "compressor vtkLZ4"),
+        (swapped(VTK_BINARY, "eJxjYACBB", "eJxjYACB!"), "not a whole PolyData file"),
+        (VTK_APPENDED[:-80], "not a whole PolyData file"),
+        ("points", "line 1: "),
+    ],
+)
+def test_broken_polydata(tmp_path, text, message):
+    with pytest.raises(ValueError, match=f"some.vtp.*{message}"):
+        io.read(put(tmp_path, text, ".vtp"))
+
+
+@pytest.mark.parametrize("name", ["npz", "vtp"])
+def test_cut_binary_files(tmp_path, name):
+    path = tmp_path / f"a{FORMATS[name]}"
+    io.write(awkward(0), path)
+    whole = path.read_bytes()
+    for part in (0, 10, len(whole) // 2, len(whole) - 2000):
+        path.write_bytes(whole[:part])
+        with pytest.raises(ValueError, match=rf"a\{FORMATS[name]}.*not a whole|a\{FORMATS[name]}, line"):
+            io.read(path)
+    if name == "vtp":
+        # Inside the bytes of the radii, 80 before those of the points.
+        path.write_bytes(whole[: whole.index(b'encoding="raw"') + 200])
+        with pytest.raises(ValueError, match=r"found \d+ bytes of an array; expected \d+: the file is cut short"):
+            io.read(path)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"centers": None}, "found the arrays radii.*expected centers"),
+        ({"radii": np.ones(3)}, "found centers .*radii"),
+        ({"radii": -np.ones(60)}, "radius -1"),
+        ({"size": np.zeros(3)}, "size"),
+        ({"provenance": "{"}, "not a whole"),
+        ({"provenance": np.array([{}], dtype=object)}, "pickle"),
+        ({"domain": "cone"}, "domain"),
+    ],
+)
+def test_broken_npz(tmp_path, change, message):
+    arrays = awkward(0)._asdict() | {"provenance": "{}"} | change
+    np.savez(tmp_path / "a.npz", **{name: value for name, value in arrays.items() if value is not None})
+    with pytest.raises(ValueError, match=f"a.npz.*{message}"):
+        io.read(tmp_path / "a.npz")
+
+
+@pytest.mark.parametrize(
+    ("text", "suffix", "given", "message"),
+    [
+        (DATA, ".data", {}, "periodic: .*does not say which axes"),
+        (DATA, ".data", {"periodic": True, "size": (1, 1, 1)}, "size = .*its own box"),
+        (DATA, ".data", {"periodic": "ppf"}, "periodic = 'ppf'"),
+        (DATA, ".data", {"step": 1}, "step = 1: .*one packing"),
+        (DUMP, ".dump", {"step": 1.5}, "step = 1.5: must be an integer"),
+        (DUMP, ".dump", {"step": True}, "step = True: must be an integer"),
+        (DUMP, ".dump", {"order": "id"}, "order = 'id': must be 'given' or 'morton'"),
+        (DUMP, ".dump", {"domain": "cone"}, "domain = 'cone': must be one of box"),
+        (DUMP, ".dump", {"domain": "sphere"}, "some.dump: domain = 'sphere'"),
+        (YADE, ".yade", {"periodic": True}, "size: .*has no box"),
+        (YADE, ".yade", {"size": (1, 1, 1)}, "line 3: .*between the walls"),
+        (YADE, ".yade", {"size": (1, 1)}, "size = "),
+        (ASE, ".xyz", {"step": 1}, "line 5: .*frame 1: the file has 1"),
+        (YADE, ".txt", {}, r"the suffix tells no format, .*lammps-data \(.data .lmp\).*yade \(.yade\)"),
+        (YADE, "", {}, "the suffix tells no format"),
+        (YADE, ".yade", {"format": "xyz"}, "format = 'xyz': must be one of lammps-data"),
+        (VTK_ASCII, ".vtp.gz", {}, "only text is packed"),
+    ],
+)
+def test_bad_arguments_of_read(tmp_path, text, suffix, given, message):
+    with pytest.raises(ValueError, match=message):
+        io.read(put(tmp_path, text, suffix), **given)
+
+
+def test_arguments_are_judged_before_the_file(tmp_path):
+    with pytest.raises(ValueError, match="order"):
+        io.read(tmp_path / "absent.data", order="id")
+    with pytest.raises(FileNotFoundError):
+        io.read(tmp_path / "absent.npz")
+    with pytest.raises(FileNotFoundError):
+        io.read(tmp_path / "absent.data")
+    with pytest.raises(FileNotFoundError):
+        io.write(awkward(0), tmp_path / "absent" / "a.data")
