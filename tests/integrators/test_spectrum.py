@@ -46,8 +46,13 @@ def test_rows_bound_stands_in_where_iterations_do_not_converge(monkeypatch):
 
 
 def test_start_does_not_matter():
-    radii = [spectrum(system_of("laguerre"), seed=seed, tolerance=1e-4).radius for seed in range(5)]
-    assert_allclose(radii, radii[0], rtol=1e-4)  # the tolerance
+    system = system_of("laguerre")
+    true = largest(system)
+    radii = [spectrum(system, seed=seed, tolerance=1e-4).radius for seed in range(5)]
+    # The Ritz value is not above the true one, and the residual added to it at most the tolerance: found 3e-5 to 9e-5
+    # above. A start that holds little of the fastest mode can end at the next one: seed 15 does, 2e-3 below.
+    assert np.all(np.array(radii) >= true)
+    assert_allclose(radii, true, rtol=1e-4)
 
 
 def test_no_exchange_of_heat_is_no_limit():

@@ -56,6 +56,7 @@ def reference():
         return ((system.heat_at(time)[0] - a @ x) * system.inverse)[:n]
 
     x = initial_state(system, start, 0.0)[:n]
+    # Found 1.5e-13 off a solve with a three-hundredth of these: nothing beside the errors judged by it, 1e-5 and more.
     done = solve_ivp(rate, (0, END), x, method="Radau", rtol=1e-10, atol=1e-11)
     return done.y[:, -1]
 
@@ -82,7 +83,7 @@ def test_declared_order(name):
     right = reference()
     errors = [rms(marched(name, step)[0][: len(right)] - right) for step in STEPS[name]]
     fitted = np.polyfit(np.log(STEPS[name]), np.log(errors), 1)[0]
-    # One-sided; 0.15 for terms of the next order. Radau's own error, 1e-10, is far below all of these.
+    # One-sided; 0.15 for terms of the next order. Radau's own error, 2e-13, is far below all of these.
     assert fitted > METHODS[name].ORDER - 0.15, (fitted, errors)
     assert errors[-1] > 1e-8
 
@@ -176,8 +177,8 @@ def test_cubic_coefficient(stages):
     assert_allclose(third, rkl2._cubic(stages, stages), atol=1.1 * z / 24, rtol=0)
 
 
-@pytest.mark.parametrize("name", ["rkl2", "tr-bdf2"])
-def test_estimated_error_is_the_true_one(name):
+@pytest.mark.parametrize(("name", "tolerance"), [("rkl2", 0.02), ("tr-bdf2", 0.12)])
+def test_estimated_error_is_the_true_one(name, tolerance):
     system, found = scalar(1.0)
     step = 0.05
     advance = rkl2.stepper(system, found) if name == "rkl2" else trbdf2.stepper(system, found, limit=lambda: 1e-14)
@@ -185,8 +186,9 @@ def test_estimated_error_is_the_true_one(name):
     second = advance(first.x, step, step, first.memory, True)
     true = second.x[0] - first.x[0] * np.exp(-step)
     assert 1e-7 < abs(true) < 1e-4
-    # Leading order: the next is 0.05 times that, with factors of order one; history reaches one more step back.
-    assert_allclose(abs(second.error[0]), abs(true), rtol=0.15)
+    # To leading order; the next is 0.29 times the step of 0.05 (found 0.0145), and 0.83 times for TR-BDF2. Its leading
+    # order is 7.4 % too large as well: the value a step back, on which it leans, has its own error (found 0.1155).
+    assert_allclose(abs(second.error[0]), abs(true), rtol=tolerance)
 
 
 def test_implicit_step_damps_what_it_does_not_resolve():
@@ -329,7 +331,8 @@ def test_temperatures_that_are_not_finite_are_an_error():
 def test_held_nodes_follow_the_load():
     system, start = swinging()
     x, _ = marched("rkl2", 0.1)
-    assert_allclose(x[system.held], np.sin(3.0 * END), rtol=1e-12)  # level 4 taken off
+    # Level 4 taken off: rounding of 4 + 0.14, 4e-16, over 0.14.
+    assert_allclose(x[system.held], np.sin(3.0 * END), rtol=1e-14)
     pinned = system_of("calibrated")
     assert set(pinned.held_at(0.0)) == {25.0, 35.0} and len(pinned.held) > 20
     assert np.all(np.diff(pinned.indptr)[pinned.held] == 0) and np.all(pinned.capacity[pinned.held] == 0)
