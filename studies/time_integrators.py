@@ -7,6 +7,8 @@ included, packing and network not. Explicit Euler takes its largest stable step,
 paper's estimate would let it; where that is more than 12000 steps its cost is extrapolated from 400 ("extrapolated").
 The kernel's bandwidth counts 12 bytes a link and 40 a node for each step, over the triad of the same machine, measured
 in turns; a network that stays in a cache, 20 MB for 1e5 particles, can have more than the triad on its large arrays.
+Where LAMMPS is installed it steps in turns with the kernel on links that both have, contacts of the slab's packing, one
+thread each: "lammps" with the contact forces of a usual DEM, "lammps-bare" with the cheapest that it has.
 """
 
 from studies.pick import pick, present
@@ -14,6 +16,8 @@ from studies.pick import pick, present
 BODIES = (("slab", 3_000), ("slab", 100_000), ("sphere", 100_000), ("sphere", 1_000_000))
 INTEGRATORS = ("rkl2", "tr-bdf2", "tr-bdf2-multigrid")
 ACCURACIES = (1e-2, 3e-3, 1e-3, 1e-4)
+# Contact forces that LAMMPS computes besides; see studies/lammps_peer.py.
+PEERS = {"lammps": "friction", "lammps-bare": "bare"}
 # What a temporal error of so many per cent is held against.
 TARGET = 0.1
 FASTER = {("slab", 100_000): 12.0, ("sphere", 1_000_000): 25.0}
@@ -33,18 +37,24 @@ def _cases():
         for integrator in INTEGRATORS:
             yield from (_case(body, particles, integrator, accuracy) for accuracy in ACCURACIES)
         yield from (_case(body, particles, "auto", accuracy) for accuracy in (1e-2, 1e-3))
+    for particles in (3_000, LARGE):
+        yield from (_case("slab", particles, peer, None) for peer in PEERS)
 
 
 CASES = list(_cases())
 
 
 def QUICK(case):
-    """The slab with 3000 particles at an accuracy of 1e-3."""
-    return case["particles"] == 3_000 and case["accuracy"] in (None, 1e-3)
+    """The slab with 3000 particles at an accuracy of 1e-3, without LAMMPS."""
+    return case["particles"] == 3_000 and case["accuracy"] in (None, 1e-3) and case["integrator"] not in PEERS
 
 
 def run(body, particles, integrator, accuracy, method):
     """Work and error of one run."""
+    if integrator in PEERS:
+        from studies.lammps_peer import beside
+
+        return beside(particles, PEERS[integrator])
     from studies.integrator_rows import marched
 
     return marched(body, particles, integrator, accuracy)
@@ -57,7 +67,8 @@ def warm_up(body, particles, integrator, accuracy, method):
 
 def claims(df):
     """What issue 4 asks for."""
-    yield from present([*_errors(df), *_speed(df), *_kernel(df)])
+    ours = df[~df["integrator"].isin(PEERS)]
+    yield from present([*_errors(ours), *_speed(ours), *_kernel(ours), *_peer(df)])
 
 
 def _errors(df):
@@ -98,11 +109,30 @@ def _kernel(df):
     yield "Explicit Euler from 1e5 particles on: best share of the triad's bandwidth", value, ">= 0.75"
 
 
+def _peer(df):
+    rows = df[df["integrator"].isin(PEERS) & (df["status"] == "ok")]
+    if not len(rows):
+        return
+    # Rounding: both add the same numbers, in another order.
+    text = "Explicit Euler by LAMMPS and by the kernel: largest difference over the largest change of a temperature"
+    yield text, rows["difference"].max(skipna=False), 1e-12
+    for name, forces, limit in (("lammps", "usual forces", 20), ("lammps-bare", "cheapest forces", 5)):
+        faster = pick(rows, integrator=name, particles=LARGE)["over_lammps"]
+        text = (
+            f"Explicit kernel: particle-steps per second over LAMMPS, {forces}, same links, one thread, 1e5 particles"
+        )
+        yield text, faster.min() if len(faster) else None, f">= {limit}"
+
+
 def table(df):
-    """Work and error of each run; million_particle_steps and bandwidth_share are of the kernel of explicit Euler."""
+    """Work and error of each run; million_particle_steps and bandwidth_share are of the kernel of explicit Euler.
+
+    In rows of LAMMPS million_particle_steps and cpu_s are LAMMPS's; over_lammps is the kernel's speed over it, with the
+    same links_per_particle, and difference the largest between their temperatures over the largest change.
+    """
     shown = ["body", "particles", "integrator", "accuracy", "taken", "error_percent", "cpu_s", "wall_s", "steps",
              "rejected", "stages", "iterations", "spectral_ratio", "energy_error", "million_particle_steps",
-             "bandwidth_share", "extrapolated"]  # fmt: skip
+             "bandwidth_share", "extrapolated", "links_per_particle", "over_lammps", "difference"]  # fmt: skip
     return df[[name for name in shown if name in df]]
 
 
