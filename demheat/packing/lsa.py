@@ -48,22 +48,14 @@ def lsa(
 
     Parameters
     ----------
-    number : int
-        Of spheres; not needed with `start`.
-    size : (3,) sequence of float, m
+    number, size, radii, periodic, domain, seed, allow_few
+        As in `relax`.
     phi : float, optional
         Stop at this packing fraction, met to rounding.
     pressure : float, optional
         Stop after the first 10 collisions per sphere whose mean reduced pressure P V / (N k T) reaches this; at least
         10, default 1e6 (jammed) unless `phi` is given. With both, what comes first stops. Radii of very unequal
         spheres, of which few collide often, overshoot.
-    radii : Gaussian, Uniform, Lognormal, Bidisperse, Listed or (n,) array_like, optional
-        Only ratios count. Default Gaussian(spread=0.3, cut=2.5).
-    periodic : bool or (3,) sequence of bool
-        Per axis: periodic, or a hard wall at both ends.
-    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
-        Inscribed in the box, with a hard round wall.
-    seed : int
     growth : float or sequence of (reduced pressure, rate)
         Growth rate of the mean diameter over the thermal velocity; of a sequence, each rate holds from its pressure on.
         Slower growth jams denser and takes longer.
@@ -71,8 +63,6 @@ def lsa(
         Begin from these spheres in their domain (`number`, `size`, `radii`, `periodic` and `domain` are then left out)
         instead of a relaxed packing at phi = 0.4 or 0.6 of the one asked for. All radii are shrunk until no two
         overlap, at most by half.
-    allow_few : bool
-        Fewer than 100 spheres are refused unless this is True.
     progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
 
     Returns
@@ -125,8 +115,7 @@ def _grow(motion, stages, phi, pressure, progress):
     windows, limit = 0, JAMMED if pressure is None else pressure
     while phi is None or motion.phi < phi * (1 - 1e-14):
         reached = motion.pressure if windows else 0.0
-        rate = [rate for least, rate in stages if reached >= least or least == stages[0][0]][-1]
-        if not motion.run(rate, phi):
+        if not motion.run(_rate(stages, reached), phi):
             continue
         windows += 1
         if progress is not None:
@@ -140,6 +129,11 @@ def _grow(motion, stages, phi, pressure, progress):
                 )
             return "pressure"
     return "phi"
+
+
+def _rate(stages, reached):
+    """Growth rate of the last stage whose pressure is reached, of the first before that."""
+    return max((stage for stage in stages if stage[0] <= reached), default=stages[0])[1]
 
 
 def _check_alone(start, number, size, radii, periodic, domain):

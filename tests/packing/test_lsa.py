@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.base import make_packing
 from demheat.packing.cache import grown
-from demheat.packing.lsa import lsa
+from demheat.packing.lsa import _rate, lsa
 from demheat.packing.motion import Motion, _tree, tightest
 from demheat.packing.radii import Bidisperse, Gaussian, Uniform
 from demheat.packing.relax import relax
@@ -141,6 +141,13 @@ def test_growth_schedule():
     fast = lsa(500, seed=1, growth=[(0, 0.02), (1000.0, 0.2)])
     assert fast.provenance["collisions"] < 0.75 * slow.provenance["collisions"]
     assert abs(fast.phi - slow.phi) < 1e-3  # what is left to gain at pressure 1000 is 1/1000 of phi
+
+
+@pytest.mark.parametrize(
+    ("reached", "rate"), [(0.0, 0.3), (9.9, 0.3), (10.0, 0.1), (999.0, 0.1), (1000.0, 0.2), (np.inf, 0.2)]
+)
+def test_each_rate_holds_from_its_pressure_on(reached, rate):
+    assert _rate([[5.0, 0.3], [10.0, 0.1], [1000.0, 0.2]], reached) == rate
 
 
 def test_unreachable_phi_says_what_was_reached():
