@@ -7,6 +7,8 @@ import numpy as np
 
 from demheat.evaluate import field_of
 from demheat.network.interface import connect
+from demheat.packing.cache import relaxed
+from demheat.packing.relax import FEWEST
 from demheat.scene import WALLS, Flux, Material, Scene
 from demheat.steady import solve_steady
 
@@ -54,6 +56,18 @@ def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", 
     if scene.periodic:
         return 1.0 / field_of(unit, packing, facets, network, solution, law="calibrated", stats={}).conductivity
     return 1.0 / _between_walls(network, solution, "xyz".index(letter))
+
+
+def cube_like(packing, *, seed=0):
+    """A packing with the radii and the packing fraction of another in a cube of the same volume, between walls.
+
+    A sphere has no two opposite walls to calibrate between.
+    """
+    size = (packing.volume ** (1 / 3),) * 3
+    few = packing.number < FEWEST
+    return relaxed(
+        packing.number, size=size, phi=packing.phi, radii=packing.radii, periodic=False, seed=seed, allow_few=few
+    )
 
 
 def loaded_flat(scene):

@@ -4,12 +4,12 @@ import numpy as np
 
 from demheat.network.calibrated import POLICIES, WALL_RULES
 from demheat.network.interface import check_rule
+from demheat.packing.relax import FEWEST
 from demheat.sources import check_sources
 
 LAWS = ("laguerre", "calibrated", "platonic")
 # Choices that only the laws of contacts have, and their defaults.
 CONTACT = {"poor": "nearest", "wall": "center", "coordination": None, "gap": None}
-FEWEST = 100
 
 
 def check_steady(scene, *, law, conforming, interface, contact, packing, particles, allow_few):
@@ -37,8 +37,8 @@ def check_transient(scene, stop, *, law, conforming, interface, contact, packing
     wanted = _check_law(law, by_default if conforming is None else bool(conforming), interface, contact)
     if wanted and scene.domain != "box":
         raise NotImplementedError(f"inclusions in a {scene.domain} have no conforming packing; pass conforming=False")
-    if law != "laguerre" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
-        raise NotImplementedError(f"law {law!r} has no links to a round wall; use 'laguerre'")
+    if contact["wall"] == "surface" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
+        raise NotImplementedError("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'")
     scene.check_transient()
     _check_walls(scene, law, contact["wall"])
     _check_packing(scene, packing, particles, allow_few)

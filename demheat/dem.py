@@ -5,7 +5,7 @@ import warnings
 
 import numpy as np
 
-from demheat.calibration import calibration, loaded_flat
+from demheat.calibration import calibration, cube_like, loaded_flat
 from demheat.checks import check_steady, check_transient
 from demheat.evaluate import field_of
 from demheat.network.calibrated import contact_facets
@@ -15,6 +15,7 @@ from demheat.network.platonic import COORDINATION, platonic_facets
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.neighbours import contacts
+from demheat.scene import Scene
 from demheat.sources import lost_power, source_power
 from demheat.steady import check_solver, solve_steady
 from demheat.transient import check_request, mean_flux
@@ -108,7 +109,8 @@ def solve(
     clock.append(time.perf_counter())
     packing, facets = _facets(scene, packing, seed, law, conforming, contact)
     clock.append(time.perf_counter())
-    facets, network, factor = _connected(scene, packing, facets, law, interface, scene)
+    factor = calibration(facets, packing, scene) if law == "calibrated" else 1.0
+    facets, network = _connected(scene, packing, facets, factor, interface)
     clock.append(time.perf_counter())
     solution = solve_steady(network, scene, solver=solver, tolerance=tolerance)
     clock.append(time.perf_counter())
@@ -149,8 +151,9 @@ def evolve(
     law : {"laguerre", "calibrated", "platonic"}
         As in `solve`; the Platonic law has its own capacities, which sum to the body's only by chance.
     poor, wall, coordination, gap
-        As in `solve`, for the two contact laws. With `wall = "center"` particles at a wall with a temperature are held
-        at it, as in the papers, and their own heat counts as the wall's.
+        As in `solve`, for the two contact laws. C_t is that between the body's flat walls, or for a sphere that of a
+        cube of the same volume, packed anew with the same radii. With `wall = "center"` particles at a wall with a
+        temperature are held at it, as in the papers, and their own heat counts as the wall's.
     integrator : {"auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid"}
         The papers' explicit Euler at its largest stable step, Runge-Kutta-Legendre super-steps, or the implicit TR-BDF2
         with conjugate gradients preconditioned by the diagonal or by multigrid; "auto" takes what should cost least.
@@ -170,7 +173,8 @@ def evolve(
     ValueError
         If an argument is not as described, before any heavy work; an unstable step once its limit is known.
     NotImplementedError
-        For contact laws with a round wall that is loaded, and for conforming packings in round bodies.
+        For contact laws with wall "surface" where a round wall is loaded or the body a sphere, and for conforming
+        packings in round bodies.
     RuntimeError
         If steps or linear solves do not converge.
     """
@@ -185,7 +189,8 @@ def evolve(
     def fields():
         made = _packing(scene, packing, particles, seed, allow_few)
         here, facets = _facets(scene, made, seed, law, conforming, contact)
-        facets, network, factor = _connected(scene, here, facets, law, interface, loaded_flat(scene))
+        factor = _calibrated(scene, here, facets, contact) if law == "calibrated" else 1.0
+        facets, network = _connected(scene, here, facets, factor, interface)
         held = np.ones(here.number, dtype=bool) if law != "laguerre" and wall == "center" else None
         power = source_power(scene, network.centers, network.volumes)
         stats = {"law": law, "calibration": factor}
@@ -228,15 +233,23 @@ def _touching(packing, law, *, poor, wall, coordination, gap):
     return make(packing, links=links, poor=poor, wall=wall)
 
 
-def _connected(scene, packing, facets, law, interface, load):
-    """Facets with calibrated surfaces, the network of conductances, and C_t under a load (1 without calibration)."""
-    factor = calibration(facets, packing, load) if law == "calibrated" else 1.0
+def _calibrated(scene, packing, facets, contact):
+    """C_t of a packing between its flat walls; of a sphere's in a cube of the same volume."""
+    if scene.domain == "sphere":
+        packing = cube_like(packing)
+        packing, facets = without_hidden(packing, _touching(packing, "calibrated", **contact))
+        scene = Scene(size=tuple(packing.size), matrix=scene.matrix, initial=0.0)
+    return calibration(facets, packing, loaded_flat(scene))
+
+
+def _connected(scene, packing, facets, factor, interface):
+    """Facets with calibrated surfaces, and the network of conductances."""
     # Wall areas are those of the walls: what scales is the conductance of their links.
     facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
     phase = scene.phase_at(packing.centers)
     _warn_of_lost_phases(scene, phase)
     network = connect(facets, packing.centers, packing.size, phase, scene.conductivities, rule=interface)
-    return facets, network, factor
+    return facets, network
 
 
 def _lost(scene, now):

@@ -98,11 +98,12 @@ def plot(df):
     """Temperature and error over the radius, errors against unknowns; the slice."""
     from matplotlib import pyplot
 
-    from studies.figures import BLUE, RED, SKY
+    from studies.figures import BLUE, GREY, PINK, RED, SKY
 
     df = sphere_in_time.solved(df)
     figure, ((left, middle, right), slices) = pyplot.subplots(2, 3, figsize=(14, 8.6))
-    looks = {"DEM, Laguerre": (RED, "o"), "FEM, P1": (SKY, "^"), "FEM, P2": (BLUE, "v")}
+    looks = {"DEM, laguerre": (RED, "o"), "DEM, calibrated": (PINK, "s"), "DEM, platonic": (GREY, "s")}
+    looks |= {"FEM, P1": (SKY, "^"), "FEM, P2": (BLUE, "v")}
     exact = _exact()
     for name, rows in df.groupby("name"):
         colour, marker = looks[name]

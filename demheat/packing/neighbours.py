@@ -85,8 +85,8 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additi
     bulk = _bulk(packing, margin)
     others = packing.number - 1
     finite("coordination", coordination, f"> 0 and <= {others}, all others", lambda v: 0 < v <= others)
-    # Twice the links of the bulk that are wanted; a pair inside the bulk is met twice.
-    wanted = max(1, round(coordination * np.count_nonzero(bulk)))
+    # Ends of links in the bulk; even, since most pairs have both there and midway to the next must not part them.
+    wanted = 2 * max(1, round(coordination * np.count_nonzero(bulk) / 2))
     scale = 1.0 + FIRST_GAP
     while True:
         indptr, indices, ratio = _closer(packing, scale, additive)

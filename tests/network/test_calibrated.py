@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat.network.base import branches, row_numbers
+from demheat.network.base import SIDES, branches, row_numbers, wall_normals
 from demheat.network.calibrated import MEANS, _joined, contact_facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import without_hidden
@@ -123,14 +123,15 @@ def test_wall_contacts():
         assert_allclose(facets.wall_area[facets.wall_side == side].sum(), 1.0, rtol=1e-12)  # the whole wall
 
 
-def test_round_walls_have_no_facets_and_ends_have_their_area():
+def test_walls_of_a_drum_have_their_area():
     rng = np.random.default_rng(0)
     centers = rng.uniform(0.05, 0.95, (3000, 3))
     centers = centers[np.linalg.norm(centers[:, [0, 2]] - 0.5, axis=1) < 0.45]
     drum = make_packing(centers, np.full(len(centers), 0.05), (1, 1, 1), False, {}, domain="cylinder-y")
     facets = contact_facets(drum, links=contacts(drum, gap=0.05))
-    assert set(facets.wall_side) == {2, 3}
-    assert_allclose(facets.wall_area[facets.wall_side == 3].sum(), np.pi / 4, rtol=1e-12)  # rounding
+    assert set(facets.wall_side) == {2, 3, 6}
+    for side, area in ((3, np.pi / 4), (6, np.pi)):
+        assert_allclose(facets.wall_area[facets.wall_side == side].sum(), area, rtol=1e-12)  # rounding
 
 
 def linear_flow(packing, facets, axis):
@@ -180,3 +181,21 @@ def test_surface_links_need_bulk_and_hard_walls(packing, between_walls):
     hollow = between_walls._replace(centers=between_walls.centers * [1, 0.8, 1] + [0, 0.1, 0])
     with pytest.raises(ValueError, match="hard walls"):
         contact_facets(hollow, links=contacts(hollow, gap=0.05), wall="surface")
+
+
+@pytest.mark.parametrize(("domain", "surface"), [("sphere", np.pi), ("cylinder-z", np.pi)])
+def test_links_to_a_round_wall(domain, surface):
+    packing = relax(500, periodic=False, domain=domain, seed=1)
+    facets = contact_facets(packing)
+    here = facets.wall_side == SIDES.index("round")
+    # Shares of the wall fill it: pi d^2 of the sphere, pi d h of the cylinder; rounding.
+    assert_allclose(facets.wall_area[here].sum(), surface, rtol=1e-13)
+    axes = [0, 1, 2] if domain == "sphere" else [0, 1]
+    off = packing.centers[facets.wall_particle[here]][:, axes] - 0.5
+    reach = np.linalg.norm(off, axis=1) + packing.radii[facets.wall_particle[here]]
+    # Within the gap of the contacts, which is below a tenth of a radius; the largest radius is below 0.14.
+    assert here.sum() > 50 and np.all(reach > 0.5 - 0.014)
+    assert_allclose(facets.wall_normal[here][:, axes] * np.linalg.norm(off, axis=1)[:, None], off, atol=1e-15)
+    flat = wall_normals(facets._replace(wall_normal=None, wall_side=facets.wall_side[~here]))
+    assert_allclose(facets.wall_normal[~here], flat)
+    assert len(flat) == 0 if domain == "sphere" else len(flat) > 20

@@ -100,6 +100,24 @@ def test_coordination_is_met(relaxed, coordination):
     assert_array_equal(matrix, matrix.T)
 
 
+@pytest.mark.parametrize("links", [7000, 7001, 7002])
+def test_the_gap_parts_no_pair(relaxed, links):
+    """Each pair stands in two rows: midway to the next must lie between pairs, not on one."""
+    _, indices, gap = contacts(relaxed, coordination=2 * links / 2000 + 1e-6)
+    ratio = (distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(2000, 1)]
+    assert len(indices) == 2 * links
+    # Pairs are some 1e-5 apart here; rounding is 1e-16.
+    assert np.abs(ratio - (1 + gap)).min() > 1e-9
+
+
+@pytest.mark.parametrize("ends", [14001, 14003])
+def test_an_odd_number_of_ends_is_rounded(relaxed, ends):
+    _, indices, gap = contacts(relaxed, coordination=ends / 2000)
+    ratio = (distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(2000, 1)]
+    assert abs(len(indices) - ends) == 1
+    assert np.abs(ratio - (1 + gap)).min() > 1e-9
+
+
 def test_gap_given_and_gap_found_agree(relaxed):
     found = contacts(relaxed, coordination=7.5)
     given = contacts(relaxed, gap=found[2])
