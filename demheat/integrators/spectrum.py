@@ -1,17 +1,23 @@
 """Largest rate of a network: the spectral radius of C^-1 A, which limits explicit steps.
 
-Bounds from the rows (Gershgorin) are certain but up to twice too large. Lanczos iterations in the inner product of the
-capacities (Lanczos 1950) approach the largest eigenvalue from below; its residual bounds what is missing.
+No sign of C^-1 A matters for an upper bound: with all its entries made positive, the largest quotient of a positive
+vector's image and the vector is one for any such vector (Collatz 1942, Wielandt 1950), and power iterations bring it
+down to the spectral radius of that matrix. That of C^-1 A itself is close below: the fastest modes are small particles
+among larger ones, whose links form no odd rings of equals.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import eigh_tridiagonal
 
 from demheat import transient_kernels as kernels
 
-MOST = 400
+# Passes at most, and how many are looked back on. Found within 1e-3 of the last after 10 on packings of 3e3 to 1e6.
+MOST, LOOK = 60, 5
+# Vectors stay positive at this part of their largest entry.
+FLOOR = 1e-100
+# Rounding of a sum over some thousand links.
+ROUNDING = 1e-12
 
 
 class Spectrum(NamedTuple):
@@ -20,12 +26,10 @@ class Spectrum(NamedTuple):
     Attributes
     ----------
     radius : float, 1/s
-        Not below the largest eigenvalue of C^-1 A: the largest Ritz value plus its residual, or the rows' bound where
-        that is less.
-    ritz : float, 1/s
-        Not above it.
+        Never below the largest eigenvalue of C^-1 A. Found above it by 0.03 % on packings with spread 0.3, by 14 % at
+        most on packings with size ratio 10.
     rows : float, 1/s
-        Gershgorin's bound.
+        Gershgorin's bound, up to twice too large.
     positivity : float, s
         Largest step with which every new temperature is a mean of old ones: min C / sum H.
     mean_row : float, 1/s
@@ -34,7 +38,6 @@ class Spectrum(NamedTuple):
     """
 
     radius: float
-    ritz: float
     rows: float
     positivity: float
     mean_row: float
@@ -46,17 +49,14 @@ class Spectrum(NamedTuple):
         return 2.0 / self.radius if self.radius > 0 else np.inf
 
 
-def spectrum(system, *, tolerance=0.01, seed=0):
-    """Spectral radius of a system from the safe side.
+def spectrum(system, *, tolerance=1e-3):
+    """Upper bound of the spectral radius of a system.
 
     Parameters
     ----------
     system : System
     tolerance : float
-        On the residual relative to the eigenvalue: the bound is at most this much above it once iterations converge;
-        if they do not, the rows' bound stands in.
-    seed : int
-        Of the starting vector.
+        Stop when the last passes have brought the bound down by less than this part of it. It is a bound in any case.
 
     Returns
     -------
@@ -66,41 +66,23 @@ def spectrum(system, *, tolerance=0.01, seed=0):
     between = system.diagonal - np.bincount(system.tie_row, system.tie_conductance, minlength=len(own))
     rows = float(np.max((system.diagonal + between) * system.inverse))
     if not rows > 0:
-        return Spectrum(0.0, 0.0, 0.0, np.inf, 0.0, 0)
-    ritz, residual, iterations = _lanczos(system, own, tolerance, seed)
-    radius = min(rows, ritz + residual) if residual <= tolerance * ritz else rows
-    return Spectrum(radius, ritz, rows, 1.0 / own.max(), float(own[system.inverse > 0].mean()), iterations)
+        return Spectrum(0.0, 0.0, np.inf, 0.0, 0)
+    bound, iterations = _from_above(system, own, tolerance)
+    mean = float(own[system.inverse > 0].mean())
+    return Spectrum(min(rows, bound) * (1 + ROUNDING), rows, 1.0 / own.max(), mean, iterations)
 
 
-def _lanczos(system, own, tolerance, seed):
-    """Largest Ritz value, its residual and the iterations done."""
-    weight, nothing = system.capacity, np.zeros(len(own))
-    # The fastest modes sit where the rows are large: a start that favours those spares iterations.
-    v = np.random.default_rng(seed).standard_normal(len(own)) * (own / own.max()) ** 3
-    v /= np.sqrt(_dot(weight, v, v))
-    before, beta, w = np.zeros_like(v), 0.0, np.empty_like(v)
-    alphas, betas = [], []
+def _from_above(system, own, tolerance):
+    """Least quotient bound met in power iterations on the matrix of absolute values, and their number."""
+    free = system.inverse > 0
+    x, image, nothing = free.astype(float), np.empty(len(own)), np.zeros(len(own))
+    bounds = []
     for _ in range(MOST):
-        kernels.rates(*system.links, nothing, v, w)
-        np.negative(w, out=w)
-        alphas.append(_dot(weight, w, v))
-        w -= alphas[-1] * v + beta * before
-        beta = float(np.sqrt(_dot(weight, w, w)))
-        ritz, residual = _top(alphas, betas, beta)
-        if residual <= tolerance * ritz or beta <= 1e-14 * ritz:
+        kernels.rates(*system.links, nothing, x, image)
+        # Rates are C^-1 (H x - sum H x); held nodes are zero in x, so that their links count in the diagonal only.
+        image += 2.0 * own * x
+        bounds.append(float(np.max(image[free] / x[free])))
+        if len(bounds) > LOOK and bounds[-1] >= (1 - tolerance) * bounds[-1 - LOOK]:
             break
-        betas.append(beta)
-        before, v = v, w / beta
-    return ritz, residual, len(alphas)
-
-
-def _dot(weight, a, b):
-    # Not by BLAS, whose threads spin for longer than such a product takes.
-    return float(np.einsum("i,i,i->", weight, a, b))
-
-
-def _top(alphas, betas, beta):
-    """Largest eigenvalue of the tridiagonal matrix, and the residual that its vector leaves."""
-    last = len(alphas) - 1
-    values, vectors = eigh_tridiagonal(alphas, betas, select="i", select_range=(last, last))
-    return float(values[0]), beta * abs(float(vectors[-1, 0]))
+        x[free] = np.maximum(image[free] / image.max(), FLOOR)
+    return min(bounds), len(bounds)

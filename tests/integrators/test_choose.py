@@ -38,7 +38,7 @@ def test_the_cheapest_is_chosen():
 
 def stiff(rows):
     """Spectrum of a network with a given mean row, 1/s."""
-    return Spectrum(10.0 * rows, 10.0 * rows, 12.0 * rows, 0.1 / rows, rows, 10)
+    return Spectrum(10.0 * rows, 12.0 * rows, 0.1 / rows, rows, 10)
 
 
 @pytest.mark.parametrize(

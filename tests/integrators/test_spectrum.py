@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 from small_networks import JUMP, KINDS, dense, network_of, system_of
 
 from demheat.integrators import spectrum as module
 from demheat.integrators.spectrum import spectrum
-from demheat.integrators.system import semi_discrete
+from demheat.integrators.system import System, semi_discrete
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.packing.cache import relaxed
@@ -21,15 +20,16 @@ def largest(system):
     return np.linalg.eigvalsh(dense(system)[np.ix_(free, free)] / root[:, None] / root)[-1]
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_radius_is_never_below_the_true_one_and_tight(kind):
+# Found above the true one: 0.27, 14 and 0.014 %. Small spheres that touch among large ones are fast together.
+@pytest.mark.parametrize(("kind", "slack"), [("laguerre", 0.003), ("ten", 0.15), ("calibrated", 3e-4)])
+def test_radius_is_never_below_the_true_one_and_tight(kind, slack):
     found, true = spectrum(system_of(kind)), largest(system_of(kind))
-    # Rounding of the dense solver; the radius adds a residual of at most 1 % (the tolerance) to the Ritz value.
-    assert found.ritz <= true * (1 + 1e-10)
-    assert true <= found.radius <= 1.0101 * true
-    assert true <= found.rows <= 2 * true * (1 + 1e-10)  # the largest row alone is a lower bound
+    assert true <= found.radius <= (1 + slack) * true
+    assert true <= found.rows <= 2 * true * (1 + 1e-10)  # the largest row alone is a lower bound; rounding
     assert found.limit == 2 / found.radius
     assert found.positivity <= 2 / true * (1 + 1e-10)
+    # A bound after every pass: also where iterations end long before it settles.
+    assert spectrum(system_of(kind), tolerance=0.9).radius >= true
 
 
 def test_networks_are_what_they_are_called():
@@ -39,20 +39,30 @@ def test_networks_are_what_they_are_called():
     assert np.sum(links == 2) > 10
 
 
-def test_rows_bound_stands_in_where_iterations_do_not_converge(monkeypatch):
-    monkeypatch.setattr(module, "MOST", 2)
-    found = spectrum(system_of("laguerre"), tolerance=1e-6)
-    assert found.iterations == 2 and found.radius == found.rows
+@pytest.mark.parametrize("passes", [1, 2, 3, 7])
+def test_a_bound_after_any_number_of_passes(monkeypatch, passes):
+    monkeypatch.setattr(module, "MOST", passes)
+    for kind in KINDS:
+        found = spectrum(system_of(kind))
+        assert found.iterations == passes and largest(system_of(kind)) <= found.radius <= found.rows * (1 + 1e-11)
 
 
-def test_start_does_not_matter():
-    system = system_of("laguerre")
-    true = largest(system)
-    radii = [spectrum(system, seed=seed, tolerance=1e-4).radius for seed in range(5)]
-    # The Ritz value is not above the true one, and the residual added to it at most the tolerance: found 3e-5 to 9e-5
-    # above. A start that holds little of the fastest mode can end at the next one: seed 15 does, 2e-3 below.
-    assert np.all(np.array(radii) >= true)
-    assert_allclose(radii, true, rtol=1e-4)
+def chain(n):
+    """Balance of n cells of unit capacity in a row, unit conductances between them, nothing held."""
+    rows = [[j for j in (i - 1, i + 1) if 0 <= j < n] for i in range(n)]
+    count = np.array([len(row) for row in rows])
+    links = np.concatenate([[0], np.cumsum(count)]), np.concatenate(rows).astype(np.uint32), np.ones(count.sum())
+    none = np.empty(0, dtype=np.int64)
+    ties = none, none, none, none, np.empty(0), none
+    return System(*links, np.ones(n), np.ones(n), count.astype(float), *ties, None, None, 0.0, n)
+
+
+def test_cells_in_a_row():
+    """Eigenvalues 4 cos^2(pi/2n), the first of rings without an odd one: absolute values change nothing."""
+    assert spectrum(chain(2)).radius == pytest.approx(2.0, rel=1e-11)
+    # The bound comes down from the rows' 4 as slowly as a long wave spreads.
+    assert 4 * np.cos(np.pi / 80) ** 2 <= spectrum(chain(40)).radius <= 4.0 * (1 + 1e-11)
+    assert spectrum(chain(4), tolerance=0.0).radius == pytest.approx(4 * np.cos(np.pi / 8) ** 2, rel=1e-6)
 
 
 def test_no_exchange_of_heat_is_no_limit():

@@ -159,7 +159,7 @@ def scalar(rate):
         heat_at=lambda time: (np.zeros(2), np.zeros(8)),
         particles=1,
     )
-    return system, Spectrum(rate, rate, rate, 1 / max(rate, 1e-300), rate, 1)
+    return system, Spectrum(rate, rate, 1 / max(rate, 1e-300), rate, 1)
 
 
 def polynomial(stages, z):
