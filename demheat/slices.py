@@ -1,0 +1,123 @@
+"""Planes through a body: a grid of points on one, and what any Field has there, ready for a picture."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.field import Field
+from demheat.scene import ROUND_AXES
+
+
+class Slice(NamedTuple):
+    """A Field on the grid of a plane, not-a-number outside the body.
+
+    Rows go along the later one of the plane's two axes and columns along the earlier one (the plane across z has its
+    rows along y and its columns along x), from low to high coordinates.
+
+    Attributes
+    ----------
+    temperature : (rows, columns) float array, K or degrees Celsius
+    flux : (rows, columns, 3) float array, W/m2
+    """
+
+    temperature: np.ndarray
+    flux: np.ndarray
+
+
+def plane(scene, *, axis, at, n=61):
+    """Points of a grid over a plane, the middles of its pixels, where they lie in the body.
+
+    Parameters
+    ----------
+    scene : Scene
+    axis : {0, 1, 2}
+        The plane lies across this axis.
+    at : float, m
+        Where, along the axis.
+    n : int
+        Pixels along the plane's longer side. Along the shorter one there are as many as keep them square, to the
+        nearest whole number.
+
+    Returns
+    -------
+    points : (m, 3) float array, m
+        In the order of `mask[mask]`: row by row.
+    mask : (rows, columns) bool array
+        Pixels whose middles lie in the body, all of them in a box; rows and columns as those of `Slice`.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, the plane misses the box, or no middle of a pixel lies in the body.
+    """
+    if isinstance(axis, bool) or axis not in (0, 1, 2):
+        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
+    if not (isinstance(at, int | float | np.number) and 0 <= at <= scene.size[axis]):
+        raise ValueError(f"at = {at!r}: must lie between 0 and {scene.size[axis]} m, the box along axis {axis}")
+    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
+        raise ValueError(f"n = {n!r}: must be an integer >= 1")
+    across = [other for other in range(3) if other != axis]
+    pixel = max(scene.size[other] for other in across) / n
+    middles = [_middles(scene.size[other], pixel) for other in across]
+    grid = np.empty((len(middles[1]), len(middles[0]), 3))
+    grid[..., axis] = at
+    grid[..., across[0]], grid[..., across[1]] = np.meshgrid(*middles)
+    mask = _inside(scene, grid)
+    if not mask.any():
+        raise ValueError(f"at = {at!r}, n = {n!r}: none of the pixels' middles lies in the {scene.domain}")
+    return grid[mask], mask
+
+
+def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np.ndarray] | None = None) -> Slice:
+    """Temperature and flux of a Field on the grid of `plane`.
+
+    Parameters
+    ----------
+    field : Field
+        Of any method.
+    axis, at, n
+        As those of `plane`.
+    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2, optional
+        Instead of the Field's own, for instance a halo's.
+    """
+    points, mask = plane(field.scene, axis=axis, at=at, n=n)
+    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points)))
+
+
+def filled(mask, values):
+    """Values of a plane's points put in their pixels, not-a-number elsewhere.
+
+    Parameters
+    ----------
+    mask : (rows, columns) bool array
+    values : (m,) or (m, d) float array
+        One per point of the mask.
+
+    Returns
+    -------
+    (rows, columns) or (rows, columns, d) float array
+    """
+    values = np.asarray(values, dtype=float)
+    if len(values) != np.count_nonzero(mask):
+        raise ValueError(f"values of length {len(values)}: must be one for each of {np.count_nonzero(mask)} points")
+    picture = np.full(mask.shape + values.shape[1:], math.nan)
+    picture[mask] = values
+    return picture
+
+
+def _middles(length, pixel):
+    count = max(1, round(length / pixel))
+    return (np.arange(count) + 0.5) / count * length
+
+
+def _inside(scene, grid):
+    """Points of a grid in the box that lie in the body."""
+    axes = list(ROUND_AXES[scene.domain])
+    if not axes:
+        return np.ones(grid.shape[:2], dtype=bool)
+    offsets = grid[..., axes] - np.array(scene.size)[axes] / 2
+    return np.linalg.norm(offsets, axis=-1) <= scene.size[axes[0]] / 2
