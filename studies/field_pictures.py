@@ -35,6 +35,7 @@ def draw(df, paper, printed, points, label):
 
     exact, others = _pictured(df)
     figure = pyplot.figure(figsize=(2.35 * (len(others) + 1) + 0.6, 14.2))
+    figure.get_layout_engine().set(h_pad=0.1)  # inches: titles of one line of pictures stay clear of the next
     top, bottom = figure.subfigures(2, 1, height_ratios=[2.75, 1.0])
     axes = top.subplots(4, len(others) + 1, squeeze=False)
     for pair, name in zip((axes[:2], axes[2:]), UNITS, strict=True):

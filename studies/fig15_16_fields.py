@@ -135,13 +135,13 @@ def _exact(df):
     off = max(abs(row[key] - value) * 10**digits for key, (value, digits) in RAYLEIGH.items())
     # Half a unit of the last digit, and the rounding of that half.
     yield "Exact field: off the known values of Table 2's points, in units of their last digits", off, 0.51
-    for number in ("150k", "500k"):
-        error = 100 * abs(PAPER[f"q_C_{number}"] / row["q_C"] - 1)
-        yield (
-            f"Printed flux at C, {number} elements: off the exact one, %: no noise, it stays with more",
-            error,
-            ">= 3.8",
-        )
+    few, many = (100 * (1 - PAPER[f"q_C_{number}"] / row["q_C"]) for number in ("150k", "500k"))
+    yield "Printed flux at C, 1.5e5 elements: below the exact one by, %", few, ">= 3.8"
+    yield (
+        "Printed flux at C: its error with 5e5 elements over that with 1.5e5, so that it is no noise",
+        many / few,
+        ">= 1",
+    )
 
 
 def _laguerre(df):
@@ -191,7 +191,7 @@ def _others(df):
     for size, rms in ((SIZES["fem"][0], 3.0), (SIZES["fem"][2], 0.5)):
         found = _largest(pick(df, name="fem", size=size), ["flux_rms"])
         yield f"FEM, P2, edges of {1e3 * size:g} mm: flux away, rms, %", found, rms
-    for voxels, rms in ((VOXELS[0], 3.0), (VOXELS[-1], 0.75)):
+    for voxels, rms in ((VOXELS[0], 3.0), (VOXELS[-1], 0.5)):
         found = _largest(pick(df, name="fft", voxels=voxels), ["flux_rms"])
         yield f"FFT, {voxels}^3 laminate voxels: flux away, rms, %", found, rms
 
