@@ -7,7 +7,8 @@ from scipy.spatial import cKDTree
 
 from demheat import steady_kernels as kernels
 from demheat.field import Field, Samples
-from demheat.network.base import SIDES, wall_normals
+from demheat.network.base import SIDES, image_shifts, row_numbers, wall_normals
+from demheat.reconstruct import Reconstruction
 
 
 def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux=None, time=None):
@@ -28,9 +29,15 @@ def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux
         flux_at=flux_at,
         wall_temperature=temperature,
         wall_heat=heat,
-        stats={**solution.stats, **stats, "cached": packing.provenance.get("cached"), "packing": packing.provenance},
+        stats=solution.stats | stats | _described(packing),
         time=time,
+        through=lambda axis, position: _heat_through(network, solution, packing.periodic, axis, position),
     )
+
+
+def _described(packing):
+    provenance = packing.provenance
+    return {"mean_radius": float(packing.radii.mean()), "cached": provenance.get("cached"), "packing": provenance}
 
 
 def _mean_flux(scene, facets, network, solution, wall_heat, law):
@@ -108,23 +115,55 @@ class _Locator:
 def _samplers(scene, packing, facets, network, solution, law):
     """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
     fluxes = cache(lambda: cell_fluxes(facets, network, solution, law=law))
-    locate = cache(lambda: _Locator(packing))
-    conductivity = scene.conductivities[network.phase]
+    slopes = cache(lambda: _slopes(scene, network, fluxes()))
 
     def samples():
         return Samples(network.centers, network.volumes, _temperatures(network, solution), network.phase, fluxes())
 
+    if law == "laguerre":
+        how = {"periodic": packing.periodic, "phase_at": scene.phase_at, "conductivities": scene.conductivities}
+        smooth = cache(lambda: Reconstruction(network, solution.fluctuation, solution.gradient, slopes(), **how))
+        return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
+    locate = cache(lambda: _Locator(packing))
+
     def temperature_at(points):
-        points = np.asarray(points, dtype=float).reshape(-1, 3)
         cell, offsets = locate()(points)
-        slope = -np.divide(
-            fluxes()[cell], conductivity[cell, None], out=np.zeros_like(offsets), where=conductivity[cell, None] > 0
-        )
         level = solution.fluctuation[cell] + (points - offsets) @ solution.gradient
-        return level + np.einsum("ij,ij->i", slope, offsets)
+        return level + np.einsum("ij,ij->i", slopes()[cell], offsets)
 
     def flux_at(points):
-        cell, _ = locate()(np.asarray(points, dtype=float).reshape(-1, 3))
-        return fluxes()[cell]
+        return fluxes()[locate()(points)[0]]
 
     return samples, temperature_at, flux_at
+
+
+def _slopes(scene, network, fluxes):
+    """Gradient of each cell from its flux, zero in insulators, (n, 3) float array, K/m."""
+    k = scene.conductivities[network.phase][:, None]
+    return -np.divide(fluxes, k, out=np.zeros_like(fluxes), where=k > 0)
+
+
+def _heat_through(network, solution, periodic, axis, position):
+    """Heat that crosses the facets between cells on either side of a plane, along the axis, W.
+
+    Cells are on the side of their centres; walls across the axis count as neighbours at their place. Between them every
+    plane carries the same heat where none is stored, to the residual of the solver.
+    """
+    length, x, row = network.size[axis], network.centers[:, axis], row_numbers(network.indptr)
+    step = x[network.indices] + image_shifts(network.image, network.size)[:, axis]
+
+    def side(at):
+        return np.floor((at - position) / length) if periodic[axis] else (at >= position).astype(float)
+
+    temperature = _filled(solution)
+    rise = temperature[network.indices] - temperature[row] + solution.gradient[axis] * (step - x[row])
+    for k in (k for k in range(3) if solution.gradient[k] and k != axis):
+        y = network.centers[:, k]
+        there = y[network.indices] + image_shifts(network.image, network.size)[:, k]
+        rise += solution.gradient[k] * (there - y[row])
+    # Each link stands in two rows, with both signs changed.
+    heat = -0.5 * float((side(step) - side(x[row])) @ (network.conductance * rise))
+    for end in (0, 1):
+        here = network.wall_side == 2 * axis + end
+        heat += float((side(x[network.wall_particle[here]]) - end) @ solution.wall_heat[here])
+    return heat

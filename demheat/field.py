@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.parts import finite
 from demheat.scene import ROUND_AXES, Scene
 
 
@@ -61,6 +62,8 @@ class Field:
     stats : mapping
         `unknowns`, `iterations`, `residual` (relative, recomputed after the solve) and what else the method knows.
     time : float, s, optional
+    through : callable (axis, position) -> float, W, optional
+        See `heat_through`.
     """
 
     scene: Scene
@@ -73,6 +76,7 @@ class Field:
     wall_heat: Mapping[str, float] = field(default_factory=dict)
     stats: Mapping[str, object] = field(default_factory=dict)
     time: float | None = None
+    through: Callable[[int, float], float] | None = None
 
     def __post_init__(self):
         for name in ("temperature_at", "flux_at"):
@@ -82,6 +86,35 @@ class Field:
     def samples(self) -> Samples:
         """The method's own values at its own points."""
         return self.sampler()
+
+    def heat_through(self, axis, position) -> float:
+        """Heat that crosses a section of the body, W, by the method's own balance.
+
+        For the DEM the section is made of the facets between cells with centres on either side of a plane: in a steady
+        state every one of them carries the same heat, to the solver's residual.
+
+        Parameters
+        ----------
+        axis : {0, 1, 2}
+            Direction in which heat counts as positive.
+        position : float, m
+            Of the plane.
+
+        Raises
+        ------
+        ValueError
+            If the axis is none of these, or the plane misses the body.
+        NotImplementedError
+            If the method has no surfaces that balance heat.
+        """
+        if axis not in (0, 1, 2):
+            raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
+        finite(
+            "position", position, f"between 0 and {self.scene.size[axis]} m", lambda v: 0 <= v <= self.scene.size[axis]
+        )
+        if self.through is None:
+            raise NotImplementedError("heat_through: only the DEM has surfaces that balance heat")
+        return self.through(int(axis), float(position))
 
     @property
     def conductivity(self) -> float:

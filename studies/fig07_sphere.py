@@ -78,8 +78,10 @@ def _accuracy(df):
 
 def _rest(df):
     dem = pick(df, law="laguerre")
-    order = sphere_in_time.order_of(dem, "worst")
-    yield "Laguerre: order in the particle spacing of the largest error of the centre in time", order, ">= 1.5"
+    # A thousand are five diameters to the centre: no law of powers yet.
+    fine = dem[dem["particles"] >= NUMBERS[1]]
+    order = sphere_in_time.order_of(fine, "worst") if fine["particles"].nunique() > 1 else None
+    yield "Laguerre, from 3000 on: order in the particle spacing of the largest error of the centre", order, ">= 1.5"
     yield from sphere_in_time.balance(df)
     yield (
         "Laguerre: spectral radius over the mean row (slivers: hundreds)",

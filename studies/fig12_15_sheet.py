@@ -166,9 +166,12 @@ def _bricks(df):
     fine, paper = (pick(df, law="hexahedra", size=size) for size in (FINE, ELEMENT))
     if len(fine) and len(paper):
         for name in NAMES:
-            off = largest_difference(curves_of(paper, name)[0], curves_of(fine, name)[0])[1]
-            # Of second order: half of what 0.5 mm are off, which by the bricks of 1 mm is some 0.07 %.
-            yield f"Bricks of 0.5 mm against a third of a mm, {name}: largest difference, %", abs(off), 0.15
+            ours, finer = (curves_of(rows, name)[0] for rows in (paper, fine))
+            at, off = largest_difference(ours, finer)
+            # Half of what 0.5 mm are off: far below what packings are compared by. Where A is barely warm, at 0.26 s,
+            # the same difference is 0.4 % of the temperature then.
+            text = f"Bricks of 0.5 mm against a third of a mm, {name}: largest difference, % of the highest temperature"
+            yield text, abs(off) * finer[at] / finer.max(), 0.05
 
 
 def _balance(df):
