@@ -9,7 +9,7 @@ RATIOS = (0.0, 1.5, 2.0, 3.0, 4.0, 5.5, 7.0, 9.0, 11.0, 13.0, 15.0)
 SEEDS = {3_000: (0,), 10_000: (0, 1, 2), 100_000: (0,), 500_000: (0,)}
 STATISTICS = ("number", "cov", "cov_volume", "least", "mean", "most")
 # Halo radii whose density functions are kept, and their range in units of the flux, in equal bins.
-DENSITIES = {0.0: (0.0, 3.0), 2.0: (0.0, 3.0), 4.0: (0.6, 1.4), 11.0: (0.6, 1.4)}
+DENSITIES = {0.0: (0.0, 3.0), 2.0: (0.0, 3.0), 4.0: (0.6, 1.4), 11.0: (0.8, 1.2)}
 BINS = 80
 PAPER = printed("fig10_halo")
 
@@ -62,12 +62,16 @@ def _cov(axes, rows):
             means = pick(here, split=split, walls=walls).groupby("ratio")[column].mean().dropna()
             if len(means):
                 axes.plot(means.index, means, style, color=colour, markersize=4, label=f"{number}, {what}")
-        means = pick(here, split="radii", walls="held", ratio=0.0)["bulk_cov"].mean()
-        axes.plot([0.0], [means], "^", color=colour, fillstyle="none")
+        for split, column, marker in (("radii", "bulk_cov", "^"), ("half", "bulk_cov_volume", "D")):
+            mean = pick(here, split=split, walls="held", ratio=0.0)[column].mean()
+            axes.plot([0.0], [mean], marker, color=colour, fillstyle="none")
     axes.plot([], [], "^", color=GREY, fillstyle="none", label="R_p/(R_p+R_q), bulk")
+    axes.plot([], [], "D", color=GREY, fillstyle="none", label="half, by volume, bulk")
     printed_values = [PAPER["cov_0"], PAPER["cov_4"], PAPER["cov_11"]]
     axes.plot([0.0, 4.0, 11.0], printed_values, "*", color=BLACK, markersize=11, label="paper")
-    axes.set(xlabel="halo radius, mean radii", ylabel="CoV by number, %", yscale="log")
+    axes.set(xlabel="halo radius, mean radii", ylabel="CoV by number, %", yscale="log", ylim=(0.4, 130))
+    ticks = (0.5, 1, 2, 5, 10, 20, 50, 100)
+    axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
     exact = pick(rows, law="laguerre", ratio=0.0)["cov"].max()
     axes.set_title(f"Scatter of the flux (Laguerre, no halo: {exact:.0e} %)")
     axes.legend(ncols=2, fontsize=7.5)
@@ -83,7 +87,7 @@ def _extremes(axes, rows):
                 axes.plot(means.index, means, style, color=colour, markersize=4, label=label)
     axes.axhline(1.0, color="black", linewidth=0.8)
     axes.set(xlabel="halo radius, mean radii", ylabel="flux / 3300 W/m2", ylim=(-0.2, 3.0))
-    axes.set_title("Smallest, mean, largest: bulk; dotted: smallest of all")
+    axes.set_title("Smallest, mean and largest flux of the bulk; dotted: smallest of all")
     axes.legend()
 
 
@@ -113,7 +117,7 @@ def _densities(raw, halos, df):
                 density = np.array(_numbers(cell)) * BINS / (high - low)
                 axes.plot(middle, density, style, color=colour, label=label)
     number = int(rows["particles"].max())
-    for axes in (raw, halos):
-        axes.set(xlabel="flux / 3300 W/m2", ylabel="density", title=f"Density functions, {number} particles")
+    for axes, what in ((raw, "no halo, and a narrow one"), (halos, "halos")):
+        axes.set(xlabel="flux / 3300 W/m2", ylabel="density", title=f"Density functions, {number} particles: {what}")
         axes.set_ylim(bottom=0.0)
         axes.legend(fontsize=8)
