@@ -9,10 +9,11 @@ INTEGRATORS = ("auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
 # first steps costs besides; found on slabs of 3e3 to 1e5 particles.
 STEPS, GRADED = 5.0, 2.0
 # Work in passes over the network: of a stage of Legendre polynomials, of an iteration of conjugate gradients, of an
-# implicit solve besides its iterations, of one by multigrid; and the solves of a step. Found on the same slabs.
-STAGE, ITERATION, SOLVE, MULTIGRID, SOLVES = 1.2, 1.5, 3.0, 70.0, 2.0
+# implicit solve besides its iterations, of one by multigrid; and the solves of a step, those of rejected and of short
+# first steps included. Found on the slab and the sphere, 3e3 to 1e6 particles (study time_integrators).
+STAGE, ITERATION, SOLVE, MULTIGRID, SOLVES = 1.2, 1.5, 3.0, 70.0, 4.0
 # Iterations of an implicit solve over the square root of its condition, from the good guesses that old steps give.
-JACOBI = 1.5
+JACOBI = 0.6
 
 
 def costs(spectrum, interval, accuracy, outputs):
