@@ -73,6 +73,8 @@ def test_more_values_and_single_ones():
     # One point may be given as such; a halo without samples has no mean.
     lone = halo_average(points[:1], [5.0], [2.0], radius=0.3, size=SIZE, periodic=True, at=points[0] + [0.31, 0, 0])
     assert lone.shape == (1,) and np.isnan(lone[0])
+    none = halo_average(points, values, volumes, **where, at=np.empty((0, 3)))
+    assert none.shape == (0, 7)
     # A sample at the very edge counts.
     edge = halo_average([[0.25, 0.5, 0.5]], [5.0], [2.0], radius=0.25, size=SIZE, periodic=False, at=[0.5, 0.5, 0.5])
     assert edge[0] == 5.0
@@ -126,6 +128,7 @@ def test_same_bits_for_one_and_two_threads():
         ({"size": (1, 1, -1)}, "size"),
         ({"periodic": 1}, "periodic = 1"),
         ({"points": [[0, 0]]}, "points of shape"),
+        ({"points": np.empty((0, 3))}, "points of shape"),
         ({"points": [[2.0, 0, 0], [0, 0, 0]]}, r"points\[0\]"),
         ({"values": [1.0]}, "values of shape"),
         ({"values": [1.0, np.inf]}, "values of shape"),
