@@ -233,7 +233,7 @@ def _wrapped(points, size, periodic):
 
 
 def _inside(points, size, periodic):
-    """Wrapped samples, one at least; on walled axes they must lie in the box, to 1e-9 of it for those computed to lie on a wall."""
+    """Wrapped samples; there must be some, on walled axes inside the box (to 1e-9 of it: computed to lie on a wall)."""
     if len(points) == 0:
         raise ValueError("points of shape (0, 3): there must be samples to average")
     outside = ~periodic & ((points < -1e-9 * size) | (points > (1 + 1e-9) * size))
