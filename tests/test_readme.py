@@ -41,6 +41,16 @@ def _block(word):
     return next(code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if word in code)
 
 
+def test_the_example_of_fluxes_runs():
+    names = {}
+    exec(_block("import numpy").replace("100_000", "1_000"), names)
+    exec(_block("halo_flux"), names)
+    smooth = names["halo_flux"](names["field"], ratio=2.0)
+    # As many as particles, twins at the interface included; halos of two radii calm the flux.
+    assert smooth.shape == names["field"].samples.flux.shape
+    assert smooth.std(axis=0).max() < names["field"].samples.flux.std(axis=0).max()
+
+
 def test_the_example_in_time_runs(capsys):
     names = {}
     exec(_block("evolve").replace("20_000", "2_000"), names)

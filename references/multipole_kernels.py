@@ -1,0 +1,274 @@
+"""Numba kernels of the multipole method: translation between spheres, and series at points.
+
+Unnormalised harmonics, R_l^m = r^l P_l^m exp(i m p) / (l+m)! and I_l^m = (l-m)! P_l^m exp(i m p) / r^(l+1) with Condon
+and Shortley's sign: translations of these are plain sums without binomials (Epton and Dembart, SIAM J. Sci. Comput. 16
+(1995) 865). Entry (l, m >= 0) of a table stands at l (l + 1)/2 + m; -m follows from f_l^-m = (-1)^m conj(f_l^m).
+"""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+
+compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+
+
+@compiled
+def translate(order, sums, top, re, im, out_re, out_im, low, high):
+    """What all spheres and their images make at the spheres low, ..., high - 1.
+
+    I_l^m(X + y) = sum over l'm' of (-1)^l' conj(R_l'^m'(y)) I_(l+l')^(m+m')(X).
+
+    Parameters
+    ----------
+    order : int
+        Highest degree that spheres send and receive.
+    sums : (1 + pairs, entries) complex array
+        Periodic I_L^M: of a sphere's own images, then for i < j of X = x_i - x_j, j running fastest.
+    top : (1 + pairs,) int array
+        Highest degree L = l + l' that counts.
+    re, im : (spheres, entries) float arrays
+        Multipoles.
+    out_re, out_im : (spheres, entries) float arrays
+        Out: coefficients of R_l'^m'.
+    """
+    spheres, width = len(re), 2 * order
+    full = np.zeros((2, width + 1, 2 * width + 1))
+    send = np.zeros((2, order + 1, 2 * order + 1))
+    for i in range(low, high):
+        out_re[i], out_im[i] = 0.0, 0.0
+        for j in range(spheres):
+            a, b = min(i, j), max(i, j)
+            pair = 0 if a == b else 1 + a * spheres - a * (a + 1) // 2 + b - a - 1
+            most = min(top[pair], width)
+            _unfold(full, sums[pair].real, sums[pair].imag, most, i > j)
+            _unfold(send, re[j], im[j], order, False)
+            for p in range(min(order, most - 1) + 1):
+                sign = -1.0 if p % 2 else 1.0
+                for q in range(p + 1):
+                    x, y = _correlate(full, send, p, q, min(order, most - p), width, order)
+                    out_re[i, p * (p + 1) // 2 + q] += sign * x
+                    # The coefficient of conj(R) conjugated is that of R, for the sum is real.
+                    out_im[i, p * (p + 1) // 2 + q] -= sign * y
+
+
+@compiled
+def _unfold(full, re, im, degree, flip):
+    """Entries of both signs of m, in the middle of each row; times (-1)^l if `flip`."""
+    middle = full.shape[2] // 2
+    for n in range(degree + 1):
+        sign = -1.0 if flip and n % 2 else 1.0
+        for m in range(n + 1):
+            x, y = sign * re[n * (n + 1) // 2 + m], sign * im[n * (n + 1) // 2 + m]
+            other = -1.0 if m % 2 else 1.0
+            full[0, n, middle - m], full[1, n, middle - m] = other * x, -other * y
+            full[0, n, middle + m], full[1, n, middle + m] = x, y
+
+
+@compiled
+def _correlate(full, send, p, q, most, width, order):
+    """Sum over l = 1, ..., most and all m of I_(l+p)^(m+q) times the multipole lm."""
+    x, y = 0.0, 0.0
+    for n in range(1, most + 1):
+        there_re, there_im = full[0, n + p, width + q - n : width + q + n + 1], full[1, n + p, width + q - n :]
+        here_re, here_im = send[0, n, order - n : order + n + 1], send[1, n, order - n :]
+        for k in range(2 * n + 1):
+            x += there_re[k] * here_re[k] - there_im[k] * here_im[k]
+            y += there_re[k] * here_im[k] + there_im[k] * here_re[k]
+    return x, y
+
+
+@compiled
+def owners(points, centers, radii, size, owner):
+    """Sphere that a point lies in or on, or -1, and its offset from that sphere's nearest image.
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+        Changed in place where a sphere owns the point: to the offset.
+    owner : (n,) int array
+        Out.
+    """
+    for k in range(len(points)):
+        owner[k] = -1
+        for j in range(len(centers)):
+            x, y, z = points[k, 0] - centers[j, 0], points[k, 1] - centers[j, 1], points[k, 2] - centers[j, 2]
+            x -= size[0] * round(x / size[0])
+            y -= size[1] * round(y / size[1])
+            z -= size[2] * round(z / size[2])
+            if x * x + y * y + z * z <= radii[j] * radii[j]:
+                owner[k] = j
+                points[k, 0], points[k, 1], points[k, 2] = x, y, z
+                break
+
+
+@compiled
+def regular(table, x, y, z, order):
+    """R_l^m of one point, into a complex table."""
+    square = x * x + y * y + z * z
+    table[0] = 1.0
+    for m in range(order + 1):
+        if m > 0:
+            table[m * (m + 1) // 2 + m] = -(x + 1j * y) / (2.0 * m) * table[(m - 1) * m // 2 + m - 1]
+        for n in range(m + 1, order + 1):
+            up = (2 * n - 1) * z * table[(n - 1) * n // 2 + m]
+            if n > m + 1:
+                up -= square * table[(n - 2) * (n - 1) // 2 + m]
+            table[n * (n + 1) // 2 + m] = up / ((n - m) * (n + m))
+
+
+@compiled
+def irregular(table, x, y, z, order):
+    """I_l^m of one point, into a complex table."""
+    square = x * x + y * y + z * z
+    table[0] = 1.0 / math.sqrt(square)
+    for m in range(order + 1):
+        if m > 0:
+            table[m * (m + 1) // 2 + m] = -(2.0 * m - 1) * (x + 1j * y) / square * table[(m - 1) * m // 2 + m - 1]
+        for n in range(m + 1, order + 1):
+            up = (2 * n - 1) * z * table[(n - 1) * n // 2 + m]
+            if n > m + 1:
+                up -= ((n - 1) ** 2 - m * m) * table[(n - 2) * (n - 1) // 2 + m]
+            table[n * (n + 1) // 2 + m] = up / square
+
+
+@compiled
+def inside(offsets, owner, coefficients, order, out):
+    """Temperature and slope of the regular series of the sphere that owns each point.
+
+    d/dz R_l^m = R_(l-1)^m and (d/dx + i d/dy) R_l^m = R_(l-1)^(m+1).
+
+    Parameters
+    ----------
+    offsets : (n, 3) float array
+    owner : (n,) int array
+    coefficients : (spheres, entries) complex array
+    out : (n, 4) float array
+        Out: temperature, then its slope.
+    """
+    table = np.zeros((order + 1) * (order + 2) // 2, dtype=np.complex128)
+    for k in range(len(offsets)):
+        regular(table, offsets[k, 0], offsets[k, 1], offsets[k, 2], order)
+        c = coefficients[owner[k]]
+        value, across, along = 0.0, 0.0 + 0.0j, 0.0
+        for n in range(order + 1):
+            for m in range(n + 1):
+                factor = c[n * (n + 1) // 2 + m]
+                twice = 1.0 if m == 0 else 2.0
+                value += twice * (factor * table[n * (n + 1) // 2 + m]).real
+                below = (n - 1) * n // 2
+                if m <= n - 1:
+                    along += twice * (factor * table[below + m]).real
+                if m + 1 <= n - 1:
+                    across += factor * table[below + m + 1]
+                if m > 0:
+                    across -= (factor * table[below + m - 1]).conjugate()
+                elif n > 1:
+                    pass
+        out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value, across.real, across.imag, along
+
+
+@compiled
+def screens(order, square, eta, screen, slope):
+    """Q(l+1/2, eta r^2) for l = 0, ..., order and twice its derivative by r^2, into two float arrays."""
+    x = eta * square
+    q, term = math.erfc(math.sqrt(x)), math.sqrt(x) * math.exp(-x) / (0.5 * math.sqrt(math.pi))
+    for n in range(order + 1):
+        # term is x^(n+1/2) exp(-x) / Gamma(n+3/2); dQ(a, x)/dx = -x^(a-1) exp(-x) / Gamma(a).
+        screen[n] = q
+        slope[n] = -2.0 * eta * term * (n + 0.5) / x
+        q += term
+        term *= x / (n + 1.5)
+
+
+@compiled
+def near(points, centers, size, multipoles, order, eta, reach, out):
+    """Add what spheres and images within reach make at points outside, each multipole screened.
+
+    d/dz I_l^m = -I_(l+1)^m and (d/dx + i d/dy) I_l^m = I_(l+1)^(m+1).
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+    multipoles : (spheres, entries) complex array
+    out : (n, 4) float array
+        Temperature, then its slope.
+    """
+    table = np.zeros((order + 2) * (order + 3) // 2, dtype=np.complex128)
+    screen, slope = np.zeros(order + 1), np.zeros(order + 1)
+    nx, ny, nz = int(reach / size[0] + 0.5), int(reach / size[1] + 0.5), int(reach / size[2] + 0.5)
+    for k in range(len(points)):
+        for j in range(len(centers)):
+            x0, y0, z0 = points[k, 0] - centers[j, 0], points[k, 1] - centers[j, 1], points[k, 2] - centers[j, 2]
+            x0 -= size[0] * round(x0 / size[0])
+            y0 -= size[1] * round(y0 / size[1])
+            z0 -= size[2] * round(z0 / size[2])
+            for a in range(-nx, nx + 1):
+                for b in range(-ny, ny + 1):
+                    for c in range(-nz, nz + 1):
+                        x, y, z = x0 + a * size[0], y0 + b * size[1], z0 + c * size[2]
+                        square = x * x + y * y + z * z
+                        if square <= reach * reach:
+                            irregular(table, x, y, z, order + 1)
+                            screens(order, square, eta, screen, slope)
+                            _add_screened(multipoles[j], table, screen, slope, x, y, z, order, out[k])
+
+
+@compiled
+def _add_screened(multipoles, table, screen, slope, x, y, z, order, out):
+    value, across, along, radial = 0.0, 0.0 + 0.0j, 0.0, 0.0
+    for n in range(1, order + 1):
+        here, above = n * (n + 1) // 2, (n + 1) * (n + 2) // 2
+        v, d, s = 0.0, 0.0 + 0.0j, 0.0
+        for m in range(n + 1):
+            factor = multipoles[here + m]
+            twice = 1.0 if m == 0 else 2.0
+            v += twice * (factor * table[here + m]).real
+            s -= twice * (factor * table[above + m]).real
+            d += factor * table[above + m + 1]
+            if m > 0:
+                d -= (factor * table[above + m - 1]).conjugate()
+        value += screen[n] * v
+        across += screen[n] * d
+        along += screen[n] * s
+        radial += slope[n] * v
+    out[0] += value
+    out[1] += across.real + radial * x
+    out[2] += across.imag + radial * y
+    out[3] += along + radial * z
+
+
+@compiled
+def far(points, size, waves, amplitudes, out):
+    """Add 2 Re(F exp(i K.x)) over half of the reciprocal vectors, and its slope.
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+    waves : (w, 3) int array
+        K in units of 2 pi/size.
+    amplitudes : (w,) complex array
+        F.
+    out : (n, 4) float array
+    """
+    most = np.abs(waves).max() if len(waves) else 0
+    turns = np.zeros((3, 2 * most + 1), dtype=np.complex128)
+    for k in range(len(points)):
+        for axis in range(3):
+            for n in range(-most, most + 1):
+                angle = 2.0 * math.pi * n * points[k, axis] / size[axis]
+                turns[axis, n + most] = complex(math.cos(angle), math.sin(angle))
+        value, dx, dy, dz = 0.0, 0.0, 0.0, 0.0
+        for w in range(len(waves)):
+            a, b, c = waves[w, 0], waves[w, 1], waves[w, 2]
+            term = amplitudes[w] * turns[0, a + most] * turns[1, b + most] * turns[2, c + most]
+            value += 2.0 * term.real
+            dx -= 2.0 * a * term.imag
+            dy -= 2.0 * b * term.imag
+            dz -= 2.0 * c * term.imag
+        out[k, 0] += value
+        out[k, 1] += 2.0 * math.pi / size[0] * dx
+        out[k, 2] += 2.0 * math.pi / size[1] * dy
+        out[k, 3] += 2.0 * math.pi / size[2] * dz
