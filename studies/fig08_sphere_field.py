@@ -113,9 +113,10 @@ def plot(df):
         left.plot(r, exact(r) + error, marker, color=colour, fillstyle="none", markersize=4, label=label)
         middle.plot(r, size, marker=marker, color=colour, markersize=4, label=f"{name}, largest")
         middle.plot(r, abs(error), ":", color=colour, label=f"{name}, |mean|")
-        means = rows.groupby("unknowns")[["worst_10", "rms_10"]].mean()
-        right.plot(means.index, means["worst_10"], marker=marker, color=colour, label=f"{name}, largest")
-        right.plot(means.index, means["rms_10"], ":", marker=marker, color=colour, label=f"{name}, rms")
+        means = rows.groupby(["particles", "size"], dropna=False)[["unknowns", "worst_10", "rms_10"]].mean()
+        means = means.sort_values("unknowns")
+        right.plot(means["unknowns"], means["worst_10"], marker=marker, color=colour, label=f"{name}, largest")
+        right.plot(means["unknowns"], means["rms_10"], ":", marker=marker, color=colour, label=f"{name}, rms")
     _radial(left, middle, right, exact)
     _slices(figure, slices, df, exact)
     return figure
