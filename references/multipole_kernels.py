@@ -165,8 +165,6 @@ def inside(offsets, owner, coefficients, order, out):
                     across += factor * table[below + m + 1]
                 if m > 0:
                     across -= (factor * table[below + m - 1]).conjugate()
-                elif n > 1:
-                    pass
         out[k, 0], out[k, 1], out[k, 2], out[k, 3] = value, across.real, across.imag, along
 
 

@@ -27,7 +27,7 @@ FEWEST_WAVES, FEWEST_IMAGES = math.pi, 4 * math.pi
 # Above this, in units of 1/contact^2, waves of low degree cancel to more than a digit.
 CANCEL = 4.0
 # Pairs handled at a time, so that intermediate arrays stay in the cache.
-CHUNK = 256
+CHUNK = 512
 
 
 class Splitting(NamedTuple):
@@ -141,27 +141,23 @@ def periodic_irregular(offsets, degree, size, contact, *, eta=None):
     """
     cut = splitting(size, contact, degree, eta)
     offsets = offsets - size * np.round(offsets / size)
+    vectors, table = _wave_table(degree, size, cut)
     result = np.zeros((len(offsets), (degree + 1) * (degree + 2) // 2), dtype=complex)
     for low in range(0, len(offsets), CHUNK):
         part = slice(low, low + CHUNK)
         _add_images(result[part], offsets[part], degree, size, cut)
-    _add_waves(result, offsets, degree, size, cut)
+        _add_waves(result[part], offsets[part] @ vectors.T, table)
     result[:, 0] = 0.0
     return result
 
 
 def _add_images(result, offsets, degree, size, cut):
-    spans = [np.arange(-int(n), int(n) + 1) for n in np.ceil(cut.reach / size + 0.5)]
+    spans = [np.arange(-int(n), int(n) + 1) for n in cut.reach / size + 0.5]
     cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3) * size
-    owner, apart = [], []
-    for number, offset in enumerate(offsets):
-        images = cells + offset
-        square = np.einsum("ij,ij->i", images, images)
-        images = images[(square <= cut.reach**2) & (square > 0)]
-        owner.append(np.full(len(images), number))
-        apart.append(images)
-    owner, apart = np.concatenate(owner), np.concatenate(apart)
-    r = np.linalg.norm(apart, axis=1)
+    apart = offsets[:, None] + cells
+    square = np.einsum("ijk,ijk->ij", apart, apart)
+    owner, image = np.nonzero((square <= cut.reach**2) & (square > 0))
+    apart, r = apart[owner, image], np.sqrt(square[owner, image])
     x, y, z = (apart / r[:, None]).T
     screened = [gammaincc(n + 0.5, cut.eta * r**2) * r ** -(n + 1.0) for n in range(degree + 1)]
     phase = np.ones(len(r), dtype=complex)
@@ -174,12 +170,17 @@ def _add_images(result, offsets, degree, size, cut):
         phase = phase * (x + 1j * y)
 
 
-def _add_waves(result, offsets, degree, size, cut):
-    """K and -K together give 2 Re((-i)^L exp(i K.X)): a cosine where L is even, a sine where it is odd."""
+def _wave_table(degree, size, cut):
+    """Reciprocal vectors, (w, 3), and what each adds without its phase, (w, entries) complex array."""
     weights, vectors = wave_weights(cut.waves, size, cut.eta, degree)
+    table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], degree)
+    return vectors, table * weights[:, entries(degree)[0]]
+
+
+def _add_waves(result, angle, table):
+    """K and -K together give 2 Re((-i)^L exp(i K.X)): a cosine where L is even, a sine where it is odd."""
+    degree = int(math.sqrt(2 * table.shape[1])) - 1
     n, _ = entries(degree)
-    table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], degree) * weights[:, n]
-    angle = offsets @ vectors.T
     for parity, wave in ((0, np.cos(angle)), (1, np.sin(angle))):
         chosen = np.flatnonzero(n % 2 == parity)
         signs = 2.0 * (-1.0) ** (n[chosen] // 2)

@@ -1,8 +1,8 @@
 """The linear system of the multipole method: N spheres in a periodic cell under a mean gradient.
 
-Around sphere i the temperature is sum (c_lm (r/a)^l + b_lm (a/r)^(l+1)) Y_lm, a its radius: c is what the mean gradient,
-the other spheres and all images make there, and the interface gives b_lm = -alpha_l c_lm with alpha_l = l (s - 1) /
-(l s + l + 1), s the contrast (Rayleigh 1892; Sangani and Acrivos, Proc. R. Soc. A 386 (1983) 263). So
+Around sphere i the temperature is sum (c_lm (r/a)^l + b_lm (a/r)^(l+1)) Y_lm, a its radius: c is what the mean
+gradient, the other spheres and all images make there, and the interface gives b_lm = -alpha_l c_lm with alpha_l =
+l (s - 1) / (l s + l + 1), s the contrast (Rayleigh 1892; Sangani and Acrivos, Proc. R. Soc. A 386 (1983) 263). So
 b + alpha T b = -alpha c_gradient, T the translation between spheres, solved by GMRES.
 
 Tables are real, (2, spheres, entries): real and imaginary parts, Racah's normalisation, entry (l, m >= 0) at
@@ -149,6 +149,12 @@ def uniform(spheres, gradient, order):
     return table
 
 
+def homogeneous(spheres, gradient):
+    """The solution of order 0: the matrix alone."""
+    applied = uniform(spheres, gradient, 1)
+    return Solved(0, np.zeros_like(applied)[:, :, :1], applied[:, :, :1], -np.asarray(gradient), 0, 0.0)
+
+
 def dipoles(spheres, source):
     """Moments p of the temperatures p.x/r^3 of multipoles b, (n, 3) float array, length^2 K."""
     root = math.sqrt(2)
@@ -192,7 +198,7 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
         return (source + alpha * received(spheres, table, order, source, threads)).ravel()
 
     load, start = (-alpha * applied).ravel(), np.zeros(shape)
-    if guess is not None:
+    if guess is not None and guess.order <= order:
         start[:, :, : guess.source.shape[2]] = guess.source
     b, iterations = gmres(system, load, start.ravel(), tolerance)
     source = b.reshape(shape)
@@ -225,21 +231,21 @@ def gmres(system, load, start, tolerance):
     size, wanted = float(np.linalg.norm(first)), tolerance * float(np.linalg.norm(load))
     if size <= wanted:
         return start, 0
-    basis, columns = [first / size], np.zeros((MOST_ITERATIONS + 1, MOST_ITERATIONS))
+    basis, columns = np.empty((MOST_ITERATIONS + 1, len(load))), np.zeros((MOST_ITERATIONS + 1, MOST_ITERATIONS))
+    basis[0] = first / size
     for k in range(MOST_ITERATIONS):
         vector = system(basis[k])
-        # Twice, for orthogonality to rounding.
+        # Twice, for orthogonality to rounding; einsum, for BLAS would wake its threads for so little.
         for _ in range(2):
-            for i, other in enumerate(basis):
-                part = float(other @ vector)
-                columns[i, k] += part
-                vector -= part * other
-        columns[k + 1, k] = float(np.linalg.norm(vector))
+            parts = np.einsum("ij,j->i", basis[: k + 1], vector)
+            columns[: k + 1, k] += parts
+            vector = vector - np.einsum("i,ij->j", parts, basis[: k + 1])
+        norm = columns[k + 1, k] = math.sqrt(np.einsum("i,i", vector, vector))
         target = np.zeros(k + 2)
         target[0] = size
         weights = np.linalg.lstsq(columns[: k + 2, : k + 1], target, rcond=None)[0]
         left = float(np.linalg.norm(target - columns[: k + 2, : k + 1] @ weights))
-        if left <= wanted or columns[k + 1, k] <= 1e-15 * size or k + 1 == MOST_ITERATIONS:
+        if left <= wanted or norm <= 1e-15 * size:
             break
-        basis.append(vector / columns[k + 1, k])
-    return start + np.stack(basis[: len(weights)], axis=1) @ weights, len(weights)
+        basis[k + 1] = vector / norm
+    return start + np.einsum("i,ij->j", weights, basis[: k + 1]), k + 1
