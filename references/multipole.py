@@ -175,7 +175,7 @@ def _converged(spheres, gradient, order, accuracy, tolerance, threads, gap):
     wanted = FIRST_ORDER if order is None else order
     orders = [n for n in (wanted - 6, wanted - 4, wanted - 2, wanted) if n >= 1]
     history, table, reach = [homogeneous(spheres, gradient)], None, 0
-    while True:
+    while len(spheres.radii):
         for n in orders:
             if n > reach:
                 reach = wanted if order is not None else min(n + AHEAD, highest)
@@ -186,6 +186,7 @@ def _converged(spheres, gradient, order, accuracy, tolerance, threads, gap):
             return history
         _refuse_hopeless(history, accuracy, highest, gap)
         orders = [history[-1].order + 2]
+    return history
 
 
 def _refuse_hopeless(history, accuracy, highest, gap):
@@ -221,8 +222,10 @@ def _truncation(history):
     slowly with the order where gaps are small.
     """
     changes = _changes(history)
+    if not changes:
+        return 0.0
     ratio = _ratio(changes)
-    before = changes[-2] * ratio if len(changes) > 1 else 0.0
+    before = changes[-2] * ratio if len(changes) > 2 else 0.0
     return 2 * max(changes[-1], before) * ratio / (1 - ratio)
 
 

@@ -102,7 +102,7 @@ def _splitting(spheres, order):
         eta = factor * math.pi / volume ** (2 / 3)
         if factor > 1 and eta * largest**2 > MOST_SCREENED:
             break
-        cut = splitting(spheres.size, max(largest, 1e-3 * volume ** (1 / 3)), order, eta)
+        cut = splitting(spheres.size, max(largest, 1e-3 * volume ** (1 / 3)), max(order, 1), eta)
         images = len(spheres.radii) * 4 / 3 * math.pi * cut.reach**3 / volume
         cost = HARMONIC * images * (order + 2) ** 2 + WAVE * len(cut.waves)
         if cost < least:
