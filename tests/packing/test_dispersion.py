@@ -95,7 +95,7 @@ def test_sizes_as_asked():
 @pytest.mark.parametrize("method", ["lsa", "rsa"])
 def test_seeds(method, tmp_path):
     def made(seed, folder):
-        return dispersion(fraction=0.2, radii=Gaussian(0.2), method=method, seed=seed, folder=tmp_path / folder)
+        return dispersion(fraction=0.2, method=method, seed=seed, folder=tmp_path / folder)
 
     first, again, other = made(3, "a"), made(3, "b"), made(4, "a")
     for one, two in zip(first, again, strict=True):
