@@ -85,9 +85,9 @@ def test_gaps_are_as_small_as_asked():
 
 
 def test_sizes_as_asked():
-    _, radii = dispersion(2000, fraction=0.3, radii=Gaussian(0.3, 2.5), method="lsa", seed=4)
-    # 0.955 of the spread remains after the cut (`Gaussian`); 2000 draws scatter by 1.6 %.
-    assert_allclose(np.std(radii) / np.mean(radii), 0.3 * 0.955, rtol=0.06)
+    _, radii = dispersion(800, fraction=0.3, radii=Gaussian(0.3, 2.5), seed=4)
+    # 0.955 of the spread remains after the cut (`Gaussian`); 800 draws scatter by 2.5 %.
+    assert_allclose(np.std(radii) / np.mean(radii), 0.3 * 0.955, rtol=0.08)
     _, radii = dispersion(fraction=0.2, number=4, radii=[1.0, 2.0, 1.0, 2.0], method="rsa", gap=0.01)
     assert_allclose(np.sort(radii / radii.min()), [1, 1, 2, 2], rtol=1e-12)
 
@@ -119,7 +119,7 @@ def close_pairs(method):
     """Mean number of spheres within 1.3 diameters of another, over some dispersions without a gap."""
     found = []
     for seed in range(3):
-        centers, radii = dispersion(fraction=0.3, ratio=9.0, gap=0.0, method=method, seed=seed)
+        centers, radii = dispersion(fraction=0.3, ratio=8.0, gap=0.0, method=method, seed=seed)
         pairs = cKDTree(centers, boxsize=1 + 1e-12).query_pairs(1.3 * mean_diameter(radii))
         found.append(2 * len(pairs) / len(radii))
     return np.mean(found)
@@ -127,12 +127,12 @@ def close_pairs(method):
 
 def test_neighbours_as_in_equilibrium():
     # Percus and Yevick's fluid at f = 0.3, by inversion of its structure factor, has 4.82, good to some 2 %; centres
-    # that only keep off each other would have 2.9. The mean of 3 cells of 418 spheres scatters by 0.04.
+    # that only keep off each other would have 2.9. The mean of 3 cells of 293 spheres scatters by 0.05.
     assert_allclose(close_pairs("lsa"), 4.82, atol=0.2)
 
 
 def test_added_spheres_are_less_crowded():
-    # Found 4.60 to 4.66 against 4.74 to 4.82.
+    # Found 4.60 against 4.76.
     assert close_pairs("rsa") < close_pairs("lsa") - 0.05
 
 
