@@ -13,6 +13,9 @@ from demheat.network.base import row_numbers
 MOST = 5000
 # A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.
 REUSE = 3.0
+# No solve is asked for less than the rounding of temperatures, nor of the rates that they make in a stiff stage; but
+# where that rounding is more than `COARSEST` of them, the stage has failed.
+ROUNDING, COARSEST = 1e-13, 1e-9
 
 
 def solver(system, preconditioner):
@@ -27,16 +30,21 @@ def solver(system, preconditioner):
     -------
     solve : callable (g, known, heat, y, limit) -> iterations, bound
         Finds y, in place, with C (known - y) / g + (heat received at y) = 0 up to an error whose root mean square,
-        weighted by capacity, is at most `limit`, K. The sum of the residuals over each cluster of particles, which
-        would be heat lost, is zero to rounding. The bound on that error, K, is from the residual as recomputed. Raises
-        RuntimeError if it does not get there.
+        weighted by capacity, is at most `limit`, K, or the rounding of the temperatures if that is more. The sum of
+        the residuals over each cluster of particles, which would be heat lost, is zero to rounding. The bound on that
+        error, K, is from the residual as recomputed. Raises RuntimeError if it does not get there.
     """
     free = system.capacity > 0
     total = float(system.capacity.sum())
     cluster = _clusters(system)
     capacities = np.bincount(cluster, system.capacity)
     ties = np.bincount(cluster[system.tie_row], system.tie_conductance, minlength=len(capacities))
+    stiffness = math.sqrt(float(np.einsum("i,i,i->", system.inverse, system.diagonal, system.diagonal)) / total)
     kept = {}
+
+    def rounding(g, known, y):
+        largest = max(float(np.abs(known[free]).max()), float(np.abs(y).max()))
+        return min(ROUNDING + np.finfo(float).eps * g * stiffness, COARSEST) * largest
 
     def residual(g, known, heat, y):
         r = np.empty_like(y)
@@ -60,12 +68,13 @@ def solver(system, preconditioner):
 
     def solve(g, known, heat, y, limit):
         iterate = _multigrid(system, free, kept, g) if preconditioner == "multigrid" else _jacobi(system)
-        iterations = 0
+        limit, iterations = max(limit, rounding(g, known, y)), 0
         for _ in range(20):
             r = residual(g, known, heat, y)
-            if size(g, r) > limit and iterations < MOST:
+            reached = size(g, r)
+            if reached > limit and iterations < MOST:
                 norm = math.sqrt(float(np.einsum("i,i->", r, r)))
-                iterations += iterate(g, r, y, 0.8 * limit / size(g, r) * norm)
+                iterations += iterate(g, r, y, 0.8 * limit / reached * norm)
                 continue
             balance(g, r, y)
             reached = size(g, r)
