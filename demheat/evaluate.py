@@ -6,6 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat import steady_kernels as kernels
+from demheat.edges import edges_of
 from demheat.field import Field, Samples
 from demheat.network.base import SIDES, image_shifts, row_numbers, wall_normals
 from demheat.reconstruct import Reconstruction
@@ -122,7 +123,9 @@ def _samplers(scene, packing, facets, network, solution, law):
 
     if law == "laguerre":
         how = {"periodic": packing.periodic, "phase_at": scene.phase_at, "conductivities": scene.conductivities}
-        smooth = cache(lambda: Reconstruction(network, solution.fluctuation, solution.gradient, slopes(), **how))
+        edges = cache(lambda: edges_of(scene, facets, network, solution))
+        parts = solution.fluctuation, solution.gradient
+        smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
         return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
     locate = cache(lambda: _Locator(packing))
 

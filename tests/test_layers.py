@@ -42,9 +42,11 @@ LAYERS = {
         "demheat.integrators",
     ),
     "demheat.reconstruct": (),
+    "demheat.edges": ("demheat.network",),
     "demheat.evaluate": (
         "demheat.scene",
         "demheat.field",
+        "demheat.edges",
         "demheat.reconstruct",
         "demheat.threads",
         "demheat.network",

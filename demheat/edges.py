@@ -1,0 +1,84 @@
+"""What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.network.base import SIDES, branches, row_numbers, wall_normals
+
+# Facets smaller than this part of their cell's size lie away from the line between the two centres.
+SMALL = 0.05
+
+
+class Edges(NamedTuple):
+    """Points on the edges of cells, ordered by cell.
+
+    Attributes
+    ----------
+    start : (n + 1,) int array
+        Where the points of each cell begin.
+    places, normals : (m, 3) float arrays, m and outward unit vectors
+    values : (m,) float array, K
+        Temperature, less the linear field of a mean gradient.
+    slopes : (m,) float array, K/m
+        Of the whole temperature along the normal, on the cell's side.
+    held : (m,) bool array
+        Where the value is what is known; elsewhere, at walls with a flux or none, it is the slope.
+    """
+
+    start: np.ndarray
+    places: np.ndarray
+    normals: np.ndarray
+    values: np.ndarray
+    slopes: np.ndarray
+    held: np.ndarray
+
+
+def edges_of(scene, facets, network, solution):
+    """Edges of all cells of a network with facets.
+
+    A facet between two phases has the temperature that the heat through it makes on the way from either centre: the
+    same for both.
+
+    Parameters
+    ----------
+    scene : Scene
+    facets : Facets
+    network : Network
+    solution : Solution
+
+    Returns
+    -------
+    Edges
+    """
+    parts = _interfaces(scene, facets, network, solution), _walls(scene, network, solution)
+    owner, *columns = (np.concatenate(column) for column in zip(*parts, strict=True))
+    kept = np.isfinite(columns[2]) & np.isfinite(columns[3])
+    order = np.flatnonzero(kept)[np.argsort(owner[kept], kind="stable")]
+    count = np.bincount(owner[order], minlength=len(network.volumes))
+    return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns))
+
+
+def _interfaces(scene, facets, network, solution):
+    row, k = row_numbers(network.indptr), scene.conductivities[network.phase]
+    other = network.indices
+    size = SMALL * np.cbrt(network.volumes) ** 2
+    here = (network.phase[row] != network.phase[other]) & (network.conductance > 0) & (facets.area > size[row])
+    row, other = row[here], other[here].astype(np.int64)
+    ends = np.concatenate([[0], np.cumsum(here)])[network.indptr]
+    step = branches(network.centers, network.size, ends, other, network.image[here])
+    normal, away = step / np.linalg.norm(step, axis=1)[:, None], facets.distance[here]
+    rise = solution.fluctuation[other] - solution.fluctuation[row] + step @ solution.gradient
+    slope = network.conductance[here] * rise / (k[row] * facets.area[here])
+    value = solution.fluctuation[row] + away * (slope - normal @ solution.gradient)
+    return row, network.centers[row] + away[:, None] * normal, normal, value, slope, np.ones(len(row), dtype=bool)
+
+
+def _walls(scene, network, solution):
+    cell, k = network.wall_particle.astype(np.int64), scene.conductivities[network.phase]
+    normal, imposed = wall_normals(network), [SIDES.index(name) for name in scene.wall_temperatures]
+    place = network.centers[cell] + network.wall_distance[:, None] * normal
+    held = np.isin(network.wall_side, imposed)
+    passing = k[cell] * network.wall_area
+    slope = np.divide(solution.wall_heat, passing, out=np.full(len(cell), np.nan), where=passing > 0)
+    return cell, place, normal, solution.wall_temperature, slope, held
