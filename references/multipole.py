@@ -68,54 +68,52 @@ def solve(scene, *, order=None, accuracy=1e-5, tolerance=1e-10, points_per_axis=
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     scene.check_steady()
     spheres, unit = _spheres(scene)
-    gradient, gap = np.array(scene.gradient) * unit, _smallest_gap(spheres)
-    history = _converged(spheres, gradient, order, accuracy, tolerance, threads, gap * unit)
-    last, k = history[-1], scene.matrix.conductivity
-    fluxes = [-solved.mean_flux @ gradient / (gradient @ gradient) * k for solved in history]
-    made = []
+    history = _converged(spheres, np.array(scene.gradient) * unit, order, accuracy, tolerance, threads, unit)
+    return _field(scene, spheres, unit, history, points_per_axis)
+
+
+def _field(scene, spheres, unit, history, points_per_axis):
+    conductivities, made = scene.conductivities, []
 
     def at(points):
         # The waves' amplitudes are worth their time only if the field is asked for.
         if not made:
-            made.append(Evaluator(spheres, last, gradient))
-        return made[0](points / unit)
-
-    conductivities = scene.conductivities
-
-    def temperature(points):
-        return at(points)[0][:, 0]
-
-    def flux(points):
-        values, owner = at(points)
-        return -conductivities[owner + 1][:, None] * values[:, 1:] / unit
+            made.append(Evaluator(spheres, history[-1], np.array(scene.gradient) * unit))
+        values, owner = made[0](points / unit)
+        return values[:, 0], -conductivities[owner + 1][:, None] * values[:, 1:] / unit, owner + 1
 
     def sampler():
         axes = [(np.arange(points_per_axis) + 0.5) * length / points_per_axis for length in scene.size]
         points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-        values, owner = at(points)
+        temperature, flux, phase = at(points)
         volumes = np.full(len(points), scene.volume / len(points))
-        heat = -conductivities[owner + 1][:, None] * values[:, 1:] / unit
-        return Samples(points, volumes, values[:, 0], (owner + 1).astype(np.int32), heat)
+        return Samples(points, volumes, temperature, phase.astype(np.int32), flux)
 
-    volumes = 4 / 3 * math.pi * spheres.radii**3 / np.prod(spheres.size)
+    shares = 4 / 3 * math.pi * spheres.radii**3 / np.prod(spheres.size)
     return Field(
         scene=scene,
-        mean_flux=k * last.mean_flux / unit,
-        fractions=np.concatenate([[1 - volumes.sum()], volumes]),
+        mean_flux=scene.matrix.conductivity * history[-1].mean_flux / unit,
+        fractions=np.concatenate([[1 - shares.sum()], shares]),
         sampler=sampler,
-        temperature_at=temperature,
-        flux_at=flux,
-        stats={
-            "order": last.order,
-            "unknowns": len(spheres.radii) * ((last.order + 1) ** 2 - 1),
-            "iterations": last.iterations,
-            "residual": last.residual,
-            "truncation": _truncation(history),
-            "field_truncation": _field_truncation(spheres, last, gradient),
-            "smallest_gap": gap * unit,
-            "convergence": tuple((solved.order, float(f)) for solved, f in zip(history, fluxes, strict=True)),
-        },
+        temperature_at=lambda points: at(points)[0],
+        flux_at=lambda points: at(points)[1],
+        stats=_stats(scene, spheres, unit, history),
     )
+
+
+def _stats(scene, spheres, unit, history):
+    last, gradient = history[-1], np.array(scene.gradient) * unit
+    k = -scene.matrix.conductivity / (gradient @ gradient)
+    return {
+        "order": last.order,
+        "unknowns": len(spheres.radii) * ((last.order + 1) ** 2 - 1),
+        "iterations": last.iterations,
+        "residual": last.residual,
+        "truncation": _truncation(history),
+        "field_truncation": _field_truncation(spheres, last, gradient),
+        "smallest_gap": _smallest_gap(spheres) * unit,
+        "convergence": tuple((solved.order, float(k * solved.mean_flux @ gradient)) for solved in history),
+    }
 
 
 def zeta2(scene, *, order=None):
@@ -167,7 +165,7 @@ def zeta2(scene, *, order=None):
     return float((total - 3 * phi**3) / (6 * phi * (1 - phi)))
 
 
-def _converged(spheres, gradient, order, accuracy, tolerance, threads, gap):
+def _converged(spheres, gradient, order, accuracy, tolerance, threads, unit):
     """Solutions of rising order, two degrees apart; the last is the answer."""
     highest = _highest_order(len(spheres.radii))
     if order is not None and order > highest:
@@ -184,7 +182,7 @@ def _converged(spheres, gradient, order, accuracy, tolerance, threads, gap):
             history.append(solve_order(spheres, table, gradient, n, **options))
         if order is not None or _truncation(history) <= accuracy:
             return history
-        _refuse_hopeless(history, accuracy, highest, gap)
+        _refuse_hopeless(history, accuracy, highest, _smallest_gap(spheres) * unit)
         orders = [history[-1].order + 2]
     return history
 
