@@ -4,7 +4,8 @@ A moving least squares fit (Lancaster and Salkauskas 1981) of the temperatures o
 reached over facets within one phase only, so that nothing is fitted across an interface; and of what the network knows
 at the phase's edges: temperatures on interfaces and held walls, slopes at the others. What is fitted is the difference
 from the cell's own linear temperature, whose gradient makes the cell's flux exact for linear fields: where there are
-too few cells for a quadratic, that is what remains.
+too few cells for a quadratic, that is what remains. A jump within a cell, as at a wall heated at once, overshoots by a
+quarter of it.
 """
 
 import numpy as np

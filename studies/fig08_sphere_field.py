@@ -111,12 +111,12 @@ def plot(df):
         label = f"{name}, {row['unknowns']:.0f} unknowns"
         r, error, size = (sphere_in_time.numbers(row[f"profile_{kind}"]) for kind in ("r", "error", "worst"))
         left.plot(r, exact(r) + error, marker, color=colour, fillstyle="none", markersize=4, label=label)
-        middle.plot(r, size, marker=marker, color=colour, markersize=4, label=f"{name}, largest")
-        middle.plot(r, abs(error), ":", color=colour, label=f"{name}, |mean|")
+        middle.plot(r, size, marker=marker, color=colour, markersize=4)
+        middle.plot(r, abs(error), ":", color=colour)
         means = rows.groupby(["particles", "size"], dropna=False)[["unknowns", "worst_10", "rms_10"]].mean()
         means = means.sort_values("unknowns")
-        right.plot(means["unknowns"], means["worst_10"], marker=marker, color=colour, label=f"{name}, largest")
-        right.plot(means["unknowns"], means["rms_10"], ":", marker=marker, color=colour, label=f"{name}, rms")
+        right.plot(means["unknowns"], means["worst_10"], marker=marker, color=colour)
+        right.plot(means["unknowns"], means["rms_10"], ":", marker=marker, color=colour)
     _radial(left, middle, right, exact)
     _slices(figure, slices, df, exact)
     return figure
@@ -141,10 +141,11 @@ def _radial(left, middle, right, exact):
     r = np.linspace(0.0, 1.0, 101)
     left.plot(r, exact(r), color=BLACK, linewidth=0.8, label="exact")
     left.set(xlabel="r / R", ylabel="temperature, C", title="10 s: exact, and plus mean errors in shells")
-    middle.set(xlabel="r / R", ylabel="error, K", yscale="log", title="Error in shells, finest rows")
-    right.set(xlabel="unknowns", ylabel="error, K", xscale="log", yscale="log", title="Error over the whole field")
-    for axes in (left, middle, right):
-        axes.legend(fontsize=8)
+    middle.set(xlabel="r / R", ylabel="error, K", yscale="log", title="Finest rows, in shells: largest; dotted: |mean|")
+    right.set(
+        xlabel="unknowns", ylabel="error, K", xscale="log", yscale="log", title="Whole field: largest; dotted: rms"
+    )
+    left.legend(fontsize=8)
 
 
 def _slices(figure, slices, df, exact):
