@@ -91,7 +91,8 @@ class Field:
         """Heat that crosses a section of the body, W, by the method's own balance.
 
         For the DEM the section is made of the facets between cells with centres on either side of a plane: in a steady
-        state every one of them carries the same heat, to the solver's residual.
+        state every one of them carries the same heat, to the solver's residual. It is as rough as the cells, so that a
+        section along the load, which plane symmetry would leave without heat, carries a little.
 
         Parameters
         ----------

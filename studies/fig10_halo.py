@@ -184,7 +184,7 @@ def _paper(rows):
     walled = {"law": "calibrated", "split": "half", "walls": "held"}
     raw = _means(rows, "bulk_cov_volume", ratio=0.0, **walled)
     # By volume; by number, where small particles with large neighbours count as much, it is twice as large.
-    text = "Contacts, printed weights, bulk: CoV by volume off the paper's 27 %, factor"
+    text = "Contacts, printed weights, bulk: CoV by volume (by number it is twice that) off the paper's 27 %, factor"
     yield text, _factor(raw, PAPER["cov_0"]), 1.25
     halo = _means(rows, "bulk_cov", ratio=4.0, **walled)
     text = "Halo of 4, bulk: CoV off the paper's 5 %, factor"

@@ -156,7 +156,7 @@ def _against_bricks(df):
             yield f"{text} % of the highest temperature", here["span"], limits[1]
     for name in NAMES:
         ours, theirs = (compared(df, law, NUMBERS[0], name)["span"] for law in ("laguerre", "platonic"))
-        text = f"{name}, 1000 particles: largest difference from bricks, Platonic over Laguerre"
+        text = f"{name}, 1000 particles: largest difference from bricks, % of the highest, Platonic over Laguerre"
         # Platonic temperatures lack what its excess of heat capacity, a tenth, takes up.
         yield text, theirs / ours, ">= 5"
 
