@@ -6,8 +6,9 @@ import numpy as np
 
 from demheat.network.base import SIDES, branches, row_numbers, wall_normals
 
-# Facets smaller than this part of their cell's size lie away from the line between the two centres.
-SMALL = 0.05
+# Facets smaller than this part of their cell's size lie away from the line between the two centres. Facets lie on an
+# interface if the phases change within this part of the cell's width on either side of them.
+SMALL, NEAR = 0.05, 0.05
 
 
 class Edges(NamedTuple):
@@ -37,8 +38,8 @@ class Edges(NamedTuple):
 def edges_of(scene, facets, network, solution):
     """Edges of all cells of a network with facets.
 
-    A facet between two phases has the temperature that the heat through it makes on the way from either centre: the
-    same for both.
+    A facet that lies on an interface has the temperature that the heat through it makes on the way from either centre:
+    the same for both. In packings that do not conform facets between phases lie elsewhere, and are left out.
 
     Parameters
     ----------
@@ -71,7 +72,10 @@ def _interfaces(scene, facets, network, solution):
     rise = solution.fluctuation[other] - solution.fluctuation[row] + step @ solution.gradient
     slope = network.conductance[here] * rise / (k[row] * facets.area[here])
     value = solution.fluctuation[row] + away * (slope - normal @ solution.gradient)
-    return row, network.centers[row] + away[:, None] * normal, normal, value, slope, np.ones(len(row), dtype=bool)
+    place = network.centers[row] + away[:, None] * normal
+    step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
+    on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])
+    return tuple(column[on] for column in (row, place, normal, value, slope, np.ones(len(row), dtype=bool)))
 
 
 def _walls(scene, network, solution):
