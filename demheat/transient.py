@@ -1,24 +1,29 @@
 """Temperatures of a network in time, under a scene's walls and sources."""
 
 import math
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat import steady_kernels
 from demheat.integrators import choose, control, euler, rkl2, trbdf2
+from demheat.integrators.pace import ANY, Pace, pace_of
 from demheat.integrators.spectrum import spectrum as spectrum_of
 from demheat.integrators.system import initial_state, load_at, loaded_areas, semi_discrete
 from demheat.network.base import SIDES, wall_normals
+from demheat.scene import Flux
 from demheat.steady import Solution
 
 # Error that an implicit solve may leave, in units of the accuracy; less for more accuracy, as steps become more.
 LINEAR = 0.2
+# Where loads ask for more steps than so many, solves leave so much less: what each leaves stays if little heat flows.
+FEW = 4.0
 
 
-def linear_tolerance(accuracy):
-    """Error that an implicit solve may leave, in units of the span."""
-    return LINEAR * accuracy * min(1.0, math.sqrt(accuracy / control.USUAL))
+def linear_tolerance(accuracy, steps=1):
+    """Error that an implicit solve may leave, in units of the span, if loads ask for so many steps at least."""
+    return LINEAR * accuracy * min(1.0, math.sqrt(accuracy / control.USUAL), FEW / max(steps, 1))
 
 
 class State(NamedTuple):
@@ -63,7 +68,7 @@ def check_request(times, integrator, accuracy, step):
     return array
 
 
-def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None):
+def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None, pace=ANY):
     """March a system from time 0 to the asked times.
 
     Parameters
@@ -78,6 +83,8 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
         capacity, stays about below it. Explicit Euler, as in the papers, takes its largest stable step instead.
     step : float, s, optional
         Equal steps of at most this size instead.
+    pace : Pace
+        Times at which steps end as well, where loads jump, and the longest steps; equal steps heed the former only.
 
     Yields
     ------
@@ -86,7 +93,7 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
         solve left, by its recomputed residual, over the span),
         step (the last), step_limit (largest stable step of explicit Euler), positivity_limit, spectral_radius,
         spectral_ratio (to the mean row), heat_change (J), heat_in (J by side and "sources") and energy_error: heat
-        change minus heat in, over the heat that came in or moved.
+        change minus heat in, over the heat that came in, went out or moved.
 
     Raises
     ------
@@ -97,34 +104,39 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
     """
     times = check_request(times, integrator, accuracy, step)
     rates = spectrum_of(system)
+    needed = pace.steps(times[-1])
     if integrator == "auto":
-        integrator = choose.chosen(rates, float(times[-1]), accuracy, len(times))
+        integrator = choose.chosen(
+            rates, float(times[-1]), accuracy, max(len(times), needed), moving=len(pace.longest) > 0
+        )
     x = initial_state(system, temperature, 0.0)
     span = control.span_of(system, x)
     method = {"euler": euler, "rkl2": rkl2}.get(integrator, trbdf2)
-    advance = _stepper(method, system, rates, integrator, accuracy, span)
+    advance = _stepper(method, system, rates, integrator, linear_tolerance(accuracy, needed), span)
     largest = method.largest_step(rates)
     if step is not None and step > largest * (1 + 1e-12):
         raise ValueError(f"step = {step!r}: explicit Euler is unstable above {largest:.6g} s on this network")
-    return _marched(system, x, times, method, advance, rates, integrator, accuracy, step, span)
+    pace = pace if step is None else Pace(pace.breaks)
+    return _marched(system, x, times, method, advance, rates, integrator, accuracy, step, span, pace)
 
 
-def _stepper(method, system, rates, integrator, accuracy, span):
+def _stepper(method, system, rates, integrator, tolerance, span):
     if method is not trbdf2:
         return method.stepper(system, rates)
     kind = "multigrid" if integrator.endswith("multigrid") else "jacobi"
-    return method.stepper(system, rates, limit=lambda: linear_tolerance(accuracy) * span(), preconditioner=kind)
+    return method.stepper(system, rates, limit=lambda: tolerance * span(), preconditioner=kind)
 
 
-def _marched(system, x, times, method, advance, rates, integrator, accuracy, step, span):
+def _marched(system, x, times, method, advance, rates, integrator, accuracy, step, span, pace):
     start = x.copy()
     if step is None and method.ESTIMATES:
         # The first step changes temperatures by about what it may err.
         first = min(times[-1] or 1.0, 2.0 / max(rates.radius, 1e-300))
-        states = control.adaptive_steps(advance, system, x, times, accuracy=accuracy, span=span, first=first)
+        chosen = {"accuracy": accuracy, "span": span, "first": first, "pace": pace}
+        states = control.adaptive_steps(advance, system, x, times, **chosen)
     else:
         size = min(step or math.inf, method.largest_step(rates), times[-1] or 1.0)
-        states = control.fixed_steps(advance, system, x, times, step=size, span=span)
+        states = control.fixed_steps(advance, system, x, times, step=size, span=span, pace=pace)
     for time, now, ledger in states:
         stats = {"integrator": integrator, "order": method.ORDER, "unknowns": int((system.capacity > 0).sum())}
         stats |= _account(system, start, now, ledger) | _limits(rates)
@@ -136,7 +148,7 @@ def _account(system, start, now, ledger):
     """Steps done and the balance of heat."""
     moved = system.capacity * (now - start)
     change, came = float(moved.sum()), ledger.inflow
-    scale = max(float(np.abs(came).sum()), float(np.abs(moved).sum()))
+    scale = max(float(ledger.through.sum()), float(np.abs(moved).sum()))
     names = (*SIDES, "sources")
     return {
         "steps": ledger.steps,
@@ -160,7 +172,7 @@ def _limits(rates):
     }
 
 
-def evolve(network, scene, times, *, capacity=None, power=None, pinned=None, **knobs):
+def evolve(network, scene, times, *, capacity=None, power=None, passes=(), pinned=None, **knobs):
     """Temperatures, wall temperatures and wall heat of a network at the asked times.
 
     Parameters
@@ -174,6 +186,8 @@ def evolve(network, scene, times, *, capacity=None, power=None, pinned=None, **k
         Default `capacities`.
     power : callable (time, s) -> (n,) float array, W, optional
         Heat sources.
+    passes : sequence of (start, s, stop, s, crossing, s)
+        Of moving sources, see `demheat.sources.passes`; steps heed them.
     pinned : (n,) bool array, optional
         Particles held at the temperature of the wall they touch.
     integrator, accuracy, step
@@ -193,8 +207,18 @@ def evolve(network, scene, times, *, capacity=None, power=None, pinned=None, **k
     start = initial_temperature(scene, network.centers)
     capacity = capacities(network, scene) if capacity is None else capacity
     system = semi_discrete(network, scene, capacity, power=power, pinned=pinned, level=float(start.mean()))
-    for state in integrate(system, start, times, **knobs):
+    pace = pace_of(changing_loads(scene), passes, float(times[-1]), knobs.get("accuracy", 1e-3))
+    for state in integrate(system, start, times, pace=pace, **knobs):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
+
+
+def changing_loads(scene):
+    """Loads of walls that are functions of time, (time, s) -> float; what is not finite is an error."""
+    return [
+        partial(load_at, name, load)
+        for name, load in (scene.walls or {}).items()
+        if callable(load.value if isinstance(load, Flux) else load)
+    ]
 
 
 def initial_temperature(scene, points):

@@ -9,7 +9,7 @@ from demheat.network.laguerre import laguerre
 from demheat.packing.radii import Uniform
 from demheat.packing.relax import relax
 from demheat.scene import Heating, Material, MovingCylinder, Scene
-from demheat.sources import check_sources, lost_power, source_power, total_power
+from demheat.sources import check_sources, lost_power, passes, source_power, total_power
 
 METAL = Material(134.0, density=2790.0, heat_capacity=880.0)
 
@@ -181,3 +181,26 @@ def test_volumes_that_do_not_fill_the_body_get_its_power(cells):
     # A quotient of sums.
     assert_allclose(given.sum(), 5e6 * scene.volume, rtol=1e-14)
     assert_allclose(given / volumes, given[0] / volumes[0], rtol=1e-13)
+
+
+@pytest.mark.parametrize("domain", ["box", "cylinder-z"])
+@pytest.mark.parametrize(
+    "start, velocity", [((-1.0, 0.02), (0.5, 0.0)), ((-0.1, -0.12), (0.3, 0.31)), ((0.07, 0.2), (-0.1, -0.4))]
+)
+def test_times_at_which_a_source_meets_and_leaves_the_body(domain, start, velocity):
+    source = laser(diameter=0.02, start=start, velocity=velocity, clip=True)
+    scene = sheet(source, size=(0.05, 0.05, 0.002), domain=domain)
+    ((first, last, crossing),) = passes(scene)
+    assert crossing == pytest.approx(0.02 / math.hypot(*velocity))
+    assert total_power(scene, first - 1e-6) == total_power(scene, last + 1e-6) == 0.0
+    # From a thousandth of its own length on, well above the part of 1e-9 that counts as touching.
+    assert total_power(scene, first + 1e-3 * crossing) > 0 < total_power(scene, last - 1e-3 * crossing)
+
+
+def test_sources_that_stand_still_or_pass_by():
+    assert passes(sheet(Heating(1.0), laser(velocity=(0.0, 0.0)))) == [(-math.inf, math.inf, math.inf)]
+    assert passes(sheet(laser(start=(0.02, 0.0341), clip=True))) == []
+    # Past the corner, by the diagonal: 0.1 mm less and more than the radius of 4 mm.
+    for gap, count in ((0.0039, 1), (0.0041, 0)):
+        start = np.array([0.05, 0.03]) + gap / math.sqrt(2) + np.array([-1.0, 1.0])
+        assert len(passes(sheet(laser(start=start, velocity=(1.0, -1.0), clip=True)))) == count

@@ -1,6 +1,7 @@
 """Transients by the discrete element method: against exact series, its heat balance, and what it refuses."""
 
 import re
+from functools import cache
 
 import numpy as np
 import pytest
@@ -119,6 +120,64 @@ def test_implicit_steps_of_a_body_at_rest(integrator):
     assert_allclose(field.samples.temperature, 25.0, atol=1e-5)
     with pytest.raises(RuntimeError, match="after .* iterations, asked for"):
         last(SLAB, [1e300], particles=300, integrator=integrator)
+
+
+ALUMINIUM = Material(185.0, density=2700.0, heat_capacity=900.0)
+
+
+@pytest.mark.parametrize("knobs", [*({"integrator": name} for name in ("auto", *INTEGRATORS)), {"step": 7.0}])
+def test_a_pulse_of_flux_brings_its_heat(knobs):
+    pulse = Flux(lambda t: 1e5 if 50.033 <= t <= 50.533 else 0.0)
+    field = last(Scene(size=BOX, matrix=ALUMINIUM, walls={"y+": pulse}, initial=20.0), [100.0], particles=300, **knobs)
+    # 1e5 W/m2 on 0.01 m2 for half a second; each jump is known to 1e-7 s.
+    assert_allclose(field.stats["heat_in"]["y+"], 500.0, rtol=1e-6)
+    assert field.stats["energy_error"] < 1e-10
+
+
+@pytest.mark.parametrize("integrator", ["auto", *INTEGRATORS])
+def test_a_source_that_passes_through_brings_its_heat(integrator):
+    source = MovingCylinder(2, 0.02, 1e7, start=(-1.0, 0.05), velocity=(0.4, 0.0), clip=True)
+    scene = Scene(size=BOX, matrix=ALUMINIUM, initial=20.0, sources=[source])
+    field = last(scene, [100.0], particles=300, integrator=integrator)
+    # Its power for the time of its axis in the body, 0.25 s; steps of a tenth of 0.05 s err by 1e-3 at the edges.
+    assert_allclose(field.stats["heat_in"]["sources"], 1e7 * np.pi / 4 * 0.02**2 * 0.1 * 0.25, rtol=1e-3)
+
+
+def test_heat_of_a_wall_that_is_warm_for_a_while():
+    scene = Scene(size=BOX, matrix=ALUMINIUM, walls={"y+": lambda t: 120.0 if 130 <= t <= 140 else 20.0}, initial=20.0)
+    during, after = evolve(scene, [141.0, 9000.0], particles=300, integrator="tr-bdf2")
+    # Depth sqrt(4 a t / pi) = 3.1 cm at 10 s, of 100 K over 0.01 m2, less the same from the end of the pulse on; cells
+    # of 1.5 cm do that to some 10 %.
+    taken = 2700.0 * 900.0 * 100.0 * 0.01 * np.sqrt(4 * 185.0 / 2.43e6 / np.pi) * (np.sqrt(11.0) - 1.0)
+    assert_allclose(during.stats["heat_in"]["y+"], taken, rtol=0.1)
+    # All that came in and went out again is counted, not what is left of it.
+    assert abs(after.stats["heat_in"]["y+"]) < 1e-4 * taken and after.stats["energy_error"] < 1e-12
+
+
+TRACK = Scene(
+    size=BOX,
+    matrix=Material(1.0, density=2700.0, heat_capacity=900.0),
+    initial=20.0,
+    sources=[MovingCylinder(2, 0.01, 1e7, start=(0.005, 0.05), velocity=(0.018, 0.0))],
+)
+
+
+@pytest.mark.parametrize("integrator", ["rkl2", "tr-bdf2"])
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+def test_accuracy_under_a_moving_source(integrator, accuracy):
+    """Cells of half the source's size and hardly any conduction, which forgives nothing."""
+    right = under_source()
+    field = last(TRACK, [5.0], particles=3000, integrator=integrator, accuracy=accuracy)
+    off = field.samples.temperature - right.temperature
+    # Found 0.03 to 0.15 of it.
+    assert np.sqrt(right.volumes @ off**2 / right.volumes.sum()) < 0.5 * accuracy * np.ptp(right.temperature)
+    assert field.stats["steps"] < 400
+
+
+@cache
+def under_source():
+    """Samples after 5 s by steps of a hundredth of the time in which the source crosses its diameter."""
+    return last(TRACK, [5.0], particles=3000, integrator="rkl2", step=5.6e-3).samples
 
 
 def test_lost_power_of_a_clipped_source_is_reported():

@@ -45,7 +45,13 @@ def costs(spectrum, interval, accuracy, outputs):
     }
 
 
-def chosen(spectrum, interval, accuracy, outputs):
-    """Name of the cheapest integrator."""
+def chosen(spectrum, interval, accuracy, outputs, *, moving=False):
+    """Name of the cheapest integrator that meets the accuracy.
+
+    Explicit Euler takes its stable steps, or those between outputs, whatever the error: they must be enough. It is left
+    out where loads change in time.
+    """
     work = costs(spectrum, interval, accuracy, outputs)
+    if moving or max(interval / spectrum.limit, outputs) < 0.5 / accuracy:
+        del work["euler"]
     return min(work, key=work.get)

@@ -1,10 +1,14 @@
-"""Marching to the asked times: equal steps of a given size, or steps chosen by the estimated error."""
+"""Marching to the asked times: equal steps of a given size, or steps chosen by the estimated error.
+
+Both end steps where loads jump, and start anew there: what a method remembers of the step before no longer holds.
+"""
 
 import math
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from demheat.integrators.pace import ANY
 from demheat.integrators.system import ACCOUNTS
 
 # Local errors of third order add up to a final error of second: for a final error in proportion to the accuracy they
@@ -22,7 +26,10 @@ TINIEST = 1e-12
 
 @dataclass
 class Ledger:
-    """What was done so far, the largest linear residual, K, and the heat that came in, J, by side with sources last."""
+    """What was done so far, the largest linear residual, K, and the heat by side, sources last, J.
+
+    `inflow` is what came in, less what went out; `through` adds both, step by step.
+    """
 
     steps: int = 0
     rejected: int = 0
@@ -31,6 +38,7 @@ class Ledger:
     step: float = 0.0
     residual: float = 0.0
     inflow: np.ndarray = field(default_factory=lambda: np.zeros(ACCOUNTS))
+    through: np.ndarray = field(default_factory=lambda: np.zeros(ACCOUNTS))
 
     def add(self, done, step, accepted):
         """Count a step."""
@@ -41,6 +49,7 @@ class Ledger:
             self.steps += 1
             self.step = step
             self.inflow = self.inflow + done.inflow
+            self.through = self.through + np.abs(done.inflow)
         else:
             self.rejected += 1
 
@@ -72,8 +81,8 @@ def span_of(system, x):
     return Span(x, used)
 
 
-def fixed_steps(advance, system, x, times, *, step, span, start=0.0):
-    """Equal steps of at most `step` between the asked times; yields (time, x, Ledger) at each.
+def fixed_steps(advance, system, x, times, *, step, span, start=0.0, pace=ANY):
+    """Equal steps of at most `step` between the asked times and breaks; yields (time, x, Ledger) at each asked one.
 
     Parameters
     ----------
@@ -84,10 +93,12 @@ def fixed_steps(advance, system, x, times, *, step, span, start=0.0):
     step : float, s
     span : Span
     start : float, s
+    pace : Pace
+        Breaks of the loads, and what they ask of steps between them.
     """
     ledger, memory, now = Ledger(), None, start
-    for end in times:
-        count = max(0, math.ceil((end - now) / step * (1 - 1e-12)))
+    for end, asked in pace.stops(times):
+        count = max(0, math.ceil((end - now) / min(step, pace.least(now, end)) * (1 - 1e-12)))
         first = now
         for k in range(count):
             size = (end - first) / count
@@ -96,20 +107,23 @@ def fixed_steps(advance, system, x, times, *, step, span, start=0.0):
             ledger.add(done, size, True)
         now = end
         _check_finite(x, ledger, now)
-        yield end, x, ledger
+        if asked:
+            yield end, x, ledger
+        else:
+            memory = None
 
 
-def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, first=None):
+def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, first=None, pace=ANY):
     """Steps whose estimated error, rms over the heat capacity in units of the span, meets the accuracy at the times.
 
     Parameters
     ----------
-    advance, system, x, times, span, start
+    advance, system, x, times, span, start, pace
         As in `fixed_steps`.
     accuracy : float
         Of the temperature span.
     first : float, s
-        First step to try.
+        First step to try, also after breaks.
 
     Raises
     ------
@@ -118,13 +132,13 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, firs
     """
     ledger, memory, now, wanted = Ledger(), None, start, first
     allowed = SAFETY * accuracy * (accuracy / USUAL) ** (0.5 * (1.0 + DAMPED))
-    for end in times:
+    for end, asked in pace.stops(times):
+        goal = next(time for time in times if time >= end)
         while end - now > TINIEST * end:
-            left = end - now
-            size = left / max(1, math.ceil(left / wanted * (1 - 1e-9))) if left < 3 * wanted else wanted
+            size = _shared(end - now, min(wanted, pace.allowed(now)))
             done = advance(x, now, size, memory, True)
             span.widened(done.x)
-            share = _size(system, done.error) / (span() * allowed * (left / size) ** DAMPED)
+            share = _size(system, done.error) / (span() * allowed * ((goal - now) / size) ** DAMPED)
             accepted = share <= 1.0
             ledger.add(done, size, accepted)
             wanted = size * min(GROW, max(CUT, CAUTION * share ** (-1 / 3) if share > 0 else GROW))
@@ -136,7 +150,15 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, firs
                 )
         now = end
         _check_finite(x, ledger, now)
-        yield end, x, ledger
+        if asked:
+            yield end, x, ledger
+        else:
+            memory, wanted = None, first
+
+
+def _shared(left, wanted):
+    """Step of the wanted size, or the last few made equal so that they end on time."""
+    return left / max(1, math.ceil(left / wanted * (1 - 1e-9))) if left < 3 * wanted else wanted
 
 
 def _size(system, error):

@@ -52,3 +52,11 @@ def stiff(rows):
 )
 def test_where_each_is_best(rows, accuracy, outputs, name):
     assert choose.chosen(stiff(rows), 1.0, accuracy, outputs) == name
+
+
+def test_euler_is_chosen_only_where_its_steps_are_short_enough():
+    # A hundred outputs, cheapest by Euler: enough at an accuracy of 0.1, which takes 5 steps; 1e-3 takes 500.
+    slow = stiff(4.0)
+    assert choose.chosen(slow, 1.0, 0.1, 100) == "euler"
+    assert choose.chosen(slow, 1.0, 1e-3, 100) != "euler"
+    assert choose.chosen(slow, 1.0, 0.1, 100, moving=True) != "euler"
