@@ -144,6 +144,9 @@ def evolve(
     where those change fast. Functions are sampled at a thousand equal parts of the run from time 0 to the last one
     asked for: what is not seen is a pulse narrower than that, or of less than 2 % of the function's range.
 
+    Pores, of conductivity 0, exchange no heat: they keep their initial temperature and what sources put into them. A
+    source heats the whole body that it covers, pores included, which then grow hot without end.
+
     Parameters
     ----------
     scene : Scene

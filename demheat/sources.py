@@ -1,4 +1,4 @@
-"""Heat sources as powers of the cells of a network, conserved to rounding and smooth in time.
+"""Heat sources as powers of the cells of a network, conserved to rounding at each time and smooth in time.
 
 A moving cylinder heats each cell by the overlap with the sphere of the cell's volume at its centre; all overlaps are
 then scaled by one factor so that they add up to what the cylinder has in common with the body.
@@ -33,8 +33,10 @@ def source_power(scene, centers, volumes):
     callable (time, s) -> (n,) float array, W, or None without sources
         All together give `total_power` at every time to rounding, wherever the cells are. Continuous in time,
         with its slope: cells gain and lose over the time in which the rim crosses them. An integrator sees it at the
-        times of its stages; steps longer than that time displace heat, but do not lose any. The function raises
-        ValueError at a time when a source that is not to be clipped has left the body.
+        times of its stages: the heat that it brings in is the steps' own quadrature of `total_power`, which is exact
+        for a power that stays the same and else as good as the steps are short; see `passes`. Steps longer than the
+        time of crossing displace heat. The function raises ValueError at a time when a source that is not to be clipped
+        has left the body.
 
     Raises
     ------

@@ -220,6 +220,16 @@ def test_pores_keep_their_temperature():
     assert_allclose(field.samples.temperature[~inside], 35.0, atol=0.02)  # accuracy, 1e-3 of 10 K, and its tail
 
 
+def test_pores_keep_what_sources_put_into_them():
+    pore = Sphere((0.05, 0.05, 0.05), 0.03, Material(0.0, density=1.0, heat_capacity=1.0))
+    scene = Scene(size=BOX, matrix=METAL, inclusions=[pore], walls={"y+": 25.0}, initial=25.0, sources=[Heating(10.0)])
+    field = last(scene, [10.0])
+    # 10 W/m3 for 10 s over 1 J/(m3 K); the metal gives its own to the wall, all but 10 L^2 / (2 k) = 1.5 mK of it.
+    inside = field.samples.phase == 1
+    assert_allclose(field.samples.temperature[inside], 125.0, rtol=1e-9)
+    assert np.all(field.samples.temperature[~inside] < 25.01)
+
+
 def test_a_sphere_against_the_series():
     metal = Material(185.0, density=2700.0, heat_capacity=900.0)
     scene = Scene(size=BOX, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
