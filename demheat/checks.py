@@ -19,7 +19,7 @@ def check_steady(scene, *, law, conforming, interface, contact, packing, particl
     ------
     ValueError, NotImplementedError
     """
-    wanted = _check_law(law, law == "laguerre" if conforming is None else bool(conforming), interface, contact)
+    wanted = _check_law(law, _wanted(conforming, law == "laguerre"), interface, contact)
     scene.check_steady()
     _check_walls(scene, law, contact["wall"])
     _check_packing(scene, packing, particles, allow_few)
@@ -34,7 +34,7 @@ def check_transient(scene, stop, *, law, conforming, interface, contact, packing
     ValueError, NotImplementedError
     """
     by_default = law == "laguerre" and bool(scene.inclusions)
-    wanted = _check_law(law, by_default if conforming is None else bool(conforming), interface, contact)
+    wanted = _check_law(law, _wanted(conforming, by_default), interface, contact)
     if wanted and scene.domain != "box":
         raise NotImplementedError(f"inclusions in a {scene.domain} have no conforming packing; pass conforming=False")
     if contact["wall"] == "surface" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
@@ -44,6 +44,18 @@ def check_transient(scene, stop, *, law, conforming, interface, contact, packing
     _check_packing(scene, packing, particles, allow_few)
     check_sources(scene, stop)
     return wanted
+
+
+def _wanted(conforming, by_default):
+    if conforming is None:
+        return by_default
+    _check_flag("conforming", conforming, "True, False or None")
+    return bool(conforming)
+
+
+def _check_flag(name, value, valid):
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
 
 
 def _check_law(law, conforming, interface, contact):
@@ -90,8 +102,11 @@ def _check_walls(scene, law, wall):
 
 
 def _check_packing(scene, packing, particles, allow_few):
+    _check_flag("allow_few", allow_few, "True or False")
     if packing is None:
-        if isinstance(particles, int | float) and particles < FEWEST and not allow_few:
+        if not isinstance(particles, int | np.integer) or isinstance(particles, bool) or particles < 1:
+            raise ValueError(f"particles = {particles!r}: must be an integer >= 1")
+        if particles < FEWEST and not allow_few:
             raise ValueError(f"particles = {particles!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
         return
     like = packing.domain == scene.domain and set(packing.periodic.tolist()) == {scene.periodic}

@@ -18,7 +18,7 @@ from demheat.packing.neighbours import contacts
 from demheat.scene import Scene
 from demheat.sources import lost_power, passes, source_power
 from demheat.steady import check_solver, solve_steady
-from demheat.transient import check_request, mean_flux
+from demheat.transient import check_request, mean_flux, try_functions
 from demheat.transient import evolve as evolve_network
 
 # Contacts of the papers' own law: Haddad et al. 2021.
@@ -193,6 +193,7 @@ def evolve(
         scene, float(times[-1]), law=law, conforming=conforming, interface=interface, contact=contact, packing=packing,
         particles=particles, allow_few=allow_few,
     )  # fmt: skip
+    try_functions(scene)
     how = {"integrator": integrator, "accuracy": accuracy, "step": step}
 
     def fields():

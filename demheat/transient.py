@@ -2,6 +2,7 @@
 
 import math
 from functools import partial
+from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -50,22 +51,29 @@ def capacities(network, scene):
 
 def check_request(times, integrator, accuracy, step):
     """Raise ValueError unless the asked times, integrator, accuracy and step are sensible; the times as an array."""
-    array = np.asarray(times, dtype=float)
-    if (
-        array.ndim != 1
-        or not len(array)
-        or not np.all(np.isfinite(array))
-        or array[0] < 0
-        or np.any(np.diff(array) <= 0)
-    ):
-        raise ValueError(f"times = {times!r}: must be finite, >= 0 s and increasing")
+    array = _numbers(times)
+    if array is None or not np.all(np.isfinite(array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
+        raise ValueError(f"times = {times!r}: must be a sequence of numbers, finite, >= 0 s and increasing")
     if integrator not in choose.INTEGRATORS:
         raise ValueError(f"integrator = {integrator!r}: must be one of {', '.join(choose.INTEGRATORS)}")
-    if not (isinstance(accuracy, int | float) and 1e-9 <= accuracy <= 0.1):
+    if not (_real(accuracy) and 1e-9 <= accuracy <= 0.1):
         raise ValueError(f"accuracy = {accuracy!r}: must lie between 1e-9 and 0.1 of the temperature span")
-    if step is not None and not (isinstance(step, int | float) and math.isfinite(step) and step > 0):
+    if step is not None and not (_real(step) and math.isfinite(step) and step > 0):
         raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
     return array
+
+
+def _numbers(values):
+    """A sequence of numbers as a (k,) float array; None if it is anything else, or empty."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        return None
+    return array.astype(float) if array.ndim == 1 and len(array) and array.dtype.kind in "iuf" else None
+
+
+def _real(value):
+    return isinstance(value, Real) and not isinstance(value, bool)
 
 
 def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None, pace=ANY):
@@ -103,6 +111,7 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
         If steps or linear solves do not converge.
     """
     times = check_request(times, integrator, accuracy, step)
+    accuracy, step = float(accuracy), None if step is None else float(step)
     rates = spectrum_of(system)
     needed = pace.steps(times[-1])
     if integrator == "auto":
@@ -225,10 +234,26 @@ def initial_temperature(scene, points):
     """Temperature at time 0, (n, 3) float array, m -> (n,) float array, K."""
     if not callable(scene.initial):
         return np.full(len(points), float(scene.initial))
-    values = np.asarray(scene.initial(points), dtype=float)
-    if values.shape != (len(points),) or not np.all(np.isfinite(values)):
-        raise ValueError(f"Scene.initial: gives shape {values.shape} for {len(points)} points; must be finite, (n,)")
-    return values
+    values = np.asarray(scene.initial(points))
+    if values.shape != (len(points),) or values.dtype.kind not in "iuf":
+        what = f"shape {values.shape} of {values.dtype}"
+        raise ValueError(f"Scene.initial: gives {what} for {len(points)} points; must be real numbers, (n,)")
+    odd = np.flatnonzero(~np.isfinite(values))
+    if len(odd):
+        where = points[odd[0]].tolist()
+        raise ValueError(f"Scene.initial = {values[odd[0]]} at {where} m: must be finite at all points of the body")
+    return values.astype(float)
+
+
+def try_functions(scene):
+    """Raise ValueError unless the functions of a scene give numbers at time 0, in the middle of the body and near it.
+
+    What they give elsewhere and later is checked where they are asked for.
+    """
+    for load in changing_loads(scene):
+        load(0.0)
+    # Within a sphere inscribed in the box as well.
+    initial_temperature(scene, np.array(scene.size) * [[0.5, 0.5, 0.5], [0.4, 0.5, 0.6], [0.7, 0.4, 0.5]])
 
 
 def _walls(network, scene, system, state):

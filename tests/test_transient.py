@@ -291,6 +291,15 @@ BAD = [
     ({"times": [0.2, 0.1]}, "times"),
     ({"times": [-1.0, 0.1]}, "times"),
     ({"times": [0.1, float("nan")]}, "times"),
+    *(({"times": odd}, "times = ") for odd in (["a"], "abc", {0.1: 1}, (t for t in [0.1]), [0.1j], ["1", "2"], 0.1)),
+    ({"times": [[0.1], [0.2, 0.3]]}, "times = [[0.1]"),
+    ({"accuracy": True}, "accuracy = True"),
+    ({"step": True}, "step = True"),
+    ({"step": "a"}, "step = 'a'"),
+    ({"conforming": "no"}, "conforming = 'no'"),
+    ({"allow_few": "x"}, "allow_few = 'x'"),
+    ({"particles": "a"}, "particles = 'a'"),
+    ({"particles": 1e3}, "particles = 1000.0"),
     ({"integrator": "magic"}, "integrator = 'magic'"),
     ({"accuracy": 0.0}, "accuracy = 0.0"),
     ({"accuracy": 1.0}, "accuracy = 1.0"),
@@ -326,16 +335,34 @@ def test_scenes_that_lack_something(change, words):
         evolve(Scene(**vars(SLAB) | change), [0.1])
 
 
-def test_a_load_that_is_no_number_names_wall_and_time():
-    scene = Scene(size=BOX, matrix=METAL, walls={"y+": lambda t: float("nan")}, initial=25.0)
+def test_numbers_of_other_types():
+    knobs = {"step": np.float32(0.01), "accuracy": np.float64(1e-3), "integrator": "rkl2", "particles": np.int64(300)}
+    (field,) = evolve(SLAB, np.array([1], dtype=np.int32), **knobs, conforming=np.bool_(False))
+    # Of a hundredth; 32 bits hold it to 2e-8 from below, which takes no step more.
+    assert field.time == 1.0 and 100 <= field.stats["steps"] <= 101
+    assert next(iter(evolve(SLAB, range(1, 3), particles=300, step=np.int64(1), integrator="tr-bdf2"))).time == 1.0
+
+
+@pytest.mark.parametrize("load", [lambda t: float("nan"), Flux(lambda t: "a")])
+def test_a_load_that_is_no_number_names_wall_and_time(load):
     with pytest.raises(ValueError, match=re.escape("Scene.walls['y+'] at 0.0 s")):
-        last(scene, [0.1], particles=300)
+        evolve(Scene(size=BOX, matrix=METAL, walls={"y+": load}, initial=25.0), [0.1])
+    late = Scene(size=BOX, matrix=METAL, walls={"y+": lambda t: 1.0 if t < 0.05 else float("nan")}, initial=25.0)
+    with pytest.raises(ValueError, match=re.escape("Scene.walls['y+'] at 0.05")):
+        last(late, [0.1], particles=300)
 
 
-def test_an_initial_temperature_that_is_no_number():
-    scene = Scene(size=BOX, matrix=METAL, walls={}, initial=lambda x: x)
-    with pytest.raises(ValueError, match="Scene.initial"):
-        last(scene, [0.1], particles=300)
+@pytest.mark.parametrize(
+    ("initial", "words"),
+    [
+        (lambda x: x, "Scene.initial: gives shape (3, 3) of float64"),
+        (lambda x: x[:, 0] + 1j, "Scene.initial: gives shape (3,) of complex128"),
+        (lambda x: x[:, 0] * np.nan, "Scene.initial = nan at [0.05, 0.05, 0.05] m: must be finite"),
+    ],
+)
+def test_an_initial_temperature_that_is_no_number(initial, words):
+    with pytest.raises(ValueError, match=re.escape(words)):
+        evolve(Scene(size=BOX, matrix=METAL, walls={}, initial=initial), [0.1])
 
 
 def test_what_is_not_supported_says_why():
