@@ -15,7 +15,7 @@ full: .venv/ready
 test: .venv/ready
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
-	$(PY) -m pytest
+	$(PY) -m pytest -n 2 --dist worksteal
 
 .venv/ready: pyproject.toml
 	$(PYTHON) -m venv .venv
