@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.parts import finite
+from demheat.parts import axis_number, finite
 from demheat.scene import ROUND_AXES, Scene
 
 
@@ -108,14 +108,12 @@ class Field:
         NotImplementedError
             If the method has no surfaces that balance heat.
         """
-        if axis not in (0, 1, 2):
-            raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
-        finite(
-            "position", position, f"between 0 and {self.scene.size[axis]} m", lambda v: 0 <= v <= self.scene.size[axis]
-        )
+        axis = axis_number(axis)
+        length = self.scene.size[axis]
+        finite("position", position, f"between 0 and {length} m", lambda v: 0 <= v <= length)
         if self.through is None:
             raise NotImplementedError("heat_through: only the DEM has surfaces that balance heat")
-        return self.through(int(axis), float(position))
+        return self.through(axis, float(position))
 
     @property
     def conductivity(self) -> float:

@@ -185,6 +185,13 @@ def finite(name, value, valid, accept=lambda v: True):
     return float(value)
 
 
+def axis_number(axis):
+    """An axis as an int, or a ValueError."""
+    if isinstance(axis, bool) or not isinstance(axis, Integral) or axis not in (0, 1, 2):
+        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
+    return int(axis)
+
+
 def number(owner, field, valid, accept=lambda v: True):
     """Check and cast a field of a frozen dataclass by `finite`."""
     name = f"{type(owner).__name__}.{field}"

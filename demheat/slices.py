@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field
+from demheat.parts import axis_number
 from demheat.scene import ROUND_AXES
 
 
@@ -54,8 +55,7 @@ def plane(scene, *, axis, at, n=61):
     ValueError
         If an argument is not as described, the plane misses the box, or no middle of a pixel lies in the body.
     """
-    if isinstance(axis, bool) or axis not in (0, 1, 2):
-        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
+    axis = axis_number(axis)
     if not (isinstance(at, int | float | np.number) and 0 <= at <= scene.size[axis]):
         raise ValueError(f"at = {at!r}: must lie between 0 and {scene.size[axis]} m, the box along axis {axis}")
     if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:

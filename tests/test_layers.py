@@ -19,7 +19,7 @@ LAYERS = {
     "demheat.threads": (),
     "demheat.referee": (),
     "demheat.gallery": ("demheat.scene",),
-    "demheat.slices": ("demheat.scene", "demheat.field"),
+    "demheat.slices": ("demheat.scene", "demheat.field", "demheat.parts"),
     "demheat.sources": ("demheat.scene",),
     "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
     "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),

@@ -187,7 +187,13 @@ def test_sections_of_a_contact_network_between_walls():
 def test_what_heat_through_refuses():
     scene = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[BALL], walls=WALLS)
     field = demheat.solve(scene, particles=300)
-    for axis, position, words in ((3, 0.5, "axis = 3"), ("y", 0.5, "axis = 'y'"), (1, 1.5, "position = 1.5")):
+    for axis, position, words in (
+        (3, 0.5, "axis = 3"),
+        (1.0, 0.5, "axis = 1.0"),
+        (True, 0.5, "axis = True"),
+        ("y", 0.5, "axis = 'y'"),
+        (1, 1.5, "position = 1.5"),
+    ):
         with pytest.raises(ValueError, match=words):
             field.heat_through(axis, position)
     with pytest.raises(NotImplementedError, match="only the DEM"):
