@@ -127,7 +127,7 @@ def test_orders_of_exact_second_and_first_order():
 def test_claims_see_an_error():
     import pandas as pd
 
-    columns = ["flux_rms", "flux_max", *study._errors("q"), *study._errors("T")]
+    columns = ["flux_rms", "flux_max", "flux_rms_band", *study._errors("q"), *study._errors("T")]
     row = dict.fromkeys(columns, 0.01) | {"q_B_error": -0.7, "name": "dem", "particles": study.PAPERS}
     row |= {"method": "demheat.dem", "heat_imbalance": 1e-9}
     found = {text.split(": ")[1]: value for text, value, _ in study._laguerre(pd.DataFrame([row])) if value is not None}

@@ -222,3 +222,18 @@ def test_edges_are_on_interfaces_only():
         counts.append(len(away))
     # Both sides of each pair of twins; by chance, of few other facets.
     assert counts[0] > 500 and counts[1] < 0.3 * counts[0]
+
+
+def test_the_last_points_are_fitted_once_and_kept_apart(monkeypatch):
+    scene = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[BALL], walls=WALLS)
+    field, points, fits = demheat.solve(scene, particles=500), inside(50), []
+    fitted = module.Reconstruction._fitted
+    monkeypatch.setattr(module.Reconstruction, "_fitted", lambda self, x: fits.append(len(x)) or fitted(self, x))
+    flux = field.flux_at(points)
+    flux[:] = 0.0
+    field.temperature_at(points)
+    assert fits == [50] and np.abs(field.flux_at(points)).min(axis=0)[1] > 0.0
+    points += 1e-3 * (0.5 - points)
+    field.temperature_at(points)
+    assert fits == [50, 50]
+    assert field.temperature_at(np.empty((0, 3))).shape == (0,) and fits == [50, 50]
