@@ -142,7 +142,7 @@ def table(df):
 
 
 def plot(df):
-    """Profile and error of the largest Laguerre and calibrated rows; errors against the number of particles."""
+    """Profile and error of the largest rows of each law; errors against the number of particles."""
     from matplotlib import pyplot
 
     from studies.figures import BLUE, PINK, RED
@@ -173,9 +173,9 @@ def _profiles(left, middle, df, looks):
     points = np.column_stack([np.full(201, 0.5 * LENGTH), y * LENGTH, np.full(201, 0.5 * LENGTH)])
     for t, exact in zip(TIMES, series.evolve(slab(), TIMES, points_per_axis=1), strict=True):
         left.plot(y, exact.temperature_at(points), color=BLACK, linewidth=0.8)
-        at = (0.72, exact.temperature_at(points)[144])
-        left.annotate(f"{t:g} s", at, xytext=(6, -10), textcoords="offset points", fontsize=8)
-    for law, wall in (("laguerre", None), ("calibrated", "center")):
+        at = (0.54, exact.temperature_at(points)[108])
+        left.annotate(f"{t:g} s", at, xytext=(-24, 8), textcoords="offset points", fontsize=8)
+    for law, wall in (("laguerre", None), ("calibrated", "center"), ("platonic", "center")):
         rows = pick(df, law=law, wall=wall)
         row = rows.loc[rows["particles"].idxmax()]
         at = [float(word) for word in row["profile_y"].split()]
@@ -184,8 +184,9 @@ def _profiles(left, middle, df, looks):
             label = f"{law}, {row['particles']:.0f}" if t == TIMES[0] else None
             values, errors = ([float(w) for w in row[f"{kind}_{t:g}"].split()] for kind in ("profile", "profile_error"))
             left.plot(at, values, marker, color=colour, markersize=3, label=label)
-            middle.plot(at, errors, style, color=colour, label=f"{law}, {t:g} s")
+            middle.plot(at, errors, style, color=colour, label=label)
     left.set(xlabel="y / L", ylabel="temperature, C", title="Lines: exact; points: means over slices")
     left.legend()
-    middle.set(xlabel="y / L", ylabel="mean error in a slice, % of the span", title="Error")
+    middle.set(xlabel="y / L", ylabel="mean error in a slice, % of the span")
+    middle.set_title("Error: .05 s (solid), .1 s (dashed), .2 s (dotted)")
     middle.legend()
