@@ -9,6 +9,7 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat import halo_kernels as kernels
+from demheat.network.laguerre_kernels import bin_points
 from demheat.scene import ROUND_AXES
 
 # Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
@@ -59,8 +60,8 @@ def halo_average(points, values, volumes, *, radius, size, periodic, at=None, ph
     columns = values.reshape(len(points), -1)
     means = np.empty((len(at), columns.shape[1]))
     dims = _dims(len(points), size, radius)
-    order, start = kernels.sort_into_cells(points, dims, size / dims)
-    places, begin = (order, start) if at is points else kernels.sort_into_cells(at, dims, size / dims)
+    start, order = bin_points(points, size, dims)
+    begin, places = (start, order) if at is points else bin_points(at, size, dims)
     sorted_at, wanted = at[places], at_phase[places]
     for first in range(0, columns.shape[1], 3):
         part = columns[:, first : first + 3]

@@ -48,29 +48,6 @@ class Cells(NamedTuple):
 
 
 @njit(cache=True)
-def sort_into_cells(points, dims, cell):
-    """Stable order of points by cell, and where each cell starts in it; outer cells take what lies beyond them."""
-    n = len(points)
-    keys = np.empty(n, np.int64)
-    start = np.zeros(dims[0] * dims[1] * dims[2] + 1, np.int64)
-    for i in range(n):
-        key = np.int64(0)
-        for axis in range(3):
-            c = np.int64(np.floor(points[i, axis] / cell[axis]))
-            key = key * dims[axis] + min(max(c, 0), dims[axis] - 1)
-        keys[i] = key
-        start[key + 1] += 1
-    for k in range(len(start) - 1):
-        start[k + 1] += start[k]
-    place = start[:-1].copy()
-    order = np.empty(n, np.int64)
-    for i in range(n):
-        order[place[keys[i]]] = i
-        place[keys[i]] += 1
-    return order, start
-
-
-@njit(cache=True)
 def cell_totals(start, slots):
     """Sums over each cell of the volume and of volume times values, (cells, 4)."""
     totals = np.zeros((len(start) - 1, ROWS - SUMS))

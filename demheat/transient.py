@@ -181,7 +181,7 @@ def _limits(rates):
     }
 
 
-def evolve(network, scene, times, *, capacity=None, power=None, passes=(), pinned=None, **knobs):
+def evolve(network, scene, times, *, capacity=None, power=None, passes=(), pinned=None, accuracy=1e-3, **knobs):
     """Temperatures, wall temperatures and wall heat of a network at the asked times.
 
     Parameters
@@ -216,8 +216,8 @@ def evolve(network, scene, times, *, capacity=None, power=None, passes=(), pinne
     start = initial_temperature(scene, network.centers)
     capacity = capacities(network, scene) if capacity is None else capacity
     system = semi_discrete(network, scene, capacity, power=power, pinned=pinned, level=float(start.mean()))
-    pace = pace_of(changing_loads(scene), passes, float(times[-1]), knobs.get("accuracy", 1e-3))
-    for state in integrate(system, start, times, pace=pace, **knobs):
+    pace = pace_of(changing_loads(scene), passes, float(times[-1]), accuracy)
+    for state in integrate(system, start, times, accuracy=accuracy, pace=pace, **knobs):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
 
 

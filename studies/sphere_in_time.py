@@ -131,18 +131,10 @@ def in_shells(r, values, weights, shells=20):
 
 
 def slice_grid(n=41):
-    """Points of a square grid over the plane z = R that lie in the sphere, and the mask of the square that they fill.
+    """Points of a grid over the plane z = R that lie in the sphere, and their mask: see `demheat.slices.plane`."""
+    from demheat.slices import plane
 
-    Returns
-    -------
-    points : (m, 3) float array, m
-    inside : (n, n) bool array
-        Rows along y, columns along x; `plane[inside] = values` puts values of the points into a picture.
-    """
-    x = (np.arange(n) + 0.5) / n * DIAMETER
-    points = np.column_stack([*(part.ravel() for part in np.meshgrid(x, x)), np.full(n * n, DIAMETER / 2)])
-    inside = radii(points) < 1
-    return points[inside], inside.reshape(n, n)
+    return plane(sphere(), axis=2, at=DIAMETER / 2, n=n)
 
 
 def text(values):

@@ -52,7 +52,7 @@ LAYERS = {
         "demheat.network",
         "demheat.steady_kernels",
     ),
-    "demheat.halo": ("demheat.scene", "demheat.threads", "demheat.halo_kernels"),
+    "demheat.halo": ("demheat.scene", "demheat.threads", "demheat.network.laguerre_kernels", "demheat.halo_kernels"),
     "demheat.particle_flux": ("demheat.threads", "demheat.network", "demheat.particle_flux_kernels"),
     "demheat.calibration": (
         "demheat.scene",
