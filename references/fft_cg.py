@@ -21,8 +21,10 @@ import numpy as np
 
 from references import fft_cg_kernels as kernels
 from references import fft_link_kernels as link_kernels
-from references.fft_problem import Problem, Solution
-from references.fft_transforms import Transform, fourier, trigonometric
+from references.fft_problem import Clock, Problem, Solution
+from references.fft_sweeps import Transform
+from references.fft_threads import Team
+from references.fft_transforms import fourier, trigonometric
 from references.voxels import medium
 
 # cos^2 of a Nyquist frequency is rounding of zero; the smallest that is not zero is about 1 / (number of voxels)^2.
@@ -76,18 +78,19 @@ def solve(problem: Problem) -> Solution:
     theta, residual, direction = (np.zeros(operator.shape, problem.dtype) for _ in range(3))
     planes = problem.voxels.phase.shape[0]
     vectors = _Vectors(theta, residual, direction, work, np.zeros((planes, 5)), np.zeros(len(work)))
-    iterations, before = 0, math.inf
+    iterations, before, clock = 0, math.inf, Clock(operator.transform)
     while True:
         state = _restart(problem, operator, vectors)
         error = _error(state.rz, state.sums[0], problem)
         # How far each criterion is from being met: both are below 1 at the end.
         excess = max(state.decrease / (problem.tolerance**2 * state.sums[0]), error / problem.tolerance) if error else 0
         if excess <= 1:
-            return _solution(problem, operator, vectors, state, iterations, error)
+            return _solution(problem, operator, vectors, state, iterations, error, clock.cost())
         if iterations >= problem.max_iterations or not excess < before:
             _fail(iterations, error, problem.tolerance)
         before = excess
-        iterations = _iterate(problem, operator, vectors, state, iterations)
+        with clock:
+            iterations = _iterate(problem, operator, vectors, state, iterations)
 
 
 def _error(rz, energy, problem):
@@ -125,6 +128,9 @@ def _operator(problem):
         # A node on an insulated face owns half a cell: the preconditioner acts on its residual per volume.
         for weight in weights:
             weight[[0, -1]] = 2
+    if not problem.walls:
+        # Columns of modes have real and imaginary parts in turn.
+        numbers[0] = np.repeat(numbers[0], 2)
     symbol = _symbol(numbers, spacing, kind == "2", problem.dtype)
     return _Operator(conduct, material, inverse.astype(problem.dtype), transform, symbol, weights, shape)
 
@@ -143,14 +149,12 @@ def _conduct(problem, operator, vectors, theta, gradient):
     return vectors.sums.sum(axis=0)
 
 
-def _precondition(problem, operator, vectors):
-    """work = inverse homogeneous operator on work; returns residual.work."""
-    transform, run = operator.transform, problem.team.run
-    transform.forward()
-    modes = transform.modes[0]
-    run(kernels.divide, len(modes), modes, *operator.symbol, problem.dtype(transform.scale))
-    transform.backward()
-    run(kernels.dot, len(vectors.work), vectors.residual, vectors.work, vectors.partial)
+def _precondition(problem, operator, vectors, kernel, *arguments):
+    """work = inverse homogeneous operator on what kernel(*arguments) leaves in work; returns residual.work."""
+    transform = operator.transform
+    transform.planes(kernel, *arguments, *operator.weights, forward=True)
+    transform.columns(kernels.divide, *operator.symbol, problem.dtype(transform.scale))
+    transform.planes(kernels.dot, vectors.residual, vectors.work, vectors.partial, backward=True)
     return float(vectors.partial.sum())
 
 
@@ -158,17 +162,15 @@ def _restart(problem, operator, vectors):
     """Recompute the residual and make the preconditioned residual the direction."""
     sums = _conduct(problem, operator, vectors, vectors.theta, problem.gradient)
     ends = vectors.sums[[0, -1], 1] * len(vectors.sums) / problem.voxels.phase.size
-    run, planes = problem.team.run, len(vectors.work)
-    run(kernels.start, planes, vectors.residual, vectors.work, *operator.weights)
-    rz = _precondition(problem, operator, vectors)
-    run(kernels.turn, planes, vectors.direction, vectors.work, problem.dtype(0))
+    rz = _precondition(problem, operator, vectors, kernels.start, vectors.residual, vectors.work)
+    problem.team.run(kernels.turn, len(vectors.work), vectors.direction, vectors.work, problem.dtype(0))
     curvature = _conduct(problem, operator, vectors, vectors.direction, np.zeros(3))[0]
     return _State(sums, ends, rz, curvature)
 
 
 def _iterate(problem, operator, vectors, state, iterations):
     """Conjugate gradients from a fresh direction until the decrease of energy is small; returns the iterations."""
-    run, planes = problem.team.run, len(vectors.work)
+    planes = len(vectors.work)
     energy, rz, curvature, decreases = state.sums[0], state.rz, state.curvature, []
     while iterations < problem.max_iterations and curvature > 0:
         alpha = rz / curvature
@@ -176,29 +178,29 @@ def _iterate(problem, operator, vectors, state, iterations):
         energy -= decreases[-1]
         iterations += 1
         arguments = (vectors.theta, vectors.direction, vectors.residual, vectors.work, problem.dtype(alpha))
-        run(kernels.step, planes, *arguments, *operator.weights)
-        before, rz = rz, _precondition(problem, operator, vectors)
+        before, rz = rz, _precondition(problem, operator, vectors, kernels.step, *arguments)
         small = sum(decreases[-max(2, len(decreases) // 8) :]) <= problem.tolerance**2 * energy
         if small and _error(rz, energy, problem) <= problem.tolerance:
             break
-        run(kernels.turn, planes, vectors.direction, vectors.work, problem.dtype(rz / before))
+        problem.team.run(kernels.turn, planes, vectors.direction, vectors.work, problem.dtype(rz / before))
         curvature = _conduct(problem, operator, vectors, vectors.direction, np.zeros(3))[0]
     return iterations
 
 
-def _solution(problem, operator, vectors, state, iterations, error):
-    size, theta = problem.voxels.phase.size, vectors.theta
+def _solution(problem, operator, vectors, state, iterations, error, cost):
+    shape, theta = problem.voxels.phase.shape, vectors.theta
+    # Not the operator itself, whose transform holds as much as all temperatures.
+    arguments = (operator.material, problem.gradient.astype(problem.dtype), operator.inverse, problem.walls)
 
     def centers():
-        shape = problem.voxels.phase.shape
         flux = np.empty((3, *shape), problem.dtype)
-        arguments = (operator.material, problem.gradient.astype(problem.dtype), operator.inverse, problem.walls)
-        if problem.links is not None:
-            link_kernels.link_state(theta, *arguments, flux, 0, shape[0])
-            return theta, flux
-        temperature = np.empty(shape, problem.dtype)
-        kernels.voxel_state(theta, *arguments, temperature, flux, 0, shape[0])
+        with Team(problem.team.threads) as team:
+            if problem.links is not None:
+                team.run(link_kernels.link_state, shape[0], theta, *arguments, flux)
+                return theta, flux
+            temperature = np.empty(shape, problem.dtype)
+            team.run(kernels.voxel_state, shape[0], theta, *arguments, temperature, flux)
         return temperature, flux
 
-    mean_flux = state.sums[1:4] / size
-    return Solution(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error})
+    mean_flux = state.sums[1:4] / problem.voxels.phase.size
+    return Solution(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error}, cost)

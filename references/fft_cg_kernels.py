@@ -172,26 +172,26 @@ def voxel_state(theta, medium, gradient, inverse, walls, center, flux, low, high
 
 
 @compiled
-def divide(modes, s, c, scale, low, high):
+def divide(rows, first, count, s, c, scale):
     """Divide each mode by sx cy cz + cx sy cz + cx cy sz, the symbol of minus the Laplacian; empty modes become 0.
 
     Parameters
     ----------
-    modes : (mx, my, mz) complex or float array
-        Changed in place.
+    rows, first, count : see `fft_sweeps.Transform.columns`
+        One component, changed in place.
     s, c : tuples of three float arrays
-        Per axis; c = 1 gives the seven-point Laplacian.
+        Per axis, that of x as wide as the rows; c = 1 gives the seven-point Laplacian.
     scale : float
-    low, high : int
     """
-    for i in range(low, high):
-        for j in range(modes.shape[1]):
-            both = s[0][i] * c[1][j] + c[0][i] * s[1][j]
-            cross = c[0][i] * c[1][j]
-            row = modes[i, j]
-            for k in range(modes.shape[2]):
-                symbol = both * c[2][k] + cross * s[2][k]
-                row[k] *= scale / symbol if symbol > 0 else 0 * scale
+    mz = len(s[2])
+    along, across = s[0], c[0]
+    for r in range(count):
+        j, k = divmod(first + r, mz)
+        both, cross = c[1][j] * c[2][k], s[1][j] * c[2][k] + c[1][j] * s[2][k]
+        row = rows[0, r]
+        for i in range(len(row)):
+            symbol = along[i] * both + across[i] * cross
+            row[i] *= scale / symbol if symbol > 0 else 0 * scale
 
 
 @compiled

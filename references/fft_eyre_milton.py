@@ -19,7 +19,8 @@ import math
 import numpy as np
 
 from references import fft_eyre_milton_kernels as kernels
-from references.fft_problem import Problem, Solution
+from references.fft_problem import Clock, Problem, Solution
+from references.fft_threads import Team
 from references.fft_transforms import fourier, trigonometric
 from references.voxels import Voxels, medium
 
@@ -35,15 +36,22 @@ def solve(problem: Problem) -> Solution:
     """
     low, high = _extremes(problem.voxels)
     reference = math.sqrt(low * high)
-    shape = problem.voxels.phase.shape
     mirror, conductor = _media(problem.voxels, reference, problem.dtype)
     transform = _transform(problem, 3)
-    field = np.zeros((3, *shape), problem.dtype)
-    iterations, error = _iterate(problem, reference, mirror, transform, field)
+    field = np.zeros((3, *problem.voxels.phase.shape), problem.dtype)
+    iterations, error, cost = _iterate(problem, reference, mirror, transform, field)
     # Not a number must fail too.
     if not error <= problem.tolerance:
         _fail(iterations, error, problem.tolerance)
-    return _settle(problem, reference, high, mirror, conductor, transform, field, iterations)
+    mean_flux, ends, errors = _measure(problem, reference, mirror, conductor, transform, field)
+    # The iterate's errors are below the tolerance; making g compatible moves q by at most K/c0 of it.
+    if not errors["equilibrium"] <= (1 + high / reference) * problem.tolerance:
+        _fail(iterations, errors["equilibrium"], problem.tolerance)
+
+    def state():
+        return _state(problem, reference, mirror, conductor, field)
+
+    return Solution(mean_flux, ends, state, field.size, iterations, errors, cost)
 
 
 def _fail(iterations, error, tolerance):
@@ -61,11 +69,10 @@ def _extremes(voxels: Voxels):
 
 def _media(voxels, reference, dtype):
     """Z and K as kernels read them."""
-    full = voxels.tensor[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
-    mirror = np.eye(3) - 2 * reference * np.linalg.inv(full + reference * np.eye(3))
-    packed = np.stack([mirror[:, i, j] for i, j in ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))], axis=1)
+    tensor = voxels.tensor.copy()
+    kernels.mirror(tensor, reference)
     scalar = (voxels.conductivity - reference) / (voxels.conductivity + reference)
-    return medium(voxels, scalar, packed, dtype), medium(voxels, voxels.conductivity, voxels.tensor, dtype)
+    return medium(voxels, scalar, tensor, dtype), medium(voxels, voxels.conductivity, voxels.tensor, dtype)
 
 
 def _transform(problem, components):
@@ -109,66 +116,84 @@ def _cast(arrays, problem):
     return tuple(array.astype(problem.dtype) for array in arrays)
 
 
-def _planes(problem, transform):
-    """Planes of modes along the first axis; a box has wave numbers 0 to nx."""
-    return transform.modes.shape[1] + (1 if problem.walls else 0)
+def _rows(wave, free):
+    """Wave numbers as columns of modes have them: real and imaginary parts in turn along x."""
+    return (np.repeat(wave[0], 2), *wave[1:]), (np.repeat(free[0], 2), *free[1:])
+
+
+def _on_modes(problem, transform, name, *arguments, backward=True):
+    """Transform along x, let the kernel of this name change the modes, transform back; y and z are done before."""
+    wave, free, _ = _waves(problem, transform)
+    if not problem.walls:
+        kernel = getattr(kernels, name + "_modes")
+        transform.columns(kernel, *_rows(wave, free), *arguments, backward=backward)
+        return
+    # Components of a box have modes of different wave numbers at the same place: they do not go column by column.
+    transform.columns(backward=False)
+    kernel = getattr(kernels, name + "_waves")
+    problem.team.run(kernel, transform.modes.shape[1] + 1, transform.modes, wave, free, *arguments)
+    if backward:
+        transform.columns(forward=False)
 
 
 def _iterate(problem, reference, mirror, transform, field):
-    """Reflect in turn until p no longer changes; returns the iterations and the error that the last change shows."""
-    run, cells = problem.team.run, problem.voxels.phase.size
+    """Reflect in turn until p no longer changes; returns the iterations, the error that the last change shows, cost."""
+    cells, work = problem.voxels.phase.size, transform.real
     sums = np.zeros((field.shape[1], 4))
-    wave, free, _ = _waves(problem, transform)
-    turn = kernels.reflect_waves if problem.walls else kernels.reflect_modes
     scale, mean = problem.dtype(transform.scale), (2 * reference * problem.gradient).astype(problem.dtype)
-    work = transform.real
     for component, value in zip(work, mean, strict=True):
         component[:] = value
-    run(kernels.reflect, field.shape[1], field, work, mirror, sums)
-    iterations, error = 0, math.inf
-    while error > problem.tolerance and iterations < problem.max_iterations:
-        transform.forward()
-        run(turn, _planes(problem, transform), transform.modes, wave, free, scale, mean)
-        transform.backward()
-        run(kernels.reflect, field.shape[1], field, work, mirror, sums)
-        total = sums.sum(axis=0)
-        flux = 0.5 * np.linalg.norm(total[1:]) / cells
-        error = 0.5 * math.sqrt(total[0] / cells) / flux if flux > 0 else math.inf
-        iterations += 1
-    return iterations, error
+    transform.planes(kernels.reflect, field, work, mirror, sums, forward=True)
+    iterations, error, clock = 0, math.inf, Clock(transform)
+    with clock:
+        while error > problem.tolerance and iterations < problem.max_iterations:
+            _on_modes(problem, transform, "reflect", scale, mean)
+            transform.planes(kernels.reflect, field, work, mirror, sums, backward=True, forward=True)
+            total = sums.sum(axis=0)
+            flux = 0.5 * np.linalg.norm(total[1:]) / cells
+            error = 0.5 * math.sqrt(total[0] / cells) / flux if flux > 0 else math.inf
+            iterations += 1
+    return iterations, error, clock.cost()
 
 
-def _settle(problem, reference, high, mirror, conductor, transform, field, iterations):
-    """Make the gradient exactly compatible, the flux its own, and measure what is left of the equilibrium error."""
-    run, cells, work = problem.team.run, problem.voxels.phase.size, transform.real
-    run(kernels.gradient, field.shape[1], field, work, mirror, problem.dtype(0.5 / reference))
-    potential = _transform(problem, 1)
-    gradient = problem.gradient.astype(problem.dtype)
-    _, incompatible = _split(problem, transform, potential.modes[0], gradient)
-    transform.backward()
-    sums = np.zeros((field.shape[1], 4))
-    run(kernels.conduct, field.shape[1], field, work, conductor, sums)
-    potential.backward()
-    temperature = np.array(potential.real[0, ..., : field.shape[3]])
+def _measure(problem, reference, mirror, conductor, transform, field):
+    """Mean flux, flux at both ends and errors of the compatible gradient and its own flux; the field stays."""
+    cells, work = problem.voxels.phase.size, transform.real
+    transform.planes(kernels.gradient, field, work, mirror, problem.dtype(0.5 / reference), forward=True)
+    _, incompatible = _split(problem, transform, problem.gradient)
+    sums = np.zeros((field.shape[1], 3))
+    transform.planes(kernels.conduct, work, conductor, sums, backward=True, forward=True)
     ends = sums[[0, -1], 0] / (cells / len(sums))
-    mean_flux = sums.sum(axis=0)[:3] / cells
-    unbalanced, _ = _split(problem, transform, potential.modes[0], mean_flux.astype(problem.dtype))
-    scale = float(np.linalg.norm(mean_flux))
-    errors = {"residual": 0.0, "equilibrium": math.sqrt(unbalanced) / scale, "compatibility": math.sqrt(incompatible)}
-    errors["residual"] = errors["equilibrium"]
-    # The iterate's errors are below the tolerance; making g compatible moves q by at most K/c0 of it.
-    if not errors["equilibrium"] <= (1 + high / reference) * problem.tolerance:
-        _fail(iterations, errors["equilibrium"], problem.tolerance)
-    return Solution(mean_flux, ends, lambda: (temperature, field), 3 * cells, iterations, errors)
+    mean_flux = sums.sum(axis=0) / cells
+    unbalanced, _ = _split(problem, transform, mean_flux, backward=False)
+    equilibrium = math.sqrt(unbalanced) / float(np.linalg.norm(mean_flux))
+    errors = {"residual": equilibrium, "equilibrium": equilibrium, "compatibility": math.sqrt(incompatible)}
+    return mean_flux, ends, errors
 
 
-def _split(problem, transform, potential, mean):
+def _split(problem, transform, mean, backward=True):
     """Replace a field's modes by its compatible part; returns the mean squares of that part and of the rest."""
-    transform.forward()
-    wave, free, weight = _waves(problem, transform)
-    planes = _planes(problem, transform)
-    sums = np.zeros((planes, 2))
-    kernel = kernels.split_waves if problem.walls else kernels.split_modes
-    scale = problem.dtype(transform.scale)
-    problem.team.run(kernel, planes, transform.modes, potential, wave, free, weight, scale, mean, sums)
+    _, mx, my, mz = transform.modes.shape
+    sums = np.zeros((mx + 1 if problem.walls else my * mz, 2))
+    _, _, multiplicity = _waves(problem, transform)
+    arguments = (multiplicity, problem.dtype(transform.scale), mean.astype(problem.dtype), sums)
+    _on_modes(problem, transform, "split", *arguments, backward=backward)
     return sums.sum(axis=0)
+
+
+def _state(problem, reference, mirror, conductor, field):
+    """Temperature less its linear part, and the flux of its gradient, made when asked for."""
+    with Team(problem.team.threads) as team:
+        problem = problem._replace(team=team)
+        transform, potential = _transform(problem, 3), _transform(problem, 1)
+        work, wave = transform.real, _waves(problem, transform)[0]
+        transform.planes(kernels.gradient, field, work, mirror, problem.dtype(0.5 / reference), forward=True)
+        _split(problem, transform, problem.gradient, backward=False)
+        integrate = kernels.integrate_waves if problem.walls else kernels.integrate_modes
+        planes = transform.modes.shape[1] + (1 if problem.walls else 0)
+        team.run(integrate, planes, transform.modes, potential.modes, wave)
+        potential.backward()
+        transform.columns(forward=False)
+        transform.planes(kernels.conduct, work, conductor, np.zeros((field.shape[1], 3)), backward=True)
+    depth = field.shape[3]
+    return potential.real[0, ..., :depth], work[..., :depth]

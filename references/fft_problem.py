@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from time import perf_counter
 from typing import NamedTuple
 
 import numpy as np
@@ -52,6 +53,8 @@ class Solution(NamedTuple):
     unknowns, iterations : int
     errors : dict of str to float
         Relative errors, recomputed after the solve; `residual` is the largest.
+    cost : dict of str to float
+        Wall seconds: `iteration_s` of all iterations, `transform_s` of the Fourier transforms among them.
     """
 
     mean_flux: np.ndarray
@@ -60,3 +63,23 @@ class Solution(NamedTuple):
     unknowns: int
     iterations: int
     errors: dict
+    cost: dict
+
+
+class Clock:
+    """Wall seconds between `with` and its end, all of them together, and those of them that a transform took."""
+
+    def __init__(self, transform):
+        self._transform, self._whole, self._part = transform, 0.0, 0.0
+
+    def __enter__(self):
+        self._whole -= perf_counter()
+        self._part -= self._transform.seconds
+
+    def __exit__(self, *_):
+        self._whole += perf_counter()
+        self._part += self._transform.seconds
+
+    def cost(self) -> dict:
+        """As `Solution.cost`."""
+        return {"iteration_s": self._whole, "transform_s": self._part}

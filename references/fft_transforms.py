@@ -12,40 +12,15 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
+import pyfftw
 
-# FFTW's threads wait in a busy loop unless told otherwise, which is 4 times slower when other work shares the cores.
-# Its OpenMP runtime reads this once, when the library is loaded.
-os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
-
-import pyfftw  # noqa: E402
+from references.fft_sweeps import Plans, Transform, Worker
 
 # Estimated over measured plans, in place, 2 threads, CPU time: no difference at 128^3, 1.3 to 1.5 at 256^3, where
 # measuring takes about 20 s, once.
 MEASURED_FROM = 4_000_000
 PLANNING_SECONDS = 20.0
 _loaded = set()
-
-
-class Transform(NamedTuple):
-    """A field of one or three components and the plans that transform it in place.
-
-    Attributes
-    ----------
-    real : (components, nx, ny, nz or more) float array
-        Values; in a periodic cell the last axis is padded and the padding means nothing.
-    modes : (components, mx, my, mz) complex or float array
-        Coefficients, in the same memory.
-    forward, backward : callable ()
-        Fill `modes` from `real`, and back; neither is normalised.
-    scale : float
-        1 / scale is what a round trip multiplies values by.
-    """
-
-    real: np.ndarray
-    modes: np.ndarray
-    forward: object
-    backward: object
-    scale: float
 
 
 def fourier(components, shape, dtype, threads) -> Transform:
@@ -61,13 +36,8 @@ def fourier(components, shape, dtype, threads) -> Transform:
     """
     half = shape[2] // 2 + 1
     modes = pyfftw.zeros_aligned((components, shape[0], shape[1], half), np.result_type(dtype, np.complex64))
-    padded = modes.view(dtype)
-    forward, backward = [], []
-    for values, coefficients in zip(padded[..., : shape[2]], modes, strict=True):
-        plan = {"axes": (0, 1, 2), "threads": threads}
-        forward.append(_planned(values, coefficients, direction="FFTW_FORWARD", **plan))
-        backward.append(_planned(coefficients, values, direction="FFTW_BACKWARD", **plan))
-    return Transform(padded, modes, _all(forward), _all(backward), 1.0 / np.prod(shape, dtype=float))
+    ways = [_Ways("FFTW_FORWARD", "FFTW_FORWARD", "FFTW_BACKWARD", "FFTW_BACKWARD")] * components
+    return _transform(modes.view(dtype), modes, shape, ways, 1.0 / np.prod(shape, dtype=float), threads)
 
 
 def trigonometric(kinds, shape, dtype, threads) -> Transform:
@@ -83,17 +53,14 @@ def trigonometric(kinds, shape, dtype, threads) -> Transform:
     threads : int
     """
     values = pyfftw.zeros_aligned((len(kinds), *shape), dtype)
-    forward, backward = [], []
-    for component, names in zip(values, kinds, strict=True):
-        plan = {"axes": (0, 1, 2), "threads": threads}
-        there = tuple(_REAL_TRANSFORMS[name][0] for name in names)
-        back = tuple(_REAL_TRANSFORMS[name][1] for name in names)
-        forward.append(_planned(component, component, direction=there, **plan))
-        backward.append(_planned(component, component, direction=back, **plan))
+    ways = []
+    for names in kinds:
+        there, back = (tuple(_REAL_TRANSFORMS[name][way] for name in names) for way in (0, 1))
+        ways.append(_Ways(there[:1], there[1:], back[:1], back[1:]))
     scale = 1.0
     for name, n in zip(kinds[0], shape, strict=True):
         scale /= 2.0 * (n + {"sin1": 1, "cos1": -1}.get(name, 0))
-    return Transform(values, values, _all(forward), _all(backward), scale)
+    return _transform(values, values, shape, ways, scale, threads)
 
 
 # Forward and backward transform of FFTW.
@@ -105,25 +72,65 @@ _REAL_TRANSFORMS = {
 }
 
 
-def _all(plans):
-    def execute():
-        for plan in plans:
-            plan.execute()
+class _Ways(NamedTuple):
+    """FFTW's names of a component's transforms: there and back, along x and along y and z."""
+
+    there_x: str | tuple
+    there: str | tuple
+    back_x: str | tuple
+    back: str | tuple
+
+
+def _transform(real, modes, shape, ways, scale, threads):
+    measured = real.size >= MEASURED_FROM
+
+    def worker(blocks, count):
+        planes = {n: _plane_plans(real[:, :n, :, : shape[2]], modes[:, :n], ways, measured) for n in blocks}
+        buffer = pyfftw.zeros_aligned((len(modes), count, modes.shape[1]), modes.dtype)
+        return Worker(planes, buffer, _column_plans(buffer, ways, measured))
+
+    return Transform(real, modes, scale, shape[2], threads, worker)
+
+
+def _plane_plans(values, modes, ways, measured):
+    """Plans made on the first block of planes, for any block."""
+    # Blocks lie one after another: FFTW may count on alignment only if all of them have it.
+    loose = modes[0].nbytes % pyfftw.simd_alignment > 0
+    knobs = {"axes": (1, 2), "loose": loose, "measured": measured}
+    parts = list(zip(values, modes, ways, strict=True))
+    forward = [_planned(v, m, direction=way.there, **knobs) for v, m, way in parts]
+    backward = [_planned(m, v, direction=way.back, **knobs) for v, m, way in parts]
+    return Plans([_moved(plan) for plan in forward], [_moved(plan) for plan in backward])
+
+
+def _column_plans(buffer, ways, measured):
+    knobs = {"axes": (1,), "loose": False, "measured": measured}
+    forward = [_planned(rows, rows, direction=way.there_x, **knobs) for rows, way in zip(buffer, ways, strict=True)]
+    backward = [_planned(rows, rows, direction=way.back_x, **knobs) for rows, way in zip(buffer, ways, strict=True)]
+    return Plans([plan.execute for plan in forward], [plan.execute for plan in backward])
+
+
+def _moved(plan):
+    """The plan's transform of other arrays, alike in all but their place."""
+
+    def execute(source, target):
+        plan.update_arrays(source, target)
+        plan.execute()
 
     return execute
 
 
-def _planned(source, target, **plan):
-    """Plan once: from kept wisdom if there is any, else measured where that pays."""
+def _planned(source, target, *, loose, measured, **plan):
+    """Plan once: from kept wisdom if there is any, else measured where that pays; in place, for one thread."""
     _load_wisdom(source.dtype)
-    known = ("FFTW_MEASURE", "FFTW_DESTROY_INPUT")
+    flags = ("FFTW_DESTROY_INPUT", *(["FFTW_UNALIGNED"] if loose else []))
     try:
-        return pyfftw.FFTW(source, target, flags=(*known, "FFTW_WISDOM_ONLY"), **plan)
+        return pyfftw.FFTW(source, target, flags=("FFTW_MEASURE", "FFTW_WISDOM_ONLY", *flags), **plan)
     except RuntimeError:  # No wisdom for this transform yet.
         pass
-    if source.size < MEASURED_FROM:
-        return pyfftw.FFTW(source, target, flags=("FFTW_ESTIMATE", "FFTW_DESTROY_INPUT"), **plan)
-    planned = pyfftw.FFTW(source, target, flags=known, planning_timelimit=PLANNING_SECONDS, **plan)
+    if not measured:
+        return pyfftw.FFTW(source, target, flags=("FFTW_ESTIMATE", *flags), **plan)
+    planned = pyfftw.FFTW(source, target, flags=("FFTW_MEASURE", *flags), planning_timelimit=PLANNING_SECONDS, **plan)
     _save_wisdom(source.dtype)
     return planned
 

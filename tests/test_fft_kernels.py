@@ -108,7 +108,12 @@ def test_the_reflection_in_fourier_space_against_its_definition():
     wave = tuple(np.where(2 * np.arange(n) == n, 0, x) for n, x in zip(shape, numbers, strict=True))
     free = tuple((2 * np.arange(n) == n).astype(float) for n in shape)
     wave, free = (*wave[:2], np.abs(wave[2][:4])), (*free[:2], free[2][:4])
-    fft_eyre_milton_kernels.reflect_modes(half, wave, free, 1 / 72, mean, 0, 4)
+    columns = np.ascontiguousarray(half.reshape(3, 4, 12).transpose(0, 2, 1))
+    wave, free = ((np.repeat(v[0], 2), *v[1:]) for v in (wave, free))
+    for first, count in ((0, 5), (5, 7)):  # In two chunks.
+        rows = columns[:, first:].copy().view(float)
+        fft_eyre_milton_kernels.reflect_modes(rows, first, count, wave, free, 1 / 72, mean)
+        half.reshape(3, 4, 12)[..., first : first + count] = rows.view(complex)[:, :count].transpose(0, 2, 1)
     assert_allclose(np.fft.irfftn(half * 72, s=shape, axes=(1, 2, 3)), expected.real, atol=1e-13)
 
 
