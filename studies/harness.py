@@ -27,7 +27,7 @@ from pathlib import Path
 
 from studies.cost import measured, triad_gbs
 from studies.provenance import SAME, provenance
-from studies.store import case_key, read_rows, write_rows
+from studies.store import TAIL, case_key, read_rows, write_rows
 
 TIMEOUT = 1800.0
 KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
@@ -39,7 +39,8 @@ def load(name):
     Raises
     ------
     ValueError
-        If there is no such study, or two of its cases have the same parameters.
+        If there is no such study, two of its cases have the same parameters, or one is called as a column that every
+        row has.
     """
     for path in (f"studies.{name}", name):
         try:
@@ -52,6 +53,9 @@ def load(name):
             keys = [case_key(case) for case in study.CASES]
             if len(set(keys)) < len(keys):
                 raise ValueError(f"study {name!r}: two cases have the same parameters")
+            taken = sorted({key for case in study.CASES for key in case} & set(TAIL))
+            if taken:
+                raise ValueError(f"study {name!r}: parameters {taken} of its cases are columns that every row has")
             return study
     raise ValueError(f"no study {name!r}; `python -m studies list` shows them all")
 

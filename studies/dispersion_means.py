@@ -1,0 +1,75 @@
+"""Means over axes and realisations of random dispersions, their intervals, and the bounds of each."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from references import bounds
+from studies.pick import pick
+from studies.silica_epoxy import EPOXY, SILICA
+
+CONFIDENCE = 0.95
+
+
+class Interval(NamedTuple):
+    """Mean of so many realisations, half the width of its confidence interval, and their standard deviation."""
+
+    mean: float
+    half: float
+    deviation: float
+    number: int
+
+
+def witness(df, kind, fraction):
+    """k over the matrix's of the first cell along y, by multipoles; None if it was not solved."""
+    rows = pick(df, name="multipole", kind=kind, fraction=fraction, realisation=0, axes="y")
+    return float(rows["k_ratio"].iloc[0]) if len(rows) else None
+
+
+def all_axes(df):
+    """Rows that are means over the three axes of a periodic cell of equal spheres."""
+    return pick(df, kind="periodic", axes="xyz")
+
+
+def bounds_of(df, row):
+    """Third-order bounds with the zeta_2 of the very cell and the method's own volume fraction, over the matrix's k."""
+    rows = pick(df, name="zeta2", fraction=row["fraction"], realisation=row["realisation"])
+    zeta2 = float(rows["zeta2"].iloc[0]) if len(rows) else np.nan
+    low, high = bounds.third_order(1.0, SILICA.conductivity / EPOXY.conductivity, row["inclusion"], zeta2)
+    return float(low), float(high)
+
+
+def interval(df, kind, fraction, *, name="fft", boundary="gradient"):
+    """Interval of the mean over cells of one method's means over three axes; None if there are not two or more."""
+    cells = pick(df, name=name, kind=kind, boundary=boundary, fraction=fraction, axes="xyz")["k_ratio"]
+    return _interval(cells.to_numpy()) if len(cells) > 1 else None
+
+
+def change(df, fraction, kind):
+    """Change of that mean from equal periodic cells to another kind, %; None if one is missing."""
+    equal, other = (interval(df, each, fraction) for each in ("periodic", kind))
+    return 100 * (other.mean / equal.mean - 1) if equal and other else None
+
+
+def of_walls(df, fraction):
+    """Isothermal walls less gradient on the same walled spheres, %, of each cell; empty where not solved.
+
+    Returns
+    -------
+    Series
+    """
+    rows = pick(df, name="fft", kind="walled", fraction=fraction, axes="xyz")
+    if not len(rows):
+        return rows["k_ratio"]
+    k = rows.pivot(index="realisation", columns="boundary", values="k_ratio")
+    return 100 * (k["walls"] / k["gradient"] - 1)
+
+
+def _interval(values):
+    from scipy.stats import t
+
+    deviation = float(np.std(values, ddof=1))
+    half = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1)) * deviation / np.sqrt(len(values))
+    return Interval(float(np.mean(values)), half, deviation, len(values))
