@@ -33,7 +33,7 @@ def _fractions(df):
 
 def _conductivity(ax, df):
     """Over Maxwell's estimate: k rises threefold, what is to be told apart is a few per cent."""
-    fractions, curve = _fractions(df), np.linspace(1e-3, 0.5, 100)
+    fractions, curve = _fractions(df), np.linspace(1e-3, _fractions(df).max(), 100)
 
     def relative(k, f):
         return k / bounds.maxwell(1.0, CONTRAST, f)

@@ -46,8 +46,14 @@ def _voro(packing):
     return {"peer_us_per_particle": 1e6 * cost["cpu_s"] / len(cells), "peer_facets_per_cell": float(facets)}
 
 
-def steady(particles, seed, contrast):
+def steady(particles, seed, scene):
     """CPU time of one steady solve by our solver and by plain pyamg on the same matrix, to the same residual.
+
+    Parameters
+    ----------
+    particles, seed : int
+    scene : Scene
+        With temperatures on two walls across y.
 
     Returns
     -------
@@ -60,7 +66,6 @@ def steady(particles, seed, contrast):
 
     from demheat.steady import solve_steady
 
-    scene = sphere_in_cube(contrast)
     for number in (1000, particles):  # the first loads the compiled kernels
         network = _network(scene, number, seed)
         solution, cost = measured(solve_steady, network, scene)

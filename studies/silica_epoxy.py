@@ -13,7 +13,7 @@ from studies.cost import measured
 
 EPOXY, SILICA = Material(0.195), Material(1.5)
 RATIO = 6.0  # edge of the cube over the diameter
-GAP = 0.02  # least distance of two surfaces, in diameters
+GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for
 SPREAD = 0.3  # of the radii of the unequal spheres, standard deviation over mean of the Gaussian before it is cut
 KINDS = ("periodic", "walled", "unequal")
 STATS = (
@@ -29,7 +29,7 @@ def case(name, **more):
     return methods.case(name, **more)
 
 
-def scene(kind, fraction, *, seed, axis=1, boundary="gradient"):
+def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
     """Spheres of one kind in a cube: equal ones in a periodic cell or between walls, or unequal ones in a cell.
 
     Walled spheres, none of which crosses a face, can be under a mean gradient as well as between isothermal walls.
@@ -41,7 +41,7 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient"):
         _count(fraction),
         fraction=fraction,
         size=(EDGE, EDGE, EDGE),
-        gap=GAP,
+        gap=gap,
         radii=Gaussian(SPREAD) if kind == "unequal" else None,
         periodic=kind != "walled",
         matrix=EPOXY,

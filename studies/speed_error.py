@@ -60,7 +60,7 @@ def run(name, particles=None, seed=None, scene=None, **solver):
     if name == "tessellation":
         return peers.tessellation(particles, seed)
     if name == "steady":
-        return peers.steady(particles, seed, CONTRAST)
+        return peers.steady(particles, seed, sphere_in_cube(CONTRAST))
     cube, ratio = sphere_in_cube(CONTRAST, fraction=FRACTIONS[scene]), methods.exact_ratio(FRACTIONS[scene], CONTRAST)
     if particles is None:
         return methods.solve_row(cube, ratio, **solver)

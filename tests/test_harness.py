@@ -274,6 +274,12 @@ def test_unknown_study_and_equal_cases_are_refused(tiny, capsys):
     assert main(["run", tiny.name]) == 2
 
 
+def test_parameters_called_as_columns_of_every_row_are_refused(tiny, capsys):
+    tiny.write('{"name": "third", "load": 1.0}')
+    assert main(["run", tiny.name]) == 2
+    assert "parameters ['load']" in capsys.readouterr().err and not tiny.out.exists()
+
+
 def test_metrics_must_not_replace_parameters(tiny):
     tiny.write(**{'"square": x * x': '"square": x * x, "x": 0.0'})
     assert tiny.run() == 1
