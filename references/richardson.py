@@ -65,8 +65,8 @@ def observed_order(values, sizes) -> float:
     def excess(p):
         return rest * (1 - h[second] ** p) - change * (h[second] ** p - h[third] ** p)
 
-    # A trivial root at p = 0 lies below the bracket.
-    if not change * rest > 0 or not excess(LOWEST) * excess(HIGHEST) < 0:
+    # The trivial root at p = 0 lies below the bracket; changes of both signs leave no root in it.
+    if not excess(LOWEST) * excess(HIGHEST) < 0:
         raise ValueError(
             f"values = {values.tolist()} at sizes {sizes.tolist()}: show no order between {LOWEST} and {HIGHEST}; must "
             "approach a limit from one side, by less and less"
