@@ -46,6 +46,9 @@ def solve(
 ) -> Field:
     """Solve a periodic cell, or a box between two opposite isothermal walls with four insulated sides.
 
+    Memory per voxel, less what its spheres' surfaces take: 52 bytes with "eyre-milton" (7 GB at 512^3), 35 with "cg"
+    and a laminate, half of it in single precision; as much again at most when fields are asked for.
+
     Parameters
     ----------
     scene : Scene
@@ -233,7 +236,9 @@ def _field(scene, grid, units, solution, knobs):
     @cache
     def whole():
         temperature, flux = solution.state()
-        return grid._replace(temperature=temperature * (units.slope * units.length), flux=flux * -flux_unit)
+        temperature *= units.slope * units.length
+        flux *= -flux_unit
+        return grid._replace(temperature=temperature, flux=flux)
 
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
     return Field(

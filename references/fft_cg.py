@@ -197,7 +197,7 @@ def _solution(problem, operator, vectors, state, iterations, error, cost):
         with Team(problem.team.threads) as team:
             if problem.links is not None:
                 team.run(link_kernels.link_state, shape[0], theta, *arguments, flux)
-                return theta, flux
+                return theta.copy(), flux
             temperature = np.empty(shape, problem.dtype)
             team.run(kernels.voxel_state, shape[0], theta, *arguments, temperature, flux)
         return temperature, flux

@@ -97,16 +97,21 @@ def flux_at(grid: Grid, points):
 
 def samples(grid: Grid) -> Samples:
     """The voxels, in the order of the user's axes."""
-    spacing = grid.voxels.spacing
+    spacing, shape = grid.voxels.spacing, grid.temperature.shape
     back = np.argsort(grid.order)
-    x = np.meshgrid(*centers(grid.temperature.shape, spacing), indexing="ij")
-    linear = grid.level + sum(slope * coordinate for slope, coordinate in zip(grid.slope, x, strict=True))
-    temperature = (grid.temperature + linear).transpose(back).ravel()
-    points = np.stack([x[a].transpose(back).ravel() for a in back], axis=1)
-    flux = np.stack([grid.flux[a].transpose(back).ravel() for a in back], axis=1).astype(float)
+    x = np.meshgrid(*centers(shape, spacing), indexing="ij", sparse=True)
+    temperature = np.full(shape, float(grid.level))
+    for slope, coordinate in zip(grid.slope, x, strict=True):
+        temperature += slope * coordinate
+    temperature += grid.temperature
+    # Column by column: whole fields of three components are not made twice.
+    points, flux = np.empty((temperature.size, 3)), np.empty((temperature.size, 3))
+    for column, axis in enumerate(back):
+        points[:, column] = np.broadcast_to(x[axis], shape).transpose(back).ravel()
+        flux[:, column] = grid.flux[axis].transpose(back).ravel()
     volumes = np.full(len(points), np.prod(spacing))
     phase = grid.voxels.phase.transpose(back).ravel().astype(np.int32)
-    return Samples(points, volumes, temperature, phase, flux)
+    return Samples(points, volumes, temperature.transpose(back).ravel(), phase, flux)
 
 
 def _in_box(grid, points):

@@ -49,7 +49,8 @@ class Solution(NamedTuple):
     ends : (2,) float array
         Mean of the first flux component over the planes of voxels at the two ends of the first axis.
     state : callable () -> (temperature, flux)
-        (nx, ny, nz) temperature less its linear part, (3, nx, ny, nz) flux, both at the voxel centres.
+        (nx, ny, nz) temperature less its linear part, (3, nx, ny, nz) flux, both at the voxel centres; made anew at
+        each call.
     unknowns, iterations : int
     errors : dict of str to float
         Relative errors, recomputed after the solve; `residual` is the largest.
