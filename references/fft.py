@@ -100,7 +100,7 @@ def solve(
     with Team(_thread_count(threads)) as team:
         problem = Problem(
             voxels=_scaled(grid, units),
-            links=[link / units.conductivity for link in links(box, shape)] if rule == "links" else None,
+            links=_scaled_links(links(box, shape, phase=grid.phase), units) if rule == "links" else None,
             # Equal wall temperatures: any load's solution, times zero.
             gradient=slope / steep if steep else np.array([1.0, 0.0, 0.0]),
             walls=not scene.periodic,
@@ -217,6 +217,12 @@ def _scaled(grid, units):
         conductivity=grid.conductivity / units.conductivity,
         tensor=grid.tensor / units.conductivity,
     )
+
+
+def _scaled_links(found, units):
+    for link in found:
+        link /= units.conductivity
+    return found
 
 
 def _field(scene, grid, units, solution, knobs):

@@ -14,7 +14,7 @@ from references.voxels import parents, voxelise
 NEAREST = 0.02
 
 
-def links(scene: Scene, shape, dtype=np.float64) -> tuple:
+def links(scene: Scene, shape, *, phase=None) -> tuple:
     """Conductivity of every link, W/(m K).
 
     Link i of an axis joins voxels i - 1 and i.  The first and the last pass through a face of the box: one and the
@@ -26,25 +26,27 @@ def links(scene: Scene, shape, dtype=np.float64) -> tuple:
         All conductivities positive.
     shape : (3,) tuple of int
         Voxels along each side.
-    dtype : numpy float type
+    phase : (nx, ny, nz) uint16 array, optional
+        Phase number at the centre of each voxel, if it is known already.
 
     Returns
     -------
-    tuple of three arrays
+    tuple of three float arrays
         Shapes (nx + 1, ny, nz), (nx, ny + 1, nz) and (nx, ny, nz + 1).
     """
     resistivity = 1.0 / scene.conductivities
     change = resistivity - resistivity[parents(scene)]
-    nodes = resistivity[voxelise(scene, shape, laminate=False).phase] if scene.images() else None
-    return tuple(_along(scene, shape, axis, resistivity[0], change, nodes).astype(dtype) for axis in range(3))
+    if phase is None and scene.images():
+        phase = voxelise(scene, shape, laminate=False).phase
+    return tuple(_along(scene, shape, axis, resistivity, change, phase) for axis in range(3))
 
 
-def _along(scene, shape, axis, matrix, change, nodes):
+def _along(scene, shape, axis, resistivity, change, phase):
     """Conductivities of the links along one axis; each inclusion replaces the resistivity it was painted on."""
     counts = np.array(shape)
     spacing = np.array(scene.size) / counts
     counts[axis] += 1
-    resistance = np.full(counts, matrix)
+    resistance = np.full(counts, resistivity[0])
     # The kernel sees the links' axis last.
     view = np.moveaxis(resistance, axis, 2)
     view[:, :, [0, -1]] *= 0.5
@@ -60,23 +62,12 @@ def _along(scene, shape, axis, matrix, change, nodes):
         view[:, :, -1] = view[:, :, 0]
     else:
         view[:, :, [0, -1]] *= 2.0
-    if nodes is not None:
-        _keep_off(view, np.moveaxis(nodes, axis, 2), scene.periodic)
-    conductivity = 1.0 / resistance
+    if scene.images():
+        kernels.keep_off(view, np.moveaxis(phase, axis, 2), NEAREST * resistivity, scene.periodic)
+    conductivity = np.divide(1.0, resistance, out=resistance)
     if not scene.periodic and axis != scene.axis:
         np.moveaxis(conductivity, axis, 2)[:, :, [0, -1]] = 0.0
     return conductivity
-
-
-def _keep_off(view, nodes, periodic):
-    """Keep surfaces off the nodes: a link between two phases resists at least a little like the poorer one."""
-    low, high = nodes[:, :, :-1], nodes[:, :, 1:]
-    inner = view[:, :, 1:-1]
-    np.maximum(inner, np.where(low == high, 0.0, NEAREST * np.maximum(low, high)), out=inner)
-    if periodic:
-        low, high = nodes[:, :, -1], nodes[:, :, 0]
-        ends = np.maximum(view[:, :, 0], np.where(low == high, 0.0, NEAREST * np.maximum(low, high)))
-        view[:, :, 0] = view[:, :, -1] = ends
 
 
 def _cut_by_layer(resistance, axis, change, layer, spacing):

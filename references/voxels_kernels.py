@@ -202,3 +202,30 @@ def cut_links(resistance, change, center, radius, spacing):
                 inside = min(high, k + 0.5) - max(low, k - 0.5)
                 if inside > 0.0:
                     resistance[i, j, k] += change * inside
+
+
+@numba.njit(cache=True)
+def keep_off(resistance, phase, least, periodic):
+    """Keep surfaces off the nodes: a link between two phases resists at least a little like the poorer one.
+
+    Parameters
+    ----------
+    resistance : (na, nb, n + 1) float array, m K/W
+        Changed in place; see `cut_links`.
+    phase : (na, nb, n) int array
+    least : (phases,) float array, m K/W
+        Of a link between two phases where theirs differ, the larger one.
+    periodic : bool
+        The first and the last link are one and the same, between the last voxel and the first.
+    """
+    na, nb, n = phase.shape
+    for i in range(na):
+        # In this order memory is read in rows, or within one plane, whichever axis of the grid is the links'.
+        for k in range(0 if periodic else 1, n):
+            for j in range(nb):
+                low, high = least[phase[i, j, k - 1]], least[phase[i, j, k]]
+                if low != high:
+                    resistance[i, j, k] = max(resistance[i, j, k], low, high)
+        if periodic:
+            for j in range(nb):
+                resistance[i, j, n] = resistance[i, j, 0]
