@@ -47,7 +47,7 @@ def solve(
     """Solve a periodic cell, or a box between two opposite isothermal walls with four insulated sides.
 
     Memory per voxel, less what its spheres' surfaces take: 52 bytes with "eyre-milton" (7 GB at 512^3), 35 with "cg"
-    and a laminate, half of it in single precision; as much again at most when fields are asked for.
+    and a laminate, half of it in single precision; more when fields are asked for.
 
     Parameters
     ----------
