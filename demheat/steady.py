@@ -4,11 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy import sparse
-from scipy.sparse import csgraph
-from scipy.sparse.linalg import cg
 
 from demheat import steady_kernels as kernels
-from demheat.network.base import SIDES, Network, row_numbers
+from demheat.network.base import SIDES, Network
+from demheat.steady_multigrid import preconditioner
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond these sizes multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with the size and with
@@ -63,8 +62,8 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     scene : Scene
         Its load only.
     solver : {"auto", "cg", "amg"}
-        Jacobi-preconditioned conjugate gradients, or conjugate gradients preconditioned by algebraic multigrid
-        (smoothed aggregation, pyamg); "auto" picks by size and contrast.
+        Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.steady_multigrid`);
+        "auto" picks by size and contrast.
     tolerance : float
         On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
@@ -114,29 +113,26 @@ def check_solver(solver, tolerance):
 
 def _reached(network, scene):
     """Particles tied to a wall temperature (walls), or to any other particle (periodic cell)."""
-    n = len(network.volumes)
     if scene.periodic:
-        conducts = np.zeros(n, dtype=bool)
-        conducts[np.repeat(np.arange(n), np.diff(network.indptr))[network.conductance > 0]] = True
-        return conducts
-    conducts = network.conductance > 0
-    if conducts.all():
-        indptr, indices = network.indptr, network.indices
-    else:
-        indptr = np.concatenate([[0], np.cumsum(conducts)])[network.indptr]
-        indices = network.indices[conducts]
-    ones = np.ones(len(indices), np.int8)
-    graph = sparse.csr_matrix((ones, indices.astype(np.int32), indptr), shape=(n, n))
-    _, label = csgraph.connected_components(graph, directed=False)
+        return _conducted(network) > 0
     held = [SIDES.index(name) for name in scene.wall_temperatures]
-    anchors = network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]
-    return np.isin(label, np.unique(label[anchors]))
+    reached = np.zeros(len(network.volumes), dtype=bool)
+    reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
+    kernels.spread(network.indptr, network.indices, network.conductance, reached)
+    return reached
+
+
+def _conducted(network):
+    """Sum of the conductances of each particle's links, (n,) float array, W/K."""
+    total = np.empty(len(network.volumes))
+    kernels.row_sums(network.indptr, network.conductance, total)
+    return total
 
 
 def _system(network, scene, reached):
     n = len(network.volumes)
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
-    diagonal = np.bincount(row_numbers(network.indptr), network.conductance, minlength=n)
+    diagonal = _conducted(network)
     if scene.periodic:
         received = np.empty(n)
         kernels.flows(*_links(network), gradient, np.zeros(n), received, np.empty(n))
@@ -238,30 +234,40 @@ def matrix(network, diagonal):
 
 
 def _multigrid(system):
-    import pyamg
     from threadpoolctl import threadpool_limits
 
+    net = system.network
+    links = net.indptr, net.indices, net.conductance, system.diagonal
     # BLAS threads only spin here: its share is short dot products between compiled sweeps.
     with threadpool_limits(1, "blas"):
-        a = matrix(system.network, system.diagonal)
-        sweeps = {
-            "presmoother": ("gauss_seidel", {"sweep": "forward"}),
-            "postsmoother": ("gauss_seidel", {"sweep": "backward"}),
-        }
-        hierarchy = pyamg.smoothed_aggregation_solver(a, max_coarse=500, improve_candidates=None, **sweeps)
-        precondition = hierarchy.aspreconditioner(cycle="V")
+        precondition = preconditioner(*links)
 
     def solve(r, x, limit, most):
-        count = [0]
-
-        def tick(_):
-            count[0] += 1
-
         with threadpool_limits(1, "blas"):
-            dx, _ = cg(a, r, rtol=0.0, atol=limit, maxiter=most, M=precondition, callback=tick)
-        return count[0], x + dx
+            return _preconditioned(links, precondition, r, x, limit, most), x
 
     return solve
+
+
+def _preconditioned(links, precondition, r, x, limit, most):
+    """Conjugate gradients that add to x until |r| <= limit; returns the iterations done.
+
+    Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
+    precision, is symmetric to its rounding only.
+    """
+    z, q = np.empty_like(r), np.empty_like(r)
+    norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0
+    alpha = 0.0
+    for iteration in range(most):
+        if norm <= limit:
+            return iteration
+        precondition(r, norm, z)
+        beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
+        rz = kernels.dot(r, z)
+        kernels.direct(beta, z, p)
+        alpha = rz / kernels.apply(*links, p, q)
+        norm = np.sqrt(kernels.advance(alpha, p, q, x, r))
+    return most
 
 
 def _at_walls(system, scene, x):

@@ -10,9 +10,27 @@ BLOCK = 2048
 
 
 @njit(cache=True, parallel=True)
-def _direct(beta, z, p):
+def direct(beta, z, p):
+    """p = z + beta p."""
     for i in prange(len(p)):
         p[i] = z[i] + beta * p[i]
+
+
+@njit(cache=True, parallel=True)
+def _dots(a, b, partial):
+    for block in prange(len(partial)):
+        total = 0.0
+        for i in range(block * BLOCK, min(len(a), (block + 1) * BLOCK)):
+            total += a[i] * b[i]
+        partial[block] = total
+
+
+@njit(cache=True)
+def dot(a, b):
+    """Sum of a b."""
+    partial = np.empty((len(a) + BLOCK - 1) // BLOCK)
+    _dots(a, b, partial)
+    return partial.sum()
 
 
 @njit(cache=True, parallel=True)
@@ -28,6 +46,33 @@ def _apply(indptr, indices, conductance, diagonal, p, q, partial):
             q[i] = flow
             total += p[i] * flow
         partial[block] = total
+
+
+@njit(cache=True)
+def apply(indptr, indices, conductance, diagonal, p, q):
+    """q = A p with A = diag(diagonal) - conductance; returns p.q."""
+    partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
+    _apply(indptr, indices, conductance, diagonal, p, q, partial)
+    return partial.sum()
+
+
+@njit(cache=True, parallel=True)
+def _steps(alpha, p, q, x, r, partial):
+    for block in prange(len(partial)):
+        rr = 0.0
+        for i in range(block * BLOCK, min(len(p), (block + 1) * BLOCK)):
+            x[i] += alpha * p[i]
+            r[i] -= alpha * q[i]
+            rr += r[i] * r[i]
+        partial[block] = rr
+
+
+@njit(cache=True)
+def advance(alpha, p, q, x, r):
+    """x += alpha p and r -= alpha q; returns r.r."""
+    partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
+    _steps(alpha, p, q, x, r, partial)
+    return partial.sum()
 
 
 @njit(cache=True, parallel=True)
@@ -73,8 +118,38 @@ def conjugate_gradients(indptr, indices, conductance, diagonal, r, x, limit, mos
         if np.sqrt(partial_rr.sum()) <= limit:
             return iteration
         before, rz = rz, partial.sum()
-        _direct(rz / before, z, p)
+        direct(rz / before, z, p)
     return -most
+
+
+@njit(cache=True, parallel=True)
+def row_sums(indptr, conductance, total):
+    """Write the sum of each row's conductances to total."""
+    for i in prange(len(total)):
+        here = 0.0
+        for e in range(indptr[i], indptr[i + 1]):
+            here += conductance[e]
+        total[i] = here
+
+
+@njit(cache=True)
+def spread(indptr, indices, conductance, reached):
+    """Mark, in place, all particles that conducting links join to those already marked."""
+    front = np.flatnonzero(reached).astype(np.uint32)
+    while len(front):
+        following = np.empty(len(front) + 1024, np.uint32)
+        number = 0
+        for i in front:
+            for e in range(indptr[i], indptr[i + 1]):
+                j = indices[e]
+                if reached[j] or conductance[e] <= 0.0:
+                    continue
+                reached[j] = True
+                if number == len(following):
+                    following = np.concatenate((following, np.empty(number, np.uint32)))
+                following[number] = j
+                number += 1
+        front = following[:number]
 
 
 @njit(cache=True, parallel=True)

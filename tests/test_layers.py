@@ -23,7 +23,14 @@ LAYERS = {
     "demheat.sources": ("demheat.scene",),
     "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
     "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
-    "demheat.steady": ("demheat.scene", "demheat.threads", "demheat.network", "demheat.steady_kernels"),
+    "demheat.steady": (
+        "demheat.scene",
+        "demheat.threads",
+        "demheat.network",
+        "demheat.steady_kernels",
+        "demheat.steady_multigrid",
+    ),
+    "demheat.steady_multigrid": ("demheat.threads", "demheat.steady_multigrid_kernels"),
     "demheat.integrators": (
         "demheat.scene",
         "demheat.parts",
