@@ -7,15 +7,15 @@ import numpy as np
 from references.richardson import extrapolate
 from studies.pick import pick
 
-# Resolution; exponents of the element's size whose terms are taken off, none or (None) the one that three rows show;
-# rows, from the finest. Conforming cells lose the square of their size. Voxels cut by interfaces lose more the more of
-# them lie in gaps, so that no one order holds at all fractions. Meshes follow gaps and spheres besides the size that is
-# asked for: nothing can be extrapolated in it.
+# Resolution, and exponents of the element's size whose terms are taken off, through one row more from the finest on.
+# Conforming cells lose the square of their size. Laminates in the voxels that interfaces cut lose the size itself in
+# the end, its square before that, while few voxels lie across a gap. Meshes follow gaps and spheres besides the size
+# that is asked for: nothing can be extrapolated in it.
 TERMS = {
-    "dem": ("particles", 2.0, 2),
-    "fem": ("size", (), 1),
-    "fft": ("voxels", None, 3),
-    "fft-em": ("voxels", None, 3),
+    "dem": ("particles", (2.0,)),
+    "fem": ("size", ()),
+    "fft": ("voxels", (1.0, 2.0)),
+    "fft-em": ("voxels", (1.0, 2.0)),
 }
 
 
@@ -27,7 +27,8 @@ def spacing(rows, knob):
 
 def converged(df, name, **where):
     """Extrapolated k over the matrix's of one method on one scene; None if its rows are too few, NaN if one failed."""
-    knob, order, needed = TERMS[name]
+    knob, order = TERMS[name]
+    needed = len(order) + 1
     rows = pick(df, name=name, **where).drop_duplicates(knob).sort_values(knob, ascending=knob != "size").tail(needed)
     if len(rows) < needed:
         return None

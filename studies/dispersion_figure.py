@@ -101,7 +101,7 @@ def _errors(ax, df):
         ]
         style = look(name)
         ax.plot(fine["fraction"], np.maximum(errors, FLOOR), **style | {"markerfacecolor": "none", "linestyle": ":"})
-        if name in TERMS and TERMS[name][2] > 1:
+        if name in TERMS and TERMS[name][1]:
             limits = {f: converged(df, name, fraction=f, **HERE) for f in fine["fraction"]}
             errors = [100 * abs(k / witness(df, "periodic", f) - 1) if k else np.nan for f, k in limits.items()]
             ax.plot(
