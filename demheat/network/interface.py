@@ -5,6 +5,8 @@ import numpy as np
 from demheat.network.base import Network, row_numbers
 
 RULES = ("harmonic", "arithmetic")
+# Rows connected at once: bounds the scratch memory (some 1.5 kB a row).
+BLOCK = 65536
 
 
 def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
@@ -57,10 +59,16 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
         Wall facets conduct k S / h with h the distance from the centre to the wall, exact for linear fields.
     """
     conductivity = conductivities[phase]
-    here = np.repeat(conductivity, np.diff(facets.indptr))
-    there = conductivity[facets.indices]
-    length = link_lengths(facets, centers, size)
-    k = link_conductivity(here, there, facets.distance / length, rule=rule)
+    conductance = np.empty(len(facets.indices))
+    for start in range(0, len(centers), BLOCK):
+        rows = np.arange(start, min(len(centers), start + BLOCK))
+        links = slice(facets.indptr[rows[0]], facets.indptr[rows[-1] + 1])
+        row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
+        length = _lengths(centers, size, row, facets.indices[links], facets.image[links])
+        k = link_conductivity(
+            conductivity[row], conductivity[facets.indices[links]], facets.distance[links] / length, rule=rule
+        )
+        conductance[links] = k * facets.area[links] / length
     wall = conductivity[facets.wall_particle] * facets.wall_area / facets.wall_distance
     return Network(
         centers,
@@ -68,7 +76,7 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
         facets.indptr,
         facets.indices,
         facets.image,
-        k * facets.area / length,
+        conductance,
         facets.wall_particle,
         facets.wall_side,
         wall,
@@ -82,10 +90,13 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
 
 def link_lengths(facets, centers, size):
     """Distance between the centres of each link, (m,) float array, m."""
-    total = np.zeros(len(facets.area))
-    row = row_numbers(facets.indptr)
-    code = facets.image.astype(np.int16)
+    return _lengths(centers, size, row_numbers(facets.indptr), facets.indices, facets.image)
+
+
+def _lengths(centers, size, row, indices, image):
+    total = np.zeros(len(indices))
+    code = image.astype(np.int16)
     for k, shift in enumerate((code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1)):
         x = centers[:, k]
-        total += (x[facets.indices] - x[row] + shift * size[k]) ** 2
+        total += (x[indices] - x[row] + shift * size[k]) ** 2
     return np.sqrt(total)

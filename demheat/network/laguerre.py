@@ -3,7 +3,7 @@
 import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
-from demheat.network.base import Facets, row_numbers
+from demheat.network.base import Facets
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
 from demheat.packing.base import check_domain
 from demheat.scene import domain_volume
@@ -56,11 +56,11 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     counts = np.maximum(1, (size / (1.35 * spacing)).astype(np.int64))
     start, items = kernels.bin_points(centers, size, counts)
     grid = (centers, weights, size, periodic, counts, start, items, wall)
-    parts = [_cut_rows(np.arange(a, min(n, a + BLOCK)), grid, spacing) for a in range(0, n, BLOCK)]
-    volumes, number, neighbour, image, area, distance = (np.concatenate(column) for column in zip(*parts, strict=True))
+    volumes, number, *columns = _joined(_cut_block(start, grid, spacing) for start in range(0, n, BLOCK))
     _check_filled(volumes, domain_volume(domain, size), domain)
-    facets, side = _compressed(volumes, number, (neighbour, image, area, distance), spacing)
-    return _with_normals(facets, side, centers, wall)
+    links, side = _matched(number, columns[:4], spacing), columns[5]
+    walls = (columns[4], np.minimum(side, ROUND_SIDE), *columns[6:])
+    return _with_normals(Facets(*links, *walls, volumes), side, centers, wall)
 
 
 def without_hidden(packing, facets):
@@ -68,12 +68,13 @@ def without_hidden(packing, facets):
     seen = facets.volumes > 0
     if seen.all():
         return packing, facets
-    number = np.cumsum(seen) - 1
+    # Hidden points have no number: nobody asks for it.
+    number = (np.cumsum(seen) - 1).astype(np.uint32)
     packing = packing._replace(centers=packing.centers[seen], radii=packing.radii[seen])
     return packing, facets._replace(
         indptr=np.append(facets.indptr[:-1][seen], facets.indptr[-1]),  # rows of hidden points are empty
-        indices=number[facets.indices].astype(np.uint32),
-        wall_particle=number[facets.wall_particle],
+        indices=number[facets.indices],
+        wall_particle=number[facets.wall_particle].astype(np.int64),
         volumes=facets.volumes[seen],
     )
 
@@ -104,6 +105,30 @@ def _check_round(centers, wall, domain):
             f"centers[{which}] = {centers[which].tolist()}: {off[which]:.6g} m off the middle of the {domain}; must be "
             f"less than its radius {radius:.6g} (demheat.packing.relax.settle pushes particles off a wall)"
         )
+
+
+def _cut_block(start, grid, spacing):
+    """Facets of a block of rows, links and walls apart.
+
+    Volumes and numbers of links by row; indices, image, area and distance of links; row, side (planes of a round wall
+    from 6 on), area and distance of walls.
+    """
+    rows = np.arange(start, min(len(grid[0]), start + BLOCK))
+    volumes, number, neighbour, image, area, distance = _cut_rows(rows, grid, spacing)
+    row, big = np.repeat(np.arange(len(rows)), number), area > SLIVER * spacing**2
+    link, wall = big & (neighbour >= 0), big & (neighbour < 0)
+    links = (neighbour[link].astype(np.uint32), image[link], area[link], distance[link])
+    walls = (start + row[wall], -1 - neighbour[wall], area[wall], distance[wall])
+    return volumes, np.bincount(row[link], minlength=len(rows)), *links, *walls
+
+
+def _joined(parts):
+    """Columns of all blocks; those of the blocks are let go one after the other."""
+    columns = [list(column) for column in zip(*parts, strict=True)]
+    joined = []
+    while columns:
+        joined.append(np.concatenate(columns.pop(0)))
+    return joined
 
 
 def _cut_rows(rows, grid, spacing):
@@ -170,26 +195,20 @@ def _check_filled(volumes, volume, domain):
         raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _compressed(volumes, number, columns, spacing):
-    """Facets, round walls with the distances to their planes; the side or plane of each wall facet."""
-    neighbour, image, area, distance = columns
-    row = np.repeat(np.arange(len(number)), number)
-    big = area > SLIVER * spacing**2
-    wall = big & (neighbour < 0)
-    link = big & (neighbour >= 0)
-    side = -1 - neighbour[wall]
-    walls = (row[wall], np.minimum(side, ROUND_SIDE), area[wall], distance[wall])
-    indptr = _pointers(row[link], len(number))
-    indices, image, area, distance = neighbour[link].astype(np.uint32), image[link], area[link], distance[link]
+def _matched(number, columns, spacing):
+    """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
+    indices, image, area, distance = columns
+    indptr = np.concatenate([[0], np.cumsum(number)])
     matched = np.empty(len(area))
     kernels.match_links(indptr, indices, image, area, matched)
-    lost = area[matched == 0.0]
-    if len(lost) and lost.max() > 1e-7 * spacing**2:
-        raise RuntimeError(f"laguerre: a facet of {lost.max():.2e} m2 is seen by one of its two cells only")
     keep = matched > 0.0
-    indptr = _pointers(row_numbers(indptr)[keep], len(number))
-    links = (indptr, indices[keep], image[keep], matched[keep], distance[keep])
-    return Facets(*links, *walls, volumes), side
+    if keep.all():
+        return indptr, indices, image, matched, distance
+    lost = area[~keep].max()
+    if lost > 1e-7 * spacing**2:
+        raise RuntimeError(f"laguerre: a facet of {lost:.2e} m2 is seen by one of its two cells only")
+    indptr = np.concatenate([[0], np.cumsum(keep)])[indptr]
+    return indptr, indices[keep], image[keep], matched[keep], distance[keep]
 
 
 def _with_normals(facets, side, centers, wall):
@@ -200,7 +219,3 @@ def _with_normals(facets, side, centers, wall):
     if curved.any():
         distance[curved] = round_distances(wall, centers[facets.wall_particle[curved]], normal[curved])
     return facets._replace(wall_distance=distance, wall_normal=normal)
-
-
-def _pointers(rows, n):
-    return np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=n))])

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.packing.base import make_packing
-from demheat.packing.interfaces import SphereSurface, surfaces_of
+from demheat.packing.interfaces import SphereSurface, nearest_gap, surfaces_near, surfaces_of
 
 # In mean radii of the packing. Twins at half a radius make cells centred between the interface and the next layer,
 # which is what the two-point flux needs where the interface is curved; found best of offsets .3 to .95 and spacings 1.2
@@ -33,6 +33,8 @@ THINNING = 0.75
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
 # points need up to 0.77 near their poles.
 COVER = 0.8
+# In mean radii: interfaces farther apart change neither spacings nor offsets.
+REACH = 1.01 * max(SPACING / GAP_SPACING, 4.0 * OFFSET)
 
 
 class _Twins(NamedTuple):
@@ -66,16 +68,17 @@ def conform(packing, scene, *, seed=0):
     surfaces = surfaces_of(scene)
     parts, left_out = [], 0
     for surface in surfaces:
-        points, normals = _pattern(surface, surfaces, radius, rng)
+        others = surfaces_near(surface, surfaces, REACH * radius)
+        points, normals = _pattern(surface, others, radius, rng)
         points = surface.touched(points, normals)
-        offsets = _room(points, normals, surface, surfaces, scene, OFFSET * radius)
+        offsets = _room(points, normals, surface, others, scene, OFFSET * radius)
         fits = offsets >= LEAST_OFFSET * radius
-        left_out += int(np.sum(_gap(points[~fits], normals[~fits], surface, surfaces) < LEAST_SPACING * radius))
+        left_out += int(np.sum(_gap(points[~fits], normals[~fits], surface, others) < LEAST_SPACING * radius))
         parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
     twins = _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True)))
     centers, weights, good = _twin_points(twins, scene, radius)
     twins = _Twins(*(column[good] for column in twins))
-    near = np.min([surface.gap(packing.centers) for surface in surfaces], axis=0)
+    near = nearest_gap(packing.centers, surfaces)
     keep = near > _cleared(packing, twins, radius, near)
     kept = np.minimum(packing.radii**2, near**2 - _margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
@@ -115,7 +118,9 @@ def _spacing(points, normals, surface, surfaces, radius):
 
 def _gap(points, normals, surface, surfaces):
     """Width of the gap to the nearest other interface, or to the mirror image in a wall that faces this one."""
-    gap = np.min([other.gap(points, skip_self=other is surface) for other in surfaces], axis=0)
+    gap = np.full(len(points), np.inf)
+    for other in surfaces:
+        np.minimum(gap, other.gap(points, skip_self=other is surface), out=gap)
     # A wall that cuts the interface, rather than faces it, leaves no gap.
     return np.minimum(gap, 2.0 * _way_to_wall(points, normals, surface.scene, facing=0.9))
 

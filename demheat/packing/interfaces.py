@@ -9,6 +9,11 @@ from scipy.spatial.transform import Rotation
 
 from demheat.scene import Scene, Sphere
 
+# Points that are looked at together: some tens of microseconds of work for each surface that is near.
+BLOCK = 2048
+# Of sums of a few lengths.
+ROUNDING = 1e-12
+
 
 class SphereSurface(NamedTuple):
     """The surface of a spherical inclusion."""
@@ -105,6 +110,43 @@ def surfaces_of(scene):
             if scene.periodic or 0.0 < x < length:
                 planes.add((inclusion.axis, x % length))
     return spheres + [PlaneSurface(axis, x, scene) for axis, x in sorted(planes)]
+
+
+def nearest_gap(points, surfaces):
+    """Distance of points to the nearest of some surfaces, (n,) float array, m.
+
+    Cheap where neighbours in memory are near in space: of each block of points only the surfaces that can be nearest to
+    one of them are looked at, since no distance changes by more than a point moves.
+    """
+    nearest = np.full(len(points), np.inf)
+    if not surfaces or not len(points):
+        return nearest
+    starts = np.arange(0, len(points), BLOCK)
+    low, high = np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts)
+    rough = np.array([surface.gap(0.5 * (low + high)) for surface in surfaces])
+    # Twice half the diagonal of the block, and a little for rounding.
+    spread = 1.0001 * np.linalg.norm(high - low, axis=1)
+    for start, close in zip(starts, (rough <= rough.min(axis=0) + spread).T, strict=True):
+        block = slice(start, start + BLOCK)
+        for k in np.flatnonzero(close):
+            np.minimum(nearest[block], surfaces[k].gap(points[block]), out=nearest[block])
+    return nearest
+
+
+def surfaces_near(surface, surfaces, reach):
+    """Those of some surfaces, itself for its images, that come within a distance of points of a surface."""
+    if not isinstance(surface, SphereSurface):
+        return surfaces
+    found = []
+    for other in surfaces:
+        if other is surface:
+            # Its images: a period away.
+            between = min(surface.scene.size) - surface.radius if surface.scene.periodic else np.inf
+        else:
+            between = other.gap(surface.center[None])[0]
+        if between <= (surface.radius + reach) * (1 + ROUNDING):
+            found.append(other)
+    return found
 
 
 def fibonacci_sphere(count):

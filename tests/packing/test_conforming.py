@@ -7,7 +7,7 @@ from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import laguerre
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
-from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
+from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius, nearest_gap, surfaces_near, surfaces_of
 
 MATRIX, OTHER = Material(1.0), Material(10.0)
 
@@ -134,3 +134,21 @@ def test_inscribed_radius_of_a_cube():
 def test_inscribed_radius_of_many_normals_tends_to_one():
     defects = [1 - inscribed_radius(fibonacci_sphere(n)) for n in (400, 1600)]
     assert_allclose(defects[0] / defects[1], 4.0, rtol=0.02)  # falls with the area of a facet
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_nearest_gap_and_neighbours_leave_nothing_out(periodic):
+    rng = np.random.default_rng(4)
+    balls = [Sphere((0.2, 0.2, 0.3), 0.15, OTHER), Sphere((0.2, 0.2, 0.3), 0.12, MATRIX)]
+    balls += [Sphere((0.7, 0.6, 0.2), 0.12, OTHER), Sphere((0.95, 0.3, 0.75), 0.2, OTHER)]
+    surfaces = surfaces_of(scene(*balls, Layer(2, 0.97, 1.0, OTHER), periodic=periodic))
+    points = rng.random((9000, 3))
+    points = points[np.argsort(points[:, 0])]  # neighbours in memory are near in one direction
+    slow = np.min([surface.gap(points) for surface in surfaces], axis=0)
+    assert np.array_equal(nearest_gap(points, surfaces), slow)
+    for surface in surfaces[:4]:
+        on = surface.center + surface.radius * fibonacci_sphere(2000)
+        near = surfaces_near(surface, surfaces, 0.06)
+        far = [other for other in surfaces if not any(other is one for one in near)]
+        assert len(near) < len(surfaces)
+        assert all(other.gap(on, skip_self=other is surface).min() > 0.06 for other in far)
