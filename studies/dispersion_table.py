@@ -35,7 +35,9 @@ def lines(df):
         rows += _errors(df, fractions, kind, boundary)
     rows += _walls(df, fractions)
     shown = [f"f = {f:g}" for f in fractions]
-    return pd.DataFrame([row for row in rows if any(row.get(name) for name in shown)])
+    return pd.DataFrame([row for row in rows if any(row.get(name) for name in shown)]).fillna(
+        {name: "" for name in shown}
+    )
 
 
 def _line(quantity, of, values, digits=3, **costs):
@@ -92,9 +94,23 @@ def _errors(df, fractions, kind, boundary):
             limits = {f: converged(df, name, fraction=f, **here) for f in fractions}
             values = {f: 100 * (k / exact[f] - 1) if k and exact[f] else None for f, k in limits.items()}
             yield _line(what, f"{LOOK[name][0]}, converged", values)
+    yield _nearest(df, exact, kind, here)
     rows = pick(df, name="multipole", **here)
     left = {row["fraction"]: 100 * row["truncation"] for _, row in rows.iterrows()}
     yield _line(what, "multipoles, by their own estimate", {f: left.get(f) for f in fractions}, **_costs(rows))
+
+
+def _nearest(df, exact, kind, here):
+    """Which converged value is nearest to the witness, and what its finest row cost."""
+    line = {"quantity": f"nearest, {kind}", "of": "converged values; processor seconds of the finest row"}
+    for fraction, right in exact.items():
+        limits = {name: converged(df, name, fraction=fraction, **here) for name in TERMS}
+        off = {name: abs(k / right - 1) for name, k in limits.items() if right and k}
+        if len(off) == len(TERMS):
+            best = min(off, key=off.get)
+            spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()
+            line[f"f = {fraction:g}"] = f"{best}, {spent:.0f} s"
+    return line | dict.fromkeys(COSTS, math.nan)
 
 
 def _ladder(rows):
