@@ -38,7 +38,8 @@ def field_of(scene, packing, facets, network, solution, *, law, stats, mean_flux
 
 def _described(packing):
     provenance = packing.provenance
-    return {"mean_radius": float(packing.radii.mean()), "cached": provenance.get("cached"), "packing": provenance}
+    made = provenance.get("of", provenance)  # a tile's
+    return {"mean_radius": float(packing.radii.mean()), "cached": made.get("cached"), "packing": provenance}
 
 
 def _mean_flux(scene, facets, network, solution, wall_heat, law):

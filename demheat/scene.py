@@ -23,6 +23,8 @@ ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z
 SHARES = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
+# Points whose phases are found together.
+BLOCK = 4096
 
 
 @dataclass(frozen=True)
@@ -142,20 +144,36 @@ class Scene:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         phase = np.zeros(len(points), dtype=np.int32)
-        box = np.array(self.size)
-        for number, inclusion in enumerate(self.inclusions, start=1):
+        spheres = [(k, i) for k, i in enumerate(self.inclusions) if isinstance(i, Sphere)]
+        centers = np.array([sphere.center for _, sphere in spheres]).reshape(-1, 3)
+        radii, away = np.array([sphere.radius for _, sphere in spheres]), np.zeros(len(self.inclusions), dtype=bool)
+        # Of each block of points, near in space where they are near in memory, only spheres that may hold one count.
+        for start in range(0, len(points), BLOCK):
+            block = slice(start, start + BLOCK)
+            low, high = points[block].min(axis=0), points[block].max(axis=0)
+            offsets = self._nearest(0.5 * (low + high) - centers)
+            reach = radii + 0.5001 * np.linalg.norm(high - low)
+            away[[k for k, _ in spheres]] = np.einsum("ij,ij->i", offsets, offsets) > reach**2
+            self._paint(points[block], np.flatnonzero(~away), phase[block])
+        return phase
+
+    def _paint(self, points, which, phase):
+        """Write the phases of points in the inclusions of these numbers, in order."""
+        for number in which:
+            inclusion = self.inclusions[number]
             if isinstance(inclusion, Layer):
                 x = points[:, inclusion.axis]
                 if self.periodic:
-                    x = x % box[inclusion.axis]
+                    x = x % self.size[inclusion.axis]
                 inside = (x >= inclusion.start) & (x <= inclusion.stop)
             else:
-                offsets = points - inclusion.center
-                if self.periodic:
-                    offsets -= box * np.round(offsets / box)
-                inside = inclusion.contains(offsets)
-            phase[inside] = number
-        return phase
+                inside = inclusion.contains(self._nearest(points - inclusion.center))
+            phase[inside] = number + 1
+
+    def _nearest(self, offsets):
+        """Offsets to the nearest periodic image, if there are any."""
+        box = np.array(self.size)
+        return offsets - box * np.round(offsets / box) if self.periodic else offsets
 
     def at(self, time) -> Scene:
         """The same scene with the loads of its walls as they are at a time in seconds."""

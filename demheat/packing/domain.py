@@ -12,6 +12,13 @@ from demheat.scene import ROUND_AXES
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
 ROUNDING = 1e-12
+# Beyond so many particles a packing is tiles of so many at most: a few CPU-seconds to make one of them, instead of
+# 90 for each million.
+UNTILED, TILE, LEAST_TILE = 2_000_000, 250_000, 1000
+# Least distance of a centre to a wall, and depth down to which particles are drawn off it, in mean radii. Found on the
+# centred sphere, 3e4 particles, contrasts 0.01, 5, 100: -.002, -.002, -.006 % in tiles, -.006, -.006, -.016 % relaxed
+# between walls; at (0.5, 4) it is -.004, -.004, -.010 %.
+DRAWN = (1.0, 6.0)
 
 
 def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside") -> Packing:
@@ -110,6 +117,53 @@ def tile(packing: Packing, repeats) -> Packing:
     centers[beyond] = 0.0
     provenance = {"algorithm": "tile", "repeats": counts.tolist(), "number": len(centers), "of": packing.provenance}
     return packing._replace(centers=centers, radii=np.tile(packing.radii, len(cells)), size=size, provenance=provenance)
+
+
+def tile_counts(number, size, tiles=None):
+    """How often a packing of so many particles repeats a smaller one along each axis, (3,) int array.
+
+    Parameters
+    ----------
+    number : int
+    size : (3,) sequence of float, m
+    tiles : int, optional
+        Along the shortest side, and along the others what makes tiles nearest to cubes. By default 1 up to `UNTILED`
+        particles, and beyond as many as leave tiles of `TILE` particles or fewer.
+
+    Raises
+    ------
+    ValueError
+        If `tiles` is not as described, or leaves less than `LEAST_TILE` particles to a tile.
+    """
+    sides = np.array(size, dtype=float)
+    if tiles is None:
+        edge = np.cbrt(sides.prod() * TILE / number) if number > UNTILED else sides.max()
+        return np.ceil(sides / edge - ROUNDING).astype(int)
+    if not isinstance(tiles, int | np.integer) or isinstance(tiles, bool) or tiles < 1:
+        raise ValueError(f"tiles = {tiles!r}: must be an integer >= 1, or None")
+    counts = np.round(tiles * sides / sides.min()).astype(int)
+    if tiles > 1 and number < LEAST_TILE * counts.prod():
+        raise ValueError(f"tiles = {tiles}: leaves less than {LEAST_TILE} of {number} particles to each; must be fewer")
+    return counts
+
+
+def walled(packing: Packing) -> Packing:
+    """The packing with walls in place of its periods, its outer particles drawn off them.
+
+    Coordinates within `DRAWN[1]` mean radii of a face are squeezed towards the inside so that no centre is nearer to it
+    than `DRAWN[0]`: cells at the wall are no slivers. Particles there overlap, and some reach beyond the walls: this
+    serves tessellations, not laws of contacts.
+    """
+    centers, mean = packing.centers.copy(), packing.radii.mean()
+    for k in np.flatnonzero(packing.periodic):
+        least, depth = np.array(DRAWN) * min(mean, 0.5 * packing.size[k] / DRAWN[1])
+        x = centers[:, k]
+        off = np.minimum(x, packing.size[k] - x)
+        moved = np.where(off < depth, least * (1.0 - off / depth), 0.0)
+        x += np.where(2.0 * x < packing.size[k], moved, -moved)
+    return packing._replace(
+        centers=centers, periodic=np.zeros(3, dtype=bool), provenance=packing.provenance | {"walls": "drawn in"}
+    )
 
 
 def _check_box_packing(packing):

@@ -5,6 +5,7 @@ from numpy.testing import assert_allclose
 from demheat import Layer, Material, Scene, Sphere
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import laguerre
+from demheat.packing.base import morton_order
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius, nearest_gap, surfaces_near, surfaces_of
@@ -142,8 +143,8 @@ def test_nearest_gap_and_neighbours_leave_nothing_out(periodic):
     balls = [Sphere((0.2, 0.2, 0.3), 0.15, OTHER), Sphere((0.2, 0.2, 0.3), 0.12, MATRIX)]
     balls += [Sphere((0.7, 0.6, 0.2), 0.12, OTHER), Sphere((0.95, 0.3, 0.75), 0.2, OTHER)]
     surfaces = surfaces_of(scene(*balls, Layer(2, 0.97, 1.0, OTHER), periodic=periodic))
-    points = rng.random((9000, 3))
-    points = points[np.argsort(points[:, 0])]  # neighbours in memory are near in one direction
+    points = rng.random((60_000, 3))
+    points = points[morton_order(points, np.ones(3))]
     slow = np.min([surface.gap(points) for surface in surfaces], axis=0)
     assert np.array_equal(nearest_gap(points, surfaces), slow)
     for surface in surfaces[:4]:
