@@ -25,7 +25,7 @@ NUMBERS = (30_000, 100_000, 300_000, 1_000_000)
 # Longest edges, in edges of the cube.
 SIZES = {"fem": (0.06, 0.03, 0.015), "fem-p1": (0.012,)}
 VOXELS = (64, 128, 256)
-DEGREES = {"gradient": (8, 14), "walls": (6, 8)}
+DEGREES = {"gradient": (8, 14), "walls": (6, 9)}
 PAPER = printed("fig18_fields")
 TIMEOUT = 3600.0
 

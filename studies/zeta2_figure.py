@@ -88,6 +88,9 @@ def _bounds(axis, rows):
     axis.plot(f, off("torquato"), color=RED, marker="o", label="Torquato, own zeta_2")
     axis.plot(f, off("torquato_polynomial"), color=RED, marker="o", mfc="white", ls=":", label="Torquato, polynomial")
     axis.axhline(0.0, color=BLACK, linewidth=1)
+    # Linear up to a tenth of a per cent, then by decades: bounds are off by tens, estimates by hundredths.
+    axis.set_yscale("symlog", linthresh=0.1)
+    axis.yaxis.set_major_formatter("{x:g}")
     axis.set(xlabel="volume fraction f", ylabel="off the multipole conductivity, %")
     axis.set_title("Silica in epoxy (contrast 7.7), one LSA cell each, gap 0.02 D:\nwhat knowing zeta_2 is worth")
     axis.legend(fontsize=8, loc="upper left")
