@@ -29,7 +29,10 @@ def converged(df, name, **where):
     """Extrapolated k over the matrix's of one method on one scene; None if its rows are too few, NaN if one failed."""
     knob, order = TERMS[name]
     needed = len(order) + 1
-    rows = pick(df, name=name, **where).drop_duplicates(knob).sort_values(knob, ascending=knob != "size").tail(needed)
+    rows = pick(df, name=name, **where)
+    if len(rows) < needed:
+        return None
+    rows = rows.drop_duplicates(knob).sort_values(knob, ascending=knob != "size").tail(needed)
     if len(rows) < needed:
         return None
     values = rows["k_ratio"].to_numpy(dtype=float)

@@ -6,7 +6,7 @@ import numpy as np
 
 from references import bounds
 from studies.converged import TERMS, converged
-from studies.dispersion_means import change, interval, of_walls, witness
+from studies.dispersion_means import along_one_axis, change, interval, of_walls, witness
 from studies.dispersion_table import CONTRAST
 from studies.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
 from studies.pick import pick
@@ -117,29 +117,27 @@ def _errors(ax, df):
 def _spreads(ax, df):
     """What changes k: chance, boundaries, the spheres' sizes, and the method."""
     fractions = _fractions(df)
-    chance = {f: interval(df, "periodic", f) for f in fractions}
-    _bar(
-        ax,
-        -0.3,
-        BLACK,
-        "chance: deviation of one cell",
-        {f: 100 * i.deviation / i.mean for f, i in chance.items() if i},
-    )
-    unequal = {f: change(df, f, "unequal") for f in fractions}
-    _bar(ax, -0.1, GREEN, "unequal spheres instead of equal ones", unequal)
-    _bar(ax, 0.1, PINK, "isothermal walls instead of a gradient", {f: of_walls(df, f).mean() for f in fractions})
-    between = {}
-    for f in fractions:
-        k = [converged(df, name, fraction=f, **HERE) for name in TERMS]
-        k = [each for each in k if each]
-        between[f] = 100 * (max(k) - min(k)) / min(k) if len(k) > 1 else None
-    _bar(ax, 0.3, RED, "largest difference of two methods", between)
+    cells = [interval(df, "periodic", f) for f in fractions]
+    groups = {
+        ("chance: deviation of one cell, one axis", BLACK): [along_one_axis(df, f) for f in fractions],
+        ("the same, mean over three axes", GREY): [i and 100 * i.deviation / i.mean for i in cells],
+        ("isothermal walls instead of a gradient", PINK): [of_walls(df, f).mean() for f in fractions],
+        ("unequal spheres instead of equal ones", GREEN): [change(df, f, "unequal") for f in fractions],
+        ("largest difference of two methods, converged", RED): [_between(df, f) for f in fractions],
+    }
+    width = 0.8 / len(groups)
+    for k, ((label, colour), values) in enumerate(groups.items()):
+        heights = np.array([np.nan if v is None else abs(v) for v in values])
+        ax.bar(np.arange(len(fractions)) + (k + 0.5) * width - 0.4, heights, width, color=colour, label=label)
     ax.set(xlabel="volume fraction", ylabel="% of k", yscale="log", title="What changes the result")
     ax.set_xticks(range(len(fractions)), [f"{f:g}" for f in fractions])
-    ax.legend(fontsize=8)
+    top = ax.get_ylim()[1]
+    ax.set_ylim(top=20 * top)  # room for the legend
+    ax.legend(fontsize=8, loc="upper left")
 
 
-def _bar(ax, shift, colour, label, values):
-    places = {f: k for k, f in enumerate(values)}
-    shown = {f: abs(v) for f, v in values.items() if v is not None and v == v}
-    ax.bar([places[f] + shift for f in shown], list(shown.values()), 0.2, color=colour, label=label)
+def _between(df, fraction):
+    """Largest difference of two methods' converged values on the first cell, %; None with fewer than two."""
+    k = [converged(df, name, fraction=fraction, **HERE) for name in TERMS]
+    k = [each for each in k if each]
+    return 100 * (max(k) / min(k) - 1) if len(k) > 1 else None

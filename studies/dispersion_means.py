@@ -47,6 +47,15 @@ def interval(df, kind, fraction, *, name="fft", boundary="gradient"):
     return _interval(cells.to_numpy()) if len(cells) > 1 else None
 
 
+def along_one_axis(df, fraction, *, name="fft"):
+    """Standard deviation of k of one cell along one axis, % of its mean over cells and axes; not-a-number if unknown."""
+    rows = pick(df, name=name, kind="periodic", fraction=fraction, axes="xyz")
+    if not len(rows):
+        return np.nan
+    values = rows[["k_x", "k_y", "k_z"]].to_numpy(dtype=float)
+    return 100 * float(np.std(values, ddof=1) / np.mean(values))
+
+
 def change(df, fraction, kind):
     """Change of that mean from equal periodic cells to another kind, %; None if one is missing."""
     equal, other = (interval(df, each, fraction) for each in ("periodic", kind))

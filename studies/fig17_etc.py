@@ -184,7 +184,7 @@ def table(df):
     """Errors, in % of the multipole value, on one cell of each fraction, along one axis; and k/k_m.
 
     "Converged" is extrapolated from the method's own finest rows. "Chance" is the standard deviation of k between
-    cells (means over three axes), % of k; the mean's 95 % interval is from Student's distribution. Costs
+    cells, of means over three axes or along one, % of k; the mean's 95 % interval is from Student's distribution. Costs
     are those at f = 0.4, the packing from the cache.
     """
     from studies.dispersion_table import lines
