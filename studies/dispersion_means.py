@@ -48,7 +48,7 @@ def interval(df, kind, fraction, *, name="fft", boundary="gradient"):
 
 
 def along_one_axis(df, fraction, *, name="fft"):
-    """Standard deviation of k of one cell along one axis, % of its mean over cells and axes; not-a-number if unknown."""
+    """Standard deviation of k of one cell along one axis, % of the mean; not-a-number if unknown."""
     rows = pick(df, name=name, kind="periodic", fraction=fraction, axes="xyz")
     if not len(rows):
         return np.nan
