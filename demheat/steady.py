@@ -10,10 +10,10 @@ from demheat.network.base import SIDES, Network
 from demheat.steady_multigrid import preconditioner
 
 SOLVERS = ("auto", "cg", "amg")
-# Beyond these sizes multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with the size and with
-# the contrast: found on one and on 83 spheres, 2e4 to 1e6 particles, contrasts 0.01 to 1e6.
-AMG_UNKNOWNS = 300_000
-AMG_UNKNOWNS_WIDE, AMG_CONTRAST = 100_000, 50.0
+# Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
+# Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
+# many or fewer at 1e5.
+AMG_UNKNOWNS = 50_000
 
 
 class Solution(NamedTuple):
@@ -63,7 +63,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         Its load only.
     solver : {"auto", "cg", "amg"}
         Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.steady_multigrid`);
-        "auto" picks by size and contrast.
+        "auto" picks by size.
     tolerance : float
         On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
@@ -83,7 +83,8 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     scene.check_steady()
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
-    chosen = _choose(int(reached.sum()), scene) if solver == "auto" else solver
+    by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
+    chosen = by_size if solver == "auto" else solver
     x, iterations, size = _iterate(system, _start(network, scene, reached), chosen, tolerance, max_iterations)
     if not size <= tolerance:
         raise RuntimeError(
@@ -174,22 +175,16 @@ def _start(network, scene, reached):
     return start
 
 
-def _choose(unknowns, scene):
-    """Multigrid for many unknowns, sooner at a wide contrast, else Jacobi-preconditioned conjugate gradients."""
-    k = scene.conductivities[scene.conductivities > 0]
-    wide = len(k) and k.max() > AMG_CONTRAST * k.min()
-    return "amg" if unknowns > (AMG_UNKNOWNS_WIDE if wide else AMG_UNKNOWNS) else "cg"
-
-
 def _iterate(system, x, solver, tolerance, most):
     """Solve in rounds: the heat that passes, which sets the limit, is known only once the solution nearly is."""
-    total, solve = 0, _multigrid(system) if solver == "amg" else _jacobi(system)
+    total, solve = 0, None
     for _ in range(10):
         r = _residual(system, x)
         norm, passing = np.linalg.norm(r), _passing(system, x)
         size = norm / passing if passing > 0 else float(norm > 0)
         if size <= tolerance or total >= most:
             break
+        solve = solve or (_multigrid(system) if solver == "amg" else _jacobi(system))
         done, x = solve(r, x, 0.9 * tolerance * (passing if passing > 0 else norm), most - total)
         total += done
     return x, total, size
