@@ -49,6 +49,8 @@ def _voro(packing):
 def steady(particles, seed, scene):
     """CPU time of one steady solve by our solver and by plain pyamg on the same matrix, to the same residual.
 
+    The packing is tiles of a smaller one, drawn off the walls; twins at interfaces are not repeated.
+
     Parameters
     ----------
     particles, seed : int
@@ -83,13 +85,19 @@ def steady(particles, seed, scene):
     return row
 
 
+# Particles in a tile of the packing, at most: what the matrix looks like does not depend on it, and a tile is quickly
+# made.
+TILE = 130_000
+
+
 def _network(scene, particles, seed):
     from demheat.network.interface import connect
     from demheat.network.laguerre import laguerre
-    from demheat.packing.cache import relaxed
+    from demheat.packing.cache import tiled
     from demheat.packing.conforming import conform
 
-    packing = relaxed(particles, size=scene.size, periodic=scene.periodic, seed=seed)
+    counts = [math.ceil((particles / TILE) ** (1 / 3))] * 3
+    packing = tiled(particles, counts, size=scene.size, periodic=scene.periodic, seed=seed)
     packing = conform(packing, scene, seed=seed)
     facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
     return connect(facets, packing.centers, packing.size, scene.phase_at(packing.centers), scene.conductivities)
