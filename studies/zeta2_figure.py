@@ -93,7 +93,9 @@ def _bounds(axis, rows):
     axis.yaxis.set_major_formatter("{x:g}")
     axis.set(xlabel="volume fraction f", ylabel="off the multipole conductivity, %")
     axis.set_title("Silica in epoxy (contrast 7.7), one LSA cell each, gap 0.02 D:\nwhat knowing zeta_2 is worth")
-    axis.legend(fontsize=8, loc="upper left")
+    axis.set_ylim(top=2e3)  # room for the legend
+    axis.set_yticks([-10, -1, -0.1, 0, 0.1, 1, 10])
+    axis.legend(fontsize=8, loc="upper left", ncols=2)
 
 
 def _two_point(axis, rows):
