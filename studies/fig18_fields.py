@@ -30,11 +30,18 @@ PAPER = printed("fig18_fields")
 TIMEOUT = 3600.0
 
 
+def finest_number(boundary):
+    """Most particles under a boundary condition: a million in the paper's own box only."""
+    return NUMBERS[-1] if boundary == "walls" else NUMBERS[-2]
+
+
 def _cases():
     yield {"name": "arrangement", "method": "demheat.packing.dispersion"}
     for boundary in BOUNDARIES:
         yield from (silica_epoxy.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
-        yield from (silica_epoxy.case("dem", boundary=boundary, particles=number, seed=0) for number in NUMBERS)
+        for number in NUMBERS:
+            if number <= finest_number(boundary):
+                yield silica_epoxy.case("dem", boundary=boundary, particles=number, seed=0)
         for name, sizes in SIZES.items():
             if name == "fem" or boundary == "walls":
                 yield from (silica_epoxy.case(name, boundary=boundary, size=size * EDGE) for size in sizes)
@@ -111,6 +118,8 @@ def _methods(found):
     ):
         for boundary in BOUNDARIES:
             for size, limits in ((coarse, quick.get(boundary, (None, None))), (fine, (0.1, 1.0))):
+                if name == "dem" and size == fine:
+                    size = finest_number(boundary)
                 rows = pick(found, name=name, boundary=boundary, **{knob: size})
                 text = f"{name.upper()}, {_words(knob, size)}, {boundary}, worst point of Table 3: "
                 yield text + "temperature off the witness, % of the span", _worst(rows, "worst_T"), limits[0]
@@ -129,12 +138,12 @@ def _worst(rows, column):
 def _side_by_side(found):
     """DEM against FEM with no third one between them, each at its finest; what the paper compares."""
     for boundary in BOUNDARIES:
-        dem = pick(found, name="dem", boundary=boundary, particles=NUMBERS[-1])
+        dem = pick(found, name="dem", boundary=boundary, particles=finest_number(boundary))
         fem = pick(found, name="fem", boundary=boundary, size=SIZES["fem"][-1] * EDGE)
         if not len(dem) or not len(fem):
             continue
         dem, fem = dem.iloc[0], fem.iloc[0]
-        text = f"DEM, {NUMBERS[-1]} particles, against FEM, P2, {boundary}, worst point of Table 3: "
+        text = f"DEM, {finest_number(boundary)} particles, against FEM, P2, {boundary}, worst point of Table 3: "
         warm = max(10 * abs(dem[f"T_{letter}"] - fem[f"T_{letter}"]) for letter in "ABCD")
         yield text + "temperature, % of the span", warm, 0.1
         yield text + "flux, % of FEM's", max(100 * abs(dem[f"q_{x}"] / fem[f"q_{x}"] - 1) for x in "ABCD"), 1.0
