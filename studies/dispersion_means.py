@@ -70,8 +70,8 @@ def of_walls(df, fraction):
     Series
     """
     rows = pick(df, name="fft", kind="walled", fraction=fraction, axes="xyz")
-    if not len(rows):
-        return rows["k_ratio"]
+    if rows["boundary"].nunique() < 2:
+        return rows["k_ratio"][:0]
     k = rows.pivot(index="realisation", columns="boundary", values="k_ratio")
     return 100 * (k["walls"] / k["gradient"] - 1)
 

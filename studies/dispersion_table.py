@@ -14,6 +14,7 @@ from studies.silica_epoxy import EPOXY, SILICA
 CONTRAST = SILICA.conductivity / EPOXY.conductivity
 COSTS_AT = 0.4
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
+SHORT = {"dem": "DEM", "fem": "FEM", "fft": "FFT, scalar", "fft-em": "FFT, E.-M."}
 ESTIMATES = {
     "Maxwell (lower bound of Hashin and Shtrikman)": bounds.maxwell,
     "upper bound of Hashin and Shtrikman": lambda *args: bounds.hashin_shtrikman(*args)[1],
@@ -110,7 +111,7 @@ def _nearest(df, exact, kind, here):
         if len(off) == len(TERMS):
             best = min(off, key=off.get)
             spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()
-            line[f"f = {fraction:g}"] = f"{best}, {spent:.0f} s"
+            line[f"f = {fraction:g}"] = f"{SHORT[best]}, {spent:.0f} s"
     return line | dict.fromkeys(COSTS, math.nan)
 
 
