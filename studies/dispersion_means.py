@@ -62,6 +62,12 @@ def change(df, fraction, kind):
     return 100 * (other.mean / equal.mean - 1) if equal and other else None
 
 
+def change_interval(df, fraction, kind):
+    """Half the width of the 95 % interval of that change, %; None if one is missing."""
+    equal, other = (interval(df, each, fraction) for each in ("periodic", kind))
+    return 100 * float(np.hypot(equal.half / equal.mean, other.half / other.mean)) if equal and other else None
+
+
 def of_walls(df, fraction):
     """Isothermal walls less gradient on the same walled spheres, %, of each cell; empty where not solved.
 

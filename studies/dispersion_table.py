@@ -6,7 +6,7 @@ import math
 
 from references import bounds
 from studies.converged import TERMS, converged
-from studies.dispersion_means import along_one_axis, change, interval, of_walls, witness
+from studies.dispersion_means import along_one_axis, change, change_interval, interval, of_walls, witness
 from studies.figures import EDGE, LOOK
 from studies.pick import pick
 from studies.silica_epoxy import EPOXY, SILICA
@@ -58,6 +58,7 @@ def _conductivities(df, fractions):
     yield _line("%", "chance along one axis", {f: along_one_axis(df, f) for f in fractions})
     for kind, name in (("unequal", "unequal spheres less equal ones"), ("walled", "walled cells less periodic ones")):
         yield _line("%", name, {f: change(df, f, kind) for f in fractions})
+        yield _line("%", "95 % interval of that, +-", {f: change_interval(df, f, kind) for f in fractions})
 
 
 def _estimates(df, fractions):
