@@ -86,8 +86,8 @@ def test_errors_are_those_put_in():
 def test_claims_see_these_errors():
     found = {text: (value, limit) for text, value, limit in study.claims(rows())}
     text = "DEM, 1000000 particles, walls, worst point of Table 3: "
-    assert found[text + "temperature off the witness, % of the span"] == (pytest.approx(0.2), 0.1)
-    assert found[text + "flux off the witness, % of the local one"] == (pytest.approx(3.0), 1.0)
+    assert found[text + "temperature off the multipoles, % of the span"] == (pytest.approx(0.2), 0.1)
+    assert found[text + "flux off the multipoles, % of the local one"] == (pytest.approx(3.0), 1.0)
     assert found["Table 3's points lie farther from any interface than, in bands of 0.021 L"][0] == pytest.approx(1.5)
 
 
