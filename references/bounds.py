@@ -199,16 +199,18 @@ def third_order(k_matrix, k_inclusion, fraction, zeta2):
 def torquato(k_matrix, k_inclusion, fraction, zeta2):
     """Third-order estimate for dispersions (Torquato, J. Appl. Phys. 58 (1985) 3790), arguments as `third_order`.
 
+    It rises with zeta2 and meets the upper third-order bound at 1/2, whichever phase conducts better.
+
     Raises
     ------
     ValueError
-        As for all functions here; and where zeta2 is so large, over 1/2, that the estimate passes its pole.
+        As for all functions here; and for zeta2 above 1/2, where the estimate lies above that bound.
     """
     k1, k2, p2, z2 = _pair(k_matrix, k_inclusion, fraction, zeta2)
+    if np.any(z2 > 0.5):
+        raise ValueError(f"zeta2 = {zeta2!r}: must be <= 1/2, beyond which the estimate passes the upper bound")
     beta = _contrast(k1, k2, 2.0)
     third = 2 * (1 - p2) * z2 * beta**2
-    if np.any((1 - p2 * beta - third <= 0) & (p2 < 1)):
-        raise ValueError(f"zeta2 = {zeta2!r}: too large for this contrast and fraction, the estimate diverges")
     return _pure(_dispersed(k1, p2, beta, third), k1, k2, p2)
 
 
@@ -271,7 +273,8 @@ def _contrast(k1, k2, weight):
 
 def _dispersed(k1, p2, beta, third):
     """Maxwell's estimate with a term of third order in the contrast, k1 (1 + 2 p2 beta - t)/(1 - p2 beta - t)."""
-    above, below = 1 + 2 * p2 * beta - third, 1 - p2 * beta - third
+    # Rounding must not pass the pole.
+    above, below = 1 + 2 * p2 * beta - third, np.maximum(1 - p2 * beta - third, 0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
         return np.where(above == 0, 0.0, k1 * above / below)
 

@@ -137,6 +137,16 @@ def test_third_order_is_third_order():
     assert errors[0][0] < 0 < errors[0][1]
 
 
+@pytest.mark.parametrize(("k1", "k2"), [*PAIRS, (1.0, 0.0), (1.0, INF)])
+@pytest.mark.parametrize("p", [0.05, 0.5, 0.9])
+def test_torquato_stays_within_third_order_bounds(k1, k2, p):
+    for z in (0.0, 0.2, 0.5):
+        lower, upper = bounds.third_order(k1, k2, p, z)
+        # Rounding, some 100 times amplified at contrast 1e4.
+        assert lower * (1 - 1e-12) <= bounds.torquato(k1, k2, p, z) <= upper * (1 + 1e-12)
+    assert_allclose(bounds.torquato(k1, k2, p, 0.5), upper, rtol=1e-11)
+
+
 @pytest.mark.parametrize("contrast", [0.0, 0.1, 10.0, INF])
 @pytest.mark.parametrize("kind", ["sc", "fcc"])
 def test_third_order_holds_the_cubic_arrays(kind, contrast):
@@ -180,7 +190,8 @@ def test_percolation_of_bruggeman():
         (lambda: bounds.hashin_shtrikman(1.0, 2.0, 1.1), "fraction = 1.1: must lie in 0 to 1"),
         (lambda: bounds.bruggeman(1.0, 2.0, [0.1, math.nan]), "fraction = "),
         (lambda: bounds.third_order(1.0, 2.0, 0.1, -0.1), "zeta2 = -0.1: must lie in 0 to 1"),
-        (lambda: bounds.torquato(1.0, 1e9, 0.3, 0.9), "zeta2 = 0.9: too large"),
+        (lambda: bounds.torquato(1.0, 10.0, 0.2, 0.9), "zeta2 = 0.9: must be <= 1/2"),
+        (lambda: bounds.torquato(1.0, 0.0, 0.2, [0.1, 0.51]), "zeta2 = .*must be <= 1/2"),
         (lambda: bounds.voigt([1.0, 2.0], [0.5, 0.4]), "fractions = .*must sum to 1"),
         (lambda: bounds.voigt(1.0, 1.0), "must sum to 1 along the last axis"),
         (lambda: bounds.reuss([1.0, -2.0], [0.5, 0.5]), "conductivities = .*must be >= 0"),
