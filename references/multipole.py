@@ -129,7 +129,8 @@ def zeta2(scene, *, order=None):
     scene : Scene
         Periodic, all spheres of one material; its conductivities do not matter.
     order : int, optional
-        Highest degree received, by default one that leaves a relative error of some 1e-12.
+        Highest degree received. By default one that leaves a relative error of some 1e-12, or else an error is raised;
+        one that is given leaves some (a/d)^(2 order), a the largest radius and d its least distance to a centre.
 
     Returns
     -------
@@ -138,20 +139,19 @@ def zeta2(scene, *, order=None):
     Raises
     ------
     ValueError
-        If there is no sphere or not all spheres are of one material.
+        If there is no sphere or not all spheres are of one material, or the order is too high for memory or precision.
     NotImplementedError
         As for `solve`.
+    RuntimeError
+        If the order that the gaps and radii ask for is too high.
     """
-    spheres, _ = _spheres(scene, any_matrix=True)
+    spheres, unit = _spheres(scene, any_matrix=True)
     if len(set(spheres.contrasts.tolist())) != 1:
         raise ValueError(
             f"Scene.inclusions: {len(spheres.radii)} spheres of {len(set(spheres.contrasts.tolist()))} materials; "
             "zeta_2 is defined for one or more spheres of one material"
         )
-    if order is None:
-        ratio = spheres.radii.max() / (spheres.radii.max() + spheres.radii.min() + max(_smallest_gap(spheres), 0.0))
-        order = min(max(4, math.ceil(math.log(ENOUGH) / (2 * math.log(ratio)))), 2 * HIGHEST_ORDER)
-    _check_order(order)
+    order = _zeta2_order(spheres, unit, order)
     table = translation(spheres, order + 1)
     n, m = entries(order)
     weight = np.where(n > 0, 3 * n / (2 * n + 1), 0.0) * np.where(m > 0, 2.0, 1.0) * spheres.radii[:, None]
@@ -163,6 +163,29 @@ def zeta2(scene, *, order=None):
         total += 4 * math.pi / volume * np.sum(weight * received(spheres, table, order, dipoles) ** 2) / 3
     phi = 4 / 3 * math.pi * np.sum(spheres.radii**3) / volume
     return float((total - 3 * phi**3) / (6 * phi * (1 - phi)))
+
+
+def _zeta2_order(spheres, unit, order):
+    """The order that was given, or the one that is enough; refused beyond what memory and numbers hold."""
+    count = len(spheres.radii)
+    # Entries of degree order + 1 for each pair. At 150 square roots of factorials overflow; small spheres add powers.
+    memory = math.sqrt(2 * MOST_BYTES / (16 * (1 + count * (count - 1) / 2))) - 3
+    highest = min(2 * HIGHEST_ORDER, int(memory))
+    if order is not None:
+        _check_order(order)
+        if order > highest:
+            raise ValueError(f"order = {order}: must be <= {highest} for {count} spheres in memory and precision")
+        return order
+    gap = max(_smallest_gap(spheres), 0.0)
+    ratio = spheres.radii.max() / (spheres.radii.max() + spheres.radii.min() + gap)
+    needed = max(4, math.ceil(math.log(ENOUGH) / (2 * math.log(ratio))))
+    if needed > highest:
+        small, large = (unit * radius for radius in (spheres.radii.min(), spheres.radii.max()))
+        raise RuntimeError(
+            f"multipole: smallest gap {gap * unit:.3g} m between {count} spheres of radii {small:.3g} to {large:.3g} m "
+            f"needs order {needed}; {highest} is the highest in memory and precision. Give order=... to accept less"
+        )
+    return needed
 
 
 def _converged(spheres, gradient, order, accuracy, tolerance, threads, unit):

@@ -316,3 +316,28 @@ def test_zeta2_of_two_materials_or_nothing_is_refused():
     for parts in (PARTS, []):
         with pytest.raises(ValueError, match="one material"):
             multipole.zeta2(box(parts=parts))
+
+
+@pytest.mark.parametrize("order", [0, True, 81, 160, 5000])
+def test_zeta2_refuses_orders_beyond_memory_and_numbers(order):
+    with pytest.raises(ValueError, match=f"order = {order}: must be"):
+        multipole.zeta2(gallery.simple_cubic(fraction=0.3), order=order)
+
+
+def test_zeta2_at_its_highest_order():
+    scene = gallery.face_centred(fraction=0.5)
+    assert_allclose(multipole.zeta2(scene, order=80), lattice.zeta2("fcc", 0.5), rtol=1e-10)  # rounding, amplified
+
+
+def test_zeta2_refuses_a_default_order_that_is_too_high(monkeypatch):
+    # A sphere of a twentieth of the radius, nearly touching: (1/1.05)^(2 order) = 1e-15 at order 354.
+    parts = [((0.5, 0.5, 0.5), 0.3, 2.0), ((0.5, 0.5, 0.816), 0.015, 2.0)]
+    with pytest.raises(RuntimeError, match="smallest gap 0.001 m .* needs order .*; 80 is the highest"):
+        multipole.zeta2(box(parts=parts))
+    assert 0 < multipole.zeta2(box(parts=parts), order=20) < 1
+    monkeypatch.setattr(multipole, "MOST_BYTES", 1e4)
+    scene = gallery.face_centred(fraction=0.5)
+    with pytest.raises(RuntimeError, match="between 4 spheres .* is the highest"):
+        multipole.zeta2(scene)
+    with pytest.raises(ValueError, match="order = 20: must be <= 10 for 4 spheres"):  # sqrt(2e4/16/7) - 3
+        multipole.zeta2(scene, order=20)
