@@ -68,6 +68,7 @@ def solve(
     tolerance : float, optional
         Relative error at which the iteration stops.  "cg": of the flux's equilibrium, and of the solution in the
         energy norm, 1e-5 by default.  "eyre-milton": of equilibrium and compatibility together, 1e-6 by default.
+        From the rounding of the precision, 2.2e-16 or 1.2e-7, up; near it nothing may converge.
         The conductivity is then within 1e-6 of the grid's own limit; for that alone 1e-3 suffices with "cg".
     max_iterations : int
 
@@ -88,6 +89,7 @@ def solve(
         If the iteration does not converge.
     """
     _check(scheme, rule, precision, tolerance, max_iterations)
+    threads = thread_count(threads)
     _check_load(scene)
     order = (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
     box = _turned(scene, order)
@@ -99,7 +101,7 @@ def solve(
     slope, level = _linear_part(box)
     steep = float(np.linalg.norm(slope))
     units = _Units(max(box.size), float(grid.conductivity[grid.fractions > 0].max()) or 1.0, steep)
-    with Team(_thread_count(threads)) as team:
+    with Team(threads) as team:
         problem = Problem(
             voxels=_scaled(grid, units),
             links=_scaled_links(links(box, shape, phase=grid.phase), units) if rule == "links" else None,
@@ -132,16 +134,20 @@ def _check(scheme, rule, precision, tolerance, max_iterations):
         raise ValueError(f"rule = {rule!r}: must be one of {', '.join(RULES[scheme])} for scheme {scheme!r}")
     if precision not in PRECISIONS:
         raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
-    if tolerance is not None and not (isinstance(tolerance, Real) and 0 < tolerance < 1):
-        raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
-    if not isinstance(max_iterations, Integral) or max_iterations < 1:
+    least = float(np.finfo(PRECISIONS[precision]).eps)
+    if tolerance is not None and not (isinstance(tolerance, Real) and least <= tolerance < 1):
+        raise ValueError(
+            f"tolerance = {tolerance!r}: must be a number from {least:.2g}, the rounding of {precision}, to below 1"
+        )
+    if not isinstance(max_iterations, Integral) or isinstance(max_iterations, bool) or max_iterations < 1:
         raise ValueError(f"max_iterations = {max_iterations!r}: must be a whole number >= 1")
 
 
-def _thread_count(threads):
+def thread_count(threads):
+    """Number of threads, one per processor for None, or a ValueError."""
     if threads is None:
         return os.cpu_count() or 1
-    if not isinstance(threads, Integral) or threads < 1:
+    if not isinstance(threads, Integral) or isinstance(threads, bool) or threads < 1:
         raise ValueError(f"threads = {threads!r}: must be a whole number >= 1, or None for one per processor")
     return int(threads)
 
@@ -166,7 +172,7 @@ def _check_scheme(box, scheme, rule, shape):
         )
     if pores and rule == "links":
         raise NotImplementedError("a conductivity is 0: links have a harmonic mean; use rule 'plain'")
-    if scheme == "cg" and rule != "links" and not box.periodic and shape[0] < 2:
+    if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
 
 

@@ -11,6 +11,8 @@ v (1 - v)^2. Frequencies are those of the rotated scheme of Willot, C. R. Mecani
 
 from __future__ import annotations
 
+import math
+import warnings
 from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
@@ -18,6 +20,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Material, Scene
+from references.fft import thread_count
 from references.fft_transforms import fourier
 from references.voxels import Voxels, grid_shape, voxelise
 
@@ -26,6 +29,8 @@ from references.voxels import Voxels, grid_shape, voxelise
 POWERS = (0, 1, 3)
 # Coarsest grid of an extrapolation.
 FEWEST = 8
+# Of zeta_2, amplified from that of sums over the voxels.
+ROUNDING = 1e-12
 # The tangent at the Nyquist frequency: infinite, as far as its square can be told from 1 in floating point.
 NYQUIST = 1e9
 
@@ -40,9 +45,9 @@ class Zeta2(NamedTuple):
     fraction : float
         Volume fraction of the inclusions on the finest grid.
     stats : dict
-        `voxels` (shapes, finest last), `values` and `fractions` on each; `error`, None from one grid, else the part
-        that the term in h^3 had in the extrapolation (true errors found: 0.03 to 1.4 times that); `amplification`, the
-        relative error of zeta_2 over that of a_3.
+        `raw`, the value before it is held within 0 to 1; `voxels` (shapes, finest last), `values` and `fractions` on
+        each; `error`, None from one grid, else the part that the term in h^3 had in the extrapolation (true errors
+        found: 0.03 to 1.4 times that); `amplification`, the relative error of zeta_2 over that of a_3.
     """
 
     value: float
@@ -63,11 +68,17 @@ def zeta2(scene: Scene, *, voxels=128, extrapolate=True, threads=2) -> Zeta2:
     extrapolate : bool
         Take grids of a quarter, half and all of the voxels along each side, and extrapolate to voxels of no size.
         Random spheres 20 voxels across on the finest grid then leave some 2 %, 40 across some 0.2 %.
-    threads : int
+    threads : int or None
+        None takes one per processor.
 
     Returns
     -------
     Zeta2
+
+    Warns
+    -----
+    UserWarning
+        If so few voxels leave a value outside 0 to 1, which is then held there; `stats["raw"]` keeps it.
 
     Raises
     ------
@@ -76,14 +87,24 @@ def zeta2(scene: Scene, *, voxels=128, extrapolate=True, threads=2) -> Zeta2:
     NotImplementedError
         For a box with walls.
     """
+    threads = thread_count(threads)
     cell = _two_phases(scene)
     shapes = _shapes(scene, voxels, extrapolate)
     found = [_on_grid(voxelise(cell, shape, laminate=True), threads) for shape in shapes]
     values, fractions = (list(column) for column in zip(*found, strict=True))
     value, error = _extrapolated(values, shapes) if extrapolate else (values[-1], None)
-    stats = {"voxels": shapes, "values": values, "fractions": fractions, "error": error}
-    stats["amplification"] = (1 - fractions[-1] + 2 * value) / (2 * value)
+    stats = {"voxels": shapes, "values": values, "fractions": fractions, "error": error, "raw": value}
+    value = _held(value, shapes[-1])
+    stats["amplification"] = (1 - fractions[-1] + 2 * value) / (2 * value) if value > 0 else math.inf
     return Zeta2(value, fractions[-1], stats)
+
+
+def _held(raw, shape):
+    """The value within 0 to 1, with a warning if it had to be moved by more than rounding."""
+    value = min(max(raw, 0.0), 1.0)
+    if abs(raw - value) > ROUNDING:
+        warnings.warn(f"zeta_2 = {raw:.3g} on {shape} voxels is held at {value:g}: use more voxels", stacklevel=3)
+    return value
 
 
 def _two_phases(scene):

@@ -173,3 +173,21 @@ def test_the_nyquist_frequency_has_no_sign():
     assert values[3] == 0.0 and squares[3] > 1e15
     assert_allclose(values[[1, 2]], 2 * np.tan(np.pi * np.array([1, 2]) / 6), rtol=1e-15)
     assert_allclose(np.delete(squares, 3), np.delete(values, 3) ** 2, rtol=1e-14)
+
+
+def test_what_too_few_voxels_leave_is_held_and_said():
+    scene = cell([((0.5, 0.5, 0.5), 0.3)])
+    with pytest.warns(UserWarning, match=r"zeta_2 = -0.00.* held at 0: use more voxels"):
+        found = zeta2(scene, voxels=32)
+    assert found.value == 0.0 and found.stats["raw"] < -1e-3 and found.stats["amplification"] == np.inf
+
+
+@pytest.mark.parametrize("threads", [0, "x", True, 1.5])
+def test_bad_threads(threads):
+    with pytest.raises(ValueError, match=f"threads = {threads!r}: must be a whole number >= 1, or None"):
+        zeta2(cell(UNEQUAL), voxels=32, threads=threads)
+
+
+def test_threads_of_every_processor():
+    one, every = (zeta2(cell(UNEQUAL), voxels=12, extrapolate=False, threads=t).value for t in (1, None))
+    assert_allclose(every, one, rtol=1e-11)  # rounding, amplified; plans may sum in another order
