@@ -36,9 +36,7 @@ def extrapolate(values, sizes, order=None) -> float:
         not approach a limit.
     """
     values, sizes = _checked(values, sizes)
-    powers = [observed_order(values, sizes)] if order is None else np.atleast_1d(order).astype(float).tolist()
-    if not powers or min(powers) <= 0 or len(set(powers)) < len(powers):
-        raise ValueError(f"order = {order!r}: must be exponents > 0, all different")
+    powers = [observed_order(values, sizes)] if order is None else _powers(order)
     if len(values) <= len(powers):
         raise ValueError(f"values: {len(values)} given; {len(powers)} exponents need at least {len(powers) + 1}")
     h = sizes / sizes.max()
@@ -72,6 +70,18 @@ def observed_order(values, sizes) -> float:
             "approach a limit from one side, by less and less"
         )
     return float(brentq(excess, LOWEST, HIGHEST, xtol=1e-12))
+
+
+def _powers(order):
+    """Exponents as a list of floats."""
+    try:
+        powers = np.atleast_1d(order)
+    except ValueError:
+        powers = np.empty(0)
+    good = powers.ndim == 1 and powers.size > 0 and powers.dtype.kind in "iuf"
+    if not good or not np.all(np.isfinite(powers) & (powers > 0)) or len(np.unique(powers)) < len(powers):
+        raise ValueError(f"order = {order!r}: must be finite exponents > 0, all different")
+    return powers.astype(float).tolist()
 
 
 def _checked(values, sizes):

@@ -45,6 +45,12 @@ def test_more_values_than_terms_are_fitted():
         ([1.0, 2.0], [1.0, 1.0], 1, "sizes = "),
         ([1.0, 2.0], [1.0, 0.5], (1, 2), "2 exponents need at least 3"),
         ([1.0, 2.0], [1.0, 0.5], 0, "order = 0"),
+        ([1.0, 2.0], [1.0, 0.5], np.nan, "order = nan: must be"),
+        ([1.0, 2.0], [1.0, 0.5], np.inf, "order = inf: must be"),
+        ([1.0, 2.0], [1.0, 0.5], True, "order = True: must be"),
+        ([1.0, 2.0], [1.0, 0.5], "x", "order = 'x': must be"),
+        ([1.0, 2.0, 3.0], [1.0, 0.5, 0.2], [[1, 2]], "order = .*must be"),
+        ([1.0, 2.0, 3.0], [1.0, 0.5, 0.2], [[1], [1, 2]], "order = .*must be"),
         ([1.0, 2.0, 3.0], [1.0, 0.5, 0.2], (1, 1), r"order = \(1, 1\)"),
         ([1.0, 2.0], [1.0, 0.5], None, "exactly 3"),
         # From both sides of a limit; with no limit, differences growing; not changing at all.
