@@ -31,6 +31,31 @@ def test_bad_tiles(tiles):
         demheat.solve(scene, particles=10_000, tiles=tiles)
 
 
+@pytest.mark.parametrize(
+    ("number", "size", "match"),
+    [
+        (-5, (1, 1, 1), "number = -5: must be"),
+        (0, (1, 1, 1), "number = 0: must be"),
+        (1.5, (1, 1, 1), "number = 1.5: must be"),
+        (True, (1, 1, 1), "number = True: must be"),
+        (5000, (1, 1), "size = .*must be three"),
+        (5000, (1, 1, -1), "size = .*must be three"),
+        (5000, (1, 1, np.nan), "size = .*must be three"),
+    ],
+)
+@pytest.mark.parametrize("tiles", [None, 1])
+def test_bad_counts(number, size, tiles, match):
+    with pytest.raises(ValueError, match=match):
+        tile_counts(number, size, tiles)
+
+
+def test_too_many_tiles_are_named():
+    with pytest.raises(ValueError, match="tiles = 2: makes 2 x 4 x 2 tiles .* need 16000 .* fewer for 10000"):
+        tile_counts(10_000, (1, 2, 1), 2)
+    with pytest.raises(ValueError, match="tiles = 1000000000000: makes"):
+        tile_counts(10_000, (1, 2, 1), 10**12)
+
+
 def test_what_tiles_are_not_for():
     walls = Scene(size=(1, 1, 1), matrix=Material(1.0), walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
     with pytest.raises(NotImplementedError, match="only in boxes by 'laguerre'"):

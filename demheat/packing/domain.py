@@ -133,18 +133,25 @@ def tile_counts(number, size, tiles=None):
     Raises
     ------
     ValueError
-        If `tiles` is not as described, or leaves less than `LEAST_TILE` particles to a tile.
+        If an argument is not as described, or `tiles` leaves less than `LEAST_TILE` particles to a tile.
     """
-    sides = np.array(size, dtype=float)
+    if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
+        raise ValueError(f"number = {number!r}: must be an integer >= 1")
+    sides, _ = check_box(size, True)
     if tiles is None:
         edge = np.cbrt(sides.prod() * TILE / number) if number > UNTILED else sides.max()
         return np.ceil(sides / edge - ROUNDING).astype(int)
     if not isinstance(tiles, int | np.integer) or isinstance(tiles, bool) or tiles < 1:
         raise ValueError(f"tiles = {tiles!r}: must be an integer >= 1, or None")
-    counts = np.round(tiles * sides / sides.min()).astype(int)
-    if tiles > 1 and number < LEAST_TILE * counts.prod():
-        raise ValueError(f"tiles = {tiles}: leaves less than {LEAST_TILE} of {number} particles to each; must be fewer")
-    return counts
+    counts = np.round(tiles * sides / sides.min())
+    needed = LEAST_TILE * counts.prod()
+    if tiles > 1 and number < needed:
+        made = " x ".join(f"{count:.0f}" for count in counts)
+        raise ValueError(
+            f"tiles = {tiles}: makes {made} tiles of at least {LEAST_TILE} particles, which need {needed:.0f} of them; "
+            f"must be fewer for {number}"
+        )
+    return counts.astype(int)
 
 
 def walled(packing: Packing) -> Packing:
