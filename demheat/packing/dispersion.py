@@ -8,6 +8,7 @@ the gap is added to every radius, and taken off every wall, while the spheres ar
 from __future__ import annotations
 
 import math
+import os
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.cache import LSA, cached, code_hash
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
-from demheat.parts import finite
+from demheat.parts import axis_number, finite, vector
 from demheat.scene import Scene, Sphere
 
 METHODS = ("lsa", "rsa")
@@ -29,6 +30,10 @@ GROWTH = 0.002
 MOST_FILLED = {"lsa": 0.63, "rsa": 0.35}
 MOST_ADDED = 0.3
 BATCH, TRIALS = 256, 200_000
+# A scene compares all pairs of its spheres, and random addition does too: more take hours.
+MOST_SPHERES = 100_000
+# Sides over the largest radius with its gap that `lsa` needs: spheres must not meet both ways round a period.
+LEAST_SIDES = {True: 4.2, False: 2.0}
 
 
 def dispersion(
@@ -51,7 +56,8 @@ def dispersion(
     Parameters
     ----------
     number : int, optional
-        Of spheres; by default as many as make the shortest side nearest to `ratio` D.
+        Of spheres, at most 100 000; 2 or more by "lsa". By default as many as make the shortest side nearest to
+        `ratio` D.
     fraction : float
         Volume fraction, met to rounding; at most 0.3 by "rsa", which between walls jams below that (6 diameters: some
         0.27).
@@ -82,8 +88,8 @@ def dispersion(
     RuntimeError
         If no room is found for a sphere.
     """
-    sides, radii = _check(number, fraction, ratio, size, gap, radii, periodic, method, seed)
-    number = int(number) if number is not None else _count(fraction, RATIO if ratio is None else ratio, sides)
+    sides, radii = _check(number, fraction, ratio, size, gap, radii, periodic, method, seed, folder)
+    number = _checked_number(number, fraction, RATIO if ratio is None else ratio, sides)
     longest = float(sides.max())
     # 12 digits: sides such as 0.1 and 0.3 are rounded already, and so are their ratios.
     shape = np.round(sides / longest, 12)
@@ -91,6 +97,8 @@ def dispersion(
     drawn = _filling(fraction, drawn, shape)
     room = gap * _mean_diameter(drawn)
     _check_room(drawn, room, shape, periodic, method)
+    if method == "lsa":
+        _check_few(drawn, room, shape, periodic, fraction, gap)
     key = {"algorithm": "dispersion", "code": code_hash(*LSA, __name__), "radii": repr(radii), "shape": shape.tolist()}
     key |= {"number": number, "fraction": fraction, "gap": gap, "periodic": periodic, "method": method, "seed": seed}
     unit = cached(lambda: _placed(drawn, room, shape, periodic, method, seed), key, folder=folder)
@@ -122,30 +130,44 @@ def dispersion_scene(
         the same spheres are seen under either.
     axis : {0, 1, 2}
     temperatures : (2,) sequence of float
-        Of the low and the high wall of the axis.
+        Of the low and the high wall of the axis, different.
 
     Raises
     ------
     ValueError
-        As `dispersion`; and if walls are asked for a periodic dispersion, whose spheres cross the faces.
+        As `dispersion`; if the axis or the temperatures are not as described; and if walls are asked for
+        a periodic dispersion, whose spheres cross the faces.
     """
     load = ("gradient" if periodic else "walls") if load is None else load
     if load not in ("gradient", "walls"):
         raise ValueError(f"load = {load!r}: must be 'gradient' or 'walls'")
     if load == "walls" and periodic:
         raise ValueError("load = 'walls' with periodic = True: spheres cross the faces; must be periodic = False")
-    if axis not in (0, 1, 2):
-        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
+    axis = axis_number(axis)
+    low, high = vector("temperatures", temperatures, length=2)
+    if low == high:
+        raise ValueError(f"temperatures = {temperatures!r}: must be two different ones, or there is no load")
     centers, radii = dispersion(number, size=size, periodic=periodic, **knobs)
     spheres = [Sphere(center, radius, inclusion) for center, radius in zip(centers, radii, strict=True)]
-    low, high = temperatures
     if load == "walls":
         return Scene(size, matrix, spheres, walls={"xyz"[axis] + "-": low, "xyz"[axis] + "+": high})
     return Scene(size, matrix, spheres, gradient=(high - low) / size[axis] * np.eye(3)[axis])
 
 
-def _count(fraction, ratio, sides):
-    """Number of spheres at least 1 and nearest to that of the ratio of the shortest side to their diameter."""
+def _checked_number(number, fraction, ratio, sides):
+    """Number of spheres; if none is given at least 1 and nearest to that of the ratio of shortest side to diameter."""
+    if number is not None:
+        if number > MOST_SPHERES:
+            raise ValueError(f"number = {number}: must be <= {MOST_SPHERES}; more would take hours")
+        return int(number)
+    with np.errstate(over="ignore"):
+        share = np.prod((float(sides.min()) / ratio) / sides) * math.pi / 6
+        wanted = fraction / share if share > 0 else math.inf
+    if wanted > MOST_SPHERES:
+        raise ValueError(
+            f"ratio = {ratio!r} at fraction = {fraction!r} in size = {sides.tolist()}: makes {wanted:.3g} spheres; "
+            f"must be <= {MOST_SPHERES}, more would take hours. Use a smaller ratio"
+        )
     diameter = float(sides.min()) / ratio
     return max(1, round(6 * fraction * float(np.prod(sides)) / (math.pi * diameter**3)))
 
@@ -200,7 +222,7 @@ def _added(radii, sides, periodic, rng):
     return centers, radii
 
 
-def _check(number, fraction, ratio, size, gap, radii, periodic, method, seed):
+def _check(number, fraction, ratio, size, gap, radii, periodic, method, seed, folder):
     """Sides of the box and the distribution of radii, all arguments checked."""
     if method not in METHODS:
         raise ValueError(f"method = {method!r}: must be one of {', '.join(METHODS)}")
@@ -212,6 +234,8 @@ def _check(number, fraction, ratio, size, gap, radii, periodic, method, seed):
             raise ValueError(f"{name} = {value!r}: must be an integer >= {least}")
     if not isinstance(periodic, bool | np.bool_):
         raise ValueError(f"periodic = {periodic!r}: must be True or False")
+    if folder is not None and not isinstance(folder, str | os.PathLike):
+        raise ValueError(f"folder = {folder!r}: must be a path, or None")
     finite("fraction", fraction, "> 0 and < 1", lambda v: 0 < v < 1)
     finite("gap", gap, "a finite number >= 0, in diameters", lambda v: v >= 0)
     if ratio is not None:
@@ -219,6 +243,21 @@ def _check(number, fraction, ratio, size, gap, radii, periodic, method, seed):
     if method == "rsa" and fraction > MOST_ADDED:
         raise ValueError(f"fraction = {fraction!r}: must be <= {MOST_ADDED} by 'rsa'; 'lsa' can do more")
     return check_box(size, periodic)[0], Gaussian(spread=0.0) if radii is None else distribution(radii)
+
+
+def _check_few(radii, room, sides, periodic, fraction, gap):
+    """Raise ValueError if the spheres are too few for `lsa`."""
+    what = "use more spheres, a smaller fraction, or method='rsa'"
+    if len(radii) < 2:
+        raise ValueError(f"number = {len(radii)}: must be an integer >= 2 by 'lsa', where spheres collide; {what}")
+    largest, inner = float(radii.max()) + room / 2, sides if periodic else sides - room
+    least = LEAST_SIDES[bool(periodic)] * largest
+    if inner.min() < least:
+        raise ValueError(
+            f"number = {len(radii)}, fraction = {fraction!r}, gap = {gap!r}: by 'lsa' the shortest side must be >= "
+            f"{least / (2 * largest):.3g} diameters of the largest sphere with its gap, not "
+            f"{inner.min() / (2 * largest):.3g}; {what}"
+        )
 
 
 def _check_room(radii, room, sides, periodic, method):

@@ -178,14 +178,43 @@ def test_the_same_spheres_under_both_loads():
         ({"radii": "equal"}, "radii = 'equal': must be a distribution"),
         ({"radii": [1.0, 2.0]}, "2 radii for 83 particles"),
         ({"number": 1, "fraction": 0.6, "gap": 0.0, "method": "lsa", "periodic": False}, "must fit"),
-        ({"number": 1}, "number = 1: must be an integer >= 2"),
-        ({"number": 2, "fraction": 0.5, "gap": 0.0}, "side 0 must be >="),
+        ({"number": 1}, "number = 1: must be an integer >= 2 by 'lsa', .*method='rsa'"),
+        ({"number": 2}, "number = 2, fraction = 0.2, gap = 0.02: .*more spheres, a smaller fraction, or method='rsa'"),
+        ({"number": 3}, "number = 3, fraction = 0.2, gap = 0.02: .*must be >= 2.1 diameters"),
+        ({"number": 2, "fraction": 0.5, "gap": 0.0}, "number = 2, fraction = 0.5, gap = 0.0: "),
+        ({"number": 100_001}, "number = 100001: must be <= 100000"),
+        ({"number": 10**30}, "number = 1000000.*: must be <= 100000"),
+        ({"ratio": 1e6}, r"ratio = 1000000.0 at fraction = 0.2 .*: makes 3.82e\+17 spheres; must be <= 100000"),
+        ({"ratio": 1e300}, "makes inf spheres; must be <= 100000"),
+        ({"size": (1, 1, 1e-4)}, "ratio = 6.0 at .*; must be <= 100000"),
     ],
 )
 def test_bad_arguments(knobs, match, tmp_path):
     with pytest.raises(ValueError, match=match):
         dispersion(folder=tmp_path, **knobs)
     assert not list(tmp_path.iterdir())
+
+
+def test_few_spheres_that_fit():
+    # Just above what is refused: 3 spheres by either method, and 1 by the one that makes no collisions.
+    assert len(dispersion(3, fraction=0.1)[1]) == len(dispersion(3, fraction=0.2, method="rsa")[1]) == 3
+    assert len(dispersion(1, fraction=0.2, method="rsa")[1]) == 1
+
+
+def test_bad_folder():
+    with pytest.raises(ValueError, match="folder = 3: must be a path"):
+        dispersion(folder=3)
+
+
+@pytest.mark.parametrize(
+    ("knobs", "match"),
+    [({"axis": a}, f"axis = {a}: must be") for a in (1.0, True, 3)]
+    + [({"temperatures": t}, "temperatures = ") for t in (1, ("a", 1), (1.0, 1.0), (1.0, np.nan), (1, 2, 3))],
+)
+def test_bad_loads_are_refused_before_spheres_are_placed(knobs, match, monkeypatch):
+    monkeypatch.setattr(module, "dispersion", None)
+    with pytest.raises(ValueError, match=match):
+        dispersion_scene(matrix=EPOXY, inclusion=SILICA, **knobs)
 
 
 def test_bad_scenes():
