@@ -69,8 +69,8 @@ def run(name, gap=None, highest=None, *, method, **knobs):
         return silica_epoxy.solved(made, method=method, **knobs)[1]
 
 
-def warm_up(name, gap=None, highest=None, *, method, **knobs):
-    """Make the dispersion, load and compile."""
+def warm_up(name, gap=None, highest=None, tiles=None, *, method, **knobs):
+    """Make the dispersion, load and compile; what is solved for that is between walls and needs no tiles."""
     _scene(gap)
     silica_epoxy.warm_up(method, **knobs)
 
