@@ -37,6 +37,8 @@ def bounds_of(df, row):
     """Third-order bounds with the zeta_2 of the very cell and the method's own volume fraction, over the matrix's k."""
     rows = pick(df, name="zeta2", fraction=row["fraction"], realisation=row["realisation"])
     zeta2 = float(rows["zeta2"].iloc[0]) if len(rows) else np.nan
+    if np.isnan(row["inclusion"]):  # a failed row: the claim that needs it fails
+        return np.nan, np.nan
     low, high = bounds.third_order(1.0, SILICA.conductivity / EPOXY.conductivity, row["inclusion"], zeta2)
     return float(low), float(high)
 

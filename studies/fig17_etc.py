@@ -27,7 +27,12 @@ LADDER = {
     "fft": ("voxels", (64, 128, 256)),
     "fft-em": ("voxels", (64, 128, 256)),
 }
-WALLED = (0.2, 0.4)  # fractions at which the boundary conditions are compared, and finite elements see all axes
+WALLED = (
+    0.2,
+    0.4,
+)  # fractions at which the boundary conditions are compared; at the first, finite elements see all axes
+# At L/24, and at the three sizes tried instead, gmsh divides opposite faces of this cell unlike each other: refused.
+UNMESHED = ("fem", "periodic", 0.4)
 WITNESS = {"method": "references.multipole"}
 # Accuracy of the multipoles in the means: a tenth of the least interval of a mean.
 ENOUGH = 1e-4
@@ -47,6 +52,8 @@ def _case(name, kind, boundary, fraction, realisation, axes="y", **knobs):
 def _ladder(kind, boundary, fraction):
     """All methods at all their resolutions; what is extrapolated needs no coarser ones between walls."""
     for name, (knob, sizes) in LADDER.items():
+        if (name, kind, fraction) == UNMESHED:
+            sizes = sizes[1:]
         sizes = sizes if kind == "periodic" else sizes[-len(TERMS[name][1]) - 1 :] if name in TERMS else sizes
         yield from (_case(name, kind, boundary, fraction, 0, **{knob: size}) for size in sizes)
     if boundary == "gradient":
@@ -62,7 +69,7 @@ def _means(fraction):
         yield _case("fft", *here, realisation, "xyz", voxels=128)
     yield _case("dem", *here, 0, "xyz", particles=100_000)
     yield _case("fft-em", *here, 0, "xyz", voxels=128)
-    if fraction in WALLED:
+    if fraction == WALLED[0]:
         yield _case("fem", *here, 0, "xyz", size=1 / 24)
 
 
