@@ -111,7 +111,8 @@ def _errors(ax, df):
             )
     ax.set(xlabel="volume fraction", ylabel="|error|, % of the multipole value", yscale="log")
     ax.set_title("One cell, all methods on the same spheres")
-    ax.legend(fontsize=7)
+    ax.set_ylim(top=30 * ax.get_ylim()[1])  # room for the legend
+    ax.legend(fontsize=7, loc="upper left")
 
 
 def _spreads(ax, df):
