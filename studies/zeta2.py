@@ -164,7 +164,11 @@ def _bounds(df):
     # Found at degree 10: 1e-4 at f = 0.5, with surfaces 0.02 D apart.
     yield text + "truncation left, relative", rows["truncation"].max(skipna=False), 3e-4
     width = (rows["hs_upper"] - rows["hs_lower"]) / (rows["upper"] - rows["lower"])
-    yield "Hashin and Shtrikman's bounds over the third-order ones: least ratio of widths", width.min(skipna=False), ">= 2"
+    yield (
+        "Hashin and Shtrikman's bounds over the third-order ones: least ratio of widths",
+        width.min(skipna=False),
+        ">= 2",
+    )
     off = 100 * (rows["torquato"] / k - 1).abs().max(skipna=False)
     yield text + "Torquato's estimate with the cell's own zeta_2 is off by at most, %", off, 1.0
 
