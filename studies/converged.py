@@ -17,6 +17,7 @@ TERMS = {
     "fft": ("voxels", (1.0, 2.0)),
     "fft-em": ("voxels", (1.0, 2.0)),
 }
+TITLES = {"dem": "DEM", "fem": "FEM", "fft": "FFT, scalar", "fft-em": "FFT, Eyre-Milton"}
 
 
 def spacing(rows, knob):

@@ -6,8 +6,7 @@ import numpy as np
 
 from references import bounds
 from studies.converged import TERMS, converged
-from studies.dispersion_means import along_one_axis, change, interval, of_walls, witness
-from studies.dispersion_table import CONTRAST
+from studies.dispersion_means import CONTRAST, along_one_axis, change, interval, of_walls, witness
 from studies.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
 from studies.pick import pick
 

@@ -2,24 +2,14 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
+from demheat.gallery import EPOXY, SILICA
 from references import bounds
-from studies.pick import pick
-from studies.silica_epoxy import EPOXY, SILICA
+from studies.converged import converged
+from studies.pick import pick, student
 
-CONFIDENCE = 0.95
-
-
-class Interval(NamedTuple):
-    """Mean of so many realisations, half the width of its confidence interval, and their standard deviation."""
-
-    mean: float
-    half: float
-    deviation: float
-    number: int
+CONTRAST = SILICA.conductivity / EPOXY.conductivity
 
 
 def witness(df, kind, fraction):
@@ -39,19 +29,19 @@ def bounds_of(df, row):
     zeta2 = float(rows["zeta2"].iloc[0]) if len(rows) else np.nan
     if np.isnan(row["inclusion"]):  # a failed row: the claim that needs it fails
         return np.nan, np.nan
-    low, high = bounds.third_order(1.0, SILICA.conductivity / EPOXY.conductivity, row["inclusion"], zeta2)
+    low, high = bounds.third_order(1.0, CONTRAST, row["inclusion"], zeta2)
     return float(low), float(high)
 
 
-def interval(df, kind, fraction, *, name="fft", boundary="gradient"):
+def interval(df, kind, fraction, *, name="fft"):
     """Interval of the mean over cells of one method's means over three axes; None if there are not two or more."""
-    cells = pick(df, name=name, kind=kind, boundary=boundary, fraction=fraction, axes="xyz")["k_ratio"]
-    return _interval(cells.to_numpy()) if len(cells) > 1 else None
+    cells = pick(df, name=name, kind=kind, boundary="gradient", fraction=fraction, axes="xyz")["k_ratio"]
+    return student(cells.to_numpy()) if len(cells) > 1 else None
 
 
-def along_one_axis(df, fraction, *, name="fft"):
-    """Standard deviation of k of one cell along one axis, % of the mean; not-a-number if unknown."""
-    rows = pick(df, name=name, kind="periodic", fraction=fraction, axes="xyz")
+def along_one_axis(df, fraction):
+    """Standard deviation of k of one cell along one axis, FFT, % of the mean; not-a-number if unknown."""
+    rows = pick(df, name="fft", kind="periodic", fraction=fraction, axes="xyz")
     if not len(rows):
         return np.nan
     values = rows[["k_x", "k_y", "k_z"]].to_numpy(dtype=float)
@@ -84,9 +74,10 @@ def of_walls(df, fraction):
     return 100 * (k["walls"] / k["gradient"] - 1)
 
 
-def _interval(values):
-    from scipy.stats import t
-
-    deviation = float(np.std(values, ddof=1))
-    half = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1)) * deviation / np.sqrt(len(values))
-    return Interval(float(np.mean(values)), half, deviation, len(values))
+def walls_less_gradient(df, name, fraction):
+    """Isothermal walls less gradient on the first walled cell, converged values of one method, %; None if unknown."""
+    pair = [
+        converged(df, name, kind="walled", boundary=boundary, fraction=fraction, realisation=0, axes="y")
+        for boundary in ("walls", "gradient")
+    ]
+    return None if None in pair else 100 * (pair[0] / pair[1] - 1)

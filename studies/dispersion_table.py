@@ -5,16 +5,22 @@ from __future__ import annotations
 import math
 
 from references import bounds
-from studies.converged import TERMS, converged
-from studies.dispersion_means import along_one_axis, change, change_interval, interval, of_walls, witness
+from studies.converged import TERMS, TITLES, converged
+from studies.dispersion_means import (
+    CONTRAST,
+    along_one_axis,
+    change,
+    change_interval,
+    interval,
+    of_walls,
+    walls_less_gradient,
+    witness,
+)
 from studies.figures import EDGE, LOOK
 from studies.pick import pick
-from studies.silica_epoxy import EPOXY, SILICA
 
-CONTRAST = SILICA.conductivity / EPOXY.conductivity
 COSTS_AT = 0.4
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
-SHORT = {"dem": "DEM", "fem": "FEM", "fft": "FFT, scalar", "fft-em": "FFT, E.-M."}
 ESTIMATES = {
     "Maxwell (lower bound of Hashin and Shtrikman)": bounds.maxwell,
     "upper bound of Hashin and Shtrikman": lambda *args: bounds.hashin_shtrikman(*args)[1],
@@ -112,7 +118,7 @@ def _nearest(df, exact, kind, here):
         if len(off) == len(TERMS):
             best = min(off, key=off.get)
             spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()
-            line[f"f = {fraction:g}"] = f"{SHORT[best]}, {spent:.0f} s"
+            line[f"f = {fraction:g}"] = f"{TITLES[best]}, {spent:.0f} s"
     return line | dict.fromkeys(COSTS, math.nan)
 
 
@@ -137,13 +143,7 @@ def _costs(rows):
 def _walls(df, fractions):
     """Isothermal walls less mean gradient, on the same spheres, by the converged values of each method."""
     for name in TERMS:
-        values = {}
-        for fraction in fractions:
-            pair = [
-                converged(df, name, kind="walled", boundary=boundary, fraction=fraction, realisation=0, axes="y")
-                for boundary in ("walls", "gradient")
-            ]
-            values[fraction] = None if None in pair else 100 * (pair[0] / pair[1] - 1)
+        values = {f: walls_less_gradient(df, name, f) for f in fractions}
         yield _line("walls less gradient, %", LOOK[name][0], values)
     cells = {f: of_walls(df, f) for f in fractions}
     yield _line("walls less gradient, %", "FFT, mean over cells", {f: v.mean() for f, v in cells.items()})

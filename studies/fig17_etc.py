@@ -11,8 +11,8 @@ voxels and particles extrapolated, of the finite elements the finest mesh.
 import numpy as np
 
 from studies import methods, silica_epoxy
-from studies.converged import TERMS, converged
-from studies.dispersion_means import all_axes, bounds_of, change, witness
+from studies.converged import TERMS, TITLES, converged
+from studies.dispersion_means import all_axes, bounds_of, change, walls_less_gradient, witness
 from studies.pick import pick, present
 from studies.store import printed
 
@@ -27,10 +27,8 @@ LADDER = {
     "fft": ("voxels", (64, 128, 256)),
     "fft-em": ("voxels", (64, 128, 256)),
 }
-WALLED = (
-    0.2,
-    0.4,
-)  # fractions at which the boundary conditions are compared; at the first, finite elements see all axes
+# Fractions at which the boundary conditions are compared; at the first, finite elements see all axes.
+WALLED = (0.2, 0.4)
 # At L/24, and at the three sizes tried instead, gmsh divides opposite faces of this cell unlike each other: refused.
 UNMESHED = ("fem", "periodic", 0.4)
 WITNESS = {"method": "references.multipole"}
@@ -139,37 +137,27 @@ def _one_arrangement(df):
                 continue
             where = f"f = {fraction:g}, {kind}: "
             here = {"kind": kind, "boundary": "gradient", "fraction": fraction, "realisation": 0, "axes": "y"}
-            for name, title in CONVERGED.items():
+            for name, title in TITLES.items():
                 found = converged(df, name, **here)
                 off = None if found is None else 100 * abs(found / exact - 1)
                 # A dense cell has gaps in which no method is fine enough: asked for is three times as much.
                 yield where + title + ", converged, off the multipole value, %", off, 0.3 if fraction >= DENSE else 0.1
-    exact, rough = witness(df, "periodic", FRACTIONS[0]), {"dem": 1.0, "fft": 1.0, "fft-em": 1.0, "fem": 1.0}
-    for name, limit in rough.items():
+    exact = witness(df, "periodic", FRACTIONS[0])
+    for name in TITLES:
         rows = pick(df, name=name, kind="periodic", fraction=FRACTIONS[0], realisation=0, axes="y")
         if len(rows):
             off = 100 * abs(rows["k_ratio"] / exact - 1).max(skipna=False)
-            yield f"f = {FRACTIONS[0]:g}: {CONVERGED[name]}, worst resolution, off the multipole value, %", off, limit
+            yield f"f = {FRACTIONS[0]:g}: {TITLES[name]}, worst resolution, off the multipole value, %", off, 1.0
     left = 100 * pick(df, name="multipole", axes="y")["truncation"].max(skipna=False)
     yield "Multipoles: what higher degrees would change, by their own estimate, %", left, 0.002
-
-
-CONVERGED = {"dem": "DEM", "fem": "FEM", "fft": "FFT, scalar", "fft-em": "FFT, Eyre-Milton"}
 
 
 def _boundaries(df):
     """Isothermal walls less mean gradient, on the same spheres, by each method."""
     for fraction in WALLED:
-        found = {}
-        for name in CONVERGED:
-            pair = [
-                converged(df, name, kind="walled", boundary=boundary, fraction=fraction, realisation=0, axes="y")
-                for boundary in ("walls", "gradient")
-            ]
-            if None not in pair:
-                found[name] = 100 * (pair[0] / pair[1] - 1)
+        found = [each for name in TITLES if (each := walls_less_gradient(df, name, fraction)) is not None]
         if len(found) > 1:
-            spread = max(found.values()) - min(found.values())
+            spread = np.max(found) - np.min(found)
             text = f"f = {fraction:g}: difference of the boundary conditions, by one method less by another, % of k"
             yield text, spread, 0.1
 
@@ -180,7 +168,7 @@ def _averages(df):
         limits = np.array([bounds_of(df, row) for _, row in rows.iterrows()])
         k = rows["k_ratio"].to_numpy(dtype=float)
         room = 100 * np.minimum(k / limits[:, 0] - 1, 1 - k / limits[:, 1])
-        text = f"f = {fraction:g}, {CONVERGED.get(name, 'multipoles')}, means over three axes: "
+        text = f"f = {fraction:g}, {TITLES.get(name, 'multipoles')}, means over three axes: "
         yield text + "least room to the third-order bounds of the same cell, %", np.min(room), ">= 0"
     for fraction in FRACTIONS:
         changed = change(df, fraction, "unequal")
@@ -192,9 +180,9 @@ def _averages(df):
 def table(df):
     """Errors, in % of the multipole value, on one cell of each fraction, along one axis; and k/k_m.
 
-    "Converged" is extrapolated from the method's own finest rows. "Chance" is the standard deviation of k between
-    cells, of means over three axes or along one, % of k; the mean's 95 % interval is from Student's distribution. Costs
-    are those at f = 0.4, the packing from the cache.
+    "Converged" is extrapolated from the method's own finest rows, of FEM the finest itself. "Chance" is the standard
+    deviation of k between cells, of means over three axes or along one, % of k; the mean's 95 % interval is from
+    Student's distribution. Costs are those at f = 0.4, the packing from the cache.
     """
     from studies.dispersion_table import lines
 

@@ -154,7 +154,7 @@ def _side_by_side(found):
 
 
 def _paper(found):
-    """What linear elements as many as the paper's err by, which is what its two methods differ by (3.1 % in print)."""
+    """What linear elements as many as the paper's err by: no less than its two methods differ by, 3.1 % in print."""
     linear = pick(found, name="fem-p1")
     text = f"FEM, P1, as many elements as the paper's FE ({PAPER['tetrahedra']:.1e}), walls: "
     few = _worst(linear, "elements")

@@ -10,8 +10,8 @@ FEM also meets cells of 124 spheres whose least gap is down to a thousandth of a
 import tempfile
 
 from studies import methods, silica_epoxy
-from studies.converged import converged
-from studies.pick import pick, present
+from studies.converged import TITLES, converged
+from studies.pick import largest, pick, present
 from studies.store import printed
 
 FRACTION, CLOSE = 0.2, 0.3
@@ -106,27 +106,26 @@ def _witness(df):
 def _dem(df):
     for number, limit in ((PARTICLES[0], 2.0), (PARTICLES[-2], 0.05), (PARTICLES[-1], 0.02)):
         rows = pick(df, name="dem", particles=number)
-        yield f"DEM, {number} elements: error, %", _largest(rows, "error_percent"), limit
-    rows = pick(df, name="dem", particles=PARTICLES[-1])
-    yield f"DEM, {PARTICLES[-1]} elements: peak memory, GiB", _largest(rows, "peak_mib", 1024), 20.0
+        yield f"DEM, {number} elements: error, %", largest(rows, "error_percent"), limit
+    rows = pick(df, name="dem", particles=PARTICLES[-1]).assign(peak_gib=lambda found: found["peak_mib"] / 1024)
+    yield f"DEM, {PARTICLES[-1]} elements: peak memory, GiB", largest(rows, "peak_gib"), 20.0
     # The paper's network is no yardstick here: its error passes through zero near a million elements.
     fine = pick(df, name="dem").groupby("per_inclusion")["error_percent"].max().abs()
     if len(fine) == len(PARTICLES):
         few = min(number for number in fine.index if (fine[fine.index >= number] <= PAPER["dem_fft"]).all())
         yield "DEM: elements per inclusion from which it is within the paper's 0.5 %", few, PAPER["per_inclusion"]
     rows = pick(df, name="steady", particles=SOLVED)
-    for peer, limit in (("ruge_stuben", 1.0), ("aggregation", 1.0)):
-        if len(rows):
-            ratio = (rows["cpu_s"] / rows[f"{peer}_cpu_s"]).max(skipna=False)
-            yield f"Steady solve, {SOLVED} particles: CPU time over that of pyamg's {peer}", ratio, limit
+    for peer in ("ruge_stuben", "aggregation") if len(rows) else ():
+        ratio = (rows["cpu_s"] / rows[f"{peer}_cpu_s"]).max(skipna=False)
+        yield f"Steady solve, {SOLVED} particles: CPU time over that of pyamg's {peer}", ratio, 1.0
 
 
 def _others(df):
     for name in ("fft", "fft-em"):
-        title = {"fft": "FFT, scalar", "fft-em": "FFT, Eyre-Milton"}[name]
+        title = TITLES[name]
         for voxels, limit in ((VOXELS[0], 1.0), (VOXELS[-1], 0.05)):
             rows = pick(df, name=name, voxels=voxels)
-            yield f"{title}, {voxels}^3: error, %", _largest(rows, "error_percent"), limit
+            yield f"{title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
         limit = converged(df[df["precision"].isna()] if "precision" in df else df, name)
         exact = pick(df, name="multipole").sort_values("highest")["k_ratio"].iloc[-1]
         off = None if limit is None else 100 * abs(limit / exact - 1)
@@ -139,15 +138,10 @@ def _others(df):
     for name, limit in (("fem", 0.05), ("fem-p1", 0.5)):
         rows = pick(df, name=name, size=SIZES[name][-1] * methods.EDGE, gap=None)
         title = {"fem": "FEM, P2", "fem-p1": "FEM, P1"}[name]
-        yield f"{title}, finest elements: error, %", _largest(rows, "error_percent"), limit
+        yield f"{title}, finest elements: error, %", largest(rows, "error_percent"), limit
     rows = pick(df, name="fem-p1")
     if len(rows) == len(SIZES["fem-p1"]):
         yield "FEM, P1: tetrahedra of the finest mesh", rows["elements"].max(), f">= {PAPER['tetrahedra']:g}"
-
-
-def _largest(rows, column, unit=1.0):
-    """Largest size of a column over a unit; None without rows."""
-    return rows[column].abs().max(skipna=False) / unit if len(rows) else None
 
 
 def table(df):

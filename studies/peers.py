@@ -105,18 +105,17 @@ def _network(scene, particles, seed):
 
 def _matrix(network, scene):
     """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W."""
-    from scipy import sparse
-
+    from demheat.network.base import row_numbers
     from demheat.scene import WALLS
+    from demheat.steady import matrix
 
     n = len(network.volumes)
     held = np.array([scene.wall_temperatures.get(name, np.nan) for name in WALLS])[network.wall_side]
     ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
-    rows = np.repeat(np.arange(n), np.diff(network.indptr))
-    diagonal = np.bincount(rows, network.conductance, n) + np.bincount(network.wall_particle, ties, n)
-    links = (-network.conductance, network.indices.astype(np.int32), network.indptr.astype(np.int32))
-    a = (sparse.csr_matrix(links, shape=(n, n)) + sparse.diags(diagonal)).tocsr()
-    return a, np.bincount(network.wall_particle, ties * np.nan_to_num(held), n)
+    diagonal = np.bincount(row_numbers(network.indptr), network.conductance, n) + np.bincount(
+        network.wall_particle, ties, n
+    )
+    return matrix(network, diagonal), np.bincount(network.wall_particle, ties * np.nan_to_num(held), n)
 
 
 def _pyamg(setup, a, b, start, tolerance):

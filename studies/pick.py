@@ -2,7 +2,20 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
+
+CONFIDENCE = 0.95
+
+
+class Interval(NamedTuple):
+    """Mean of so many realisations, half the width of its confidence interval, and their standard deviation."""
+
+    mean: float
+    half: float
+    deviation: float
+    number: int
 
 
 def pick(df, **where):
@@ -44,6 +57,20 @@ def extrapolated(df, coarse, fine, **where):
         return None
     rest = (errors[0] - errors[1]) / ((fine / coarse) ** (2 / 3) - 1)
     return abs(errors[1] - rest).max(skipna=False)
+
+
+def student(values):
+    """Interval of the mean of two or more values, by Student's distribution."""
+    from scipy.stats import t
+
+    deviation = float(np.std(values, ddof=1))
+    half = float(t.ppf((1 + CONFIDENCE) / 2, len(values) - 1)) * deviation / np.sqrt(len(values))
+    return Interval(float(np.mean(values)), half, deviation, len(values))
+
+
+def largest(rows, column):
+    """Largest size in a column; None without rows, not-a-number if one is missing."""
+    return rows[column].abs().max(skipna=False) if len(rows) else None
 
 
 def order(sizes, errors):

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-import math
-from functools import cache
 from importlib import import_module
 
-from demheat.gallery import EDGE
-from demheat.scene import Material
+from demheat.gallery import EDGE, EPOXY, SILICA
 from studies import methods
 from studies.cost import measured
 
-EPOXY, SILICA = Material(0.195), Material(1.5)
 RATIO = 6.0  # edge of the cube over the diameter
 GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for
 SPREAD = 0.3  # of the radii of the unequal spheres, standard deviation over mean of the Gaussian before it is cut
@@ -38,8 +34,8 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
     from demheat.packing.radii import Gaussian
 
     return dispersion_scene(
-        _count(fraction),
         fraction=fraction,
+        ratio=RATIO,
         size=(EDGE, EDGE, EDGE),
         gap=gap,
         radii=Gaussian(SPREAD) if kind == "unequal" else None,
@@ -50,12 +46,6 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
         axis=axis,
         seed=seed,
     )
-
-
-@cache
-def _count(fraction):
-    """Number of equal spheres whose diameter is nearest to a sixth of the edge: the same for all kinds."""
-    return round(6 * fraction * RATIO**3 / math.pi)
 
 
 def solved(made, *, method, **knobs):

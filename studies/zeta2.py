@@ -11,7 +11,7 @@ its slope at 0 is minus a quarter of the specific surface, 3 f/R.
 
 import math
 
-from studies.pick import pick, present
+from studies.pick import largest, pick, present
 from studies.zeta2_pool import below, pooled, with_bounds
 
 MULTIPOLE, VOXELS, S2 = "references.multipole", "references.zeta", "demheat.packing.statistics"
@@ -96,10 +96,6 @@ def claims(df):
     yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
 
 
-def _largest(rows, column):
-    return rows[column].abs().max(skipna=False) if len(rows) else None
-
-
 def _arrays(df):
     rows = pick(df, part="array")
     off = [
@@ -113,10 +109,10 @@ def _arrays(df):
     for voxels in GRIDS[1:]:
         here = pick(rows, voxels=voxels)
         text = f"{voxels}^3 voxels, extrapolated, worst of three places on the grid: error on "
-        yield text + "SC, f = 0.5, %", _largest(pick(here, array="sc", fraction=0.5), "error_percent"), 1.0
-        yield text + "dilute SC, a = L/3, %", _largest(pick(here, fraction=DILUTE), "error_percent"), 10.0
+        yield text + "SC, f = 0.5, %", largest(pick(here, array="sc", fraction=0.5), "error_percent"), 1.0
+        yield text + "dilute SC, a = L/3, %", largest(pick(here, fraction=DILUTE), "error_percent"), 10.0
         others = here[here["array"].isin(("bcc", "fcc"))]
-        yield text + "BCC and FCC, f = 0.5, %", _largest(others, "error_percent"), 1.5
+        yield text + "BCC and FCC, f = 0.5, %", largest(others, "error_percent"), 1.5
 
 
 def _random(df):
@@ -124,7 +120,7 @@ def _random(df):
     for voxels, limit in zip(ON_RANDOM, (4.0, 2.0), strict=True):
         rows = pick(df, part="voxels", voxels=voxels)
         text = f"Random cells, {voxels}^3 voxels, extrapolated: worst error against multipoles, %"
-        yield text, _largest(rows, "error_percent"), limit
+        yield text, largest(rows, "error_percent"), limit
 
 
 def _statistics(df):
@@ -138,7 +134,7 @@ def _statistics(df):
     yield text + "f <= 0.4, in standard errors", off.max(), 3.0
     # 95 % of means of twenty cells lie within 3 % at f = 0.2, within 1 % at f = 0.5, where the fit may be 1.7 % low.
     dense = free[(free["cells"] == REALISATIONS) & (free["fraction"] > 0.15)]
-    yield text + "f >= 0.2, %", _largest(dense, "off_percent"), 4.0
+    yield text + "f >= 0.2, %", largest(dense, "off_percent"), 4.0
     for gap in (0.0, 0.02):
         yield _lower(means, f"RSA below LSA, both with a gap of {gap:g} D", {**rsa, "gap": gap}, {**lsa, "gap": gap})
     yield _lower(means, "LSA with a gap of 0.02 D below LSA without", {**lsa, "gap": 0.02}, {**lsa, "gap": 0.0})
@@ -176,7 +172,7 @@ def _bounds(df):
 def _surfaces(df):
     rows = pick(df, part="surface")
     text = "Specific surface by the slope of S2 against 3 f/R, worst kind of cell: "
-    yield text + "error, %", _largest(rows, "error_percent"), 1.0
+    yield text + "error, %", largest(rows, "error_percent"), 1.0
     # The largest of 16 normal deviates passes 3.5 once in 130 studies.
     deviations = (rows["error_percent"] / rows["error_se"]).abs().max() if len(rows) else None
     yield text + "error in its standard errors", deviations, 3.5

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from studies.pick import pick
+from studies.pick import pick, student
 
 KEYS = ("placed", "gap", "ratio", "fraction")
 
@@ -21,7 +21,6 @@ def pooled(df):
         confidence, by Student's t), `polynomial` and `off_percent`, the mean's deviation from it.
     """
     import pandas as pd
-    from scipy.stats import t
 
     from references.bounds import zeta2_hard_spheres
 
@@ -29,9 +28,9 @@ def pooled(df):
     for key, group in pick(df, part="cells").groupby(list(KEYS), sort=False):
         values = np.array([float(word) for text in group["values"] for word in text.split()])
         row = dict(zip(KEYS, key, strict=True)) | {"cells": len(values), "spheres": int(group["spheres"].iloc[0])}
-        row |= {"zeta2": values.mean(), "scatter": values.std(ddof=1)}
-        row["se"] = row["scatter"] / math.sqrt(len(values))
-        row["half"] = float(t.ppf(0.975, len(values) - 1)) * row["se"]
+        mean = student(values)
+        row |= {"zeta2": mean.mean, "scatter": mean.deviation, "half": mean.half}
+        row["se"] = mean.deviation / math.sqrt(mean.number)
         row["polynomial"] = float(zeta2_hard_spheres(row["fraction"]))
         rows.append(row | {"off_percent": 100 * (row["zeta2"] / row["polynomial"] - 1)})
     return pd.DataFrame(rows, columns=[*rows[0]] if rows else [*KEYS])

@@ -18,7 +18,8 @@ def test_converged_takes_off_the_terms_that_it_names():
     voxels = ladder("fft", "voxels", [64, 128, 256], 1.5 + 2 * h - 30 * h**2)
     assert_allclose(converged(voxels, "fft"), 1.5, rtol=1e-12)  # rounding
     particles = ladder("dem", "particles", [1e3, 1e4, 1e5], 1.5 + np.array([9.0, 1e4 ** (-2 / 3), 1e5 ** (-2 / 3)]))
-    assert_allclose(converged(particles, "dem"), 1.5, rtol=1e-12)  # the coarsest does not count
+    # Rounding again; the coarsest does not count.
+    assert_allclose(converged(particles, "dem"), 1.5, rtol=1e-12)
     assert converged(ladder("fem", "size", [0.1, 0.05], [2.0, 1.6]), "fem") == 1.6
     assert converged(voxels.iloc[:2], "fft") is None
     assert np.isnan(converged(voxels.assign(k_ratio=[1.5, np.nan, 1.5]), "fft"))
@@ -32,7 +33,7 @@ def cells(kind, boundary, values, **more):
 def test_interval_is_students():
     df = cells("periodic", "gradient", [1.0, 1.1, 1.2])
     found = dispersion_means.interval(df, "periodic", 0.2)
-    # Student's 97.5 % point of two degrees of freedom is 4.3027.
+    # Student's 97.5 % point of two degrees of freedom is 4.30265, as printed in tables, to its last digit.
     assert_allclose(found, (1.1, 4.30265 * 0.1 / np.sqrt(3), 0.1, 3), rtol=1e-5)
     assert dispersion_means.interval(df.iloc[:1], "periodic", 0.2) is None
 
@@ -47,6 +48,7 @@ def test_changes_between_kinds_and_boundaries():
         ]
     )
     assert_allclose(dispersion_means.change(df, 0.2, "unequal"), 2.0)
+    # That of one degree of freedom, 12.7062, to its last digit.
     assert_allclose(dispersion_means.change_interval(df, 0.2, "unequal"), 100 * 12.7062 * 0.01 / 1.02, rtol=1e-5)
     assert_allclose(dispersion_means.of_walls(df, 0.2), [1.0, 3.0])
     assert len(dispersion_means.of_walls(df[df["boundary"] == "gradient"], 0.2)) == 0
@@ -57,6 +59,7 @@ def test_bounds_are_those_of_the_cell_and_of_the_methods_own_fraction():
     low, high = dispersion_means.bounds_of(df, {"fraction": 0.2, "realisation": 3, "inclusion": 0.25})
     # Without zeta_2 the bounds are Maxwell's on both sides: the lower one of Hashin and Shtrikman.
     beta = (1.5 / 0.195 - 1) / (1.5 / 0.195 + 2)
+    # One formula in two forms: rounding.
     assert_allclose([low, high], (1 + 0.5 * beta) / (1 - 0.25 * beta), rtol=1e-12)
     with pytest.raises(ValueError, match="zeta2"):
         dispersion_means.bounds_of(df, {"fraction": 0.2, "realisation": 4, "inclusion": 0.25})

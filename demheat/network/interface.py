@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat.network.base import Network, row_numbers
+from demheat.network.base import Network
 
 RULES = ("harmonic", "arithmetic")
 # Rows connected at once: bounds the scratch memory (some 1.5 kB a row).
@@ -88,12 +88,8 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
     )
 
 
-def link_lengths(facets, centers, size):
-    """Distance between the centres of each link, (m,) float array, m."""
-    return _lengths(centers, size, row_numbers(facets.indptr), facets.indices, facets.image)
-
-
 def _lengths(centers, size, row, indices, image):
+    """Distance between the centres of some links, (m,) float array, m."""
     total = np.zeros(len(indices))
     code = image.astype(np.int16)
     for k, shift in enumerate((code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1)):

@@ -14,7 +14,7 @@ import numpy as np
 
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.cache import LSA, cached, code_hash
-from demheat.packing.lsa import lsa
+from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.parts import axis_number, finite, vector
 from demheat.scene import Scene, Sphere
@@ -32,8 +32,6 @@ MOST_ADDED = 0.3
 BATCH, TRIALS = 256, 200_000
 # A scene compares all pairs of its spheres, and random addition does too: more take hours.
 MOST_SPHERES = 100_000
-# Sides over the largest radius with its gap that `lsa` needs: spheres must not meet both ways round a period.
-LEAST_SIDES = {True: 4.2, False: 2.0}
 
 
 def dispersion(

@@ -27,6 +27,8 @@ JAMMED = 1e6
 LEAST_PRESSURE = 10.0
 # No mixture of up to 1 : 10 was found to jam denser.
 DENSEST = 0.85
+# Sides over the largest radius, for a periodic axis or walls: spheres must not meet both ways round a period.
+LEAST_SIDES = {True: 4.2, False: 2.0}
 
 
 def lsa(
@@ -189,7 +191,7 @@ def _check_room(start, now, phi):
     largest = float(np.max(start.radii)) * math.cbrt(most / start.phi)
     for axis in range(3):
         # Along a period only the nearest image is seen; a little room, since lists reach beyond contact.
-        least = 4.2 * largest if start.periodic[axis] else 2.0 * largest
+        least = LEAST_SIDES[bool(start.periodic[axis])] * largest
         if start.size[axis] < least:
             raise ValueError(
                 f"size = {start.size.tolist()}: side {axis} must be >= {least:.6g} for spheres of radius up to "

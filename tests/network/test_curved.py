@@ -10,7 +10,7 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 from demheat.evaluate import field_of
 from demheat.network.base import SIDES, branches, row_numbers
 from demheat.network.curved import ROUND_SIDE, circumscribed_volume, fibonacci, round_wall, tangents_within
-from demheat.network.interface import connect, link_lengths
+from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.packing.domain import cut
 from demheat.packing.relax import relax, settle
@@ -108,7 +108,7 @@ def test_links_stand_in_both_rows_with_one_area(domain, size):
     facets = laguerre(centers, weights, size, periodic=False, domain=domain)
     rows = row_numbers(facets.indptr)
     there = {(p, q): (a, h) for p, q, a, h in zip(rows, facets.indices, facets.area, facets.distance, strict=True)}
-    length = link_lengths(facets, centers, np.array(size))
+    length = np.linalg.norm(branches(centers, np.array(size), facets.indptr, facets.indices, facets.image), axis=1)
     for p, q, d in zip(rows, facets.indices, length, strict=True):
         assert there[p, q][0] == there[q, p][0]
         # Both ends measure the same plane, to rounding of the box's coordinates.

@@ -4,7 +4,6 @@ from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
 
 from demheat.network.base import branches, row_numbers
-from demheat.network.interface import link_lengths
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.base import make_packing
 
@@ -46,7 +45,7 @@ def test_links_stand_in_both_rows_with_one_area():
         (p, q, s): (a, h)
         for p, q, s, a, h in zip(rows, facets.indices, facets.image, facets.area, facets.distance, strict=True)
     }
-    length = link_lengths(facets, centers, np.ones(3))
+    length = np.linalg.norm(branches(centers, np.ones(3), facets.indptr, facets.indices, facets.image), axis=1)
     for p, q, s, d in zip(rows, facets.indices, facets.image, length, strict=True):
         area, height = there[p, q, s]
         back_area, back_height = there[q, p, 26 - s]
