@@ -7,4 +7,4 @@ def laws_by_size(numbers, laws, seeds):
         for law, coordination in laws:
             for seed in seeds:
                 case = {"law": law, "coordination": coordination, "particles": particles, "seed": seed}
-                yield case | {"method": "demheat.dem"}
+                yield case | {"method": "dem"}

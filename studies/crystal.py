@@ -26,7 +26,7 @@ LOADS = {
 QUANTITIES = ("conductance", "wall_conductance", "capacity", "step", "steady")
 NAMES = ("conductances of links", "conductances to walls", "heat capacities", "one explicit step", "steady solution")
 CRYSTALS = ("diamond", "simple cubic", "body-centred cubic", "face-centred cubic")
-METHOD, SPAN = "demheat.dem", 500.0
+METHOD, SPAN = "dem", 500.0
 
 
 def _cases():

@@ -34,7 +34,7 @@ TIMEOUT = 3600.0
 
 def _case(loading, packing, particles, seed, domain="cube", **more):
     here = {"loading": loading, "domain": domain, "packing": packing, "particles": particles, "seed": seed}
-    return here | more | {"method": "demheat.dem"}
+    return here | more | {"method": "dem"}
 
 
 def _cases():

@@ -154,7 +154,7 @@ def _slices(figure, slices, df, exact):
 
     points, inside = sphere_in_time.slice_grid()
     pictured = df.dropna(subset=["slice_error"])
-    dem, fem = (pick(pictured, method=method) for method in ("demheat.dem", "references.fem"))
+    dem, fem = (pick(pictured, method=method) for method in ("dem", "fem"))
     dem, fem = (rows.loc[rows["unknowns"].idxmax()] for rows in (dem, fem))
     errors = [sphere_in_time.numbers(row["slice_error"]) for row in (dem, fem)]
     pictures = [

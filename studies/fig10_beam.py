@@ -31,7 +31,7 @@ TIMEOUT = 3600.0
 def _cases():
     yield from laws_by_size(NUMBERS, LAWS, SEEDS)
     for size in SIZES:
-        yield {"law": "tetrahedra", "size": size, "method": "references.fem"}
+        yield {"law": "tetrahedra", "size": size, "method": "fem"}
 
 
 CASES = list(_cases())
@@ -44,7 +44,7 @@ def QUICK(case):
 
 def run(law, method, **case):
     """Errors at the four times, the profile, and of a network its steady conductivity and heat capacity."""
-    return _elements(**case) if method == "references.fem" else _particles(law, **case)
+    return _elements(**case) if method == "fem" else _particles(law, **case)
 
 
 def _particles(law, coordination, particles, seed):
@@ -100,7 +100,7 @@ def _text(values):
 
 def warm_up(law, method, **case):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    if method == "references.fem":
+    if method == "fem":
         return
     from studies.terreros import beam, packing_of
 
@@ -139,7 +139,7 @@ def _means(df, law, contacts):
 
 
 def _referee(df):
-    rows = pick(df, method="references.fem")
+    rows = pick(df, method="fem")
     worst = rows[[f"worst_{t:g}" for t in TIMES]].max(axis=1, skipna=False)
     # A fifth of what is asked of the particles.
     value = worst.min() if len(rows) else None
@@ -168,7 +168,7 @@ def _hidden(df):
 
 
 def _balance(df):
-    rows = pick(df, method="demheat.dem")
+    rows = pick(df, method="dem")
     # Rounding of sums over particles and steps.
     yield "Largest heat lost over heat moved, networks", rows["energy_error"].max(skipna=False), 1e-10
 

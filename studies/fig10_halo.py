@@ -23,7 +23,7 @@ TIMEOUT = 3600.0
 
 
 def _case(law, split, walls, particles, seed):
-    return {"law": law, "split": split, "walls": walls, "particles": particles, "seed": seed, "method": "demheat.dem"}
+    return {"law": law, "split": split, "walls": walls, "particles": particles, "seed": seed, "method": "dem"}
 
 
 CASES = [

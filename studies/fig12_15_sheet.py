@@ -35,7 +35,7 @@ TIMEOUT = 3600.0
 def _cases():
     yield from laws_by_size(NUMBERS, LAWS, SEEDS)
     for size in (COARSE, ELEMENT, FINE):
-        yield {"law": "hexahedra", "size": size, "method": "references.fem"}
+        yield {"law": "hexahedra", "size": size, "method": "fem"}
 
 
 CASES = list(_cases())
@@ -43,7 +43,7 @@ CASES = list(_cases())
 
 def QUICK(case):
     """Two packings of 1000 for the tessellation and the paper's law; bricks of 1 mm."""
-    if case["method"] == "references.fem":
+    if case["method"] == "fem":
         return case["size"] == COARSE
     return case["particles"] == NUMBERS[0] and case["seed"] < 2 and case["law"] != "calibrated"
 
@@ -71,7 +71,7 @@ def run(law, method, **case):
 
 
 def _fields(scene, law, method, **case):
-    if method == "references.fem":
+    if method == "fem":
         from references import fem
 
         return fem.evolve(scene, TIMES, elements=law, size=case["size"], accuracy=ACCURACY / 5)
@@ -88,7 +88,7 @@ def warm_up(law, method, **case):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
     from studies.terreros import packing_of, sheet
 
-    if method == "references.fem":
+    if method == "fem":
         run(law, method, size=4 * COARSE)
         return
     packing_of(sheet(), case["particles"], case["seed"])
@@ -207,7 +207,7 @@ def table(df):
     import pandas as pd
 
     df, found = df[df["status"] == "ok"], []
-    for (law, particles), rows in pick(df, method="demheat.dem").groupby(["law", "particles"], sort=False):
+    for (law, particles), rows in pick(df, method="dem").groupby(["law", "particles"], sort=False):
         line = {"law": law, "particles": particles, "packings": len(rows), "capacity": f"{rows['capacity'].mean():.4f}"}
         for name in NAMES:
             here = compared(df, law, particles, name)
@@ -225,7 +225,7 @@ def plot(df):
     df = df[df["status"] == "ok"]
     figure, axes = pyplot.subplots(2, 3, figsize=(14, 8))
     colours = {"laguerre": RED, "platonic": BLUE, "calibrated": PINK}
-    counts = pick(df, method="demheat.dem").groupby("law")["particles"]
+    counts = pick(df, method="dem").groupby("law")["particles"]
     for name, curves, scatter in zip(NAMES, *axes, strict=True):
         curves.plot(TIMES, curves_of(reference(df), name)[0], color=BLACK, linewidth=0.9, label="bricks")
         for law, most in counts.max().items():

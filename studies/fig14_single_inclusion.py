@@ -98,7 +98,7 @@ def _dem_claims(df):
     if mine is not None and theirs is not None:
         yield "DEM default: worst error over that of the paper's network, same packings", mine / theirs, 0.1
         yield "DEM default: worst error over the one that the paper prints", mine / PAPER["worst_error"], 0.1
-    balance = df[df["method"] == "demheat.dem"]["heat_imbalance"].max(skipna=False)
+    balance = df[df["method"] == "dem"]["heat_imbalance"].max(skipna=False)
     yield "DEM: heat in minus heat out, relative to the heat that passes", balance, 1e-6
 
 

@@ -154,7 +154,7 @@ def _laguerre(df):
         yield text + "the same, largest, %", _largest(rows, ["flux_max"]), most
         # Found 1.5 and 0.32 %; fits that do not know the interface have 6.2 and 1.8 %.
         yield text + "flux in the band beside them, rms, %", _largest(rows, ["flux_rms_band"]), 2.0 * rms
-    balance = pick(df, method="demheat.dem")["heat_imbalance"].abs().max(skipna=False)
+    balance = pick(df, method="dem")["heat_imbalance"].abs().max(skipna=False)
     yield "DEM, all laws: heat in minus heat out over the heat that passes", balance, 1e-6
 
 

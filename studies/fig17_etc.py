@@ -31,7 +31,7 @@ LADDER = {
 WALLED = (0.2, 0.4)
 # At L/24, and at the three sizes tried instead, gmsh divides opposite faces of this cell unlike each other: refused.
 UNMESHED = ("fem", "periodic", 0.4)
-WITNESS = {"method": "references.multipole"}
+WITNESS = {"method": "multipole"}
 # Accuracy of the multipoles in the means: a tenth of the least interval of a mean.
 ENOUGH = 1e-4
 PAPER = printed("fig17_etc")

@@ -36,7 +36,7 @@ def finest_number(boundary):
 
 
 def _cases():
-    yield {"name": "arrangement", "method": "demheat.packing.dispersion"}
+    yield {"name": "arrangement", "method": "dispersion"}
     for boundary in BOUNDARIES:
         yield from (silica_epoxy.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
         for number in NUMBERS:
@@ -49,6 +49,7 @@ def _cases():
 
 
 CASES = list(_cases())
+MODULES = {"dispersion": "demheat.packing.dispersion"}
 
 
 def QUICK(case):

@@ -75,7 +75,7 @@ def field_row(boundary, *, method, **knobs):
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
     """
     scene = spheres_in(boundary)
-    exact = method == "references.multipole"
+    exact = method == "multipole"
     solve_this = mirrored(scene) if exact and boundary == "walls" else scene
     field, row = silica_epoxy.solved(solve_this, method=method, **knobs)
     points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)

@@ -2,7 +2,8 @@
 
 A study is a module with
 
-- `CASES`, a list of dicts of plain values, the parameters of each row; "method", if present, is a module path;
+- `CASES`, a list of dicts of plain values, the parameters of each row; "method", if present, names a
+  method, or what the study's `MODULES` says of that name;
 - `QUICK(case)`, true for the cases of a quick run;
 - `run(**case)`, a dict of metrics; costs it measures itself (`studies.cost.measured`) replace the whole run's, and a
   "status" with a "note" says of a refusal that it is one;

@@ -39,8 +39,8 @@ def _cases():
         yield from (silica_epoxy.case(name, voxels=voxels) for voxels in VOXELS)
     yield from (silica_epoxy.case("fft", voxels=voxels, precision="float32") for voxels in SINGLE)
     yield from (silica_epoxy.case("fem", gap=gap, size=methods.EDGE / 24) for gap in GAPS)
-    yield {"name": "steady", "particles": PARTICLES[0], "seed": 0, "method": "demheat.dem"}
-    yield {"name": "steady", "particles": SOLVED, "seed": 0, "method": "demheat.dem"}
+    yield {"name": "steady", "particles": PARTICLES[0], "seed": 0, "method": "dem"}
+    yield {"name": "steady", "particles": SOLVED, "seed": 0, "method": "dem"}
 
 
 CASES = list(_cases())

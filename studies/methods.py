@@ -1,6 +1,6 @@
 """The methods that the studies compare, by name, and one solve of one scene by one of them as a row.
 
-A method is a module path and what it fixes; a case adds the scene and the resolution.
+A method is the name of its module and what it fixes; a case adds the scene and the resolution.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import os
 import tempfile
 from contextlib import contextmanager
 from importlib import import_module
+from importlib.util import find_spec
 
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
 from demheat.referee import conductivity_error, heat_balance
@@ -18,28 +19,50 @@ from studies.cost import measured
 MATRIX = HADDAD.conductivity
 THIRD, HALF = 4 * math.pi / 81, 0.5  # volume fractions of the two sphere scenes: radius L/3, and half of the cube
 
+# Packages whose modules are the methods: rows keep a method's name, so that its files may move.
+HOMES = ("references", "demheat")
+
 METHODS = {
-    "dem": {"method": "demheat.dem", "law": "laguerre", "conforming": True, "interface": "harmonic"},
-    "dem-plain": {"method": "demheat.dem", "law": "laguerre", "conforming": False, "interface": "harmonic"},
-    "dem-mean": {"method": "demheat.dem", "law": "laguerre", "conforming": False, "interface": "arithmetic"},
-    "dem-calibrated": {"method": "demheat.dem", "law": "calibrated", "conforming": False, "interface": "harmonic"},
-    "dem-arithmetic": {"method": "demheat.dem", "law": "calibrated", "conforming": False, "interface": "arithmetic"},
-    "fem": {"method": "references.fem", "order": 2, "curved": True},
-    "fem-straight": {"method": "references.fem", "order": 2, "curved": False},
-    "fem-p1": {"method": "references.fem", "order": 1, "curved": False},
-    "fft": {"method": "references.fft", "scheme": "cg", "rule": "laminate"},
-    "fft-plain": {"method": "references.fft", "scheme": "cg", "rule": "plain"},
-    "fft-em": {"method": "references.fft", "scheme": "eyre-milton", "rule": "laminate"},
-    "fft-em-plain": {"method": "references.fft", "scheme": "eyre-milton", "rule": "plain"},
-    "maxwell": {"method": "references.bounds"},
-    "exact": {"method": "references.exact"},
+    "dem": {"method": "dem", "law": "laguerre", "conforming": True, "interface": "harmonic"},
+    "dem-plain": {"method": "dem", "law": "laguerre", "conforming": False, "interface": "harmonic"},
+    "dem-mean": {"method": "dem", "law": "laguerre", "conforming": False, "interface": "arithmetic"},
+    "dem-calibrated": {"method": "dem", "law": "calibrated", "conforming": False, "interface": "harmonic"},
+    "dem-arithmetic": {"method": "dem", "law": "calibrated", "conforming": False, "interface": "arithmetic"},
+    "fem": {"method": "fem", "order": 2, "curved": True},
+    "fem-straight": {"method": "fem", "order": 2, "curved": False},
+    "fem-p1": {"method": "fem", "order": 1, "curved": False},
+    "fft": {"method": "fft", "scheme": "cg", "rule": "laminate"},
+    "fft-plain": {"method": "fft", "scheme": "cg", "rule": "plain"},
+    "fft-em": {"method": "fft", "scheme": "eyre-milton", "rule": "laminate"},
+    "fft-em-plain": {"method": "fft", "scheme": "eyre-milton", "rule": "plain"},
+    "maxwell": {"method": "bounds"},
+    "exact": {"method": "exact"},
 }
 # What a warm-up solves: the same code at a size that costs next to nothing.
 SMALL = {
-    "demheat.dem": {"particles": 1000, "seed": 99},
-    "references.fem": {"size": EDGE / 4},
-    "references.fft": {"voxels": 16},
+    "dem": {"particles": 1000, "seed": 99},
+    "fem": {"size": EDGE / 4},
+    "fft": {"voxels": 16},
 }
+
+
+def path_of(method):
+    """Path of a method's module by its name, the last part of it; empty if there is no such module."""
+    paths = (f"{home}.{method}" for home in HOMES)
+    return next((path for path in paths if method and find_spec(path)), "")
+
+
+def load(method):
+    """Module of a method by its name, as "fem".
+
+    Raises
+    ------
+    ValueError
+        If there is no such method.
+    """
+    if not path_of(method):
+        raise ValueError(f"method = {method!r}: must be a module of {' or '.join(HOMES)}")
+    return import_module(path_of(method))
 
 
 def case(name, **more):
@@ -56,7 +79,7 @@ def exact_ratio(fraction, contrast):
 
 def solve_row(scene, ratio, *, method, **knobs):
     """Row of one solve, or of Maxwell's formula. Arguments as `solved`."""
-    if method == "references.bounds":
+    if method == "bounds":
         return _maxwell_row(scene, ratio)
     return solved(scene, ratio, method=method, **knobs)[1]
 
@@ -70,7 +93,7 @@ def solved(scene, ratio, *, method, **knobs):
     ratio : float
         Exact effective conductivity over that of the matrix.
     method : str
-        Module path.
+        Name of its module.
     knobs : keywords of its `solve`
 
     Returns
@@ -80,7 +103,7 @@ def solved(scene, ratio, *, method, **knobs):
         `k_ratio`, `error_percent` (relative to exact), `inclusion` (its discrete volume fraction), `heat_imbalance`
         (heat entering minus leaving over heat passing), statistics and cost of the solve.
     """
-    field, cost = measured(import_module(method).solve, scene, **knobs)
+    field, cost = measured(load(method).solve, scene, **knobs)
     row = {"k_ratio": field.conductivity / MATRIX, "exact_ratio": ratio}
     row["error_percent"] = 100 * conductivity_error(field, MATRIX * ratio)
     row["inclusion"] = float(sum(field.fractions[1:]))
@@ -106,7 +129,7 @@ def warm_up(method, **knobs):
         return
     with tempfile.TemporaryDirectory() as folder, packings_in(folder):
         # A cached packing would leave the packing's kernels unloaded.
-        import_module(method).solve(sphere_in_cube(2.0, fraction=0.1), **{**knobs, **SMALL[method]})
+        load(method).solve(sphere_in_cube(2.0, fraction=0.1), **{**knobs, **SMALL[method]})
 
 
 @contextmanager

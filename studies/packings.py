@@ -11,7 +11,7 @@ import numpy as np
 from studies.pick import pick, present
 
 SEEDS = (0, 1, 2, 3, 4)
-MAKERS = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packers"}
+MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packers"}
 LARGE = 100_000
 PAPER = {}
 TIMEOUT = 3600.0
@@ -19,7 +19,7 @@ TIMEOUT = 3600.0
 
 def _case(part, maker, particles, radii, seed=0, **knobs):
     return {"part": part, "maker": maker, "particles": particles, "radii": radii, "seed": seed, **knobs,
-            "method": MAKERS[maker]}  # fmt: skip
+            "method": maker}  # fmt: skip
 
 
 def _cases():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import copy
 import hashlib
 import os
 import platform
@@ -12,11 +13,15 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from studies.methods import path_of
+
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("demheat", "references", "studies")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
 # What must agree for a stored row to stand for a new one.
 SAME = ("code", "machine", "threads", "versions")
+# Names of a module that no number depends on.
+DESCRIBING = {"__all__", "__version__", "METHODS"}
 
 
 def provenance(study, case):
@@ -26,10 +31,10 @@ def provenance(study, case):
     ----------
     study : module
     case : dict
-        Its "method", if any, is a module path: the solver that the row loads by that name.
+        Its "method", if any, names what the row loads, see `module_of`.
     """
     return {
-        "code": code_hash(study.__file__, case.get("method", "")),
+        "code": code_hash(study.__file__, module_of(study, case.get("method", ""))),
         "commit": commit(),
         "when": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "machine": machine(),
@@ -98,28 +103,61 @@ def _git(*words):
     return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
 
 
+def module_of(study, method):
+    """Path of the module that a case means by its "method"; rows keep the name, so that the module may move.
+
+    A name is that of a method, a module of `references` or `demheat`, or what the study's own `MODULES` says of it.
+
+    Parameters
+    ----------
+    study : module
+    method : str
+
+    Returns
+    -------
+    str
+        Empty without a method.
+
+    Raises
+    ------
+    ValueError
+        If there is no such module.
+    """
+    path = getattr(study, "MODULES", {}).get(method) or path_of(method)
+    if method and not _file_of(path):
+        raise ValueError(f"method = {method!r} of {study.__name__}: neither a method nor in its MODULES")
+    return path
+
+
 @cache
-def code_hash(study_file, method=""):
+def code_hash(study_file, module=""):
     """Hash of the source that a row runs, 12 hexadecimal digits.
 
     Covers what `run` and `warm_up` of the study reach inside the study module, and every module of ours that they or
-    the named method import, directly or not. Comments, docstrings, layout, and the study's claims and drawing do not
-    count: to redraw a figure must not repeat hours of solves.
+    the named one import, directly or not. Comments, docstrings, layout, imports of ours and what a method declares of
+    itself do not count, nor where a file lies: neither moving a module nor drawing a figure anew must repeat hours of
+    solves.
+
+    Parameters
+    ----------
+    study_file : path
+    module : str
+        Path of the module that the case names, if any.
     """
     used = _reached(_parse(Path(study_file)).body, ("run", "warm_up"))
-    found = {"": "".join(map(ast.dump, used))}
-    queue = [*_imported(used), (method, True)]
+    texts, seen = {_text(used)}, set()
+    queue = [*_imported(used), (module, True)]
     while queue:
         name, deep = queue.pop()
         path = _file_of(name)
-        if path is None or (name, deep) in found:
+        if path is None or (name, deep) in seen:
             continue
+        seen.add((name, deep))
         tree = _parse(path)
-        found[name, deep] = ast.dump(tree)
+        texts.add(_text(tree.body))
         # A package is run by importing any of its modules, but only as far as its top-level statements.
         queue += _imported([tree] if deep else [node for node in tree.body if not isinstance(node, ast.FunctionDef)])
-    text = "\n".join(found[key] for key in sorted(found, key=str))
-    return hashlib.sha256(text.encode()).hexdigest()[:12]
+    return hashlib.sha256("\n".join(sorted(texts - {""})).encode()).hexdigest()[:12]
 
 
 @cache
@@ -129,6 +167,22 @@ def _parse(path):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
             del node.body[0]
     return tree
+
+
+def _text(nodes):
+    """Statements as text, without imports of ours and what only describes a module (`__all__`, `METHODS`)."""
+    kept = [_Moved().visit(copy.deepcopy(node)) for node in nodes if not _bound(node) & DESCRIBING]
+    return "\n".join(ast.dump(node) for node in kept if node is not None)
+
+
+class _Moved(ast.NodeTransformer):
+    """Takes out imports of ours: they say where a module lies, not what it does."""
+
+    def visit_Import(self, node):  # noqa: N802
+        return None if any(alias.name.split(".")[0] in PACKAGES for alias in node.names) else node
+
+    def visit_ImportFrom(self, node):  # noqa: N802
+        return None if (node.module or "").split(".")[0] in PACKAGES else node
 
 
 def _reached(body, roots):

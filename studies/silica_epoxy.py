@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
 from demheat.gallery import EDGE, EPOXY, SILICA
 from studies import methods
 from studies.cost import measured
@@ -21,7 +19,7 @@ STATS = (
 def case(name, **more):
     """Case of one method, as `methods.case`; "multipole" besides, the exact witness."""
     if name == "multipole":
-        return {"name": name, **more, "method": "references.multipole"}
+        return {"name": name, **more, "method": "multipole"}
     return methods.case(name, **more)
 
 
@@ -50,12 +48,12 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
 
 def solved(made, *, method, **knobs):
     """Solve a scene; return its Field and a row: k over the matrix's, the discrete fraction, statistics and cost."""
-    field, cost = measured(import_module(method).solve, made, **knobs)
+    field, cost = measured(methods.load(method).solve, made, **knobs)
     row = {"k_ratio": field.conductivity / EPOXY.conductivity, "inclusion": float(sum(field.fractions[1:]))}
     # "order" is a knob of finite elements.
     row |= {
         "number": len(made.inclusions),
-        "degree": field.stats.get("order") if method == "references.multipole" else None,
+        "degree": field.stats.get("order") if method == "multipole" else None,
     }
     return field, row | {name: field.stats.get(name) for name in STATS} | cost
 
@@ -72,7 +70,7 @@ def together(rows, axes):
 
 def warm_up(method, **knobs):
     """Load and compile what a row needs."""
-    if method == "references.multipole":
-        import_module(method).solve(scene("periodic", 0.01, seed=99), order=3)
+    if method == "multipole":
+        methods.load(method).solve(scene("periodic", 0.01, seed=99), order=3)
     else:
         methods.warm_up(method, **knobs)

@@ -42,7 +42,7 @@ def _cases():
         for name, loose in TO_LIMIT.items():
             yield from (methods.case(name, scene="third", voxels=voxels, tolerance=each) for each in (loose, TIGHT))
     for name, numbers in (("tessellation", (10_000, 100_000)), ("steady", (20_000, 1_000_000))):
-        yield from ({"name": name, "particles": number, "seed": 0, "method": "demheat.dem"} for number in numbers)
+        yield from ({"name": name, "particles": number, "seed": 0, "method": "dem"} for number in numbers)
 
 
 CASES = list(_cases())

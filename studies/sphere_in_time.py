@@ -6,11 +6,10 @@ series, `references.series`.
 
 from __future__ import annotations
 
-from importlib import import_module
-
 import numpy as np
 
 from demheat.scene import Material, Scene
+from studies import methods
 from studies.cost import measured
 
 DIAMETER, COLD, HOT = 0.1, 20.0, 200.0
@@ -23,9 +22,9 @@ CONTACTS, PAPERS = ("calibrated", "platonic"), 100_000
 # Longest edges, m; the last of each are some 1e5 tetrahedra, as in the paper.
 SIZES = {1: (0.008, 0.005, 0.00276), 2: (0.012, 0.008, 0.005, 0.00276)}
 # Temporal errors far below the spatial ones: of the whole march, and of each of some 200 steps.
-ACCURACY = {"demheat.dem": 1e-5, "references.fem": 2e-6}
+ACCURACY = {"dem": 1e-5, "fem": 2e-6}
 # What a warm-up solves: the same code at a size that costs next to nothing.
-SMALL = {"demheat.dem": {"particles": 500, "seed": 99}, "references.fem": {"size": DIAMETER / 5}}
+SMALL = {"dem": {"particles": 500, "seed": 99}, "fem": {"size": DIAMETER / 5}}
 
 
 def sphere():
@@ -35,7 +34,7 @@ def sphere():
 
 def cases():
     """DEM packings, more of the small ones, of all laws; finite elements."""
-    dem = {"method": "demheat.dem"}
+    dem = {"method": "dem"}
     for number in NUMBERS:
         for seed in range(3 if number < 100_000 else 2 if number == 100_000 else 1):
             yield {"law": "laguerre", "particles": number, "seed": seed} | dem
@@ -45,7 +44,7 @@ def cases():
                 {"law": law, "particles": number, "seed": seed} | dem for seed in range(3 if number < 30_000 else 1)
             )
     for order, sizes in SIZES.items():
-        yield from ({"order": order, "size": size, "method": "references.fem"} for size in sizes)
+        yield from ({"order": order, "size": size, "method": "fem"} for size in sizes)
 
 
 def quick(case):
@@ -70,7 +69,7 @@ def marched(times, look, *, method, **knobs):
     times : sequence of float, s
     look : callable (Field, exact Field) -> dict
     method : str
-        Module path.
+        Name of its module.
     knobs : keywords of its `evolve`
         Instead of a packing its `particles` and `seed`.
 
@@ -87,7 +86,7 @@ def marched(times, look, *, method, **knobs):
     scene, row, stats = sphere(), {}, {}
 
     def march():
-        fields = import_module(method).evolve(scene, times, accuracy=ACCURACY[method], **knobs)
+        fields = methods.load(method).evolve(scene, times, accuracy=ACCURACY[method], **knobs)
         for field, exact in zip(fields, series.evolve(scene, times, points_per_axis=1), strict=True):
             row.update(look(field, exact))
             stats.update(field.stats)
@@ -149,7 +148,7 @@ def numbers(cell):
 
 def name_of(row):
     """What a row is, in words without its resolution."""
-    return f"DEM, {row['law']}" if row["method"] == "demheat.dem" else f"FEM, P{row['order']:.0f}"
+    return f"DEM, {row['law']}" if row["method"] == "dem" else f"FEM, P{row['order']:.0f}"
 
 
 def solved(df):
@@ -166,6 +165,6 @@ def order_of(rows, column):
 
 def balance(df):
     """Claims on heat: the network's steps keep it to rounding, the elements' to ten times their linear tolerance."""
-    for method, limit in (("demheat.dem", 1e-10), ("references.fem", 1e-8)):
+    for method, limit in (("dem", 1e-10), ("fem", 1e-8)):
         lost = df[df["method"] == method]["energy_error"].max(skipna=False)
         yield f"{method}: largest heat lost over heat moved", lost, limit

@@ -43,13 +43,13 @@ def _cases():
                 # Thousands of iterations before it gives up: its tests show that it raises.
                 scenes = [(f, c) for f, c in scenes if c not in SLOW]
             yield from ({"name": name, "fraction": f, "contrast": c, **knobs, **fixed} for f, c in scenes)
-            if fixed["method"] == "references.fft":
+            if fixed["method"] == "fft":
                 single = {**knobs, "precision": "float32", **fixed}
                 extra = [(f, c) for f, c in SINGLE if name == "fft" or c not in SLOW]
                 yield from ({"name": name, "fraction": f, "contrast": c, **single} for f, c in extra)
     for fraction in (methods.THIRD, *FRACTIONS):
         for contrast in APPROACH:
-            yield {"name": "lattice", "fraction": fraction, "contrast": contrast, "method": "references.lattice"}
+            yield {"name": "lattice", "fraction": fraction, "contrast": contrast, "method": "lattice"}
 
 
 CASES = list(_cases())

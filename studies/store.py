@@ -18,7 +18,7 @@ TAIL = (
 
 
 def case_key(case):
-    """Name of a case: its parameters in order, as "contrast=10,method=references.fem,order=2"."""
+    """Name of a case: its parameters in order, as "contrast=10,method=fem,order=2"."""
     return ",".join(f"{name}={value}" for name, value in case.items())
 
 

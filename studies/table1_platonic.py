@@ -25,12 +25,12 @@ TIMEOUT = 3600.0
 def _case(law, packing, particles, seed, contacts=None):
     wanted = {} if contacts is None else {"contacts": contacts}
     return {"part": "packing", "law": law, "packing": packing, "particles": particles, "seed": seed, **wanted,
-            "method": "demheat.dem"}  # fmt: skip
+            "method": "dem"}  # fmt: skip
 
 
 def _cases():
     for neighbours in range(1, 21):
-        yield {"part": "table", "neighbours": neighbours, "method": "demheat.network.platonic"}
+        yield {"part": "table", "neighbours": neighbours, "method": "platonic"}
     for number in NUMBERS:
         for packing in ("relaxed", "lsa"):
             for seed in SEEDS:
@@ -42,6 +42,7 @@ def _cases():
 
 
 CASES = list(_cases())
+MODULES = {"platonic": "demheat.network.platonic"}
 
 
 def QUICK(case):

@@ -28,7 +28,7 @@ TIMEOUT = 7200.0
 
 def _case(body, particles, integrator, accuracy):
     return {"body": body, "particles": particles, "integrator": integrator, "accuracy": accuracy,
-            "method": "demheat.transient"}  # fmt: skip
+            "method": "transient"}  # fmt: skip
 
 
 def _cases():
@@ -42,6 +42,7 @@ def _cases():
 
 
 CASES = list(_cases())
+MODULES = {"transient": "demheat.transient"}
 
 
 def QUICK(case):

@@ -14,7 +14,8 @@ import math
 from studies.pick import largest, pick, present
 from studies.zeta2_pool import below, pooled, with_bounds
 
-MULTIPOLE, VOXELS, S2 = "references.multipole", "references.zeta", "demheat.packing.statistics"
+MULTIPOLE, VOXELS, S2 = "multipole", "zeta", "statistics"
+MODULES = {S2: "demheat.packing.statistics"}
 DILUTE = 4 * math.pi / 81  # SC with radii of a third of the edge
 ARRAYS = (("sc", 0.5), ("sc", DILUTE), ("bcc", 0.5), ("fcc", 0.5))
 # Exact values, as known elsewhere: to half a unit of the last digit.

@@ -82,7 +82,7 @@ def test_cells_keep_their_digits():
 
 def test_the_exact_row_is_rayleighs(monkeypatch):
     monkeypatch.setattr(study, "GRID", 40)
-    row = study.run("exact", method="references.exact")
+    row = study.run("exact", method="exact")
     for key, (value, digits) in study.RAYLEIGH.items():
         assert row[key] == pytest.approx(value, abs=0.51 * 10**-digits)
     assert row["flux_max"] == row["temperature_max"] == row["q_C_error"] == 0.0
@@ -95,7 +95,7 @@ def test_a_halo_stands_in_for_the_flux_only(monkeypatch):
     solved = []
     monkeypatch.setattr(study, "GRID", 40)  # points that take time and tell nothing here
     monkeypatch.setattr(dem, "solve", _kept(dem.solve, solved))
-    case = {"method": "demheat.dem", "law": "calibrated", "particles": 500, "seed": 5}
+    case = {"method": "dem", "law": "calibrated", "particles": 500, "seed": 5}
     raw, smooth = (study.run("dem-calibrated", ratio=ratio, **case) for ratio in (None, 4.0))
     assert raw["T_C"] == smooth["T_C"] and raw["temperature_rms"] == smooth["temperature_rms"]
     field, points = solved[1], np.array([[0.05, 0.05, 0.05]])
@@ -129,7 +129,7 @@ def test_claims_see_an_error():
 
     columns = ["flux_rms", "flux_max", "flux_rms_band", *study._errors("q"), *study._errors("T")]
     row = dict.fromkeys(columns, 0.01) | {"q_B_error": -0.7, "name": "dem", "particles": study.PAPERS}
-    row |= {"method": "demheat.dem", "heat_imbalance": 1e-9}
+    row |= {"method": "dem", "heat_imbalance": 1e-9}
     found = {text.split(": ")[1]: value for text, value, _ in study._laguerre(pd.DataFrame([row])) if value is not None}
     assert found["largest error of a flux of Table 2, %"] == 0.7
     assert found["largest error of a temperature of Table 2, K"] == 0.01

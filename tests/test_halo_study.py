@@ -53,7 +53,7 @@ def rows():
     kinds = [(case["law"], case["split"], case["walls"]) for case in fig10_halo.CASES]
     made = []
     for law, split, walls in dict.fromkeys(kinds):
-        case = {"law": law, "split": split, "walls": walls, "particles": 1_000, "seed": 0, "method": "demheat.dem"}
+        case = {"law": law, "split": split, "walls": walls, "particles": 1_000, "seed": 0, "method": "dem"}
         made.append({"case": str(case), **case, **fig10_halo.run(**case), "status": "ok", "note": ""})
     return pd.DataFrame(made)
 

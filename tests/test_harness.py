@@ -1,7 +1,9 @@
 """The harness of the studies, on a study small enough to break on purpose."""
 
 import csv
+import importlib
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +14,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from studies import cost, harness, provenance, store, table
+from studies import cost, harness, methods, provenance, store, table
 from studies.__main__ import main, study_names
 
 TINY = '''
@@ -149,6 +151,53 @@ def test_other_code_machine_threads_or_versions_invalidate(tiny, column):
     rows[0][column] = "another"
     store.write_rows(path, rows)
     assert tiny.ran() == ["plain"]
+
+
+MOVED = """
+from studies import methods
+CASES = [{"x": 1.5, "method": "toy"}]
+QUICK = bool
+
+def run(x, method):
+    return {"square": methods.load(method).solve(x)}
+"""
+
+
+def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
+    """The method is a file with a helper; then a folder whose solver and helper have other names and places."""
+    home, name = tmp_path / f"home_{tmp_path.name}", f"moved_{tmp_path.name}"
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(provenance, "ROOT", tmp_path)
+    monkeypatch.setattr(provenance, "PACKAGES", (home.name,))
+    monkeypatch.setattr(methods, "HOMES", (home.name,))
+    monkeypatch.setattr(harness, "triad_gbs", lambda: 12.5)
+    solve, helper = "def solve(x):\n    return square(x)\n", "def square(x):\n    return x * x\n"
+
+    def rows(**files):
+        shutil.rmtree(home, ignore_errors=True)
+        for path, text in {"__init__": "", **files}.items():
+            (home / f"{path}.py").parent.mkdir(parents=True, exist_ok=True)
+            (home / f"{path}.py").write_text(text)
+        for cached in (provenance.code_hash, provenance._parse, importlib.invalidate_caches):
+            getattr(cached, "cache_clear", cached)()
+        for module in [each for each in sys.modules if each.startswith((home.name, name))]:
+            del sys.modules[module]
+        harness.run_study(name, tmp_path, say=lambda line: None, compute=lambda *a: made.append(1) or computed(*a))
+        return store.read_rows(tmp_path / f"{name}.csv"), len(made)
+
+    def computed(_, study, case):
+        return harness.compute_row(study, case, warm=False)
+
+    made = []
+    (tmp_path / f"{name}.py").write_text(MOVED)
+    before = rows(toy=f"from {home.name}.helper import square\n{solve}", helper=helper)
+    assert before[1] == 1 and before[0]["x=1.5,method=toy"]["square"] == "2.25"
+    files = {"toy/__init__": f"from {home.name}.toy.core import solve\n", "toy/deep/power": helper}
+    moved = files | {"toy/core": f"from {home.name}.toy.deep.power import square\n{solve}"}
+    assert rows(**moved) == before
+    # The check can fail: other code is another row.
+    other = moved | {"toy/deep/power": helper.replace("x * x", "x**2")}
+    assert rows(**other)[1] == 2
 
 
 def test_bad_rows_do_not_stop_the_run(tiny, capsys):

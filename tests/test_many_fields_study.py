@@ -101,12 +101,12 @@ def test_without_multipoles_the_finest_elements_are_the_witness():
 
 def test_temperatures_of_the_cell_are_level(monkeypatch):
     monkeypatch.setattr(fig18_rows, "spheres_in", lambda boundary: cube(boundary))
-    row = study.run("fft", "gradient", method="references.fft", voxels=16)
+    row = study.run("fft", "gradient", method="fft", voxels=16)
     values = np.array([float(word) for word in row["slice_temperature"].split()])
     assert len(values) == fig18_rows.GRID**2
     assert values.mean() == pytest.approx(50.0, abs=1e-3)  # rounded to three digits
-    walls = study.run("fft", "walls", method="references.fft", voxels=16)
-    witness = study.run("multipole", "walls", method="references.multipole", order=8)
+    walls = study.run("fft", "walls", method="fft", voxels=16)
+    witness = study.run("multipole", "walls", method="multipole", order=8)
     # 16^3 voxels on one sphere: found 0.02 K and 2 %.
     assert abs(walls["T_A"] - witness["T_A"]) < 0.1
     assert walls["q_B"] == pytest.approx(witness["q_B"], rel=0.1)

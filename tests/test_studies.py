@@ -7,7 +7,7 @@ import functools
 
 import pytest
 
-from studies import harness, provenance, store, table
+from studies import harness, methods, provenance, store, table
 from studies.__main__ import study_names
 
 NAMES = study_names()
@@ -52,15 +52,15 @@ def test_cases_are_sound(name):
     assert 0 < len(quick) < len(study.CASES)
     assert isinstance(study.PAPER, dict)
     for case in study.CASES:
-        assert provenance._file_of(case["method"]) is not None, case
+        assert provenance.module_of(study, case["method"]), case
         assert harness.find_case(study, store.case_key(case)) is case
 
 
 def test_code_of_a_row_is_that_of_its_method(monkeypatch):
     study = harness.load("fig14_single_inclusion")
     codes = {
-        method: provenance.code_hash(study.__file__, method)
-        for method in ("demheat.dem", "references.fem", "references.fft", "references.bounds")
+        method: provenance.code_hash(study.__file__, methods.path_of(method))
+        for method in ("dem", "fem", "fft", "bounds")
     }
     assert len(set(codes.values())) == len(codes)
     parse = provenance._parse
@@ -71,14 +71,14 @@ def test_code_of_a_row_is_that_of_its_method(monkeypatch):
 
     monkeypatch.setattr(provenance, "_parse", changed)
     provenance.code_hash.cache_clear()
-    after = {method: provenance.code_hash(study.__file__, method) for method in codes}
+    after = {method: provenance.code_hash(study.__file__, methods.path_of(method)) for method in codes}
     provenance.code_hash.cache_clear()
-    assert {method for method in codes if after[method] != codes[method]} == {"demheat.dem"}
+    assert {method for method in codes if after[method] != codes[method]} == {"dem"}
 
 
 def test_a_row_in_its_own_process():
     study = harness.load("fig14_single_inclusion")
-    case = harness.find_case(study, "name=exact,scene=third,contrast=10.0,method=references.exact")
+    case = harness.find_case(study, "name=exact,scene=third,contrast=10.0,method=exact")
     row = harness.spawn_row("fig14_single_inclusion", study, case)
     # Rayleigh's method, McPhedran and McKenzie (1978), to the digits printed in studies/fig14_single_inclusion.py.
     assert row["status"] == "ok" and row["k_ratio"] == pytest.approx(1.395734838, abs=5e-10)
