@@ -5,12 +5,12 @@ Source: Haddad et al. 2021, eqs. 7-9.
 
 import numpy as np
 
-from demheat.evaluate import field_of
+from demheat.conduction.steady import solve_steady
 from demheat.network.interface import connect
 from demheat.packing.cache import relaxed
 from demheat.packing.relax import FEWEST
+from demheat.sampling.field_of import field_of
 from demheat.scene import WALLS, Flux, Material, Scene
-from demheat.steady import solve_steady
 
 LOADINGS = ("isothermal", "flux")
 
@@ -32,7 +32,7 @@ def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", 
         Between walls: two temperatures, or as in the paper a temperature below and a flux that enters above, where the
         temperature is then read.
     solver, tolerance
-        As in `demheat.steady.solve_steady`.
+        As in `demheat.conduction.steady.solve_steady`.
 
     Returns
     -------

@@ -6,21 +6,21 @@ import warnings
 import numpy as np
 
 from demheat.calibration import calibration, cube_like, loaded_flat
-from demheat.checks import check_steady, check_transient
-from demheat.evaluate import field_of
+from demheat.conduction.sources import lost_power, passes, source_power
+from demheat.conduction.steady import check_solver, solve_steady
+from demheat.conduction.transient import check_request, mean_flux, try_functions
+from demheat.conduction.transient import evolve as evolve_network
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.network.platonic import COORDINATION, platonic_facets
+from demheat.options import check_steady, check_transient
 from demheat.packing.cache import relaxed, tiled
 from demheat.packing.conforming import conform
 from demheat.packing.domain import tile_counts
 from demheat.packing.neighbours import contacts
+from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
-from demheat.sources import lost_power, passes, source_power
-from demheat.steady import check_solver, solve_steady
-from demheat.transient import check_request, mean_flux, try_functions
-from demheat.transient import evolve as evolve_network
 
 # Contacts of the papers' own law: Haddad et al. 2021.
 CALIBRATED_COORDINATION = 7.5
@@ -183,8 +183,8 @@ def evolve(
     Returns
     -------
     iterator of Field
-        One at each time. Their stats are those of `demheat.transient.integrate`, with law, calibration and, for clipped
-        sources, lost_power (W). Their mean flux is the volume average of what flows, not what enters.
+        One at each time. Their stats are those of `demheat.conduction.transient.integrate`, with law, calibration and,
+        for clipped sources, lost_power (W). Their mean flux is the volume average of what flows, not what enters.
 
     Raises
     ------

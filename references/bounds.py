@@ -106,7 +106,8 @@ def rayleigh(k_matrix, k_inclusion, fraction):
     """Simple cubic array to the order that Rayleigh kept (Phil. Mag. 34 (1892) 481): dipoles and octupoles.
 
     k = k1 + 3 f k1/[1/beta - f - 1.3047 f^(10/3) (k2 - k1)/(k2 + 4 k1/3)], beta = (k2 - k1)/(k2 + 2 k1), from where the
-    exact series (McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; `references.lattice`) goes on with f^(14/3).
+    exact series (McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; `references.exact.lattice`) goes on with
+    f^(14/3).
     1.3047 = 16 S^2 (3/(4 pi))^(10/3) with the lattice sum S; 1.65 and 0.523 also stand in print.
 
     Raises

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import argparse
 import os
-import pkgutil
 import sys
 from pathlib import Path
 
 import studies
-from studies import harness
-from studies.provenance import row_environment
+from studies.harness import runner
+from studies.harness.provenance import row_environment
 
 DEFAULT_OUT = "out"
 
@@ -53,13 +52,15 @@ def _parser():
 
 def study_names():
     """Names of all studies: the modules of this package that have CASES."""
-    names = sorted(module.name for module in pkgutil.iter_modules(studies.__path__) if module.name != "__main__")
-    return [name for name in names if "CASES" in (Path(studies.__path__[0]) / f"{name}.py").read_text().split()]
+    home = Path(studies.__path__[0])
+    files = {path.stem: path for path in home.glob("*.py")}
+    files |= {path.parent.name: path for path in home.glob("*/__init__.py")}
+    return sorted(name for name, path in files.items() if "CASES" in path.read_text().split())
 
 
 def _list(arguments):
     for name in study_names():
-        study = harness.load(name)
+        study = runner.load(name)
         quick = sum(bool(study.QUICK(case)) for case in study.CASES)
         title = study.__doc__.splitlines()[0]
         print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick   {title}")
@@ -69,17 +70,17 @@ def _list(arguments):
 def _run(arguments):
     chosen = arguments.names or study_names()
     for name in chosen:
-        harness.load(name)  # a misspelt name must not cost the studies before it
+        runner.load(name)  # a misspelt name must not cost the studies before it
     status = 0
     for name in chosen:
-        path = harness.run_study(name, arguments.out, quick=arguments.quick, force=arguments.force, say=_say)
+        path = runner.run_study(name, arguments.out, quick=arguments.quick, force=arguments.force, say=_say)
         status |= _show(name, path)
     return status
 
 
 def _render(arguments):
     name = arguments.names[0]
-    harness.load(name)
+    runner.load(name)
     path = arguments.out / f"{name}.csv"
     if not path.exists():
         raise ValueError(f"no {path}; run the study first")
@@ -88,9 +89,9 @@ def _render(arguments):
 
 def _show(name, path):
     """Render a study, print its page and say where the figure is; 1 if a claim failed."""
-    from studies.table import render
+    from studies.harness.table import render
 
-    claims, text = render(harness.load(name), path)
+    claims, text = render(runner.load(name), path)
     print(text)
     failed = [claim for claim in claims if not claim.ok]
     print(f"{name}: {len(claims) - len(failed)} of {len(claims)} claims hold")
@@ -104,27 +105,27 @@ def _row(arguments):
     # Before any library that reads these is loaded.
     os.environ.update(row_environment())
     if arguments.parent:
-        harness.die_with_parent(arguments.parent)
-    study = harness.load(arguments.name)
-    row = harness.compute_row(study, harness.find_case(study, arguments.case))
+        runner.die_with_parent(arguments.parent)
+    study = runner.load(arguments.name)
+    row = runner.compute_row(study, runner.find_case(study, arguments.case))
     if arguments.json:
-        harness.write_json(row, arguments.json)
+        runner.write_json(row, arguments.json)
         return 0
     for name, value in row.items():
         print(f"{name:20} {value}")
-    return 0 if row["status"] in harness.KEPT else 1
+    return 0 if row["status"] in runner.KEPT else 1
 
 
 def _report(arguments):
-    from studies.readme import fill
-    from studies.store import replaced
-    from studies.table import render
+    from studies.harness.readme import fill
+    from studies.harness.store import replaced
+    from studies.harness.table import render
 
     status, pages = 0, []
     for name in study_names():
         path = arguments.out / f"{name}.csv"
         if path.exists():
-            claims, text = render(harness.load(name), path)
+            claims, text = render(runner.load(name), path)
             pages.append(text)
             status |= any(not claim.ok for claim in claims)
     if not pages:

@@ -8,9 +8,9 @@ the wall), regular polyhedra ("platonic"). Errors are over all particles, in uni
 measure, as it seems, is |dT|/T with T in degrees Celsius. Temporal accuracy is 1e-5 of the span.
 """
 
-from studies.pick import pick, present
-from studies.slab import COLD, HOT, TIMES
-from studies.store import printed
+from studies.common.slab import COLD, HOT, TIMES
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000)
 LAWS = (("laguerre", None), ("calibrated", "center"), ("calibrated", "surface"), ("platonic", "center"))
@@ -46,7 +46,7 @@ def run(law, wall, particles, seed, method):
     """Errors at the three times, and the profile."""
     from demheat.dem import evolve
     from references import series
-    from studies.slab import packing_of, slab
+    from studies.common.slab import packing_of, slab
 
     scene = slab()
     knobs = {} if wall is None else {"wall": wall}
@@ -61,7 +61,7 @@ def run(law, wall, particles, seed, method):
 def _errors(field, exact):
     import numpy as np
 
-    from studies.slab import binned
+    from studies.common.slab import binned
 
     points, volumes, temperature, _, _ = field.samples
     right, y = exact.temperature_at(points), points[:, 1]
@@ -84,7 +84,7 @@ def _text(values):
 
 def warm_up(law, wall, particles, seed, method):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    from studies.slab import packing_of
+    from studies.common.slab import packing_of
 
     packing_of(particles, seed)
     # Wall temperatures at the wall need a bulk between the layers at the walls.
@@ -145,7 +145,7 @@ def plot(df):
     """Profile and error of the largest rows of each law; errors against the number of particles."""
     from matplotlib import pyplot
 
-    from studies.figures import BLUE, PINK, RED
+    from studies.harness.figures import BLUE, PINK, RED
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.6))
     looks = {"laguerre": (RED, "o"), "calibrated": (PINK, "s"), "platonic": (BLUE, "^")}
@@ -166,8 +166,8 @@ def _profiles(left, middle, df, looks):
     import numpy as np
 
     from references import series
-    from studies.figures import BLACK
-    from studies.slab import LENGTH, slab
+    from studies.common.slab import LENGTH, slab
+    from studies.harness.figures import BLACK
 
     y = np.linspace(0.0, 1.0, 201)
     points = np.column_stack([np.full(201, 0.5 * LENGTH), y * LENGTH, np.full(201, 0.5 * LENGTH)])

@@ -10,10 +10,10 @@ are straight linear (P1) and curved quadratic (P2) tetrahedra. Costs leave out t
 and include the mesh.
 """
 
-from studies import sphere_in_time
-from studies.pick import pick, present
-from studies.sphere_in_time import NUMBERS, PAPERS, SIZES
-from studies.store import printed
+from studies.common import sphere_in_time
+from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
 CASES = list(sphere_in_time.cases())
@@ -107,7 +107,7 @@ def plot(df):
     from matplotlib import pyplot
 
     from references import series
-    from studies.figures import BLACK, BLUE, GREY, PINK, RED, SKY
+    from studies.harness.figures import BLACK, BLUE, GREY, PINK, RED, SKY
 
     df = sphere_in_time.solved(df)
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(15, 4.6))

@@ -6,10 +6,10 @@ finite elements; root mean squares are weighted by volume. Fields at 2 and 5 s s
 while the heat has not reached the centre. The slice is the plane z = R, on a grid of points that are no particles.
 """
 
-from studies import sphere_in_time
-from studies.pick import pick, present
-from studies.sphere_in_time import NUMBERS, SIZES
-from studies.store import printed
+from studies.common import sphere_in_time
+from studies.common.sphere_in_time import NUMBERS, SIZES
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 TIMES = (2.0, 5.0, 10.0)
 CASES = list(sphere_in_time.cases())
@@ -98,7 +98,7 @@ def plot(df):
     """Temperature and error over the radius, errors against unknowns; the slice."""
     from matplotlib import pyplot
 
-    from studies.figures import BLUE, GREY, PINK, RED, SKY
+    from studies.harness.figures import BLUE, GREY, PINK, RED, SKY
 
     df = sphere_in_time.solved(df)
     figure, ((left, middle, right), slices) = pyplot.subplots(2, 3, figsize=(14, 8.6))
@@ -136,7 +136,7 @@ def _exact():
 def _radial(left, middle, right, exact):
     import numpy as np
 
-    from studies.figures import BLACK
+    from studies.harness.figures import BLACK
 
     r = np.linspace(0.0, 1.0, 101)
     left.plot(r, exact(r), color=BLACK, linewidth=0.8, label="exact")

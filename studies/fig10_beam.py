@@ -12,9 +12,9 @@ conductivity between its two ends, and its heat capacity, both over the material
 span. Packings are relaxed ones, at a packing fraction of 0.64; the paper names neither an algorithm nor a fraction.
 """
 
-from studies.cases import laws_by_size
-from studies.pick import pick, present
-from studies.store import printed
+from studies.common.cases import laws_by_size
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 PAPER = printed("fig10_beam")
 TIMES = (0.001, 0.01, 0.05, 0.1)
@@ -49,7 +49,7 @@ def run(law, method, **case):
 
 def _particles(law, coordination, particles, seed):
     from demheat import evolve
-    from studies.terreros import beam, packing_of, steady_conductivity
+    from studies.common.terreros import beam, packing_of, steady_conductivity
 
     scene = beam()
     packing = packing_of(scene, particles, seed)
@@ -67,7 +67,7 @@ def _particles(law, coordination, particles, seed):
 
 def _elements(size):
     from references import fem
-    from studies.terreros import beam
+    from studies.common.terreros import beam
 
     row = {}
     for field in _compared(fem.evolve(beam(), TIMES, size=size, accuracy=FEM_ACCURACY), row):
@@ -81,7 +81,7 @@ def _compared(fields, row):
     import numpy as np
 
     from references import series
-    from studies.terreros import COLD, HOT, beam, binned
+    from studies.common.terreros import COLD, HOT, beam, binned
 
     for field, exact in zip(fields, series.evolve(beam(), TIMES, points_per_axis=1), strict=True):
         points, volumes, temperature, _, _ = field.samples
@@ -102,7 +102,7 @@ def warm_up(law, method, **case):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
     if method == "fem":
         return
-    from studies.terreros import beam, packing_of
+    from studies.common.terreros import beam, packing_of
 
     packing_of(beam(), case["particles"], case["seed"])
     run(law, method, **case | {"particles": 1_000, "seed": 99})
@@ -194,7 +194,7 @@ def plot(df):
     """Profiles of the largest packings; their errors; transient error beside what it hides."""
     from matplotlib import pyplot
 
-    from studies.figures import BLUE, PINK, RED, SKY
+    from studies.harness.figures import BLUE, PINK, RED, SKY
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.6))
     looks = {("laguerre", None): (RED, "o"), ("calibrated", 7.5): (PINK, "s"), ("platonic", 7.2): (BLUE, "^"),
@@ -208,8 +208,8 @@ def _profiles(left, middle, df, looks):
     import numpy as np
 
     from references import series
-    from studies.figures import BLACK
-    from studies.terreros import LENGTH, RADIUS, beam
+    from studies.common.terreros import LENGTH, RADIUS, beam
+    from studies.harness.figures import BLACK
 
     x = np.linspace(0.0, 1.0, 201)
     points = np.column_stack([x * LENGTH, np.full(201, RADIUS), np.full(201, RADIUS)])

@@ -15,9 +15,9 @@ thickness: there is no bulk, where contacts could be counted. Contacts are there
 All laws get the same power, whatever heat capacity they make of the sheet.
 """
 
-from studies.cases import laws_by_size
-from studies.pick import pick, present
-from studies.store import printed
+from studies.common.cases import laws_by_size
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 PAPER = printed("fig12_15_sheet")
 STOP, OUTPUTS = 7.878, 60
@@ -52,7 +52,7 @@ def run(law, method, **case):
     """Temperatures at the checkpoints in time, heat capacity and heat of the sheet."""
     import numpy as np
 
-    from studies.terreros import POINTS, sheet
+    from studies.common.terreros import POINTS, sheet
 
     scene, curves = sheet(), []
     points = np.array([POINTS[name] for name in NAMES])
@@ -76,7 +76,7 @@ def _fields(scene, law, method, **case):
 
         return fem.evolve(scene, TIMES, elements=law, size=case["size"], accuracy=ACCURACY / 5)
     from demheat import evolve
-    from studies.terreros import bulk_gap, packing_of
+    from studies.common.terreros import bulk_gap, packing_of
 
     packing, contact = packing_of(scene, case["particles"], case["seed"]), {}
     if case["coordination"] is not None:
@@ -86,7 +86,7 @@ def _fields(scene, law, method, **case):
 
 def warm_up(law, method, **case):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    from studies.terreros import packing_of, sheet
+    from studies.common.terreros import packing_of, sheet
 
     if method == "fem":
         run(law, method, size=4 * COARSE)
@@ -118,7 +118,7 @@ def compared(df, law, particles, name):
         dispersion (%), off (% of the mean of the packings there), at (s), span (the same as off, but % of the highest
         mean), end (% at the last time).
     """
-    from studies.terreros import dispersion, largest_difference
+    from studies.common.terreros import dispersion, largest_difference
 
     curves = curves_of(pick(df, law=law, particles=particles), name)
     bricks, mean = curves_of(reference(df), name)[0], curves.mean(axis=0)
@@ -162,7 +162,7 @@ def _against_bricks(df):
 
 
 def _bricks(df):
-    from studies.terreros import largest_difference
+    from studies.common.terreros import largest_difference
 
     fine, paper = (pick(df, law="hexahedra", size=size) for size in (FINE, ELEMENT))
     if len(fine) and len(paper):
@@ -178,7 +178,7 @@ def _bricks(df):
 def _balance(df):
     import math
 
-    from studies.terreros import DIAMETER, METAL, POWER, SHEET
+    from studies.common.terreros import DIAMETER, METAL, POWER, SHEET
 
     given = POWER * math.pi / 4 * DIAMETER**2 * SHEET[2] * STOP
     off = (df["heat"] / given - 1).abs().max(skipna=False)
@@ -220,7 +220,7 @@ def plot(df):
     """Curves at the checkpoints, band over packings; scatter and difference from bricks against their number."""
     from matplotlib import pyplot
 
-    from studies.figures import BLACK, BLUE, PINK, RED
+    from studies.harness.figures import BLACK, BLUE, PINK, RED
 
     df = df[df["status"] == "ok"]
     figure, axes = pyplot.subplots(2, 3, figsize=(14, 8))

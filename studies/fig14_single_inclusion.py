@@ -7,10 +7,10 @@ the simple cubic array by Rayleigh's multipoles.
 """
 
 from demheat.gallery import EDGE, sphere_in_cube
-from studies import methods
-from studies.figures import GREY, LOOK, look, resolution
-from studies.pick import extrapolated, finest, mean_errors, pick, present, worst
-from studies.store import printed
+from studies.harness import methods
+from studies.harness.figures import GREY, LOOK, look, resolution
+from studies.harness.pick import extrapolated, finest, mean_errors, pick, present, worst
+from studies.harness.store import printed
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
 CONTRASTS = (0.01, 0.1, 10.0, 100.0)

@@ -9,9 +9,10 @@ scalar FFT scheme beside Eyre-Milton's, each pair on the same data.
 import tempfile
 
 from demheat.gallery import EDGE, sphere_in_cube
-from studies import methods, peers
-from studies.figures import LOOK, look, resolution
-from studies.pick import pick, present
+from studies.common import peers
+from studies.harness import methods
+from studies.harness.figures import LOOK, look, resolution
+from studies.harness.pick import pick, present
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
 CONTRAST = 10.0

@@ -11,9 +11,9 @@ import warnings
 from functools import cache
 
 from demheat.gallery import EDGE, sphere_in_cube
-from studies import methods
-from studies.figures import GREY, look, resolution
-from studies.pick import finest, pick
+from studies.harness import methods
+from studies.harness.figures import GREY, look, resolution
+from studies.harness.pick import finest, pick
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
 FRACTIONS = (0.5, 0.52)
@@ -81,7 +81,7 @@ def run(name, fraction, contrast, method, **knobs):
 
 @cache
 def _exact(fraction, contrast):
-    from references import lattice
+    from references.exact import lattice
 
     return lattice.conductivity("sc", contrast, fraction)
 

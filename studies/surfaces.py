@@ -12,9 +12,9 @@ import numpy as np
 
 from demheat import Flux
 from demheat.gallery import EDGE, TEMPERATURES, sphere_in_cube
-from studies import methods
-from studies.figures import BLACK, GREY, LOOK, look
-from studies.pick import extrapolated, mean_errors, order, pick, present, worst
+from studies.harness import methods
+from studies.harness.figures import BLACK, GREY, LOOK, look
+from studies.harness.pick import extrapolated, mean_errors, order, pick, present, worst
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000, 400_000)
 SEEDS = (0, 1, 2)

@@ -9,9 +9,9 @@ nor a packing fraction; contacts are detected within a gap that gives the wanted
 """
 
 from demheat.scene import Material, Scene
-from studies.figures import BLUE, GREEN, GREY, ORANGE, PINK
-from studies.pick import pick, present
-from studies.store import printed
+from studies.harness.figures import BLUE, GREEN, GREY, ORANGE, PINK
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
 
 PAPER = printed("table1_platonic")
 WANTED = (6.2, 7.2, 7.5)  # the middle one is the law's default

@@ -20,69 +20,43 @@ LAYERS = {
     "demheat.referee": (),
     "demheat.gallery": ("demheat.scene",),
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.parts"),
-    "demheat.sources": ("demheat.scene",),
+    "demheat.halo": ("demheat.sampling.halo",),
     "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
     "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
-    "demheat.steady": (
-        "demheat.scene",
-        "demheat.threads",
-        "demheat.network",
-        "demheat.steady_kernels",
-        "demheat.steady_multigrid",
-    ),
-    "demheat.steady_multigrid": ("demheat.threads", "demheat.steady_multigrid_kernels"),
-    "demheat.integrators": (
+    "demheat.conduction": (
         "demheat.scene",
         "demheat.parts",
         "demheat.threads",
         "demheat.network",
-        "demheat.steady_kernels",
-        "demheat.transient_kernels",
-        "demheat.integrators",
+        "demheat.conduction",
     ),
-    "demheat.transient": (
-        "demheat.scene",
-        "demheat.threads",
-        "demheat.network",
-        "demheat.steady",
-        "demheat.steady_kernels",
-        "demheat.integrators",
-    ),
-    "demheat.reconstruct": (),
-    "demheat.edges": ("demheat.network",),
-    "demheat.evaluate": (
+    "demheat.sampling": (
         "demheat.scene",
         "demheat.field",
-        "demheat.edges",
-        "demheat.reconstruct",
         "demheat.threads",
         "demheat.network",
-        "demheat.steady_kernels",
+        "demheat.conduction.steady_kernels",
+        "demheat.sampling",
     ),
-    "demheat.halo": ("demheat.scene", "demheat.threads", "demheat.network.laguerre_kernels", "demheat.halo_kernels"),
-    "demheat.particle_flux": ("demheat.threads", "demheat.network", "demheat.particle_flux_kernels"),
     "demheat.calibration": (
         "demheat.scene",
         "demheat.threads",
         "demheat.packing",
         "demheat.network",
-        "demheat.steady",
-        "demheat.evaluate",
+        "demheat.conduction.steady",
+        "demheat.sampling.field_of",
     ),
-    "demheat.checks": ("demheat.scene", "demheat.packing", "demheat.network", "demheat.sources"),
+    "demheat.options": ("demheat.scene", "demheat.packing", "demheat.network", "demheat.conduction.sources"),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
         "demheat.threads",
         "demheat.packing",
         "demheat.network",
-        "demheat.steady",
-        "demheat.sources",
-        "demheat.transient",
-        "demheat.integrators",
-        "demheat.evaluate",
+        "demheat.conduction",
+        "demheat.sampling",
         "demheat.calibration",
-        "demheat.checks",
+        "demheat.options",
     ),
     "references": ("demheat.scene", "demheat.field", "references"),
     "studies": ("demheat", "references", "studies"),
@@ -95,7 +69,7 @@ HOMES = {
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
     # The threading layer must be chosen before the first kernel is compiled: demheat.threads does that.
-    "numba": ("*_kernels", "demheat.threads"),
+    "numba": ("*kernels", "demheat.threads"),
     "pandas": ("studies",),
     "matplotlib": ("studies",),
     "multivoro": ("studies",),
@@ -139,26 +113,21 @@ def imports(name, source, modules=MODULES, is_package=False):
 def refused(name, source, modules=MODULES, is_package=False):
     """What a module imports and may not, as sentences."""
     prefix = max((key for key in LAYERS if below(name, key)), key=len)
-    allowed = () if name.endswith("_kernels") else LAYERS[prefix]
+    allowed = () if name.endswith("kernels") else LAYERS[prefix]
     wrong = []
     for target in sorted(imports(name, source, modules, is_package)):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
-            beside = name.endswith("_kernels") and target.endswith("_kernels")
+            beside = name.endswith("_kernels") and target.endswith("kernels")
             # Kernels share helpers among themselves and know nothing else.
             if not (fits or beside):
                 wrong.append(f"{name} imports {target}")
         elif library in HOMES:
             homes = HOMES[library]
-            if not any(name.endswith(home[1:]) if home[0] == "*" else fits_home(name, home) for home in homes):
+            if not any(name.endswith(home[1:]) if home[0] == "*" else below(name, home) for home in homes):
                 wrong.append(f"{name} imports {library}, whose home is {' and '.join(homes)}")
     return wrong
-
-
-def fits_home(name, home):
-    """A home is a module, a package, or several modules that share its name before an underscore (fft, fft_cg)."""
-    return below(name, home) or name.startswith(home + "_")
 
 
 @pytest.mark.parametrize("name", MODULES)
@@ -172,7 +141,7 @@ def test_layers(name):
     [
         ("demheat.scene", "from demheat.field import Field"),
         ("demheat.gallery", "import references.bounds"),
-        ("demheat.steady", "def f():\n    from demheat.referee import heat_balance"),
+        ("demheat.conduction.steady", "def f():\n    from demheat.referee import heat_balance"),
         ("demheat.packing.relax", "from demheat.network import base"),
         ("demheat.packing.relax_kernels", "from demheat.packing.base import Packing"),
         ("demheat.packing.relax", "from ..network.base import Network"),
@@ -180,8 +149,8 @@ def test_layers(name):
         ("demheat.dem", "from demheat import referee"),
         ("references.exact", "from demheat import gallery"),
         ("references.fem", "import demheat"),
-        ("references.bounds", "from studies.store import printed"),
-        ("references.exact", "import numba"),
+        ("references.bounds", "from studies.harness.store import printed"),
+        ("references.exact.forms", "import numba"),
         ("references.fem", "import gmsh"),
         ("references.meshes", "import gmsh"),
         ("references.mesh", "from skfem.element import ElementTetP2"),
@@ -198,10 +167,10 @@ def test_a_breach_is_seen(name, source):
     ("name", "source"),
     [
         ("demheat.packing.relax", "from .base import Packing"),
-        ("demheat.dem", "from demheat import steady"),
-        ("references.fft_transforms", "import pyfftw"),
+        ("demheat.dem", "from demheat.conduction import steady"),
+        ("references.fft.transforms", "import pyfftw"),
         ("references.mesh.shapes", "import gmsh"),
-        ("references.voxels_kernels", "from numba import njit"),
+        ("references.voxels.kernels", "from numba import njit"),
         ("studies.fig14_single_inclusion", "import pandas\nfrom references import bounds"),
     ],
 )

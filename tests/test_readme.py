@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from numpy.testing import assert_allclose
 
-from studies.readme import MARKED, filled
+from studies.harness.readme import MARKED, filled
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "README.md").read_text(encoding="utf-8")

@@ -11,13 +11,7 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import statistics_kernels as kernels
 from demheat.packing.base import Packing, wrap
 from demheat.packing.neighbours import build_grid
-from demheat.packing.statistics.regions import (
-    check_margin,
-    core_volume,
-    inscribed_box,
-    spheres_in_box,
-    wall_distances,
-)
+from demheat.packing.statistics.regions import check_margin, core_volume, inscribed_box, spheres_in_box, wall_distances
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))

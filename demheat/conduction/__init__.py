@@ -1,0 +1,1 @@
+"""Heat through a network: steady balances, marches in time, sources."""

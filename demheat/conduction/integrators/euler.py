@@ -1,0 +1,29 @@
+"""Explicit Euler steps, the papers' own (Haddad et al. 2021, eq. 6)."""
+
+import numpy as np
+
+from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators.base import Step
+
+ORDER = 1
+ESTIMATES = False
+
+
+def stepper(system, spectrum):
+    """A function (x, time, step, memory, estimate) -> Step."""
+
+    def advance(x, time, step, memory, estimate):
+        heat, totals = system.heat_at(time)
+        new = np.empty_like(x) if memory is None else memory
+        kernels.forward(*system.links, heat, step, x, new)
+        inflow = step * system.inflow(x, totals)
+        system.hold(new, time + step)
+        # Two arrays take turns: the old state is free once this one is accepted.
+        return Step(new, inflow, None, 1, memory=x)
+
+    return advance
+
+
+def largest_step(spectrum):
+    """Largest stable step, s."""
+    return spectrum.limit

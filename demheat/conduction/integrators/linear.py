@@ -1,0 +1,156 @@
+"""Solver of the implicit stages, (C / g + A) y = rhs: conjugate gradients with Jacobi or multigrid preconditioner."""
+
+import math
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse import csgraph
+from scipy.sparse.linalg import LinearOperator, cg
+
+from demheat.conduction import steady_kernels, transient_kernels
+from demheat.network.base import row_numbers
+
+MOST = 5000
+# A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.
+REUSE = 3.0
+# No solve is asked for less than the rounding of temperatures, nor of the rates that they make in a stiff stage; but
+# where that rounding is more than `COARSEST` of them, the stage has failed.
+ROUNDING, COARSEST = 1e-13, 1e-9
+
+
+def solver(system, preconditioner):
+    """A function that solves one implicit stage.
+
+    Parameters
+    ----------
+    system : System
+    preconditioner : {"jacobi", "multigrid"}
+
+    Returns
+    -------
+    solve : callable (g, known, heat, y, limit) -> iterations, bound
+        Finds y, in place, with C (known - y) / g + (heat received at y) = 0 up to an error whose root mean square,
+        weighted by capacity, is at most `limit`, K, or the rounding of the temperatures if that is more. The sum of
+        the residuals over each cluster of particles, which would be heat lost, is zero to rounding. The bound on that
+        error, K, is from the residual as recomputed. Raises RuntimeError if it does not get there.
+    """
+    free = system.capacity > 0
+    total = float(system.capacity.sum())
+    cluster = _clusters(system)
+    capacities = np.bincount(cluster, system.capacity)
+    ties = np.bincount(cluster[system.tie_row], system.tie_conductance, minlength=len(capacities))
+    stiffness = math.sqrt(float(np.einsum("i,i,i->", system.inverse, system.diagonal, system.diagonal)) / total)
+    kept = {}
+
+    def rounding(g, known, y):
+        largest = max(float(np.abs(known[free]).max()), float(np.abs(y).max()))
+        return min(ROUNDING + np.finfo(float).eps * g * stiffness, COARSEST) * largest
+
+    def residual(g, known, heat, y):
+        r = np.empty_like(y)
+        transient_kernels.rates(*system.links, heat, y, r)
+        r += (known - y) / g
+        r *= system.capacity
+        return r
+
+    def balance(g, r, y):
+        """Shift the temperature of each cluster so that it neither loses nor gains heat."""
+        heat = np.bincount(cluster, r, minlength=len(capacities))
+        whole = capacities / g + ties
+        shift = np.divide(heat, whole, out=np.zeros_like(heat), where=whole > 0)[cluster] * free
+        y += shift
+        r -= shift / g * system.capacity
+        np.subtract.at(r, system.tie_row, shift[system.tie_row] * system.tie_conductance)
+
+    def size(g, r):
+        # A is positive semidefinite: |error| <= g |C^-1 r| in the norm weighted by capacity.
+        return g * math.sqrt(float(np.einsum("i,i,i->", system.inverse, r, r)) / total)
+
+    def solve(g, known, heat, y, limit):
+        iterate = _multigrid(system, free, kept, g) if preconditioner == "multigrid" else _jacobi(system)
+        limit, iterations = max(limit, rounding(g, known, y)), 0
+        for _ in range(20):
+            r = residual(g, known, heat, y)
+            reached = size(g, r)
+            if reached > limit and iterations < MOST:
+                norm = math.sqrt(float(np.einsum("i,i->", r, r)))
+                iterations += iterate(g, r, y, 0.8 * limit / reached * norm)
+                continue
+            balance(g, r, y)
+            reached = size(g, r)
+            if reached <= 1.01 * limit:
+                return iterations, reached
+        raise RuntimeError(
+            f"implicit stage ({preconditioner}): error bound {reached:.2e} K after {iterations} iterations, "
+            f"asked for {limit:.1e} K"
+        )
+
+    return solve
+
+
+def _clusters(system):
+    """Number of the cluster of particles that each node belongs to; held nodes join none."""
+    row = row_numbers(system.indptr)
+    inside = system.capacity[system.indices] > 0
+    pair = (row[inside], system.indices[inside].astype(np.int64))
+    n = len(system.capacity)
+    graph = sparse.csr_matrix((np.ones(len(pair[0]), np.int8), pair), shape=(n, n))
+    return csgraph.connected_components(graph, directed=False)[1]
+
+
+def _jacobi(system):
+    def iterate(g, r, y, limit):
+        diagonal = system.diagonal + system.capacity / g
+        links = system.indptr, system.indices, system.conductance
+        return abs(steady_kernels.conjugate_gradients(*links, diagonal, r, y, limit, MOST))
+
+    return iterate
+
+
+def _multigrid(system, free, kept, g):
+    """Conjugate gradients on the free nodes, preconditioned by a hierarchy made for about this g."""
+    from threadpoolctl import threadpool_limits
+
+    if kept.get("g") != g:
+        kept["g"], kept["matrix"] = g, _matrix(system, free, g)
+    made_for = kept.get("made_for", math.inf)
+    if max(g / made_for, made_for / g) > REUSE:
+        kept["made_for"], kept["precondition"] = g, _hierarchy(kept["matrix"])
+
+    def iterate(g, r, y, limit):
+        a, count = kept["matrix"], [0]
+
+        def tick(_):
+            count[0] += 1
+
+        with threadpool_limits(1, "blas"):
+            step, _ = cg(a, r[free], rtol=0.0, atol=limit, maxiter=MOST, M=kept["precondition"], callback=tick)
+        y[free] += step
+        return count[0]
+
+    return iterate
+
+
+def _matrix(system, free, g):
+    """C / g + A of the free nodes as a SciPy matrix."""
+    number = np.cumsum(free) - 1
+    rows = row_numbers(system.indptr)
+    inside = free[system.indices]
+    n = int(free.sum())
+    pair = (number[rows[inside]], number[system.indices[inside]])
+    off = sparse.csr_matrix((-system.conductance[inside], pair), shape=(n, n))
+    return (off + sparse.diags((system.diagonal + system.capacity / g)[free])).tocsr()
+
+
+def _hierarchy(a) -> LinearOperator:
+    import pyamg
+    from threadpoolctl import threadpool_limits
+
+    # BLAS threads only spin here: its share is short dot products between compiled sweeps.
+    with threadpool_limits(1, "blas"):
+        sweeps = {
+            "presmoother": ("gauss_seidel", {"sweep": "forward"}),
+            "postsmoother": ("gauss_seidel", {"sweep": "backward"}),
+        }
+        levels = pyamg.smoothed_aggregation_solver(a, max_coarse=500, improve_candidates=None, **sweeps)
+        return levels.aspreconditioner(cycle="V")

@@ -1,0 +1,233 @@
+"""The heat balance of a network in time, C dT/dt = sum H (T_q - T_p) + heat, with held nodes for imposed temperatures.
+
+Every wall with an imposed temperature is a node of its own, behind the particles; so is a particle whose centre the
+papers hold at a wall's temperature. Held nodes have empty rows and no inverse capacity: nothing moves them but the
+load.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.conduction import transient_kernels as kernels
+from demheat.network.base import SIDES, row_numbers
+from demheat.parts import finite
+from demheat.scene import ROUND_AXES, Flux
+
+# Columns of every account of heat: one per side, then the sources.
+ACCOUNTS = len(SIDES) + 1
+
+
+class System(NamedTuple):
+    """Arrays of the balance over N nodes: the n particles, then one node for each of the seven sides.
+
+    Temperatures are relative to `level`, which spares digits.
+
+    Attributes
+    ----------
+    indptr, indices, conductance
+        Compressed rows: int64, uint32, W/K; rows of held nodes are empty, their columns are not.
+    capacity : (N,) float array, J/K
+        Zero for held nodes.
+    inverse : (N,) float array, K/J
+        1 / capacity, zero for held nodes.
+    diagonal : (N,) float array, W/K
+        Sum of each row's conductances.
+    held, held_side : (k,) int arrays
+        Nodes with imposed temperatures, and the side that imposes each.
+    tie_row, tie_node, tie_conductance, tie_side : (m,) arrays
+        Links from free particles to held nodes.
+    held_at : callable (time, s) -> (k,) float array, K
+    heat_at : callable (time, s) -> (N,) float array, W, and (8,) float array, W
+        Imposed fluxes and sources: into each node, and their totals by side, sources last.
+    level : float
+    particles : int
+    """
+
+    indptr: np.ndarray
+    indices: np.ndarray
+    conductance: np.ndarray
+    capacity: np.ndarray
+    inverse: np.ndarray
+    diagonal: np.ndarray
+    held: np.ndarray
+    held_side: np.ndarray
+    tie_row: np.ndarray
+    tie_node: np.ndarray
+    tie_conductance: np.ndarray
+    tie_side: np.ndarray
+    held_at: Callable
+    heat_at: Callable
+    level: float
+    particles: int
+
+    @property
+    def links(self):
+        """What a kernel needs of the network."""
+        return self.indptr, self.indices, self.conductance, self.inverse
+
+    def hold(self, x, time):
+        """Set held nodes to their temperatures at a time, in place."""
+        x[self.held] = self.held_at(time)
+
+    def inflow(self, x, totals):
+        """Heat flow into the free particles by side, sources last, (8,) float array, W; totals are those of heat_at."""
+        out = totals.copy()
+        kernels.received(self.tie_row, self.tie_node, self.tie_conductance, self.tie_side, x, out)
+        return out
+
+
+def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.0):
+    """Balance of a network under a scene's loads.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+        Its walls only; loads may be functions of time.
+    capacity : (n,) float array, J/K
+    power : callable (time, s) -> (n,) float array, W, optional
+        Heat sources.
+    pinned : (n,) bool array, optional
+        Particles held at the temperature of the wall that they touch (the papers' way), where that is imposed.
+    level : float
+        Temperatures are solved for relative to it.
+
+    Returns
+    -------
+    System
+
+    Raises
+    ------
+    ValueError
+        If a capacity is not finite and positive.
+    """
+    n = len(capacity)
+    if not np.all(np.isfinite(capacity) & (capacity > 0)):
+        raise ValueError(f"capacity: {np.sum(~(capacity > 0))} of {n} are not > 0; all must be finite and > 0 J/K")
+    held, sides = _held(network, scene, pinned, n)
+    rows = _rows(network, scene, np.isin(np.arange(n), held), n)
+    capacity = np.concatenate([capacity, np.zeros(len(SIDES))])
+    capacity[held] = 0.0
+    inverse = np.divide(1.0, capacity, out=np.zeros_like(capacity), where=capacity > 0)
+    indptr, indices, conductance = rows
+    row = row_numbers(indptr)
+    side_of = np.full(n + len(SIDES), -1)
+    side_of[held] = sides
+    ties = np.flatnonzero(side_of[indices] >= 0)
+    return System(
+        *rows,
+        capacity,
+        inverse,
+        np.bincount(row, conductance, minlength=len(capacity)),
+        held,
+        sides,
+        row[ties],
+        indices[ties].astype(np.int64),
+        conductance[ties],
+        side_of[indices[ties]],
+        _held_at(scene, sides, level),
+        _heat_at(network, scene, capacity > 0, power),
+        level,
+        n,
+    )
+
+
+def initial_state(system, temperature, time):
+    """State of the system: (n,) temperatures of the particles -> (N,) float array relative to the level."""
+    x = np.zeros(len(system.capacity))
+    x[: system.particles] = temperature - system.level
+    system.hold(x, time)
+    return x
+
+
+def _held(network, scene, pinned, n):
+    """Held nodes and their sides."""
+    imposed = [SIDES.index(name) for name in scene.wall_temperatures]
+    nodes, sides = [n + np.array(imposed, dtype=np.int64)], [np.array(imposed, dtype=np.int64)]
+    if pinned is not None:
+        here = pinned[network.wall_particle] & np.isin(network.wall_side, imposed)
+        nodes.append(network.wall_particle[here].astype(np.int64))
+        sides.append(network.wall_side[here].astype(np.int64))
+    return np.concatenate(nodes), np.concatenate(sides)
+
+
+def _rows(network, scene, empty, n):
+    """Compressed rows with links to the wall nodes at their ends, rows of held particles emptied."""
+    imposed = np.isin(network.wall_side, [SIDES.index(name) for name in scene.wall_temperatures])
+    tied = imposed & ~empty[network.wall_particle] & (network.wall_conductance > 0)
+    order = np.flatnonzero(tied)[np.argsort(network.wall_particle[tied], kind="stable")]
+    particle = network.wall_particle[order]
+    kept = ~empty[row_numbers(network.indptr)] & (network.conductance > 0)
+    number = np.bincount(row_numbers(network.indptr)[kept], minlength=n)
+    ends = np.cumsum(number)[particle]
+    indices = np.insert(network.indices[kept].astype(np.int64), ends, n + network.wall_side[order])
+    conductance = np.insert(network.conductance[kept], ends, network.wall_conductance[order])
+    number = np.concatenate([number + np.bincount(particle, minlength=n), np.zeros(len(SIDES), dtype=np.int64)])
+    return np.concatenate([[0], np.cumsum(number)]), indices.astype(np.uint32), conductance
+
+
+def load_at(name, load, time):
+    """Value of a wall's load at a time in seconds."""
+    value = load.value if isinstance(load, Flux) else load
+    if not callable(value):
+        return float(value)
+    return finite(f"Scene.walls[{name!r}] at {time} s", value(time), "a finite number")
+
+
+def _held_at(scene, sides, level):
+    loads = {SIDES.index(name): (name, load) for name, load in scene.wall_temperatures.items()}
+    place = np.searchsorted(sorted(loads), sides)
+    changing = any(callable(load) for _, load in loads.values())
+
+    def held_at(time):
+        values = np.array([load_at(*loads[side], time) - level for side in sorted(loads)])
+        return values[place] if len(place) else np.empty(0)
+
+    if changing:
+        return held_at
+    fixed = held_at(0.0)
+    return lambda time: fixed
+
+
+def _heat_at(network, scene, free, power):
+    """Function of time that gives the heat flow into each node and the totals by side, sources last."""
+    n = len(network.volumes)
+    fluxes = []
+    for name, load in scene.wall_fluxes.items():
+        here = network.wall_side == SIDES.index(name)
+        areas = np.bincount(network.wall_particle[here], loaded_areas(network, scene, name), minlength=len(free)) * free
+        fluxes.append((SIDES.index(name), name, load, areas))
+    if power is None and not any(callable(load) for _, _, load, _ in fluxes):
+        fixed = _heat(fluxes, None, free, n, 0.0)
+        return lambda time: fixed
+    return lambda time: _heat(fluxes, power, free, n, time)
+
+
+def loaded_areas(network, scene, name):
+    """Areas of a wall's facets, summing to the body's own surface there, m2.
+
+    Planes that stand for a round wall enclose the exact volume with a few parts in 10^4 more of area: a flux density
+    would bring in so much more heat.
+    """
+    areas = network.wall_area[network.wall_side == SIDES.index(name)]
+    if name != "round":
+        return areas
+    across = ROUND_AXES[scene.domain]
+    # Round area times radius over the number of round axes is the volume.
+    return areas * (len(across) * scene.volume / (scene.size[across[0]] / 2) / areas.sum())
+
+
+def _heat(fluxes, power, free, n, time):
+    heat, totals = np.zeros(len(free)), np.zeros(ACCOUNTS)
+    for side, name, load, areas in fluxes:
+        value = load_at(name, load, time)
+        heat += value * areas
+        totals[side] = value * areas.sum()
+    if power is not None:
+        given = power(time) * free[:n]
+        heat[:n] += given
+        totals[-1] = given.sum()
+    return heat, totals

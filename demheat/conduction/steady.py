@@ -1,0 +1,279 @@
+"""Steady temperatures of a network under a scene's load."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy import sparse
+
+from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.multigrid import preconditioner
+from demheat.network.base import SIDES, Network
+
+SOLVERS = ("auto", "cg", "amg")
+# Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
+# Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
+# many or fewer at 1e5.
+AMG_UNKNOWNS = 50_000
+
+
+class Solution(NamedTuple):
+    """Temperatures of the particles and what the solver says of them.
+
+    Attributes
+    ----------
+    fluctuation : (n,) float array, K
+        Temperature minus the linear field of the mean gradient (periodic cell), or the temperature itself (walls);
+        NaN on islands that no wall temperature reaches.
+    gradient : (3,) float array, K/m
+        Mean gradient; zero with walls.
+    wall_temperature : (w,) float array, K
+        At each wall facet of the network.
+    wall_heat : (w,) float array, W
+        Into the body through each wall facet.
+    stats : dict
+        unknowns, iterations, residual, solver, islands.
+    """
+
+    fluctuation: np.ndarray
+    gradient: np.ndarray
+    wall_temperature: np.ndarray
+    wall_heat: np.ndarray
+    stats: dict
+
+
+class _System(NamedTuple):
+    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty."""
+
+    network: Network
+    diagonal: np.ndarray
+    heat: np.ndarray
+    gradient: np.ndarray
+    ties: np.ndarray  # (w,) conductance to held walls, W/K
+    held: np.ndarray  # (w,) their temperature above the level, K
+    level: float  # temperatures are solved for relative to it, which spares digits, K
+
+
+def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
+    """Temperatures at which every particle receives as much heat as it gives.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+        Its load only.
+    solver : {"auto", "cg", "amg"}
+        Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.conduction.multigrid`);
+        "auto" picks by size.
+    tolerance : float
+        On the norm of the particles' residual heat relative to that of the heat passing through them.
+    max_iterations : int
+
+    Returns
+    -------
+    Solution
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described or the load fixes no steady state.
+    RuntimeError
+        If the residual, recomputed after the solve, misses the tolerance.
+    """
+    check_solver(solver, tolerance)
+    scene.check_steady()
+    reached = _reached(network, scene)
+    system = _system(network, scene, reached)
+    by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
+    chosen = by_size if solver == "auto" else solver
+    x, iterations, size = _iterate(system, _start(network, scene, reached), chosen, tolerance, max_iterations)
+    if not size <= tolerance:
+        raise RuntimeError(
+            f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
+            f"asked for {tolerance:.1e}"
+        )
+    if scene.periodic:
+        x -= np.average(x, weights=network.volumes)
+    x = np.where(reached, x + system.level, np.nan)
+    stats = {
+        "unknowns": int(reached.sum()),
+        "iterations": int(iterations),
+        "residual": float(size),
+        "solver": chosen,
+        "islands": int((~reached).sum()),
+    }
+    return Solution(x, system.gradient, *_at_walls(system, scene, x), stats)
+
+
+def check_solver(solver, tolerance):
+    """Raise ValueError unless the solver is known and its tolerance sensible."""
+    if solver not in SOLVERS:
+        raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
+    if not (isinstance(tolerance, int | float) and 1e-15 < tolerance < 1e-2):
+        raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
+
+
+def _reached(network, scene):
+    """Particles tied to a wall temperature (walls), or to any other particle (periodic cell)."""
+    if scene.periodic:
+        return _conducted(network) > 0
+    held = [SIDES.index(name) for name in scene.wall_temperatures]
+    reached = np.zeros(len(network.volumes), dtype=bool)
+    reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
+    kernels.spread(network.indptr, network.indices, network.conductance, reached)
+    return reached
+
+
+def _conducted(network):
+    """Sum of the conductances of each particle's links, (n,) float array, W/K."""
+    total = np.empty(len(network.volumes))
+    kernels.row_sums(network.indptr, network.conductance, total)
+    return total
+
+
+def _system(network, scene, reached):
+    n = len(network.volumes)
+    gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
+    diagonal = _conducted(network)
+    if scene.periodic:
+        received = np.empty(n)
+        kernels.flows(*_links(network), gradient, np.zeros(n), received, np.empty(n))
+        return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
+    held = np.array([scene.wall_temperatures.get(name, np.nan) for name in SIDES])[network.wall_side]
+    ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
+    level = float(np.mean(list(scene.wall_temperatures.values())))
+    held = np.nan_to_num(held - level)
+    heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
+    diagonal += np.bincount(network.wall_particle, ties, minlength=n)
+    cut_off = np.count_nonzero(heat[~reached])
+    if cut_off:
+        raise ValueError(
+            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every wall temperature; "
+            "no steady state exists"
+        )
+    diagonal[~reached] = 0.0
+    return _System(network, diagonal, heat, gradient, ties, held, level)
+
+
+def _links(network):
+    return network.centers, network.size, network.indptr, network.indices, network.image, network.conductance
+
+
+def _imposed(network, scene):
+    """Heat that imposed fluxes bring in through each wall facet, W."""
+    return np.array([scene.wall_fluxes.get(name, 0.0) for name in SIDES])[network.wall_side] * network.wall_area
+
+
+def _start(network, scene, reached):
+    """Linear field between two opposite wall temperatures, else zero, relative to the level."""
+    temperatures = {} if scene.periodic else scene.wall_temperatures
+    start = np.zeros(len(reached))
+    for axis, letter in enumerate("xyz"):
+        if {letter + "-", letter + "+"} == set(temperatures):
+            low, high = temperatures[letter + "-"], temperatures[letter + "+"]
+            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
+    start[~reached] = 0.0
+    return start
+
+
+def _iterate(system, x, solver, tolerance, most):
+    """Solve in rounds: the heat that passes, which sets the limit, is known only once the solution nearly is."""
+    total, solve = 0, None
+    for _ in range(10):
+        r = _residual(system, x)
+        norm, passing = np.linalg.norm(r), _passing(system, x)
+        size = norm / passing if passing > 0 else float(norm > 0)
+        if size <= tolerance or total >= most:
+            break
+        solve = solve or (_multigrid(system) if solver == "amg" else _jacobi(system))
+        done, x = solve(r, x, 0.9 * tolerance * (passing if passing > 0 else norm), most - total)
+        total += done
+    return x, total, size
+
+
+def _residual(system, x):
+    """Heat that each particle receives in excess; islands, which have no equation, left out."""
+    net, r = system.network, np.empty_like(x)
+    kernels.residual(net.indptr, net.indices, net.conductance, system.diagonal, system.heat, x, r)
+    r[system.diagonal == 0.0] = 0.0
+    return r
+
+
+def _passing(system, x):
+    """Norm of the heat that passes through the particles."""
+    received, throughput = np.empty_like(x), np.empty_like(x)
+    kernels.flows(*_links(system.network), system.gradient, x, received, throughput)
+    if len(system.ties):
+        particle = system.network.wall_particle
+        throughput += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
+    return float(np.linalg.norm(throughput))
+
+
+def _jacobi(system):
+    net = system.network
+
+    def solve(r, x, limit, most):
+        arrays = (net.indptr, net.indices, net.conductance, system.diagonal)
+        done = kernels.conjugate_gradients(*arrays, r, x, limit, most)
+        return abs(done), x
+
+    return solve
+
+
+def matrix(network, diagonal):
+    """The network's heat balance as a SciPy matrix: diagonal minus conductances; empty rows get a one."""
+    n = len(diagonal)
+    off = sparse.csr_matrix(
+        (-network.conductance, network.indices.astype(np.int32), network.indptr.astype(np.int32)), shape=(n, n)
+    )
+    return (off + sparse.diags(np.where(diagonal > 0, diagonal, 1.0))).tocsr()
+
+
+def _multigrid(system):
+    from threadpoolctl import threadpool_limits
+
+    net = system.network
+    links = net.indptr, net.indices, net.conductance, system.diagonal
+    # BLAS threads only spin here: its share is short dot products between compiled sweeps.
+    with threadpool_limits(1, "blas"):
+        precondition = preconditioner(*links)
+
+    def solve(r, x, limit, most):
+        with threadpool_limits(1, "blas"):
+            return _preconditioned(links, precondition, r, x, limit, most), x
+
+    return solve
+
+
+def _preconditioned(links, precondition, r, x, limit, most):
+    """Conjugate gradients that add to x until |r| <= limit; returns the iterations done.
+
+    Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
+    precision, is symmetric to its rounding only.
+    """
+    z, q = np.empty_like(r), np.empty_like(r)
+    norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0
+    alpha = 0.0
+    for iteration in range(most):
+        if norm <= limit:
+            return iteration
+        precondition(r, norm, z)
+        beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
+        rz = kernels.dot(r, z)
+        kernels.direct(beta, z, p)
+        alpha = rz / kernels.apply(*links, p, q)
+        norm = np.sqrt(kernels.advance(alpha, p, q, x, r))
+    return most
+
+
+def _at_walls(system, scene, x):
+    """Temperature and entering heat of each wall facet."""
+    if scene.periodic:
+        return np.empty(0), np.empty(0)
+    network = system.network
+    there, imposed = x[network.wall_particle] - system.level, _imposed(network, scene)
+    conductance = network.wall_conductance
+    rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
+    is_held = np.array([name in scene.wall_temperatures for name in SIDES])[network.wall_side]
+    temperature = system.level + np.where(is_held, system.held, there + rise)
+    heat = np.where(is_held, system.ties * (system.held - there), imposed)
+    return temperature, np.where(np.isnan(heat), 0.0, heat)

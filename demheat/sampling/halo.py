@@ -1,0 +1,265 @@
+"""Halo averages: the flux at a point as a mean over the particles around it.
+
+Source: Haddad et al. 2021, eqs. 22-23.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.network.laguerre_kernels import bin_points
+from demheat.sampling import halo_kernels as kernels
+from demheat.scene import ROUND_AXES
+
+# Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
+# and 1 to 8 for 1e5 points and radii of 2 to 15 mean radii; sides of a whole or a third of the radius cost up to twice.
+PART, FEWEST = 1 / 2, 8.0
+WALLS = ("clip", "mirror")
+
+
+def halo_average(points, values, volumes, *, radius, size, periodic, at=None, phase=None, at_phase=None):
+    """Mean of values over the samples whose centres lie within a radius, weighted by volume.
+
+    sum(volumes * values) / sum(volumes) over all samples with |x - x_at| <= radius (Haddad et al. 2021, eqs. 22-23,
+    volumes being V_r / phi). Neither lists of neighbours nor anything else that grows with the radius is kept.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, m
+        Centres of the samples; inside the box on axes that are not periodic.
+    values : (n,) or (n, d) float array
+    volumes : (n,) float array, m3
+        >= 0.
+    radius : float, m
+        > 0; twice it at most the side of the box along a periodic axis. Halos end at walls.
+    size : (3,) sequence of float, m
+        The box is 0 to size.
+    periodic : bool or (3,) sequence of bool
+    at : (m, 3) float array, m, optional
+        Where the means are wanted; default at the samples.
+    phase, at_phase : (n,) and (m,) int arrays, optional
+        Only samples of a point's own phase count; at_phase is needed with `at`.
+
+    Returns
+    -------
+    (m,) or (m, d) float array
+        NaN where no sample, or no volume, lies within the radius. The same to the bit for any number of threads.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described.
+    """
+    size, periodic = _checked_box(size, periodic)
+    radius = _checked_radius(radius, size, periodic)
+    points = _inside(_checked_points("points", points), size, periodic)
+    values, volumes = _checked_values(len(points), values, volumes)
+    phase, at_phase = _checked_phases(len(points), at, phase, at_phase)
+    at = points if at is None else _wrapped(_checked_points("at", at), size, periodic)
+    columns = values.reshape(len(points), -1)
+    means = np.empty((len(at), columns.shape[1]))
+    dims = _dims(len(points), size, radius)
+    start, order = bin_points(points, size, dims)
+    begin, places = (start, order) if at is points else bin_points(at, size, dims)
+    sorted_at, wanted = at[places], at_phase[places]
+    for first in range(0, columns.shape[1], 3):
+        part = columns[:, first : first + 3]
+        cells = _cells(points, part, volumes, phase, order, start, dims, size, periodic)
+        out = np.empty((len(at), 3))
+        kernels.ball_means(sorted_at, begin, wanted, radius, cells, out)
+        means[places, first : first + 3] = out[:, : part.shape[1]]
+    return means.reshape(len(at), *values.shape[1:])
+
+
+def halo_flux(field, *, ratio=11.0, walls="clip", same_phase=False, at=None):
+    """Flux of a field of particles, averaged over halos.
+
+    Source: Haddad et al. 2021, eqs. 22-23.
+
+    Parameters
+    ----------
+    field : Field
+        With `mean_radius` among its stats: of a method of particles.
+    ratio : float
+        Radius of the halo in mean radii of the particles.
+    walls : {"clip", "mirror"}
+        Halos end at walls; or go on among samples mirrored across flat walls. There the temperature goes on evenly
+        from an insulated wall, so that the flux along the wall is even and that across it odd; at an imposed flux,
+        what exceeds it is odd; at a held temperature what exceeds this is odd, the flux across the wall even and that
+        along it odd.
+    same_phase : bool
+        Only samples of the phase of the point asked for.
+    at : (m, 3) float array, m, optional
+        Default at the samples.
+
+    Returns
+    -------
+    (m, 3) float array, W/m2
+        NaN where no sample that counts lies within the halo.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, the halo is wider than a periodic cell, or reaches beyond the opposite wall
+        with `walls = "mirror"`.
+    NotImplementedError
+        For mirrors in round bodies.
+    """
+    scene = field.scene
+    radius = _halo_radius(field, ratio)
+    if walls not in WALLS:
+        raise ValueError(f"walls = {walls!r}: must be one of {', '.join(WALLS)}")
+    if not isinstance(same_phase, bool | np.bool_):
+        raise ValueError(f"same_phase = {same_phase!r}: must be True or False")
+    if walls == "mirror" and ROUND_AXES[scene.domain]:
+        raise NotImplementedError("walls = 'mirror': round walls do not mirror a lattice; use walls = 'clip'")
+    at = None if at is None else _checked_at(at, scene)
+    points, volumes, _, phase, flux = field.samples
+    if at is None:
+        at, at_phase = points, phase
+    else:
+        at_phase = scene.phase_at(at)
+    size = np.array(scene.size)
+    if walls == "mirror" and not scene.periodic:
+        if radius > size.min():
+            raise ValueError(
+                f"ratio = {ratio!r}: a radius of {radius:g} m must be <= the box, {scene.size}, for mirrors"
+            )
+        points, volumes, phase, flux = _mirrored(scene.at(field.time), radius, points, volumes, phase, flux)
+        points, at, size = points + radius, at + radius, size + 2 * radius
+    phases = {"phase": phase, "at_phase": at_phase} if same_phase else {}
+    return halo_average(points, flux, volumes, radius=radius, size=size, periodic=scene.periodic, at=at, **phases)
+
+
+def _mirrored(scene, radius, points, volumes, phase, flux):
+    """Samples with those within the radius of a wall mirrored across it; edges and corners follow axis by axis."""
+    for axis in range(3):
+        parts = [(points, volumes, phase, flux)]
+        for side, wall in (("-", 0.0), ("+", scene.size[axis])):
+            near = np.abs(points[:, axis] - wall) <= radius
+            image = points[near].copy()
+            image[:, axis] = 2 * wall - image[:, axis]
+            parts.append((image, volumes[near], phase[near], _reflected(scene, axis, side, flux[near])))
+        points, volumes, phase, flux = (np.concatenate(columns) for columns in zip(*parts, strict=True))
+    return points, volumes, phase, flux
+
+
+def _reflected(scene, axis, side, flux):
+    """Flux behind a wall."""
+    name = "xyz"[axis] + side
+    if name in scene.wall_temperatures:
+        flux = -flux
+        flux[:, axis] *= -1.0
+        return flux
+    # Into the body at the lower wall is along the axis, at the upper one against it.
+    through = scene.wall_fluxes.get(name, 0.0) * (1.0 if side == "-" else -1.0)
+    flux = flux.copy()
+    flux[:, axis] = 2 * through - flux[:, axis]
+    return flux
+
+
+def _dims(n, size, radius):
+    """Cells along each axis."""
+    edge = max(radius * PART, np.cbrt(FEWEST * np.prod(size) / max(n, 1)))
+    return np.maximum(np.floor(size / edge), 1).astype(np.int64)
+
+
+def _cells(points, values, volumes, phase, order, start, dims, size, periodic):
+    """Samples with up to three values, in the order of their cells."""
+    slots = np.zeros((kernels.ROWS, len(points)))
+    slots[:3] = points[order].T
+    slots[kernels.PHASE] = phase[order] if len(phase) else 0.0
+    slots[kernels.SUMS] = volumes[order]
+    slots[kernels.SUMS + 1 : kernels.SUMS + 1 + values.shape[1]] = values[order].T * slots[kernels.SUMS]
+    period = np.where(periodic, size, 0.0)
+    return kernels.Cells(dims, size / dims, period, start, slots, kernels.cell_totals(start, slots), len(phase) > 0)
+
+
+def _halo_radius(field, ratio):
+    if not (isinstance(ratio, int | float | np.number) and np.isfinite(ratio) and ratio > 0):
+        raise ValueError(f"ratio = {ratio!r}: must be a finite number > 0, the halo's radius in mean particle radii")
+    if "mean_radius" not in field.stats:
+        raise ValueError("field: its stats have no mean_radius; halos need the field of a method of particles")
+    return float(ratio * field.stats["mean_radius"])
+
+
+def _checked_at(at, scene):
+    at = _checked_points("at", at)
+    if not scene.periodic:
+        outside = np.any((at < 0) | (at > np.array(scene.size)), axis=1)
+        axes = list(ROUND_AXES[scene.domain])
+        if axes:
+            size = np.array(scene.size)
+            outside |= np.linalg.norm((at - size / 2)[:, axes], axis=1) > (0.5 + 1e-9) * size[axes[0]]
+        if outside.any():
+            raise ValueError(
+                f"at: {outside.sum()} points lie outside the {scene.domain} with walls, 0 to {scene.size}; the first "
+                f"is {at[outside][0].tolist()}"
+            )
+    return at
+
+
+def _checked_box(size, periodic):
+    size, flags = np.array(size, dtype=float), np.asarray(periodic)
+    if size.shape != (3,) or not np.all(np.isfinite(size)) or np.any(size <= 0):
+        raise ValueError(f"size = {size.tolist()}: must be three finite lengths > 0 m")
+    if flags.dtype != bool or flags.shape not in ((), (3,)):
+        raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")
+    return size, np.broadcast_to(flags, 3)
+
+
+def _checked_radius(radius, size, periodic):
+    if not (isinstance(radius, int | float | np.number) and np.isfinite(radius) and radius > 0):
+        raise ValueError(f"radius = {radius!r}: must be a finite length > 0 m")
+    if np.any(2 * radius > size[periodic]):
+        raise ValueError(
+            f"radius = {radius:g} m: a halo's diameter must be <= the periodic sides of the box, {size.tolist()} m"
+        )
+    return float(radius)
+
+
+def _checked_points(name, points):
+    points = np.asarray(points, dtype=float)
+    points = points[None] if points.shape == (3,) else points
+    if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
+        raise ValueError(f"{name} of shape {points.shape}: must be (n, 3) finite coordinates in metres")
+    return points
+
+
+def _wrapped(points, size, periodic):
+    """Points with periodic coordinates in 0 <= x < size; rounding may take a tiny negative one to size itself."""
+    wrapped = points - np.where(periodic, np.floor(points / size) * size, 0.0)
+    return np.ascontiguousarray(np.where(periodic & (wrapped >= size), 0.0, wrapped))
+
+
+def _inside(points, size, periodic):
+    """Wrapped samples; there must be some, on walled axes inside the box (to 1e-9 of it: computed to lie on a wall)."""
+    if len(points) == 0:
+        raise ValueError("points of shape (0, 3): there must be samples to average")
+    outside = ~periodic & ((points < -1e-9 * size) | (points > (1 + 1e-9) * size))
+    if outside.any():
+        which = int(np.flatnonzero(outside.any(axis=1))[0])
+        raise ValueError(f"points[{which}] = {points[which].tolist()}: lies outside the walls of the box, 0 to {size}")
+    return _wrapped(points, size, periodic)
+
+
+def _checked_values(n, values, volumes):
+    values, volumes = np.asarray(values, dtype=float), np.asarray(volumes, dtype=float)
+    if values.ndim not in (1, 2) or len(values) != n or not np.all(np.isfinite(values)):
+        raise ValueError(f"values of shape {values.shape}: must be ({n},) or ({n}, d) finite numbers")
+    if volumes.shape != (n,) or not np.all(np.isfinite(volumes)) or np.any(volumes < 0):
+        raise ValueError(f"volumes of shape {volumes.shape}: must be {n} finite numbers >= 0, one per sample")
+    return values, volumes
+
+
+def _checked_phases(n, at, phase, at_phase):
+    """Phases of samples (none if they do not count) and of points, as floats: exact up to 2^53."""
+    count = n if at is None else len(np.reshape(at, (-1, 3)))
+    if phase is None and at_phase is None:
+        return np.empty(0), np.zeros(count)
+    at_phase = phase if at is None and at_phase is None else at_phase
+    for name, given, length in (("phase", phase, n), ("at_phase", at_phase, count)):
+        if given is None or np.shape(given) != (length,) or not np.issubdtype(np.asarray(given).dtype, np.integer):
+            raise ValueError(f"{name} = {given!r}: must be {length} whole numbers where phases count")
+    return np.asarray(phase, dtype=float), np.asarray(at_phase, dtype=float)

@@ -1,0 +1,60 @@
+"""Flux of each particle as the mean of what flows through its part of every link.
+
+Source: Haddad et al. 2021, eq. 20.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.network.base import wall_normals
+from demheat.sampling import particle_flux_kernels as kernels
+
+SPLITS = {"half": kernels.HALF, "radii": kernels.RADII, "cell": kernels.CELL}
+
+
+def particle_flux(packing, facets, network, solution, *, split="half"):
+    """Flux density of each particle, q_p = -(1 / V_p) sum over links of s W b.
+
+    W is the heat that the particle receives over a link, b the branch vector to the other particle, V_p the volume that
+    the particle stands for (V_p / phi for contacts) and s the part of the link that is its own. The two parts of a link
+    add up to one, so the flux averaged by volume over a periodic cell is the first moment of the heat flows with every
+    split. The paper's eq. 20 has one half, which no single particle has unless it is as large as its neighbours, and
+    the opposite sign.
+
+    Parameters
+    ----------
+    packing : Packing
+    facets : Facets
+    network : Network
+    solution : Solution
+    split : {"half", "radii", "cell"}
+        s = 1/2, as printed; R_p / (R_p + R_q); or what lies between the centre and the facet, over the length of the
+        link. With "cell" wall links count too, by the distance from the centre to the wall; the printed sum is over
+        particles only, so that those at walls lack what comes from there.
+
+    Returns
+    -------
+    (n, 3) float array, W/m2
+        Along Fourier's direction. Zero for islands, which exchange no heat.
+
+    Raises
+    ------
+    ValueError
+        If `split` is none of these or the arrays are not of one network.
+    """
+    if split not in SPLITS:
+        raise ValueError(f"split = {split!r}: must be one of {', '.join(SPLITS)}")
+    sizes = {"packing": packing.number, "network": len(network.volumes), "solution": len(solution.fluctuation)}
+    if len(set(sizes.values())) > 1 or len(facets.distance) != len(network.indices):
+        raise ValueError(f"packing, facets, network, solution: must be of the same particles and links, not {sizes}")
+    flow = np.empty((packing.number, 3))
+    kernels.shared_moments(
+        network.centers, network.size, network.indptr, network.indices, network.image, network.conductance,
+        solution.gradient, np.nan_to_num(solution.fluctuation), packing.radii, facets.distance, SPLITS[split], flow,
+    )  # fmt: skip
+    if split == "cell":
+        depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)
+        np.add.at(flow, network.wall_particle, depth)
+    return -flow / network.volumes[:, None]

@@ -1,0 +1,286 @@
+"""The closed forms that `exact.solve` chooses from: laminate, cubic array of spheres, neutral coated spheres.
+
+A form takes a scene and gives a `Closed`, or None if the scene is not of its kind.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import lru_cache
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Flux, Layer, Sphere
+from references.exact import lattice, lattice_field
+
+# Rounding of coordinates and conductivities that users type or work out.
+SAME = 1e-12
+
+
+class Closed(NamedTuple):
+    """A solution in closed form.
+
+    Attributes
+    ----------
+    form : str
+    temperature : callable (n, 3) float array, m -> (n,) float array, K
+    flux : callable (n, 3) float array, m -> (n, 3) float array, W/m2
+    mean_flux : (3,) float array, W/m2
+    normal : int
+        Axis along which the temperature of a wall can vary piecewise linearly.
+    breaks : (m,) float array, m
+        Ends of its linear pieces; elsewhere the mean over a wall is the value at its centre.
+    stats : mapping
+    """
+
+    form: str
+    temperature: Callable
+    flux: Callable
+    mean_flux: np.ndarray
+    normal: int
+    breaks: np.ndarray
+    stats: Mapping[str, object]
+
+
+def laminate(scene):
+    """Homogeneous box or plane layers: harmonic mean across, arithmetic mean along.
+
+    Layers of zero conductivity share a temperature jump evenly, the limit of equal small conductivities.
+    """
+    k = scene.conductivities
+    layered = all(isinstance(inclusion, Layer) for inclusion in scene.inclusions)
+    if not layered and not np.all(k == k[0]):
+        return None
+    normal = scene.inclusions[0].axis if layered and scene.inclusions else 0
+    length = scene.size[normal]
+    breaks, pieces = _pieces(scene, normal) if layered else (np.array([0.0, length]), k[:1])
+    thickness = np.diff(breaks)
+    along = float(thickness @ pieces / length)
+    across = length / float(np.sum(thickness / pieces)) if np.all(pieces > 0) else 0.0
+    slope = across / pieces if across else (pieces == 0) * length / thickness[pieces == 0].sum()
+    # Plain homogeneous material also takes an imposed flux along its layers, for it has none.
+    means = np.full(3, along if np.all(pieces == pieces[0]) else np.nan)
+    means[normal] = across
+    load = mean_load(scene, means)
+    if load is None:
+        return None
+    gradient, level = load
+    rise = np.concatenate([[0.0], np.cumsum(slope * thickness)])
+    sideways = np.where(np.arange(3) == normal, 0.0, gradient)
+
+    def where(points):
+        turns = np.floor(points[:, normal] / length) if scene.periodic else 0.0
+        return turns, points[:, normal] - turns * length
+
+    def temperature(points):
+        turns, x = where(points)
+        return level + points @ sideways + gradient[normal] * (turns * length + np.interp(x, breaks, rise))
+
+    def flux(points):
+        piece = np.clip(np.searchsorted(breaks, where(points)[1], side="right") - 1, 0, len(pieces) - 1)
+        result = -pieces[piece][:, None] * sideways
+        result[:, normal] = -across * gradient[normal]
+        return result
+
+    mean = -along * sideways
+    mean[normal] = -across * gradient[normal]
+    form = "homogeneous" if len(set(pieces.tolist())) == 1 else "laminate"
+    return Closed(form, temperature, flux, mean, normal, breaks, {"unknowns": len(pieces), "digits": 15.0})
+
+
+def cubic_array(scene):
+    """Cubic array of equal spheres, or a sphere in the middle of a cube between two isothermal walls."""
+    found = _array(scene)
+    if found is None:
+        return None
+    kind, edge, spheres = found
+    load = mean_load(scene, np.full(3, np.nan))
+    if load is None:
+        return None
+    gradient, level = load
+    first, k = spheres[0], scene.matrix.conductivity
+    center, ki = np.array(first.center), first.material.conductivity
+    contrast = ki / k if k > 0 else math.inf
+    fraction = len(spheres) * 4 / 3 * math.pi * (first.radius / edge) ** 3
+    array = _solved(kind, contrast, fraction)
+
+    def temperature(points):
+        here = lattice_field.temperature(array, (points - center) / edge, gradient * edge)
+        return level + center @ gradient + here
+
+    def flux(points):
+        return k * lattice_field.flux(array, (points - center) / edge, gradient)
+
+    stats = {
+        "unknowns": int(np.count_nonzero(array.source)),
+        "order": array.order,
+        "digits": array.digits,
+        "field_digits": array.field_digits,
+        "residual": array.residual,
+    }
+    mean = -k * array.conductivity * gradient
+    return Closed(f"{kind} array", temperature, flux, mean, 0, np.array([0.0, scene.size[0]]), stats)
+
+
+def coated_spheres(scene):
+    """Spheres with one coat each in the matrix that does not notice them (Hashin, J. Appl. Mech. 29 (1962) 143)."""
+    k, pairs = scene.matrix.conductivity, _coated(scene)
+    if not pairs:
+        return None
+    load = mean_load(scene, np.full(3, k))
+    if load is None:
+        return None
+    gradient, level = load
+    box = np.array(scene.size)
+
+    def offsets(points, center):
+        apart = points - center
+        return apart - box * np.round(apart / box) if scene.periodic else apart
+
+    def temperature(points):
+        total = level + points @ gradient
+        for outer, inner in pairs:
+            apart = offsets(points, outer.center)
+            r = np.linalg.norm(apart, axis=1)
+            dipole, uniform, core = _coat(outer, inner)
+            shell = uniform + dipole * (outer.radius / np.maximum(r, inner.radius)) ** 3
+            factor = np.where(r <= inner.radius, core, np.where(r <= outer.radius, shell, 1.0))
+            total += (factor - 1) * (apart @ gradient)
+        return total
+
+    def flux(points):
+        result = np.tile(-k * gradient, (len(points), 1))
+        for outer, inner in pairs:
+            apart = offsets(points, outer.center)
+            r = np.linalg.norm(apart, axis=1)
+            dipole, uniform, core = _coat(outer, inner)
+            shell, kernel = (r <= outer.radius) & (r > inner.radius), r <= inner.radius
+            unit = apart[shell] / r[shell, None]
+            bent = (outer.radius / r[shell, None]) ** 3 * (gradient - 3 * unit * (unit @ gradient)[:, None])
+            result[shell] = -outer.material.conductivity * (uniform * gradient + dipole * bent)
+            result[kernel] = -inner.material.conductivity * core * gradient
+        return result
+
+    stats = {"unknowns": 3 * len(pairs), "digits": 12.0}
+    breaks = np.array([0.0, scene.size[0]])
+    return Closed("neutral coated spheres", temperature, flux, -k * gradient, 0, breaks, stats)
+
+
+def mean_load(scene, conductivities):
+    """Mean gradient, (3,) float array in K/m, and temperature at the origin, that the load makes; None if no such.
+
+    Parameters
+    ----------
+    scene : Scene
+    conductivities : (3,) float array
+        Effective conductivity along each axis where an imposed uniform flux is solved in closed form, else NaN.
+    """
+    if scene.periodic:
+        return np.array(scene.gradient), 0.0
+    # A wall without flux is an insulated one.
+    active = {name for name, value in scene.walls.items() if not (isinstance(value, Flux) and value.value == 0)}
+    axes = {"xyz".index(name[0]) for name in active}
+    if len(axes) != 1:
+        return None
+    axis, gradient = axes.pop(), np.zeros(3)
+    low, high = (scene.walls.get("xyz"[axis] + side, Flux(0.0)) for side in "-+")
+    if not isinstance(low, Flux) and not isinstance(high, Flux):
+        gradient[axis] = (high - low) / scene.size[axis]
+        return gradient, float(low)
+    # Fluxes are positive into the body: at the low wall along the axis, at the high one against it.
+    flow = low.value if isinstance(low, Flux) else -high.value
+    if flow != 0:
+        if np.isnan(conductivities[axis]):
+            return None
+        if conductivities[axis] == 0:
+            raise ValueError(f"Scene.walls = {dict(scene.walls)}: heat cannot pass a body of no conductivity")
+        gradient[axis] = -flow / conductivities[axis]
+    level = high - gradient[axis] * scene.size[axis] if isinstance(low, Flux) else low
+    return gradient, float(level)
+
+
+def _pieces(scene, normal):
+    """Ends of the layers along their normal and the conductivity between them."""
+    ends = {0.0, scene.size[normal]}
+    for layer in scene.inclusions:
+        ends |= {min(max(x, 0.0), scene.size[normal]) for x in (layer.start, layer.stop)}
+    breaks = np.array(sorted(ends))
+    points = np.zeros((len(breaks) - 1, 3))
+    points[:, normal] = [(a + b) / 2 for a, b in pairwise(breaks)]
+    return breaks, scene.conductivities[scene.phase_at(points)]
+
+
+@lru_cache(maxsize=32)
+def _solved(kind, contrast, fraction):
+    try:
+        return lattice.solve(kind, contrast, fraction)
+    except ValueError as error:
+        raise NotImplementedError(f"no closed form to six digits: {error}") from error
+
+
+def _array(scene):
+    """Kind, edge in metres and spheres of a cubic array, or None."""
+    spheres, edge = scene.inclusions, scene.size[0]
+    if len(spheres) not in (1, 2, 4) or not all(isinstance(sphere, Sphere) for sphere in spheres):
+        return None
+    first = spheres[0]
+    equal = all(
+        abs(s.radius - first.radius) <= SAME * edge and s.material.conductivity == first.material.conductivity
+        for s in spheres
+    )
+    if not equal or np.any(np.abs(np.array(scene.size) - edge) > SAME * edge):
+        return None
+    kind = {1: "sc", 2: "bcc", 4: "fcc"}[len(spheres)]
+    places = np.array([sphere.center for sphere in spheres]) / edge
+    if not scene.periodic:
+        centred = np.all(np.abs(places - 0.5) <= SAME)
+        return (kind, edge, spheres) if kind == "sc" and centred else None
+    offsets = lattice_field.nearest_site(kind, places - places[0]) - (places - places[0])
+    # Spheres at as many different sites, for the scene refuses two at the same place, are the array.
+    return None if np.any(np.abs(offsets) > SAME) else (kind, edge, spheres)
+
+
+def _coated(scene):
+    """Pairs (outer, inner) if all inclusions are neutral coated spheres, else None; `fractions` refuses cut ones."""
+    if not scene.inclusions or not all(isinstance(sphere, Sphere) for sphere in scene.inclusions):
+        return None
+    centers = np.array([sphere.center for sphere in scene.inclusions])
+    apart = centers[:, None] - centers[None]
+    if scene.periodic:
+        apart -= np.array(scene.size) * np.round(apart / scene.size)
+    together = np.linalg.norm(apart, axis=2) <= SAME * max(scene.size)
+    if np.any(together.sum(axis=1) != 2):
+        return None
+    # Scenes list the outer sphere first.
+    pairs = [np.flatnonzero(row) for row in together]
+    pairs = [(scene.inclusions[i], scene.inclusions[j]) for k, (i, j) in enumerate(pairs) if k == i]
+    return pairs if all(_neutral(scene, *pair) for pair in pairs) else None
+
+
+def _neutral(scene, outer, inner):
+    """Whether the matrix does not notice a coated sphere."""
+    above, below = _ratio(outer, inner)
+    excess = abs(scene.matrix.conductivity * below - outer.material.conductivity * above)
+    # Rounding of the two products, not of their difference, is what a matrix worked out by a user carries.
+    return excess <= SAME * outer.material.conductivity * above
+
+
+def _ratio(outer, inner):
+    """Neutral conductivity over that of the coat, as numerator and denominator: (1 + 2 beta f) / (1 - beta f)."""
+    k1, k2 = outer.material.conductivity, inner.material.conductivity
+    f = (inner.radius / outer.radius) ** 3
+    return k2 + 2 * k1 + 2 * (k2 - k1) * f, k2 + 2 * k1 - (k2 - k1) * f
+
+
+def _coat(outer, inner):
+    """Dipole and uniform part in the coat and slope in the core, for a unit gradient outside.
+
+    At the outer radius b: uniform + dipole = 1 and k1 (uniform - 2 dipole) = k.
+    """
+    above, below = _ratio(outer, inner)
+    ratio = above / below
+    dipole, uniform = (1 - ratio) / 3, (2 + ratio) / 3
+    return dipole, uniform, uniform + dipole * (outer.radius / inner.radius) ** 3

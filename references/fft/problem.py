@@ -1,0 +1,86 @@
+"""What the two schemes share: the scaled problem they are given and the solution they hand back."""
+
+from __future__ import annotations
+
+from time import perf_counter
+from typing import NamedTuple
+
+import numpy as np
+
+from references.threads import Team
+from references.voxels.paint import Voxels
+
+
+class Problem(NamedTuple):
+    """One load on one grid, in units that make the largest conductivity, length and gradient about 1.
+
+    Attributes
+    ----------
+    voxels : Voxels
+        In units of the largest conductivity and of the longest side.
+    links : tuple of three float arrays, or None
+        Conductivities of the links, for the scalar scheme's rule "links".
+    gradient : (3,) float array
+        Of length 1; along the first axis if there are walls.
+    walls : bool
+        Two isothermal walls across the first axis and four insulated ones; else a periodic cell.
+    dtype : numpy float type
+    team : Team
+    tolerance : float
+    max_iterations : int
+    """
+
+    voxels: Voxels
+    links: object
+    gradient: np.ndarray
+    walls: bool
+    dtype: np.dtype
+    team: Team
+    tolerance: float
+    max_iterations: int
+
+
+class Solution(NamedTuple):
+    """A solved problem, in the units of the problem; fluxes are along the gradient, against Fourier's direction.
+
+    Attributes
+    ----------
+    mean_flux : (3,) float array
+    ends : (2,) float array
+        Mean of the first flux component over the planes of voxels at the two ends of the first axis.
+    state : callable () -> (temperature, flux)
+        (nx, ny, nz) temperature less its linear part, (3, nx, ny, nz) flux, both at the voxel centres; made anew at
+        each call.
+    unknowns, iterations : int
+    errors : dict of str to float
+        Relative errors, recomputed after the solve; `residual` is the largest.
+    cost : dict of str to float
+        Wall seconds: `iteration_s` of all iterations, `transform_s` of the Fourier transforms among them.
+    """
+
+    mean_flux: np.ndarray
+    ends: np.ndarray
+    state: object
+    unknowns: int
+    iterations: int
+    errors: dict
+    cost: dict
+
+
+class Clock:
+    """Wall seconds between `with` and its end, all of them together, and those of them that a transform took."""
+
+    def __init__(self, transform):
+        self._transform, self._whole, self._part = transform, 0.0, 0.0
+
+    def __enter__(self):
+        self._whole -= perf_counter()
+        self._part -= self._transform.seconds
+
+    def __exit__(self, *_):
+        self._whole += perf_counter()
+        self._part += self._transform.seconds
+
+    def cost(self) -> dict:
+        """As `Solution.cost`."""
+        return {"iteration_s": self._whole, "transform_s": self._part}

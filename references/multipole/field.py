@@ -1,0 +1,126 @@
+"""Temperature and slope at any point, from the multipoles of spheres in a periodic cell.
+
+In a sphere its own regular series converges. Outside, the mean gradient and the periodic multipoles of all spheres are
+summed by Ewald's splitting: screened images one by one, the smooth rest by waves, whose amplitudes are worked out once.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from references.multipole import kernels
+from references.multipole.sums import entries, harmonics, splitting, wave_weights
+from references.multipole.system import Solved, Spheres, scales
+
+# Nanoseconds, about, of one harmonic of one image and of one wave at one point: they set the splitting.
+HARMONIC, WAVE = 4.0, 4.0
+# eta radius^2 above this: waves of low degree cancel to more than a digit.
+MOST_SCREENED = 6.0
+
+
+class Evaluator:
+    """The solution at points.
+
+    Parameters
+    ----------
+    spheres : Spheres
+    solved : Solved
+    gradient : (3,) float array, K/length
+    """
+
+    def __init__(self, spheres: Spheres, solved: Solved, gradient):
+        self.spheres, self.order, self.gradient = spheres, solved.order, np.asarray(gradient, dtype=float)
+        self.regular = _regular(spheres, solved)
+        self.multipoles = _complex(solved.source * scales(spheres.radii, solved.order)[0])
+        self.split = _splitting(spheres, solved.order)
+        self.amplitudes = _amplitudes(spheres, solved, self.split)
+
+    def __call__(self, points):
+        """Temperature and its slope, and which sphere owns the point.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, length
+
+        Returns
+        -------
+        (n, 4) float array, K and K/length
+            On a surface that of the sphere's side.
+        (n,) int array
+            Number of the sphere, or -1.
+        """
+        spheres = self.spheres
+        offsets, owner = np.array(points, dtype=float), np.empty(len(points), dtype=np.int64)
+        kernels.owners(offsets, spheres.centers, spheres.radii, spheres.size, owner)
+        result = np.zeros((len(points), 4))
+        inner, outer = np.flatnonzero(owner >= 0), np.flatnonzero(owner < 0)
+        part = np.empty((len(inner), 4))
+        kernels.inside(offsets[inner], owner[inner], self.regular, self.order, part)
+        # The mean gradient takes the series, which is that of one cell, to where the point is.
+        part[:, 0] += (points[inner] - offsets[inner]) @ self.gradient
+        result[inner] = part
+        part = np.zeros((len(outer), 4))
+        kernels.near(
+            offsets[outer],
+            spheres.centers,
+            spheres.size,
+            self.multipoles,
+            self.order,
+            self.split.eta,
+            self.split.reach,
+            part,
+        )
+        kernels.far(offsets[outer], spheres.size, self.split.waves, self.amplitudes, part)
+        part[:, 0] += offsets[outer] @ self.gradient
+        part[:, 1:] += self.gradient
+        result[outer] = part
+        return result, owner
+
+
+def _complex(table):
+    return np.ascontiguousarray(table[0] + 1j * table[1])
+
+
+def _regular(spheres, solved):
+    """Coefficients inside: c + b = c (2l+1)/(l s + l + 1), without the cancellation of the sum at high contrast.
+
+    Without the value that the mean gradient has at the centre: `Evaluator` adds it.
+    """
+    n, _ = entries(solved.order)
+    root = scales(np.ones(1), solved.order)[1]
+    factor = (2 * n + 1) / (n * spheres.contrasts[:, None] + n + 1)
+    return _complex(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
+
+
+def _splitting(spheres, order):
+    """The splitting that costs least per point."""
+    volume, largest = float(np.prod(spheres.size)), float(spheres.radii.max(initial=0.0))
+    best, least = None, math.inf
+    for factor in (1.0, 2.0, 4.0, 8.0, 16.0, 32.0):
+        eta = factor * math.pi / volume ** (2 / 3)
+        if factor > 1 and eta * largest**2 > MOST_SCREENED:
+            break
+        cut = splitting(spheres.size, max(largest, 1e-3 * volume ** (1 / 3)), max(order, 1), eta)
+        images = len(spheres.radii) * 4 / 3 * math.pi * cut.reach**3 / volume
+        cost = HARMONIC * images * (order + 2) ** 2 + WAVE * len(cut.waves)
+        if cost < least:
+            best, least = cut, cost
+    return best
+
+
+def _amplitudes(spheres, solved, split):
+    """F(K): sum over spheres and degrees of (-i)^l weight exp(-i K.x) Re(sum over m of B_lm R_l^m(K/k))."""
+    weights, vectors = wave_weights(split.waves, spheres.size, split.eta, solved.order)
+    n, m = entries(solved.order)
+    both = np.where(m == 0, 1.0, 2.0)
+    table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], solved.order) * both
+    moments = solved.source * spheres.radii[:, None] ** (n + 1.0)
+    phase = np.exp(-1j * vectors @ spheres.centers.T)
+    total = np.zeros(len(vectors), dtype=complex)
+    for degree in range(1, solved.order + 1):
+        here = n == degree
+        parts = table[:, here].real @ moments[0][:, here].T - table[:, here].imag @ moments[1][:, here].T
+        total += (-1j) ** degree * weights[:, degree] * np.sum(phase * parts, axis=1)
+    return total

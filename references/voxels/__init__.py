@@ -1,0 +1,1 @@
+"""Scenes as voxels: phases, volume fractions, normals of interfaces, links."""

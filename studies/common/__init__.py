@@ -1,0 +1,1 @@
+"""Scenes and rows that several studies share."""

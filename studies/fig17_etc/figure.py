@@ -1,0 +1,143 @@
+"""The figure of fig17_etc: conductivity with its bounds, errors of the methods, and chance beside both."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from references import bounds
+from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, of_walls, witness
+from studies.harness.converged import TERMS, converged
+from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
+from studies.harness.pick import pick
+
+HERE = {"kind": "periodic", "boundary": "gradient", "realisation": 0, "axes": "y"}
+FLOOR = 1e-4  # per cent; what is below is drawn there
+
+
+def draw(df):
+    """Three panels."""
+    from matplotlib import pyplot
+
+    df = df[df["status"] == "ok"]
+    figure, axes = pyplot.subplots(1, 3, figsize=(15, 5))
+    _conductivity(axes[0], df)
+    _errors(axes[1], df)
+    _spreads(axes[2], df)
+    return figure
+
+
+def _fractions(df):
+    return np.array(sorted(df["fraction"].unique()))
+
+
+def _conductivity(ax, df):
+    """Over Maxwell's estimate: k rises threefold, what is to be told apart is a few per cent."""
+    fractions, curve = _fractions(df), np.linspace(1e-3, _fractions(df).max(), 100)
+
+    def relative(k, f):
+        return k / bounds.maxwell(1.0, CONTRAST, f)
+
+    zeta2 = [pick(df, name="zeta2", fraction=f)["zeta2"].mean() for f in fractions]
+    smooth = np.interp(curve, [0.0, *fractions], [0.0, *zeta2])
+    low, high = bounds.third_order(1.0, CONTRAST, curve, smooth)
+    ax.fill_between(
+        curve, relative(low, curve), relative(high, curve), color=SKY, alpha=0.35, label="third-order bounds"
+    )
+    ax.plot(curve, relative(bounds.torquato(1.0, CONTRAST, curve, smooth), curve), color=BLUE, label="Torquato")
+    for name, formula, style in (
+        ("Bruggeman, differential", bounds.bruggeman_differential, "--"),
+        ("Lewis and Nielsen", bounds.lewis_nielsen, "-."),
+        ("Maxwell", bounds.maxwell, ":"),
+    ):
+        ax.plot(curve, relative(formula(1.0, CONTRAST, curve), curve), color=GREY, linestyle=style, label=name)
+    for f in fractions:
+        found = interval(df, "periodic", f, name="multipole")
+        if found:
+            first = f == fractions[0]
+            ax.errorbar(
+                f, relative(found.mean, f), relative(found.half, f), color=BLACK, marker="o", markersize=5, capsize=4,
+                label=f"multipoles, {found.number} cells, 95 %" if first else None,
+            )  # fmt: skip
+    _markers(ax, df, relative)
+    ax.set(xlabel="volume fraction", ylabel="k over Maxwell's estimate", title="Silica in epoxy: five random cells")
+    ax.legend(loc="upper left")
+
+
+def _markers(ax, df, relative):
+    """Unequal spheres, and the paper's network on the first cell."""
+    for f in _fractions(df):
+        changed = change(df, f, "unequal")
+        equal = interval(df, "periodic", f, name="multipole")
+        if changed is not None and equal:
+            ax.plot(
+                f, relative(equal.mean * (1 + changed / 100), f), "v", color=GREEN, label=_once(ax, "unequal spheres")
+            )
+    rows = pick(df, name="dem-calibrated", **HERE)
+    if len(rows):
+        ax.plot(
+            rows["fraction"], relative(rows["k_ratio"], rows["fraction"]), "s", color=PINK, markerfacecolor="none",
+            label="DEM as in the paper, first cell",
+        )  # fmt: skip
+
+
+def _once(ax, label):
+    return None if label in ax.get_legend_handles_labels()[1] else label
+
+
+def _errors(ax, df):
+    """On the first cell: the finest row of each method open, its converged value filled."""
+    for name in ("dem-calibrated", *TERMS):
+        rows = pick(df, name=name, **HERE)
+        if not len(rows):
+            continue
+        knob = TERMS.get(name, ("particles",))[0]
+        fine = rows.loc[
+            rows.groupby("fraction")[knob].idxmin() if knob == "size" else rows.groupby("fraction")[knob].idxmax()
+        ]
+        errors = [
+            100 * abs(k / witness(df, "periodic", f) - 1)
+            for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)
+        ]
+        style = look(name)
+        ax.plot(fine["fraction"], np.maximum(errors, FLOOR), **style | {"markerfacecolor": "none", "linestyle": ":"})
+        if name in TERMS and TERMS[name][1]:
+            limits = {f: converged(df, name, fraction=f, **HERE) for f in fine["fraction"]}
+            errors = [100 * abs(k / witness(df, "periodic", f) - 1) if k else np.nan for f, k in limits.items()]
+            ax.plot(
+                list(limits),
+                np.maximum(errors, FLOOR),
+                **style | {"label": f"{LOOK[name][0]}, extrapolated", "linestyle": "none"},
+            )
+    ax.set(xlabel="volume fraction", ylabel="|error|, % of the multipole value", yscale="log")
+    ax.set_title("One cell, all methods on the same spheres")
+    ax.set_ylim(top=30 * ax.get_ylim()[1])  # room for the legend
+    ax.legend(fontsize=7, loc="upper left")
+
+
+def _spreads(ax, df):
+    """What changes k: chance, boundaries, the spheres' sizes, and the method."""
+    fractions = _fractions(df)
+    cells = [interval(df, "periodic", f) for f in fractions]
+    groups = {
+        ("chance: deviation of one cell, one axis", BLACK): [along_one_axis(df, f) for f in fractions],
+        ("the same, mean over three axes", GREY): [i and 100 * i.deviation / i.mean for i in cells],
+        ("isothermal walls instead of a gradient", PINK): [of_walls(df, f).mean() for f in fractions],
+        ("unequal spheres instead of equal ones", GREEN): [change(df, f, "unequal") for f in fractions],
+        ("largest difference of two methods, converged", RED): [_between(df, f) for f in fractions],
+    }
+    width = 0.8 / len(groups)
+    for k, ((label, colour), values) in enumerate(groups.items()):
+        heights = np.array([np.nan if v is None else abs(v) for v in values])
+        ax.bar(np.arange(len(fractions)) + (k + 0.5) * width - 0.4, heights, width, color=colour, label=label)
+    ax.set(xlabel="volume fraction", ylabel="% of k", yscale="log", title="What changes the result")
+    ax.set_xticks(range(len(fractions)), [f"{f:g}" for f in fractions])
+    top = ax.get_ylim()[1]
+    ax.set_ylim(top=20 * top)  # room for the legend
+    ax.legend(fontsize=8, loc="upper left")
+
+
+def _between(df, fraction):
+    """Largest difference of two methods' converged values on the first cell, %; None with fewer than two."""
+    k = [converged(df, name, fraction=fraction, **HERE) for name in TERMS]
+    k = [each for each in k if each]
+    return 100 * (max(k) / min(k) - 1) if len(k) > 1 else None

@@ -1,0 +1,150 @@
+"""The table of fig17_etc: k and its chance, bounds and estimates, errors and costs of the methods."""
+
+from __future__ import annotations
+
+import math
+
+from references import bounds
+from studies.fig17_etc.means import (
+    CONTRAST,
+    along_one_axis,
+    change,
+    change_interval,
+    interval,
+    of_walls,
+    walls_less_gradient,
+    witness,
+)
+from studies.harness.converged import TERMS, TITLES, converged
+from studies.harness.figures import EDGE, LOOK
+from studies.harness.pick import pick
+
+COSTS_AT = 0.4
+COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
+ESTIMATES = {
+    "Maxwell (lower bound of Hashin and Shtrikman)": bounds.maxwell,
+    "upper bound of Hashin and Shtrikman": lambda *args: bounds.hashin_shtrikman(*args)[1],
+    "Bruggeman, differential": bounds.bruggeman_differential,
+    "Bruggeman, symmetric": bounds.bruggeman,
+    "Rayleigh, simple cubic array": bounds.rayleigh,
+    "Lewis and Nielsen": bounds.lewis_nielsen,
+    "Agari and Uno, nothing fitted": bounds.agari_uno,
+}
+
+
+def lines(df):
+    """Table as a data frame, one column for each fraction."""
+    import pandas as pd
+
+    fractions = sorted(df["fraction"].unique())
+    rows = [*_conductivities(df, fractions), *_estimates(df, fractions)]
+    for kind, boundary in (("periodic", "gradient"), ("walled", "gradient")):
+        rows += _errors(df, fractions, kind, boundary)
+    rows += _walls(df, fractions)
+    shown = [f"f = {f:g}" for f in fractions]
+    return pd.DataFrame([row for row in rows if any(row.get(name) for name in shown)]).fillna(
+        {name: "" for name in shown}
+    )
+
+
+def _line(quantity, of, values, digits=3, **costs):
+    columns = {
+        f"f = {f:g}": "" if value is None or math.isnan(value) else f"{value:.{digits}g}" for f, value in values.items()
+    }
+    return {"quantity": quantity, "of": of} | columns | dict.fromkeys(COSTS, math.nan) | costs
+
+
+def _conductivities(df, fractions):
+    """Means over cells, and what changes them."""
+    exact = {f: interval(df, "periodic", f, name="multipole") for f in fractions}
+    chance = {f: interval(df, "periodic", f) for f in fractions}
+    yield _line("k/k_m", "mean of cells, multipoles", {f: i and i.mean for f, i in exact.items()}, 5)
+    yield _line("%", "95 % interval of that mean, +-", {f: i and 100 * i.half / i.mean for f, i in exact.items()})
+    yield _line("%", "chance", {f: i and 100 * i.deviation / i.mean for f, i in chance.items()})
+    yield _line("%", "chance along one axis", {f: along_one_axis(df, f) for f in fractions})
+    for kind, name in (("unequal", "unequal spheres less equal ones"), ("walled", "walled cells less periodic ones")):
+        yield _line("%", name, {f: change(df, f, kind) for f in fractions})
+        yield _line("%", "95 % interval of that, +-", {f: change_interval(df, f, kind) for f in fractions})
+
+
+def _estimates(df, fractions):
+    """Formulas at the nominal fraction, with the polynomial's and the cells' mean zeta_2."""
+    cells = {f: pick(df, name="zeta2", fraction=f)["zeta2"].mean() for f in fractions}
+    zeta2 = {"of the cells": cells, "of the polynomial": {f: float(bounds.zeta2_hard_spheres(f)) for f in fractions}}
+    for whose, values in zeta2.items():
+        yield _line("zeta_2", whose, values, 4)
+    for side, name in enumerate(("third-order lower bound", "third-order upper bound")):
+        yield _formula(name, {f: bounds.third_order(1.0, CONTRAST, f, z)[side] for f, z in cells.items() if z == z})
+    for whose, values in zeta2.items():
+        yield _formula(
+            f"Torquato, zeta_2 {whose}", {f: bounds.torquato(1.0, CONTRAST, f, z) for f, z in values.items() if z == z}
+        )
+    for name, formula in ESTIMATES.items():
+        yield _formula(name, {f: formula(1.0, CONTRAST, f) for f in fractions})
+
+
+def _formula(name, values):
+    return _line("k/k_m", name, values, 5)
+
+
+def _errors(df, fractions, kind, boundary):
+    """Errors of each method and resolution beside the witness, and of the extrapolated values."""
+    here = {"kind": kind, "boundary": boundary, "realisation": 0, "axes": "y"}
+    exact = {f: witness(df, kind, f) for f in fractions}
+    if not any(exact.values()):
+        return
+    what = f"error, %, {kind}"
+    for name in ("dem", "dem-calibrated", "fem", "fft", "fft-em"):
+        for resolution, rows in _ladder(pick(df, name=name, **here)):
+            k = dict(zip(rows["fraction"], rows["k_ratio"], strict=True))
+            values = {f: 100 * (k[f] / exact[f] - 1) if f in k and exact[f] else None for f in fractions}
+            yield _line(what, f"{LOOK[name][0]}, {resolution}", values, **_costs(rows))
+        if name in TERMS:
+            limits = {f: converged(df, name, fraction=f, **here) for f in fractions}
+            values = {f: 100 * (k / exact[f] - 1) if k and exact[f] else None for f, k in limits.items()}
+            yield _line(what, f"{LOOK[name][0]}, converged", values)
+    yield _nearest(df, exact, kind, here)
+    rows = pick(df, name="multipole", **here)
+    left = {row["fraction"]: 100 * row["truncation"] for _, row in rows.iterrows()}
+    yield _line(what, "multipoles, by their own estimate", {f: left.get(f) for f in fractions}, **_costs(rows))
+
+
+def _nearest(df, exact, kind, here):
+    """Which converged value is nearest to the witness, and what its finest row cost."""
+    line = {"quantity": f"nearest, {kind}", "of": "converged values; processor seconds of the finest row"}
+    for fraction, right in exact.items():
+        limits = {name: converged(df, name, fraction=fraction, **here) for name in TERMS}
+        off = {name: abs(k / right - 1) for name, k in limits.items() if right and k}
+        if len(off) == len(TERMS):
+            best = min(off, key=off.get)
+            spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()
+            line[f"f = {fraction:g}"] = f"{TITLES[best]}, {spent:.0f} s"
+    return line | dict.fromkeys(COSTS, math.nan)
+
+
+def _ladder(rows):
+    """Rows of one method at each of its resolutions, coarse to fine, with its name."""
+    for knob, ascending, name in (
+        ("particles", True, "{:.0f} particles"),
+        ("voxels", True, "{:.0f}^3"),
+        ("size", False, "h = L/{:.0f}"),
+    ):
+        if knob in rows:
+            for value, group in sorted(rows.groupby(knob), key=lambda pair: pair[0], reverse=not ascending):
+                yield name.format(EDGE / value if knob == "size" else value), group
+
+
+def _costs(rows):
+    """Costs of a row at the fraction that stands for all."""
+    rows = pick(rows, fraction=COSTS_AT)
+    return {cost: rows[cost].iloc[0] for cost in COSTS if len(rows)}
+
+
+def _walls(df, fractions):
+    """Isothermal walls less mean gradient, on the same spheres, by the converged values of each method."""
+    for name in TERMS:
+        values = {f: walls_less_gradient(df, name, f) for f in fractions}
+        yield _line("walls less gradient, %", LOOK[name][0], values)
+    cells = {f: of_walls(df, f) for f in fractions}
+    yield _line("walls less gradient, %", "FFT, mean over cells", {f: v.mean() for f, v in cells.items()})
+    yield _line("walls less gradient, %", "FFT, deviation between cells", {f: v.std() for f, v in cells.items()})

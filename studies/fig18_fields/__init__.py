@@ -1,0 +1,187 @@
+"""Temperature and flux among 83 spheres, point by point: DEM, FEM and FFT against multipoles.
+
+Table 3 of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799): silica spheres in epoxy (0.195 and 1.5
+W/(m K)), a fifth of a cube of six diameters, 25 C at y = 0 and 35 C at y = L, the other faces insulated. Their
+arrangement is not published, so their numbers and ours differ; what can be compared is how far methods differ on one
+arrangement. Here the same spheres, none of which crosses a face and no two nearer than 0.02 diameters, are under two
+loads: "walls", as in the paper, and "gradient", in a periodic cell under the same mean gradient. Both have an exact
+witness, the multipole method: the walled box is an eighth of a periodic cell of its mirror images.
+
+Temperatures are in % of the span of 10 K, the flux is unsigned. All points lie on the plane x = L/2, sampled at
+51 x 51 points. "Away" is more than the mean diameter of 1e5 particles, 0.021 L, from interfaces and insulated faces;
+the band is the rest. In the periodic cell, where the level of temperature is free, the plane's mean is 30 C.
+"""
+
+import math
+
+from studies.common import silica_epoxy
+from studies.harness.figures import resolution
+from studies.harness.methods import EDGE
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
+
+BOUNDARIES = ("gradient", "walls")
+NUMBERS = (30_000, 100_000, 300_000, 1_000_000)
+# Longest edges, in edges of the cube.
+SIZES = {"fem": (0.06, 0.03, 0.015), "fem-p1": (0.012,)}
+VOXELS = (64, 128, 256)
+DEGREES = {"gradient": (8, 14), "walls": (6, 9)}
+PAPER = printed("fig18_fields")
+TIMEOUT = 3600.0
+
+
+def finest_number(boundary):
+    """Most particles under a boundary condition: a million in the paper's own box only."""
+    return NUMBERS[-1] if boundary == "walls" else NUMBERS[-2]
+
+
+def _cases():
+    yield {"name": "arrangement", "method": "dispersion"}
+    for boundary in BOUNDARIES:
+        yield from (silica_epoxy.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
+        for number in NUMBERS:
+            if number <= finest_number(boundary):
+                yield silica_epoxy.case("dem", boundary=boundary, particles=number, seed=0)
+        for name, sizes in SIZES.items():
+            if name == "fem" or boundary == "walls":
+                yield from (silica_epoxy.case(name, boundary=boundary, size=size * EDGE) for size in sizes)
+        yield from (silica_epoxy.case("fft", boundary=boundary, voxels=voxels) for voxels in VOXELS)
+
+
+CASES = list(_cases())
+MODULES = {"dispersion": "demheat.packing.dispersion"}
+
+
+def QUICK(case):
+    """Each method at its coarsest; between walls the finite elements stand in for the multipoles of 664 images."""
+    if case["name"] == "multipole":
+        return (case["boundary"], case["order"]) == ("gradient", DEGREES["gradient"][0])
+    coarsest = {"particles": NUMBERS[0], "size": SIZES["fem"][0] * EDGE, "voxels": VOXELS[0]}
+    fits = all(case[key] == value for key, value in coarsest.items() if key in case)
+    return fits and (case["name"], case.get("boundary")) != ("fem", "gradient")
+
+
+def run(name, boundary=None, *, method, **knobs):
+    """Where the points lie; or the field of one method under one load."""
+    from studies.fig18_fields import rows as fig18_rows
+
+    return fig18_rows.arrangement_row() if boundary is None else fig18_rows.field_row(boundary, method=method, **knobs)
+
+
+def warm_up(name, boundary=None, *, method, **knobs):
+    """Make and keep the spheres and the packing, load and compile."""
+    from studies.fig18_fields import rows as fig18_rows
+
+    if boundary is None:
+        fig18_rows.spheres_in("walls")
+    else:
+        fig18_rows.warm_up(boundary, method=method, **knobs)
+
+
+def claims(df):
+    """What issue 6 asks for, and its like for the quick rows."""
+    from studies.fig18_fields.errors import with_errors
+
+    found = with_errors(df)
+    yield from present([*_arrangement(df), *_witnesses(df), *_methods(found), *_side_by_side(found), *_paper(found)])
+
+
+def _arrangement(df):
+    row = pick(df, name="arrangement").iloc[0]
+    gap = min(row[f"gap_{letter}"] for letter in "ABCD")
+    yield "Table 3's points lie farther from any interface than, in bands of 0.021 L", gap / row["band"], ">= 1"
+
+
+def _witnesses(df):
+    """What the multipoles of the highest degree may be off: by how much a lower degree differs."""
+    for boundary in BOUNDARIES:
+        few, many = (pick(df, name="multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
+        if not len(few) or not len(many):
+            continue
+        few, many = few.iloc[0], many.iloc[0]
+        degrees = " against ".join(map(str, DEGREES[boundary]))
+        text = f"Multipoles of degree {degrees}, {boundary}, worst point of Table 3: "
+        warm = max(abs(few[f"T_{letter}"] - many[f"T_{letter}"]) for letter in "ABCD")
+        yield text + "temperature, % of the span", 10 * warm, 0.02
+        flux = max(abs(few[f"q_{letter}"] / many[f"q_{letter}"] - 1) for letter in "ABCD")
+        yield text + "flux, % of the local one", 100 * flux, 0.3
+
+
+def _methods(found):
+    """Each method against the witness: quick rows at the coarsest resolution, full ones at the finest.
+
+    Limits of quick rows are some twice what was found; between walls their witness is a coarse FEM, itself 2 % off.
+    """
+    for name, knob, coarse, fine, quick in (
+        ("dem", "particles", NUMBERS[0], NUMBERS[-1], {"gradient": (0.15, 2.0), "walls": (0.3, 8.0)}),
+        ("fem", "size", math.nan, SIZES["fem"][-1] * EDGE, {}),
+        ("fft", "voxels", VOXELS[0], VOXELS[-1], {"gradient": (0.15, 2.0), "walls": (0.15, 4.0)}),
+    ):
+        for boundary in BOUNDARIES:
+            exact = len(pick(found, name="multipole", boundary=boundary)) > 0
+            if name == "fem" and not exact:
+                continue  # it is the witness itself
+            whom = "the multipoles" if exact else "a coarse FEM that is 2 % off itself"
+            for size, limits in ((coarse, quick.get(boundary, (None, None))), (fine, (0.1, 1.0))):
+                if name == "dem" and size == fine:
+                    size = finest_number(boundary)
+                rows = pick(found, name=name, boundary=boundary, **{knob: size})
+                text = f"{name.upper()}, {_words(knob, size)}, {boundary}, worst point of Table 3: "
+                yield text + f"temperature off {whom}, % of the span", _worst(rows, "worst_T"), limits[0]
+                yield text + f"flux off {whom}, % of the local one", _worst(rows, "worst_q"), limits[1]
+
+
+def _words(knob, size):
+    nothing = dict.fromkeys(("particles", "size", "voxels"), float("nan"))
+    return resolution(**nothing | {knob: size})
+
+
+def _worst(rows, column):
+    return rows[column].max(skipna=False) if len(rows) else None
+
+
+def _side_by_side(found):
+    """DEM against FEM with no third one between them, each at its finest; what the paper compares."""
+    for boundary in BOUNDARIES:
+        dem = pick(found, name="dem", boundary=boundary, particles=finest_number(boundary))
+        fem = pick(found, name="fem", boundary=boundary, size=SIZES["fem"][-1] * EDGE)
+        if not len(dem) or not len(fem):
+            continue
+        dem, fem = dem.iloc[0], fem.iloc[0]
+        text = f"DEM, {finest_number(boundary)} particles, against FEM, P2, {boundary}, worst point of Table 3: "
+        warm = max(10 * abs(dem[f"T_{letter}"] - fem[f"T_{letter}"]) for letter in "ABCD")
+        yield text + "temperature, % of the span", warm, 0.1
+        yield text + "flux, % of FEM's", max(100 * abs(dem[f"q_{x}"] / fem[f"q_{x}"] - 1) for x in "ABCD"), 1.0
+
+
+def _paper(found):
+    """What linear elements as many as the paper's err by: no less than its two methods differ by, 3.1 % in print."""
+    linear = pick(found, name="fem-p1")
+    text = f"FEM, P1, as many elements as the paper's FE ({PAPER['tetrahedra']:.1e}), walls: "
+    few = _worst(linear, "elements")
+    yield text + "elements over the paper's", None if few is None else few / PAPER["tetrahedra"], ">= 1"
+    off = _worst(linear, "worst_q")
+    yield text + "flux at the worst point off the witness, % (printed DE and FE differ by 3.1)", off, ">= 2"
+
+
+def table(df):
+    """Temperature, C, and size of the flux, W/m2, at the points of Table 3, and errors against the first of each load.
+
+    `T off` and `q off` are the worst of the four points, % of the span and % of the local flux; `T rms`, `T max` (% of
+    the span) and the flux's (size of the vector's error, % of the mean flux) are over the plane, away from interfaces
+    and insulated faces and in the band along them. The printed values are of another arrangement, which is not
+    published. Costs are those of the solve with packings from the cache.
+    """
+    import pandas as pd
+
+    from studies.fig18_fields.errors import with_errors
+    from studies.fig18_fields.tables import lines
+
+    return pd.DataFrame(lines(df[df["status"] == "ok"], with_errors(df[df["status"] == "ok"]), PAPER))
+
+
+def plot(df):
+    """Fields on the plane and what methods are off there; errors at the points; errors over unknowns."""
+    from studies.fig18_fields.figure import draw
+
+    return draw(df[df["status"] == "ok"], PAPER)

@@ -1,0 +1,83 @@
+"""Errors of the rows of a study of fields against the witness of the same load, from their tables alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from studies.common.field_errors import picture
+from studies.fig18_fields.rows import POINTS, SPAN
+from studies.harness.pick import pick
+
+BOUNDARIES = {"gradient": "periodic cell, mean gradient", "walls": "isothermal and insulated walls"}
+
+
+def witness(df, boundary):
+    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM."""
+    rows = pick(df, boundary=boundary)
+    exact = pick(rows, name="multipole")
+    if len(exact):
+        return exact.loc[exact["degree"].idxmax()]
+    fem = pick(rows, name="fem")
+    return fem.loc[fem["unknowns"].idxmax()] if len(fem) else None
+
+
+def with_errors(df):
+    """Rows of fields with their errors against the witness; that of the witness itself is 0.
+
+    Returns
+    -------
+    data frame
+        With `T_A_error` and the like (% of the span), `q_A_error` (of the flux's size, % of the local flux) and
+        `vector_A_error` (% of the mean flux); the worst of each over the points; `temperature_rms`, `temperature_max`
+        (% of the span), `flux_rms`, `flux_max` away from interfaces and insulated faces, `flux_rms_band`,
+        `flux_max_band` within the band along them (% of the mean flux).
+    """
+    import pandas as pd
+
+    place = pick(df, name="arrangement")
+    place = place.iloc[0] if len(place) else None
+    rows = []
+    for boundary in BOUNDARIES:
+        truth = witness(df, boundary)
+        for _, row in pick(df, boundary=boundary).iterrows():
+            if truth is not None:
+                rows.append(dict(row) | _at_points(row, truth) | _over_plane(row, truth, _away(place, boundary)))
+    return pd.DataFrame(rows)
+
+
+def _at_points(row, truth):
+    found = {}
+    for letter in POINTS:
+        found[f"T_{letter}_error"] = 100 * (row[f"T_{letter}"] - truth[f"T_{letter}"]) / SPAN
+        found[f"q_{letter}_error"] = 100 * (row[f"q_{letter}"] / truth[f"q_{letter}"] - 1)
+        vector = [row[f"q{axis}_{letter}"] - truth[f"q{axis}_{letter}"] for axis in "xyz"]
+        found[f"vector_{letter}_error"] = 100 * float(np.linalg.norm(vector)) / truth["mean_flux"]
+    for kind in ("T", "q", "vector"):
+        found[f"worst_{kind}"] = max(abs(found[f"{kind}_{letter}_error"]) for letter in POINTS)
+    return found
+
+
+def error_pictures(row, truth):
+    """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux."""
+    warm = picture(row["slice_temperature"]) - picture(truth["slice_temperature"])
+    parts = [picture(row[f"slice_{axis}"]) - picture(truth[f"slice_{axis}"]) for axis in "xyz"]
+    return warm, 100 * np.sqrt(sum(part**2 for part in parts)) / truth["mean_flux"]
+
+
+def _away(place, boundary):
+    """Pixels farther than the band's width from interfaces and, between walls, insulated faces."""
+    if place is None:
+        return None
+    gap = np.abs(picture(place["slice_gap"]))
+    if boundary == "walls":
+        gap = np.minimum(gap, picture(place["slice_face"]))
+    return gap > place["band"]
+
+
+def _over_plane(row, truth, away):
+    warm, flux = error_pictures(row, truth)
+    found = {"temperature_rms": float(np.sqrt(np.mean(warm**2))), "temperature_max": float(np.abs(warm).max())}
+    for ending, here in (("", away), ("_band", None if away is None else ~away)):
+        part = flux if here is None else flux[here]
+        found |= {f"flux_rms{ending}": float(np.sqrt(np.mean(part**2))), f"flux_max{ending}": float(part.max())}
+    return found

@@ -1,0 +1,48 @@
+"""Lines of the table of the study of fields among many spheres."""
+
+from __future__ import annotations
+
+from studies.fig18_fields.errors import BOUNDARIES, witness
+from studies.harness.figures import LOOK, resolution
+from studies.harness.pick import pick
+
+SHOWN = {"T off": "worst_T", "q off": "worst_q", "T rms": "temperature_rms", "T max": "temperature_max",
+         "flux rms": "flux_rms", "flux max": "flux_max", "band rms": "flux_rms_band", "band max": "flux_max_band",
+         "unknowns": "unknowns", "elements": "elements", "cpu_s": "cpu_s", "peak_mib": "peak_mib"}  # fmt: skip
+
+
+def label(row):
+    """Name of a row's method."""
+    return "multipoles" if row["name"] == "multipole" else LOOK[row["name"]][0]
+
+
+def words(row):
+    """Resolution of a row."""
+    if row["name"] == "multipole":
+        return f"degree {row['degree']:.0f}"
+    return resolution(*(row.get(key, float("nan")) for key in ("particles", "size", "voxels")))
+
+
+def lines(df, found, paper):
+    """Where the points lie; rows of each load, its witness first; what the paper prints."""
+    place = pick(df, name="arrangement").iloc[0]
+    blank = {"load": "", "method": "where the points lie", "resolution": ""}
+    where = {f"T_{x}": place[f"phase_{x}"] for x in "ABCD"}
+    where |= {f"q_{x}": f"{place[f'gap_{x}']:.3f} L off" for x in "ABCD"}
+    made = [blank | where | dict.fromkeys(SHOWN, float("nan"))]
+    for boundary in BOUNDARIES:
+        truth, rows = witness(df, boundary), pick(found, boundary=boundary)
+        if truth is None:
+            continue
+        first = rows["case"] == truth["case"]
+        made += [_line(boundary, row) for part in (rows[first], rows[~first]) for _, row in part.iterrows()]
+    for name, key in (("DE of the paper, 8e6 elements", "de"), ("FE of the paper, 2.3e6 tetrahedra", "fe")):
+        printed = {f"{kind}_{x}": f"{paper[f'{kind}_{x}_{key}']:g}" for kind in "Tq" for x in "ABCD"}
+        made.append(blank | {"method": name} | printed | dict.fromkeys(SHOWN, float("nan")))
+    return made
+
+
+def _line(boundary, row):
+    line = {"load": boundary, "method": label(row), "resolution": words(row)}
+    line |= {f"T_{x}": f"{row[f'T_{x}']:.3f}" for x in "ABCD"} | {f"q_{x}": f"{row[f'q_{x}']:.2f}" for x in "ABCD"}
+    return line | {title: row[column] for title, column in SHOWN.items()}

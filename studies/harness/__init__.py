@@ -1,0 +1,1 @@
+"""What runs, times, keeps, judges and draws the studies."""

@@ -1,0 +1,228 @@
+"""Where a row comes from: code, commit, machine, threads, versions. A row is reused only if these still hold."""
+
+from __future__ import annotations
+
+import ast
+import copy
+import hashlib
+import os
+import platform
+import subprocess
+from datetime import datetime, timezone
+from functools import cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+from studies.harness.methods import path_of
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("demheat", "references", "studies")
+LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
+# What must agree for a stored row to stand for a new one.
+SAME = ("code", "machine", "threads", "versions")
+# Names of a module that no number depends on.
+DESCRIBING = {"__all__", "__version__", "METHODS"}
+
+
+def provenance(study, case):
+    """Columns that say where a row comes from.
+
+    Parameters
+    ----------
+    study : module
+    case : dict
+        Its "method", if any, names what the row loads, see `module_of`.
+    """
+    return {
+        "code": code_hash(study.__file__, module_of(study, case.get("method", ""))),
+        "commit": commit(),
+        "when": datetime.now(timezone.utc).isoformat(timespec="seconds"),
+        "machine": machine(),
+        "threads": threads(),
+        "versions": versions(),
+        "load": round(os.getloadavg()[0], 2),
+    }
+
+
+def threads():
+    """Threads a row may use: NUMBA_NUM_THREADS where set, else every processor this process may use."""
+    return int(os.environ.get("NUMBA_NUM_THREADS") or len(os.sched_getaffinity(0)))
+
+
+def row_environment():
+    """Environment of a row's process: one thread count for every library, and waiting threads that do not spin."""
+    count = str(threads())
+    return {
+        **os.environ,
+        "NUMBA_THREADING_LAYER": "workqueue",
+        "OMP_WAIT_POLICY": "PASSIVE",
+        "NUMBA_NUM_THREADS": count,
+        "OMP_NUM_THREADS": count,
+        "OPENBLAS_NUM_THREADS": count,
+    }
+
+
+@cache
+def machine():
+    """Processor model and number of logical processors; no host name, no path."""
+    model = platform.processor() or platform.machine()
+    try:
+        lines = Path("/proc/cpuinfo").read_text().splitlines()
+    except OSError:
+        lines = []
+    for line in lines:
+        if line.startswith("model name"):
+            model = line.split(":", 1)[1].strip()
+            break
+    return f"{model}, {os.cpu_count()} processors"
+
+
+@cache
+def versions():
+    """Versions of Python and of the libraries that compute, in one line."""
+    found = [f"python {platform.python_version()}"]
+    for name in LIBRARIES:
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            found.append(f"{name} absent")
+    return ", ".join(found)
+
+
+@cache
+def commit():
+    """Short hash of the checked-out commit, with "+" if the packages differ from it; empty outside a repository."""
+    try:
+        head = _git("rev-parse", "--short=10", "HEAD")
+        return head + ("+" if _git("status", "--porcelain", "--", *PACKAGES) else "")
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def _git(*words):
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True, check=True).stdout.strip()
+
+
+def module_of(study, method):
+    """Path of the module that a case means by its "method"; rows keep the name, so that the module may move.
+
+    A name is that of a method, a module of `references` or `demheat`, or what the study's own `MODULES` says of it.
+
+    Parameters
+    ----------
+    study : module
+    method : str
+
+    Returns
+    -------
+    str
+        Empty without a method.
+
+    Raises
+    ------
+    ValueError
+        If there is no such module.
+    """
+    path = getattr(study, "MODULES", {}).get(method) or path_of(method)
+    if method and not _file_of(path):
+        raise ValueError(f"method = {method!r} of {study.__name__}: neither a method nor in its MODULES")
+    return path
+
+
+@cache
+def code_hash(study_file, module=""):
+    """Hash of the source that a row runs, 12 hexadecimal digits.
+
+    Covers what `run` and `warm_up` of the study reach inside the study module, and every module of ours that they or
+    the named one import, directly or not. Comments, docstrings, layout, imports of ours and what a method declares of
+    itself do not count, nor where a file lies: neither moving a module nor drawing a figure anew must repeat hours of
+    solves.
+
+    Parameters
+    ----------
+    study_file : path
+    module : str
+        Path of the module that the case names, if any.
+    """
+    used = _reached(_parse(Path(study_file)).body, ("run", "warm_up"))
+    texts, seen = {_text(used)}, set()
+    queue = [*_imported(used), (module, True)]
+    while queue:
+        name, deep = queue.pop()
+        path = _file_of(name)
+        if path is None or (name, deep) in seen:
+            continue
+        seen.add((name, deep))
+        tree = _parse(path)
+        texts.add(_text(tree.body))
+        # A package is run by importing any of its modules, but only as far as its top-level statements.
+        queue += _imported([tree] if deep else [node for node in tree.body if not isinstance(node, ast.FunctionDef)])
+    return hashlib.sha256("\n".join(sorted(texts - {""})).encode()).hexdigest()[:12]
+
+
+@cache
+def _parse(path):
+    tree = ast.parse(path.read_text())
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            del node.body[0]
+    return tree
+
+
+def _text(nodes):
+    """Statements as text, without imports of ours and what only describes a module (`__all__`, `METHODS`)."""
+    kept = [_Moved().visit(copy.deepcopy(node)) for node in nodes if not _bound(node) & DESCRIBING]
+    return "\n".join(ast.dump(node) for node in kept if node is not None)
+
+
+class _Moved(ast.NodeTransformer):
+    """Takes out imports of ours: they say where a module lies, not what it does."""
+
+    def visit_Import(self, node):  # noqa: N802
+        return None if any(alias.name.split(".")[0] in PACKAGES for alias in node.names) else node
+
+    def visit_ImportFrom(self, node):  # noqa: N802
+        return None if (node.module or "").split(".")[0] in PACKAGES else node
+
+
+def _reached(body, roots):
+    """Top-level statements that the named functions use, directly or not, in source order."""
+    wanted, done = set(roots), set()
+    while True:
+        hit = [node for node in body if id(node) not in done and wanted & _bound(node)]
+        if not hit:
+            return [node for node in body if id(node) in done]
+        for node in hit:
+            done.add(id(node))
+            wanted |= {part.id for part in ast.walk(node) if isinstance(part, ast.Name)}
+
+
+def _bound(node):
+    """Names that a top-level statement defines."""
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return {node.name}
+    if isinstance(node, ast.Import | ast.ImportFrom):
+        return {(alias.asname or alias.name).split(".")[0] for alias in node.names}
+    return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}
+
+
+def _imported(nodes):
+    """Pairs (module name, whether all of it counts) of the imports of ours inside some statements."""
+    names = []
+    for node in (part for top in nodes for part in ast.walk(top)):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom):
+            inner = [f"{node.module}.{alias.name}" for alias in node.names]
+            names += [name if _file_of(name) else node.module for name in inner]
+    names = [name for name in names if name.split(".")[0] in PACKAGES]
+    parents = {name.rsplit(".", k)[0] for name in names for k in range(1, name.count(".") + 1)}
+    return [*((name, True) for name in names), *((name, False) for name in parents)]
+
+
+def _file_of(name):
+    """Path of a module of ours, None for any other name."""
+    if name.split(".")[0] not in PACKAGES:
+        return None
+    base = ROOT.joinpath(*name.split("."))
+    return next((p for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)

@@ -1,0 +1,219 @@
+"""Run a study: each case in a fresh process, timed after a warm-up, kept row by row.
+
+A study is a module with
+
+- `CASES`, a list of dicts of plain values, the parameters of each row; "method", if present, names a
+  method, or what the study's `MODULES` says of that name;
+- `QUICK(case)`, true for the cases of a quick run;
+- `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
+  with a "note" says of a refusal that it is one;
+- `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
+- optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
+  seconds per row.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import importlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+from studies.harness.cost import measured, triad_gbs
+from studies.harness.provenance import SAME, provenance
+from studies.harness.store import TAIL, case_key, read_rows, write_rows
+
+TIMEOUT = 1800.0
+KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
+
+
+def load(name):
+    """Module of a study: `studies.NAME`, or any importable module that has CASES.
+
+    Raises
+    ------
+    ValueError
+        If there is no such study, two of its cases have the same parameters, or one is called as a column that every
+        row has.
+    """
+    for path in (f"studies.{name}", name):
+        try:
+            study = importlib.import_module(path)
+        except ModuleNotFoundError as error:
+            if error.name is not None and path.startswith(error.name):
+                continue
+            raise
+        if hasattr(study, "CASES"):
+            keys = [case_key(case) for case in study.CASES]
+            if len(set(keys)) < len(keys):
+                raise ValueError(f"study {name!r}: two cases have the same parameters")
+            taken = sorted({key for case in study.CASES for key in case} & set(TAIL))
+            if taken:
+                raise ValueError(f"study {name!r}: parameters {taken} of its cases are columns that every row has")
+            return study
+    raise ValueError(f"no study {name!r}; `python -m studies list` shows them all")
+
+
+def find_case(study, case):
+    """Case of a study by its key, or by its number in CASES."""
+    cases = {case_key(each): each for each in study.CASES}
+    if case.isdecimal() and int(case) < len(study.CASES):
+        return study.CASES[int(case)]
+    if case not in cases:
+        raise ValueError(f"no case {case!r}; the first of {len(cases)} is {next(iter(cases), None)!r}")
+    return cases[case]
+
+
+def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
+    """Bring DIR/NAME.csv up to date and return its path.
+
+    Rows whose case, code, machine, threads and versions still hold are reused, unless forced. Rows of cases that are
+    not asked for now (a full run's, in a quick one) stay.
+
+    Parameters
+    ----------
+    name : str
+    out : path
+    quick : bool
+        Only the cases that QUICK accepts.
+    force : bool
+        Repeat every row.
+    say : callable (str)
+        Told of each row as it ends.
+    compute : callable (name, study, case) -> dict
+        Default `spawn_row`: each row in a fresh process, so that its cost means something.
+    """
+    compute = compute or spawn_row
+    study = load(name)
+    path = Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
+    known = {case_key(case) for case in study.CASES}
+    rows = {key: row for key, row in read_rows(path).items() if key in known}
+    wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
+    todo = [case for case in wanted if force or not _holds(rows.get(case_key(case)), study, case)]
+    say(f"{name}: {len(wanted)} rows, {len(wanted) - len(todo)} already there, {len(todo)} to run")
+    bandwidth = round(triad_gbs(), 1) if todo else None
+    start = time.perf_counter()
+    for number, case in enumerate(todo, start=1):
+        key = case_key(case)
+        rows[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
+        write_rows(path, (rows[case_key(c)] for c in study.CASES if case_key(c) in rows))
+        say(_progress(number, len(todo), rows[key], time.perf_counter() - start))
+    return path
+
+
+def _holds(row, study, case):
+    if row is None or row["status"] not in KEPT:
+        return False
+    now = provenance(study, case)
+    return all(row[name] == str(now[name]) for name in SAME)
+
+
+def _progress(number, total, row, elapsed):
+    left = elapsed / number * (total - number)
+    error = row.get("error_percent")
+    tail = f", error {error:+.4f} %" if isinstance(error, float) else f", {row['note']}" if row["note"] else ""
+    cost = f"{row['cpu_s']:.2f} CPU-s" if isinstance(row.get("cpu_s"), float) else "no cost"
+    short = row["case"].split(",method=")[0]  # what a method fixes comes last
+    head = f"[{number}/{total}] {short}: {row['status']}, {cost}{tail}"
+    return f"{head}  ({elapsed:.0f} s so far, about {left:.0f} s left)"
+
+
+def spawn_row(name, study, case):
+    """Compute a row in a fresh process; whatever happens to that process, a row comes back."""
+    key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
+    base = {"case": key, **case}
+    with tempfile.TemporaryDirectory() as folder:
+        answer, log = Path(folder) / "row.json", Path(folder) / "log"
+        with log.open("w") as stream:
+            words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
+            process = subprocess.Popen(
+                [sys.executable, "-m", "studies", *words], stdout=stream, stderr=stream, start_new_session=True
+            )
+            try:
+                code = process.wait(limit)
+            except subprocess.TimeoutExpired:
+                note = f"not finished after {limit:g} s"
+                return {**base, "status": "timeout", "note": note, **provenance(study, case)}
+            finally:
+                _end(process)
+        try:
+            return json.loads(answer.read_text())
+        except (OSError, ValueError):
+            note = f"{_end_of(code)}; {_last_line(log)}"
+            return {**base, "status": "failed", "note": note, **provenance(study, case)}
+
+
+def _end(process):
+    """Kill the row's process and all that it started."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        pass
+    process.wait()
+
+
+def _end_of(code):
+    return f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
+
+
+def _last_line(log):
+    lines = log.read_text(errors="replace").strip().splitlines()
+    return lines[-1][:300] if lines else "nothing on its output"
+
+
+def compute_row(study, case, *, warm=True):
+    """Compute a row in this process: the case, its metrics, costs and provenance.
+
+    Parameters
+    ----------
+    study : module
+    case : dict
+    warm : bool
+        Call the study's warm-up first; without it costs include what is loaded on first use.
+    """
+    row = {"case": case_key(case), **case}
+    try:
+        if warm and hasattr(study, "warm_up"):
+            study.warm_up(**case)
+        metrics, cost = measured(study.run, **case)
+    except NotImplementedError as error:
+        result = {"status": "unsupported", "note": str(error)}
+    except Exception as error:
+        traceback.print_exc()
+        place = traceback.extract_tb(error.__traceback__)[-1]
+        note = f"{type(error).__name__} in {place.name}: {error}"
+        result = {"status": "failed", "note": " ".join(note.split())}
+    else:
+        clash = sorted(set(metrics) & set(row))
+        if clash:
+            raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
+        result = {"status": "ok", "note": "", **cost, **metrics}
+    return {**row, **result, **provenance(study, case)}
+
+
+def write_json(row, path):
+    """Hand a row over to the process that asked for it."""
+    Path(path).write_text(json.dumps(row, default=lambda value: value.item()))
+
+
+def die_with_parent(parent):
+    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind.
+
+    Parameters
+    ----------
+    parent : int
+        Process number of the parent; if it is gone already, the process ends here.
+    """
+    try:
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1 = PR_SET_PDEATHSIG
+    except (OSError, AttributeError):
+        return
+    if os.getppid() != parent:
+        os._exit(1)

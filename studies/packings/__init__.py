@@ -1,0 +1,165 @@
+"""Packings by the Lubachevsky-Stillinger algorithm: speed, density, contacts and isotropy, beside spheropack.
+
+Hard spheres grow in a periodic cell until they jam (reduced pressure 1e6) or reach a packing fraction; growth rate 0.02
+of the thermal velocity. The same radii are packed by spheropack (C++) in the same run, where it is installed. All CPU
+time from points to packing is counted, warm-up left out. Overlaps are looked for by SciPy's k-d tree. "Gaussian" radii
+have spread 0.3, cut at 2.5 standard deviations; of the radii "ten" one in a hundred is ten times the others.
+"""
+
+import numpy as np
+
+from studies.harness.pick import pick, present
+
+SEEDS = (0, 1, 2, 3, 4)
+MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packings.packers"}
+LARGE = 100_000
+PAPER = {}
+TIMEOUT = 3600.0
+
+
+def _case(part, maker, particles, radii, seed=0, **knobs):
+    return {"part": part, "maker": maker, "particles": particles, "radii": radii, "seed": seed, **knobs,
+            "method": maker}  # fmt: skip
+
+
+def _cases():
+    for number, seeds in ((1000, (0,)), (10_000, SEEDS)):
+        for radii in ("equal", "gaussian"):
+            for seed in seeds:
+                for maker in ("lsa", "spheropack"):
+                    yield _case("peer", maker, number, radii, seed, pressure=1e6, growth=0.02)
+    for radii in ("equal", "gaussian", "ten"):
+        # At one pressure: at one packing fraction the wide mixture is a thin gas with more lists than collisions.
+        yield _case("width", "lsa", 30_000, radii, pressure=100.0, growth=0.02)
+    for growth in (0.005, 0.05, "late"):
+        yield _case("growth", "lsa", 10_000, "gaussian", pressure=1e6, growth=growth)
+    for number in (1000, 10_000):
+        for domain in ("walls", "cylinder-y", "sphere"):
+            yield _case("walls", "lsa", number, "gaussian", domain=domain, pressure=1e6, growth=0.02)
+    for maker in ("lsa", "relax"):
+        for number in (LARGE, 1_000_000):
+            yield _case("large", maker, number, "gaussian", phi=0.64)
+
+
+CASES = list(_cases())
+# "late": slower by ten where the packing is nearly jammed, so that contacts can close.
+LATE = ((0.0, 0.02), (1e4, 0.002))
+
+
+def QUICK(case):
+    """A thousand spheres, Gaussian radii; a cylinder."""
+    return case["particles"] == 1000 and case["radii"] == "gaussian" and case.get("domain") in (None, "cylinder-y")
+
+
+def run(part, maker, particles, radii, seed, method, growth=0.02, **knobs):
+    """Make a packing and describe it."""
+    from studies.packings import packers
+
+    growth = LATE if growth == "late" else growth
+    packing, row = packers.packed(maker, particles, radii, seed, growth=growth, **knobs)
+    return {**row, **packers.described(packing, row, curves=part == "large" or (part == "peer" and seed == 0))}
+
+
+def warm_up(**case):
+    """Make a small packing the same way."""
+    small = {"particles": 500, "seed": 99, "radii": "gaussian"}
+    run(**case | small | ({"phi": 0.5} if "phi" in case else {"pressure": 1e3}))
+
+
+def claims(df):
+    """What the study must show (issue 3)."""
+    return present([*_peer_claims(df), *_own_claims(df)])
+
+
+def _peer_claims(df):
+    for number in (1000, 10_000):
+        for radii, low, high in (("equal", 0.635, 0.645), ("gaussian", 0.650, 0.665)):
+            both = [pick(df, part="peer", maker=m, particles=number, radii=radii) for m in ("lsa", "spheropack")]
+            ours, theirs = (rows[rows["status"] == "ok"] for rows in both)
+            what = f"{number} spheres, {radii} radii"
+            if len(ours) and number == 10_000:
+                yield f"{what}: smallest packing fraction at pressure 1e6", ours["phi_reached"].min(), f">= {low}"
+                yield f"{what}: largest packing fraction at pressure 1e6", ours["phi_reached"].max(), high
+            if not len(ours) or not len(theirs):
+                continue
+            # What issue 3 asks for is asked of Gaussian radii; equal spheres are what spheropack is fastest at.
+            ratio = theirs["cpu_s"].sum() / ours["cpu_s"].sum()
+            least = ">= 3" if radii == "gaussian" else ">= 2"
+            yield f"{what}: CPU time of spheropack over ours, to the same pressure", ratio, least
+            if len(ours) > 1:
+                yield from _agreement(what, ours, theirs)
+
+
+def _agreement(what, ours, theirs):
+    difference = ours["phi_reached"].mean() - theirs["phi_reached"].mean()
+    yield f"{what}: mean packing fraction, ours minus spheropack's", difference, ">= -0.003"
+    yield f"{what}: the same in standard deviations of one packing", _apart(ours, theirs, "phi_reached"), 2.0
+    for gap in (1e-4, 1e-2, 1e-1):
+        text = f"{what}: mean number of neighbours within a gap of {gap:g}, difference in standard deviations"
+        yield text, _apart(_with_z(ours, gap), _with_z(theirs, gap), "z"), 2.0
+
+
+def _apart(ours, theirs, column):
+    """Difference of two means over the standard deviation of one packing (both scatter)."""
+    scatter = np.sqrt(ours[column].var() + theirs[column].var())
+    return abs(ours[column].mean() - theirs[column].mean()) / scatter
+
+
+def _with_z(rows, gap):
+    from studies.packings.packers import GAPS, numbers
+
+    return rows.assign(z=[numbers(text)[np.argmin(abs(GAPS / gap - 1))] for text in rows["z_of_gap"]])
+
+
+def _own_claims(df):
+    ours = df[df["maker"] == "lsa"]
+    shrunk = ours["shrunk"].max(skipna=False)
+    yield "Radii shrunk at the end to leave no overlap, largest part in any packing by our algorithm", shrunk, 1e-10
+    yield "Largest overlap in any packing by our algorithm, mean diameters", ours["overlap"].max(skipna=False), 1e-10
+    by_width = pick(ours, part="width").set_index("radii")["us_per_collision"]
+    if len(by_width):
+        text = "CPU time per collision, {} over equal ones"
+        yield text.format("Gaussian radii"), by_width["gaussian"] / by_width["equal"], 1.5
+        # A sphere ten times as large has hundreds of neighbours, all of which are looked at when it collides.
+        yield text.format("1 : 10 radii"), by_width["ten"] / by_width["equal"], 8.0
+    large = pick(ours, part="large")
+    if len(large):
+        at = pick(large, particles=LARGE)["cpu_s"]
+        yield f"{LARGE} spheres to phi = 0.64: CPU seconds, points to packing", at.max(), 90.0
+        yield "Memory per sphere from 1e5 spheres on, bytes", large["bytes_per_sphere"].max(), 1000.0
+        off = abs(large["slope_mean"] / large["slope_exact"] - 1).max()
+        yield "S2(r): measured start slope, mean of 7 directions, relative to -surface/4", off, 0.01
+        for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):
+            # Links of one sphere repel each other: twenty packings were all within 1.1 of independent links' scatter.
+            yield f"Isotropy: largest deviation of the {name}, standard deviations", large[column].max(), 2.0
+        text = "Isotropy: the same of the fabric tensor where a packing is stretched by 3 %, least"
+        yield text, large["strained_sd"].min(), ">= 4"
+    cylinder = pick(ours, part="walls", domain="cylinder-y")
+    excess = (cylinder["phi_core"] - cylinder["phi_reached"]).min(skipna=False)
+    yield "Round walls: packing fraction of the core minus that of the whole cylinder", excess, ">= 0.005"
+
+
+def table(df):
+    """One row for each kind of packing, means over its packings.
+
+    phi_core is that of the part 5 mean radii from walls; us_per_collision is all CPU time over collisions; rattlers and
+    backbone_z are at a gap of 1e-4; gap_7.5 is the detection gap of 7.5 neighbours, under_2 the part of the spheres
+    that then have fewer than two.
+    """
+    keys = ["part", "maker", "particles", "radii", "domain", "growth"]
+    shown = ["phi_reached", "phi_core", "reached_pressure", "collisions", "cpu_s", "us_per_collision",
+             "bytes_per_sphere", "rattlers", "backbone_z", "gap_7.5", "under_2", "fabric_sd", "fourth_sd"]  # fmt: skip
+    ok = df[df["status"] == "ok"].astype({"growth": object}).fillna({"domain": "", "growth": ""})
+    grouped = ok.groupby(keys, sort=False, dropna=False)
+    found = grouped[shown].mean()
+    found.insert(0, "packings", grouped.size())
+    found.insert(2, "phi_sd", grouped["phi_reached"].std())
+    found[["phi_reached", "phi_core"]] = found[["phi_reached", "phi_core"]].map(lambda phi: f"{phi:.5f}")
+    return found.reset_index()
+
+
+def plot(df):
+    """Cost, contacts and isotropy."""
+    from studies.packings.figure import draw
+
+    return draw(df, LARGE)

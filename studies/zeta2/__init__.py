@@ -1,0 +1,203 @@
+"""zeta_2 of the very microstructure: exact arrays, voxels against multipoles, equilibrium and random addition.
+
+Milton's parameter decides the third-order bounds, and Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799) call
+it very costly to compute. Here it is the periodic Green projector's on voxels (`references.zeta`) and, for spheres,
+exact by multipoles (`references.multipole`), which is held against Rayleigh's sums over cubic lattices. Random cells
+of 6 sphere diameters: "lsa" by the Lubachevsky-Stillinger algorithm, which leaves spheres much as in equilibrium where
+no gap is asked for, "rsa" added one by one where there is room. The polynomial is that of Miller and Torquato (J.
+Appl. Phys. 68 (1990) 5486) for equal hard spheres in equilibrium. S2 is the two-point probability along exact lines;
+its slope at 0 is minus a quarter of the specific surface, 3 f/R.
+"""
+
+import math
+
+from studies.harness.pick import largest, pick, present
+from studies.zeta2.pool import below, pooled, with_bounds
+
+MULTIPOLE, VOXELS, S2 = "multipole", "zeta", "statistics"
+MODULES = {S2: "demheat.packing.statistics"}
+DILUTE = 4 * math.pi / 81  # SC with radii of a third of the edge
+ARRAYS = (("sc", 0.5), ("sc", DILUTE), ("bcc", 0.5), ("fcc", 0.5))
+# Exact values, as known elsewhere: to half a unit of the last digit.
+KNOWN = {("sc", 0.5): (0.17376, 5), ("sc", DILUTE): (0.00200341, 8)}
+GRIDS, ON_RANDOM = (32, 64, 128, 256), (128, 256)
+FRACTIONS = (0.1, 0.2, 0.3, 0.4, 0.5)
+# How placed, smallest gap in diameters, fractions: one by one they jam near 0.38.
+PLACED = (("lsa", 0.0, FRACTIONS), ("lsa", 0.02, FRACTIONS), ("rsa", 0.0, FRACTIONS[:3]), ("rsa", 0.02, FRACTIONS[:3]))
+RATIO, LARGER = 6.0, 9.0
+# Realisations come in rows of five; the scatter of one, 2 to 18 %, asks for twenty.
+AT_ONCE, REALISATIONS = 5, 20
+PAPER = {}
+
+
+def _cases():
+    for array, fraction in ARRAYS:
+        for voxels in GRIDS:
+            yield {"part": "array", "array": array, "fraction": fraction, "voxels": voxels, "method": VOXELS}
+    for placed, gap, fractions in PLACED:
+        for fraction in fractions:
+            here = {"placed": placed, "gap": gap, "fraction": fraction, "ratio": RATIO, "first": 0}
+            for first in range(0, REALISATIONS, AT_ONCE):
+                yield {"part": "cells", **here, "first": first, "cells": AT_ONCE, "method": MULTIPOLE}
+            for voxels in ON_RANDOM:
+                yield {"part": "voxels", **here, "voxels": voxels, "method": VOXELS}
+            if gap:
+                yield {"part": "conductivity", **here, "method": MULTIPOLE}
+            yield {"part": "surface", **here, "cells": AT_ONCE, "method": S2}
+    # Whether six diameters are enough.
+    larger = {"placed": "lsa", "gap": 0.0, "fraction": 0.2, "ratio": LARGER, "cells": AT_ONCE, "method": MULTIPOLE}
+    yield from ({"part": "cells", **larger, "first": first} for first in (0, AT_ONCE))
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Arrays on two coarse grids; five cells of either kind at f = 0.2, without a gap; one conductivity."""
+    if case["part"] == "array":
+        return case["voxels"] <= GRIDS[1]
+    if case["part"] == "conductivity":
+        return (case["placed"], case["fraction"]) == ("lsa", 0.1)
+    if (case["fraction"], case["first"], case["ratio"], case["gap"]) != (0.2, 0, RATIO, 0.0):
+        return False
+    return case["part"] == "cells" or (case["placed"] == "lsa" and case.get("voxels") != ON_RANDOM[1])
+
+
+def run(part, method, **where):
+    """One row of a part, by the function of that name."""
+    from studies.zeta2 import rows as zeta2_rows
+
+    rows = {
+        "array": zeta2_rows.array_row,
+        "cells": zeta2_rows.cells_row,
+        "voxels": zeta2_rows.voxels_row,
+        "conductivity": zeta2_rows.conductivity_row,
+        "surface": zeta2_rows.surface_row,
+    }
+    return rows[part](**where)
+
+
+def warm_up(part, method, first=0, cells=1, **where):
+    """Place and keep the spheres, compile and load."""
+    from studies.zeta2 import rows as zeta2_rows
+
+    run("array", method, array="sc", fraction=0.3, voxels=32)
+    if part == "array":
+        return
+    placing = {key: where[key] for key in ("placed", "gap", "fraction", "ratio")}
+    for seed in range(first, first + cells):
+        zeta2_rows.random_cell(**placing, seed=seed)
+    small = {"placed": "rsa", "gap": 0.0, "fraction": 0.1, "ratio": 6.0, "first": 99}
+    if part in ("conductivity", "surface"):
+        run(part, method, **small, **({"cells": 1} if part == "surface" else {}))
+
+
+def claims(df):
+    """What issue 6 asks for."""
+    yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
+
+
+def _arrays(df):
+    rows = pick(df, part="array")
+    off = [
+        (pick(rows, array=array, fraction=fraction)["exact"] - value).abs().max() * 10**digits
+        for (array, fraction), (value, digits) in KNOWN.items()
+    ]
+    yield "Multipoles on SC arrays: off the known digits, in units of the last", max(off), 0.51
+    lattice = (rows["exact"] / rows["lattice"] - 1).abs().max()
+    # zeta_2 comes from a_3 with an amplification of up to 200; 1e-12 is what truncation leaves there.
+    yield "Multipoles on cubic arrays: relative difference from Rayleigh's lattice sums", lattice, 1e-8
+    for voxels in GRIDS[1:]:
+        here = pick(rows, voxels=voxels)
+        text = f"{voxels}^3 voxels, extrapolated, worst of three places on the grid: error on "
+        yield text + "SC, f = 0.5, %", largest(pick(here, array="sc", fraction=0.5), "error_percent"), 1.0
+        yield text + "dilute SC, a = L/3, %", largest(pick(here, fraction=DILUTE), "error_percent"), 10.0
+        others = here[here["array"].isin(("bcc", "fcc"))]
+        yield text + "BCC and FCC, f = 0.5, %", largest(others, "error_percent"), 1.5
+
+
+def _random(df):
+    # Issue 6 asks for 2 %; 128^3 is 21 to 22 voxels across a sphere, where the projector is not there yet.
+    for voxels, limit in zip(ON_RANDOM, (4.0, 2.0), strict=True):
+        rows = pick(df, part="voxels", voxels=voxels)
+        text = f"Random cells, {voxels}^3 voxels, extrapolated: worst error against multipoles, %"
+        yield text, largest(rows, "error_percent"), limit
+
+
+def _statistics(df):
+    means = pooled(df)
+    lsa, rsa = ({"placed": placed, "ratio": RATIO} for placed in ("lsa", "rsa"))
+    free = pick(means, **lsa, gap=0.0)
+    text = "LSA without gap against the polynomial, worst deviation of a mean: "
+    # Beyond 0.4 the polynomial itself lies 1.7 % low, by simulations of our own: two standard errors there.
+    dilute = free[free["fraction"] < 0.45]
+    off = (dilute["zeta2"] - dilute["polynomial"]).abs() / dilute["se"]
+    yield text + "f <= 0.4, in standard errors", off.max(), 3.0
+    # 95 % of means of twenty cells lie within 3 % at f = 0.2, within 1 % at f = 0.5, where the fit may be 1.7 % low.
+    dense = free[(free["cells"] == REALISATIONS) & (free["fraction"] > 0.15)]
+    yield text + "f >= 0.2, %", largest(dense, "off_percent"), 4.0
+    for gap in (0.0, 0.02):
+        yield _lower(means, f"RSA below LSA, both with a gap of {gap:g} D", {**rsa, "gap": gap}, {**lsa, "gap": gap})
+    yield _lower(means, "LSA with a gap of 0.02 D below LSA without", {**lsa, "gap": 0.02}, {**lsa, "gap": 0.0})
+    found, se = below(means, {**lsa, "gap": 0.0}, {**lsa, "gap": 0.0, "ratio": LARGER})
+    value = None if found is None else abs(found) / se
+    yield f"Cells of {RATIO:g} D against cells of {LARGER:g} D: difference in standard errors", value, 3.0
+
+
+def _lower(means, text, lower, upper):
+    found, se = below(means, lower, upper)
+    if found is None:
+        return text, None, ">= 3"
+    return f"{text}: by {found:.1f} +- {1.96 * se:.1f} %, in standard errors", found / se, ">= 3"
+
+
+def _bounds(df):
+    rows = with_bounds(df)
+    if not len(rows):
+        return
+    k, text = rows["conductivity"], "Silica in epoxy by multipoles, mean of three axes: "
+    outside = (rows["lower"] / k - 1).clip(lower=0) + (k / rows["upper"] - 1).clip(lower=0)
+    yield text + "outside the third-order bounds of its own cell by, relative", outside.max(skipna=False), 0.0
+    # Found at degree 10: 1e-4 at f = 0.5, with surfaces 0.02 D apart.
+    yield text + "truncation left, relative", rows["truncation"].max(skipna=False), 3e-4
+    width = (rows["hs_upper"] - rows["hs_lower"]) / (rows["upper"] - rows["lower"])
+    yield (
+        "Hashin and Shtrikman's bounds over the third-order ones: least ratio of widths",
+        width.min(skipna=False),
+        ">= 2",
+    )
+    off = 100 * (rows["torquato"] / k - 1).abs().max(skipna=False)
+    yield text + "Torquato's estimate with the cell's own zeta_2 is off by at most, %", off, 1.0
+
+
+def _surfaces(df):
+    rows = pick(df, part="surface")
+    text = "Specific surface by the slope of S2 against 3 f/R, worst kind of cell: "
+    yield text + "error, %", largest(rows, "error_percent"), 1.0
+    # The largest of 16 normal deviates passes 3.5 once in 130 studies.
+    deviations = (rows["error_percent"] / rows["error_se"]).abs().max() if len(rows) else None
+    yield text + "error in its standard errors", deviations, 3.5
+
+
+def table(df):
+    """Cubic arrays on the finest grid, and random cells.
+
+    `zeta_2` of arrays is exact, of random cells the mean over `cells` realisations with its 95 % confidence interval;
+    `scatter` is the standard deviation of one realisation, %. `voxels` and `raw` are the errors, %, of the projector on
+    the finest grid with and without extrapolation (for arrays the worst of three places, for random cells one
+    realisation). `surface` is the error of the specific surface from S2's slope, %, with its standard error. The
+    conductivities are those of silica in epoxy, W/(m K), for one realisation: by multipoles, mean of three axes, and
+    the third-order bounds and Torquato's estimate by its zeta_2, and the estimate by the polynomial.
+    """
+    import pandas as pd
+
+    from studies.zeta2.pool import lines
+
+    return pd.DataFrame(lines(df))
+
+
+def plot(df):
+    """zeta_2 over f beside the polynomial; errors of voxels; what it does to bounds; S2."""
+    from studies.zeta2.figure import draw
+
+    return draw(df[df["status"] == "ok"])

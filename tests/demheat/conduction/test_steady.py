@@ -1,0 +1,126 @@
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.sparse.linalg import spsolve
+
+from demheat import Flux, Material, Scene, Sphere
+from demheat.conduction.steady import _residual, _system, matrix, solve_steady
+from demheat.network.interface import connect
+from demheat.network.laguerre import laguerre
+from demheat.packing.cache import relaxed
+
+ONE = Material(1.0)
+
+
+def built(scene, *, number=800, seed=2):
+    packing = relaxed(number, size=scene.size, periodic=scene.periodic, seed=seed)
+    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
+    return connect(facets, packing.centers, packing.size, scene.phase_at(packing.centers), scene.conductivities)
+
+
+def ball(k, **load):
+    return Scene(size=(1, 1, 1), matrix=ONE, inclusions=[Sphere((0.5, 0.5, 0.5), 0.3, Material(k))], **load)
+
+
+WALLS = {"walls": {"y-": 25.0, "y+": 35.0}}
+PERIODIC = {"gradient": (0.0, 2.0, 0.0)}
+
+
+@pytest.mark.parametrize("solver", ["cg", "amg"])
+@pytest.mark.parametrize("load", [WALLS, PERIODIC])
+@pytest.mark.parametrize("k", [1e-3, 100.0])
+def test_against_a_direct_solver(solver, load, k):
+    scene = ball(k, **load)
+    network = built(scene)
+    solution = solve_steady(network, scene, solver=solver, tolerance=1e-11)
+    system = _system(network, scene, np.ones(len(network.volumes), bool))
+    a, b = matrix(network, system.diagonal).tolil(), system.heat.copy()
+    if scene.periodic:  # the level is free: hold one particle
+        a[0, :], b[0] = 0.0, 0.0
+        a[0, 0] = 1.0
+    x = spsolve(a.tocsc(), b) + system.level
+    if scene.periodic:
+        x -= np.average(x, weights=network.volumes)
+    # tolerance 1e-11 of the heat passing times the condition of the system (about n^(2/3) times the contrast).
+    assert_allclose(solution.fluctuation, x, atol=1e-6 * np.ptp(x), rtol=0)
+    assert solution.stats["residual"] <= 1e-11 and solution.stats["solver"] == solver
+
+
+def test_residual_is_that_of_the_returned_temperatures():
+    scene = ball(10.0, **WALLS)
+    network = built(scene)
+    solution = solve_steady(network, scene, tolerance=1e-9)
+    assert 0 < solution.stats["residual"] <= 1e-9
+    system = _system(network, scene, np.ones(len(network.volumes), bool))
+    now = np.linalg.norm(_residual(system, solution.fluctuation - system.level))
+    assert now < 1e-6 * np.linalg.norm(_residual(system, np.zeros(len(network.volumes))))
+
+
+def test_heat_in_is_heat_out():
+    scene = ball(10.0, **WALLS)
+    solution = solve_steady(built(scene), scene, tolerance=1e-12)
+    # The sum of n residuals of 1e-12 of the passing heat, relative to the heat through the box: n^(1/3) tolerances.
+    assert abs(solution.wall_heat.sum()) < 20e-12 * np.abs(solution.wall_heat).sum()
+
+
+def test_flux_wall_gives_the_same_field_as_its_temperature():
+    scene = Scene(size=(1, 2, 1), matrix=Material(5.0), walls={"y-": 10.0, "y+": Flux(30.0)})
+    network = built(scene)
+    solution = solve_steady(network, scene, tolerance=1e-12)
+    # linear in y with slope q/k = 6 K/m, exact on any packing (solver tolerance, times n^(2/3) for its condition)
+    assert_allclose(solution.fluctuation, 10.0 + 6.0 * network.centers[:, 1], atol=1e-8)
+    top = network.wall_side == 3
+    assert_allclose(solution.wall_temperature[top], 22.0, atol=1e-8)
+    assert_allclose(solution.wall_heat[top].sum(), 30.0, rtol=1e-12)
+
+
+@pytest.mark.parametrize("load", [WALLS, PERIODIC])
+def test_islands_are_reported_and_left_without_a_temperature(load):
+    scene = ball(0.0, **load)
+    network = built(scene)
+    solution = solve_steady(network, scene)
+    inside = scene.phase_at(network.centers) == 1
+    assert solution.stats["islands"] == inside.sum() > 50
+    assert np.array_equal(np.isnan(solution.fluctuation), inside)
+
+
+def test_conductances_are_left_as_they_were():
+    scene = ball(0.0, **WALLS)
+    network = built(scene)
+    before = [array.copy() for array in network]
+    solve_steady(network, scene)
+    assert all(np.array_equal(a, b) for a, b in zip(before, network, strict=True))
+
+
+def test_flux_into_an_island_is_refused():
+    corner = Sphere((0.5, 1.0, 0.5), 0.3, Material(0.0))
+    scene = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[corner], walls={"y-": 0.0, "y+": Flux(1.0)})
+    with pytest.raises(ValueError, match="cut off from every wall temperature"):
+        solve_steady(built(scene), scene)
+
+
+@pytest.mark.parametrize("solver", ["cg", "amg"])
+def test_no_convergence_is_an_error(solver):
+    scene = ball(100.0, **WALLS)
+    with pytest.raises(RuntimeError, match="relative residual"):
+        solve_steady(built(scene), scene, solver=solver, tolerance=1e-10, max_iterations=3)
+
+
+@pytest.mark.parametrize(
+    "change, words",
+    [
+        ({"solver": "magic"}, "solver = 'magic'"),
+        ({"tolerance": 0.5}, "tolerance"),
+        ({"tolerance": float("nan")}, "tolerance"),
+    ],
+)
+def test_bad_input(change, words):
+    scene = ball(2.0, **WALLS)
+    with pytest.raises(ValueError, match=words):
+        solve_steady(built(scene), scene, **change)
+
+
+def test_only_fluxes_fix_no_level():
+    scene = Scene(size=(1, 1, 1), matrix=ONE, walls={"y-": Flux(1.0), "y+": Flux(-1.0)})
+    with pytest.raises(ValueError, match="at least one wall"):
+        solve_steady(built(ball(1.0, **WALLS)), scene)

@@ -1,0 +1,184 @@
+"""Solvers on voxels at their limits: tiny grids, single precision, pores, no convergence, bad input."""
+
+import numpy as np
+import pytest
+from fft_scenes import RULES, SCHEMES, dispersion, sphere_cell
+from numpy.testing import assert_allclose
+
+from demheat.scene import Flux, Material, Scene, Sphere
+from references import exact, fft
+from references.fft import solver
+from references.voxels import links as voxel_links
+
+# Grids, precision, extremes
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("walls", [False, True])
+@pytest.mark.parametrize("voxels", [1, 2, 3, 5, (1, 4, 7), (2, 1, 1), (9, 2, 3)])
+def test_tiny_and_odd_grids(scheme, walls, voxels):
+    scene = dispersion(walls={"x-": 0.0, "x+": 1.0}) if walls else dispersion(gradient=(1.0, 0.0, 0.0))
+    nx = np.atleast_1d(voxels)[0]
+    if walls and nx == 1:
+        with pytest.raises(ValueError, match="voxels"):
+            fft.solve(scene, voxels=voxels, scheme=scheme, rule="laminate")
+        return
+    field = fft.solve(scene, voxels=voxels, scheme=scheme, rule="laminate")
+    # Whatever the grid, a mean over parts of it stays within the extremes of its phases.
+    assert 0.3 < field.conductivity < 8.0
+    assert field.stats["residual"] < 1e-5
+    assert np.all(np.isfinite(field.samples.temperature))
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+@pytest.mark.parametrize("walls", [False, True])
+def test_single_precision(scheme, walls):
+    scene = dispersion(walls={"x-": 0.0, "x+": 1.0}) if walls else dispersion(gradient=(1.0, 0.0, 0.0))
+    single, double = (
+        fft.solve(scene, voxels=15, scheme=scheme, precision=p, max_iterations=200) for p in ("float32", "float64")
+    )
+    # Rounding of 6e-8 a number, summed in float64.
+    assert_allclose(single.mean_flux, double.mean_flux, rtol=2e-6, atol=1e-6)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_threads_do_not_change_the_answer(scheme):
+    scene = dispersion(gradient=(1.0, 0.0, 0.0))
+    one, two, all_ = (fft.solve(scene, voxels=9, scheme=scheme, threads=t).mean_flux for t in (1, 2, None))
+    # FFTW may plan another order of sums.
+    assert_allclose(two, one, rtol=1e-12, atol=1e-14)
+    assert_allclose(all_, one, rtol=1e-12, atol=1e-14)
+
+
+@pytest.mark.parametrize("rule", ["plain", "links"])
+def test_a_contrast_of_a_million_converges_to_its_own_limit(rule):
+    loose, tight = (
+        fft.solve(sphere_cell(1e6, center=(0.51, 0.47, 0.53)), voxels=16, rule=rule, tolerance=t).conductivity
+        for t in (None, 1e-9)
+    )
+    # What the default tolerance promises.  A first trial that looked at the energy alone stopped 2e-4 away.
+    assert_allclose(loose, tight, rtol=1e-6)
+
+
+def test_surfaces_kept_off_the_nodes_save_iterations(monkeypatch):
+    scene = sphere_cell(1e4, center=(0.513, 0.471, 0.537))
+    kept = fft.solve(scene, voxels=24, rule="links")
+    monkeypatch.setattr(voxel_links, "NEAREST", 0.0)
+    exactly = fft.solve(scene, voxels=24, rule="links")
+    # Found 165 and 188 iterations (half at 64^3), and a conductivity lower by 1.1e-5, a hundredth of its error.
+    assert kept.stats["iterations"] < 0.95 * exactly.stats["iterations"]
+    assert 0 < exactly.conductivity / kept.conductivity - 1 < 2e-5
+
+
+def test_pores():
+    scene = Scene((1, 1, 1), Material(2.0), [Sphere((0.5,) * 3, 1 / 3, Material(0.0))], gradient=(0.0, 0.0, 1.0))
+    field = fft.solve(scene, voxels=32)
+    # Plain voxels: twice the 0.29 % found.
+    assert_allclose(field.conductivity, exact.solve(scene).conductivity, rtol=6e-3)
+    assert np.all(np.isfinite(field.samples.temperature))
+    inside = np.linalg.norm(field.samples.points - 0.5, axis=1) < 0.28
+    assert np.all(field.samples.flux[inside] == 0)
+    with pytest.raises(NotImplementedError, match="conductivity is 0"):
+        fft.solve(scene, voxels=4, scheme="eyre-milton")
+    with pytest.raises(NotImplementedError, match="conductivity is 0"):
+        fft.solve(scene, voxels=4, rule="links")
+
+
+def test_a_body_without_conductivity_conducts_nothing():
+    field = fft.solve(Scene((1, 1, 1), Material(0.0), gradient=(1.0, 0.0, 0.0)), voxels=4)
+    assert np.array_equal(field.mean_flux, [0, 0, 0])
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_equal_walls_carry_no_heat(scheme):
+    field = fft.solve(dispersion(walls={"x-": 7.0, "x+": 7.0}), voxels=6, scheme=scheme)
+    assert_allclose(field.mean_flux, 0, atol=0)
+    assert_allclose(field.samples.temperature, 7.0, rtol=1e-15)
+
+
+# Convergence is never pretended
+
+
+@pytest.mark.parametrize(("scheme", "rule"), RULES)
+@pytest.mark.parametrize("walls", [False, True])
+def test_too_few_iterations_raise(scheme, rule, walls):
+    with pytest.raises(RuntimeError, match=r"3 iterations, relative residual \d"):
+        fft.solve(sphere_cell(30.0, walls=walls), voxels=8, scheme=scheme, rule=rule, max_iterations=3)
+
+
+# cg waits for two small decreases of the energy: two iterations more than its final check asks for.
+@pytest.mark.parametrize(("scheme", "less"), [("cg", 3), ("eyre-milton", 1)])
+def test_just_too_few_iterations_raise(scheme, less):
+    needed = fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme).stats["iterations"] - less
+    with pytest.raises(RuntimeError, match=f"{needed} iterations"):
+        fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme, max_iterations=needed)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_what_rounding_forbids_raises(scheme):
+    with pytest.raises(RuntimeError, match="did not converge"):
+        fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme, precision="float32", tolerance=1.3e-7, max_iterations=300)
+
+
+@pytest.mark.parametrize("scheme", SCHEMES)
+def test_the_error_follows_the_tolerance(scheme):
+    solved = [fft.solve(dispersion(gradient=(1.0, 0, 0)), voxels=12, scheme=scheme, tolerance=t) for t in (1e-3, 1e-10)]
+    assert solved[0].stats["residual"] < 1e-3 * (1 if scheme == "cg" else 10) and solved[1].stats["residual"] < 1e-9
+    assert solved[0].stats["iterations"] < solved[1].stats["iterations"]
+    assert 0 < abs(solved[0].conductivity / solved[1].conductivity - 1) < 1e-3
+    for name in ("unknowns", "iterations", "residual", "scheme", "rule", "voxels", "precision"):
+        assert name in solved[0].stats
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    ("knobs", "message"),
+    [
+        ({"scheme": "basic"}, "scheme = 'basic'"),
+        ({"rule": "voigt"}, "rule = 'voigt'"),
+        ({"scheme": "eyre-milton", "rule": "links"}, "rule = 'links'"),
+        ({"precision": "float16"}, "precision = 'float16'"),
+        ({"threads": 0}, "threads = 0"),
+        ({"threads": 1.5}, "threads = 1.5"),
+        ({"threads": True}, "threads = True"),
+        ({"max_iterations": True}, "max_iterations = True"),
+        ({"tolerance": 1e-300}, "tolerance = 1e-300: must be a number from 2.2e-16, the rounding of float64"),
+        ({"tolerance": 1e-9, "precision": "float32"}, "tolerance = 1e-09: must be a number from 1.2e-07"),
+        ({"tolerance": 0.0}, "tolerance = 0.0"),
+        ({"tolerance": float("nan")}, "tolerance = nan"),
+        ({"tolerance": "tight"}, "tolerance = 'tight'"),
+        ({"max_iterations": 0}, "max_iterations = 0"),
+        ({"max_iterations": 10.0}, "max_iterations = 10.0"),
+        ({"voxels": 0}, "voxels = 0"),
+        ({"voxels": 10**6}, "voxels = 1000000"),
+    ],
+)
+def test_bad_knobs(knobs, message, monkeypatch):
+    monkeypatch.setattr(solver, "voxelise", None)  # refused before the grid is made
+    with pytest.raises(ValueError, match=message):
+        fft.solve(sphere_cell(10.0), **knobs)
+
+
+@pytest.mark.parametrize(
+    "walls",
+    [{"x-": 1.0, "x+": Flux(2.0)}, {"x-": 1.0}, {"x-": 1.0, "y+": 2.0}, dict.fromkeys(("x-", "x+", "y-"), 1.0)],
+)
+def test_other_loads_are_refused(walls):
+    with pytest.raises(NotImplementedError, match="two opposite walls"):
+        fft.solve(Scene((1, 1, 1), Material(1.0), walls=walls), voxels=4)
+
+
+def test_a_load_that_fixes_no_temperature_is_bad_input():
+    with pytest.raises(ValueError, match="at least one wall with a temperature"):
+        fft.solve(Scene((1, 1, 1), Material(1.0), walls={"x-": Flux(1.0), "x+": Flux(-1.0)}), voxels=4)
+
+
+def test_bad_points():
+    field = fft.solve(sphere_cell(10.0, walls=True), voxels=4)
+    for ask in (field.temperature_at, field.flux_at):
+        with pytest.raises(ValueError, match="finite"):
+            ask([[0.1, np.nan, 0.2]])
+        with pytest.raises(ValueError, match="1 lie outside the box"):
+            ask([[0.1, 0.2, 0.2], [0.1, 1.2, 0.2]])

@@ -1,0 +1,85 @@
+"""Every study at quick size: its rows are computed, its claims hold, its page and figure are made.
+
+Rows are computed in this process, without warm-up: numbers are judged here, costs are not.
+"""
+
+import functools
+
+import pytest
+
+from studies.__main__ import study_names
+from studies.harness import methods, provenance, runner, store, table
+
+NAMES = study_names()
+# Claims on costs: nothing on a machine that does other things besides, and compiles while it runs.
+COSTS = ("CPU", "triad", "particle-steps")
+
+
+def _here(name, study, case):
+    return runner.compute_row(study, case, warm=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Folder of results; packings and transforms' plans are kept in one of this module's own."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("DEMHEAT_CACHE", str(tmp_path_factory.mktemp("cache")))
+        yield tmp_path_factory.mktemp("out")
+
+
+def test_the_studies_are_there():
+    assert {"fig14_single_inclusion", "surfaces", "speed_error", "stability"} <= set(NAMES)
+    assert {"fig03_calibration", "packings"} <= set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_quick_rows_and_claims(name, folder):
+    study = runner.load(name)
+    path = runner.run_study(name, folder, quick=True, say=lambda line: None, compute=_here)
+    rows = store.read_rows(path)
+    assert len(rows) == sum(map(bool, map(study.QUICK, study.CASES)))
+    assert {key: row["note"] for key, row in rows.items() if row["status"] not in runner.KEPT} == {}
+    claims, page = table.render(study, path)
+    assert [claim for claim in claims if not (claim.ok or any(word in claim.sentence for word in COSTS))] == []
+    assert len(claims) > 2 and study.__doc__.splitlines()[0] in page
+    assert path.with_suffix(".png").stat().st_size > 10_000  # an empty figure has a tenth of this
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_cases_are_sound(name):
+    study = runner.load(name)
+    quick = [case for case in study.CASES if study.QUICK(case)]
+    assert 0 < len(quick) < len(study.CASES)
+    assert isinstance(study.PAPER, dict)
+    for case in study.CASES:
+        assert provenance.module_of(study, case["method"]), case
+        assert runner.find_case(study, store.case_key(case)) is case
+
+
+def test_code_of_a_row_is_that_of_its_method(monkeypatch):
+    study = runner.load("fig14_single_inclusion")
+    codes = {
+        method: provenance.code_hash(study.__file__, methods.path_of(method))
+        for method in ("dem", "fem", "fft", "bounds")
+    }
+    assert len(set(codes.values())) == len(codes)
+    parse = provenance._parse
+
+    @functools.cache
+    def changed(path):
+        return parse(path) if path.name != "laguerre_kernels.py" else parse(provenance.ROOT / "studies/cost.py")
+
+    monkeypatch.setattr(provenance, "_parse", changed)
+    provenance.code_hash.cache_clear()
+    after = {method: provenance.code_hash(study.__file__, methods.path_of(method)) for method in codes}
+    provenance.code_hash.cache_clear()
+    assert {method for method in codes if after[method] != codes[method]} == {"dem"}
+
+
+def test_a_row_in_its_own_process():
+    study = runner.load("fig14_single_inclusion")
+    case = runner.find_case(study, "name=exact,scene=third,contrast=10.0,method=exact")
+    row = runner.spawn_row("fig14_single_inclusion", study, case)
+    # Rayleigh's method, McPhedran and McKenzie (1978), to the digits printed in studies/fig14_single_inclusion.py.
+    assert row["status"] == "ok" and row["k_ratio"] == pytest.approx(1.395734838, abs=5e-10)
+    assert row["wall_s"] > 0 and row["peak_by"] in ("VmHWM", "ru_maxrss")
