@@ -46,7 +46,6 @@ LAYERS = {
         "demheat.conduction.steady",
         "demheat.sampling.field_of",
     ),
-    "demheat.options": ("demheat.scene", "demheat.packing", "demheat.network", "demheat.conduction.sources"),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
@@ -56,7 +55,7 @@ LAYERS = {
         "demheat.conduction",
         "demheat.sampling",
         "demheat.calibration",
-        "demheat.options",
+        "demheat.dem",
     ),
     "references": ("demheat.scene", "demheat.field", "references"),
     "studies": ("demheat", "references", "studies"),

@@ -281,7 +281,7 @@ def test_bad_input_before_heavy_work(change, words, monkeypatch):
     def heavy(*args, **kwargs):
         raise AssertionError("heavy work was begun")
 
-    monkeypatch.setattr("demheat.dem.laguerre", heavy)
+    monkeypatch.setattr("demheat.dem.solver.laguerre", heavy)
     with pytest.raises(ValueError, match=words):
         demheat.solve(ball(), **{"particles": 200} | change)
 

@@ -10,11 +10,11 @@ from demheat.conduction.sources import lost_power, passes, source_power
 from demheat.conduction.steady import check_solver, solve_steady
 from demheat.conduction.transient import check_request, mean_flux, try_functions
 from demheat.conduction.transient import evolve as evolve_network
+from demheat.dem.options import check_steady, check_transient
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre, without_hidden
 from demheat.network.platonic import COORDINATION, platonic_facets
-from demheat.options import check_steady, check_transient
 from demheat.packing.cache import relaxed, tiled
 from demheat.packing.conforming import conform
 from demheat.packing.domain import tile_counts

@@ -1,0 +1,67 @@
+"""Steady conduction by finite elements."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.field import Field
+from references.fem.lookup import Solution
+from references.fem.system import solve_nodes
+from references.mesh import make
+
+
+def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
+    """Solve a scene by finite elements.
+
+    Parameters
+    ----------
+    scene : Scene
+        Spheres and layers, walls with temperatures and fluxes or a periodic cell; conductivity 0 is a pore.
+    order : {1, 2}
+        Linear elements (always straight) or quadratic ones.
+    size : float, m, optional
+        Longest wanted edge; it is less on small spheres, in thin layers and in narrow gaps. Default: the cube root
+        of the box volume over 26 (order 2) or 50 (order 1), about 1e5 unknowns; with many spheres an eighth of their
+        mean distance.
+    curved : bool
+        Quadratic elements that follow the spheres; straight ones lose volume there.
+    tolerance : float
+        Largest relative residual of the equations, scaled to a unit diagonal.
+
+    Returns
+    -------
+    Field
+        `wall_heat` comes from the reactions at the nodes, `mean_flux` is the volume average. On an edge where two
+        isothermal walls meet, nodes take the mean temperature and the walls share the heat; a flux enters a wall
+        only where that conducts.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, the load leaves the temperature open, or nothing conducts.
+    NotImplementedError
+        If surfaces of the scene touch.
+    RuntimeError
+        If meshing fails, or the residual stays above the tolerance.
+    ImportError
+        If gmsh or a system library that it needs is missing.
+    """
+    if not (isinstance(tolerance, float | int) and 0 < tolerance < 1):
+        raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
+    scene.check_steady()
+    mesh = make(scene, size=size, order=order, curved=curved)
+    solved = solve_nodes(scene, mesh, tolerance)
+    solution = Solution(scene, mesh, solved.temperature)
+    fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume
+    stats = {"elements": len(mesh.cells), "nodes": len(mesh.points)} | mesh.stats | solved.stats
+    return Field(
+        scene=scene,
+        mean_flux=solution.mean_flux(),
+        fractions=fractions,
+        sampler=solution.samples,
+        temperature_at=solution.temperature_at,
+        flux_at=solution.flux_at,
+        wall_temperature=solved.wall_temperature,
+        wall_heat=solved.wall_heat,
+        stats=stats,
+    )
