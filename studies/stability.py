@@ -54,6 +54,7 @@ def _cases():
 
 CASES = list(_cases())
 PAPER = {}
+MODULES = {"lattice": "references.exact.lattice"}
 
 
 def QUICK(case):
