@@ -33,20 +33,16 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     """
     if rule not in RULES:
         raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
-    return _MEANS[rule](k_here, k_there, np.clip(share, 0.0, 1.0))
+    return _conductivity(k_here, k_there, share, rule)
 
 
-def _series(k_here, k_there, share):
+def _conductivity(k_here, k_there, share, rule):
+    share = np.clip(share, 0.0, 1.0)
+    if rule == "arithmetic":
+        return share * k_here + (1.0 - share) * k_there
     least = np.minimum(k_here, k_there)
     series = share * k_there + (1.0 - share) * k_here
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
-
-
-def _mixed(k_here, k_there, share):
-    return share * k_here + (1.0 - share) * k_there
-
-
-_MEANS = {"harmonic": _series, "arithmetic": _mixed}
 
 
 def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True, stats=None) -> Network:
@@ -105,8 +101,8 @@ def _conductances(packing, facets, conductivity, rule):
         row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
         there = facets.indices[links]
         length = _lengths(packing.centers, packing.size, row, there, facets.image[links])
-        share = np.clip(facets.distance[links] / length, 0.0, 1.0)
-        conductance[links] = _MEANS[rule](conductivity[row], conductivity[there], share) * facets.area[links] / length
+        k = _conductivity(conductivity[row], conductivity[there], facets.distance[links] / length, rule)
+        conductance[links] = k * facets.area[links] / length
     return conductance
 
 
