@@ -113,7 +113,7 @@ class _Contacts:
         return self.wall == "center"
 
     @classmethod
-    def short(cls, *, conforming: bool | None = None, **knobs: object):
+    def short(cls, *, conforming: bool | None = None, **knobs: object) -> _Contacts:
         """The law from the keywords of `demheat.solve`.
 
         Raises

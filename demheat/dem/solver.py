@@ -45,7 +45,7 @@ def solve(
     solver : {"auto", "cg", "amg"}
     tolerance : float
         On the relative residual of the heat balance.
-    conforming, interface, poor, wall, coordination, gap : optional
+    conforming, interface, poor, wall, coordination, gap : bool, str, str, str, float and float, optional
         Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
         `demheat.Platonic`.
     packing : Packing, optional

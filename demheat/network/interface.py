@@ -45,7 +45,7 @@ def _conductivity(k_here, k_there, share, rule):
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
 
 
-def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True, stats=None) -> Network:
+def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True) -> Network:
     """Conductances H = k S / d of facets between particles of given phases.
 
     Parameters
@@ -58,8 +58,6 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
     rule : {"harmonic", "arithmetic"}
     cells : bool
         Facets bound cells that fill the body.
-    stats : dict, optional
-        What is said of the network in fields.
 
     Returns
     -------
@@ -88,7 +86,6 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
         area=facets.area,
         distance=facets.distance,
         cells=cells,
-        stats=stats,
     )
 
 
