@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Material, Scene
-from references.fft.solver import thread_count
 from references.fft.transforms import fourier
+from references.threads import thread_count
 from references.voxels.paint import Voxels, grid_shape, voxelise
 
 # Errors found on cubic arrays (spheres 5 to 60 voxels across, three places each) and on random cells go as a h + c h^3
