@@ -168,13 +168,13 @@ def _turn(problem, system, beta):
     vectors = system.vectors
     problem.team.run(kernels.turn, len(vectors.work), vectors, problem.dtype(beta))
     _conduct(problem, system, vectors.direction, np.zeros(3))
-    return float(np.cumsum(system.sums.energy)[-1])
+    return float(system.sums.energy.sum())
 
 
 def _restart(problem, system):
     """Recompute the residual and make the preconditioned residual the direction."""
     _conduct(problem, system, system.vectors.theta, problem.gradient)
-    energy, flux = float(np.cumsum(system.sums.energy)[-1]), system.sums.flux.sum(axis=0)
+    energy, flux = float(system.sums.energy.sum()), system.sums.flux.sum(axis=0)
     ends = system.sums.flux[[0, -1], 0] * len(system.sums.flux) / problem.voxels.phase.size
     rz = _precondition(problem, system, kernels.start)
     return _State(energy, flux, ends, rz, curvature=_turn(problem, system, 0))

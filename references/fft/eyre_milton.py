@@ -161,7 +161,7 @@ def _iterate(problem, scheme, transform, field):
             _on_modes(problem, scheme, transform, kernel, scale, mean)
             transform.planes(kernels.reflect, field, work, scheme.mirror, sums, backward=True, forward=True)
             flux = 0.5 * np.linalg.norm(sums.flux.sum(axis=0)) / cells
-            error = 0.5 * math.sqrt(float(np.cumsum(sums.change)[-1]) / cells) / flux if flux > 0 else math.inf
+            error = 0.5 * math.sqrt(sums.change.sum() / cells) / flux if flux > 0 else math.inf
             iterations += 1
     return iterations, error, clock.cost()
 
@@ -190,7 +190,7 @@ def _split(problem, scheme, transform, mean, backward=True):
     kernel = projection_kernels.split_waves if problem.walls else projection_kernels.split_modes
     arguments = (problem.dtype(transform.scale), mean.astype(problem.dtype), parts)
     _on_modes(problem, scheme, transform, kernel, *arguments, backward=backward)
-    return float(np.cumsum(parts.inside)[-1]), float(np.cumsum(parts.outside)[-1])
+    return float(parts.inside.sum()), float(parts.outside.sum())
 
 
 def _state(problem, scheme, field):
