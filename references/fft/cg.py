@@ -24,7 +24,7 @@ from references.fft import cg_kernels as kernels
 from references.fft.cg_kernels import Symbol, Vectors
 from references.fft.hexahedron_kernels import Body, Sums, conduct_voxels, voxel_state
 from references.fft.link_kernels import Links, conduct_links, link_state
-from references.fft.problem import Clock, Problem, Solution
+from references.fft.problem import Clock, Problem, Solution, total
 from references.fft.sweeps import Transform
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -168,13 +168,13 @@ def _turn(problem, system, beta):
     vectors = system.vectors
     problem.team.run(kernels.turn, len(vectors.work), vectors, problem.dtype(beta))
     _conduct(problem, system, vectors.direction, np.zeros(3))
-    return float(system.sums.energy.sum())
+    return total(system.sums.energy)
 
 
 def _restart(problem, system):
     """Recompute the residual and make the preconditioned residual the direction."""
     _conduct(problem, system, system.vectors.theta, problem.gradient)
-    energy, flux = float(system.sums.energy.sum()), system.sums.flux.sum(axis=0)
+    energy, flux = total(system.sums.energy), system.sums.flux.sum(axis=0)
     ends = system.sums.flux[[0, -1], 0] * len(system.sums.flux) / problem.voxels.phase.size
     rz = _precondition(problem, system, kernels.start)
     return _State(energy, flux, ends, rz, curvature=_turn(problem, system, 0))

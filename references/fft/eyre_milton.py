@@ -22,7 +22,7 @@ import numpy as np
 from references.fft import eyre_milton_kernels as kernels
 from references.fft import projection_kernels
 from references.fft.eyre_milton_kernels import Sums
-from references.fft.problem import Clock, Problem, Solution
+from references.fft.problem import Clock, Problem, Solution, total
 from references.fft.projection_kernels import Parts, Waves
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -161,7 +161,7 @@ def _iterate(problem, scheme, transform, field):
             _on_modes(problem, scheme, transform, kernel, scale, mean)
             transform.planes(kernels.reflect, field, work, scheme.mirror, sums, backward=True, forward=True)
             flux = 0.5 * np.linalg.norm(sums.flux.sum(axis=0)) / cells
-            error = 0.5 * math.sqrt(sums.change.sum() / cells) / flux if flux > 0 else math.inf
+            error = 0.5 * math.sqrt(total(sums.change) / cells) / flux if flux > 0 else math.inf
             iterations += 1
     return iterations, error, clock.cost()
 
@@ -190,7 +190,7 @@ def _split(problem, scheme, transform, mean, backward=True):
     kernel = projection_kernels.split_waves if problem.walls else projection_kernels.split_modes
     arguments = (problem.dtype(transform.scale), mean.astype(problem.dtype), parts)
     _on_modes(problem, scheme, transform, kernel, *arguments, backward=backward)
-    return float(parts.inside.sum()), float(parts.outside.sum())
+    return total(parts.inside), total(parts.outside)
 
 
 def _state(problem, scheme, field):

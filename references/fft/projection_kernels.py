@@ -36,7 +36,7 @@ class Waves(NamedTuple):
 
 
 class Parts(NamedTuple):
-    """Sums of squares of the compatible part of a field, mean included, and of the rest; per column or per plane.
+    """Sums of squares of the compatible part of a field, less its mean, and of the rest; per column or per plane.
 
     Attributes
     ----------
