@@ -13,8 +13,6 @@ from references.voxels.paint import Voxels, centers
 
 # Flux and slope jump at an interface: a voxel of another phase, and a cut one, counts only where nothing is better.
 CUT, OTHER = 1e-2, 1e-6
-# A point this far outside a walled box, in units of the longest side, is on the wall up to rounding.
-OUTSIDE = 1e-9
 
 
 class Grid(NamedTuple):
@@ -27,35 +25,45 @@ class Grid(NamedTuple):
     order : tuple of int
         Axes of the user's scene that are axes 0, 1, 2 of the box.
     voxels : Voxels
-    temperature : (nx, ny, nz) float array, K
-        Less the linear part.
-    flux : (3, nx, ny, nz) float array, W/m2
-        Along Fourier's direction.
     slope : (3,) float array, K/m
     level : float, K
         Linear part: level + slope.x.
     sharp : bool
         The temperature of a cut voxel is that of its centre (links), not a mean over its phases.
+    temperature : (nx, ny, nz) float array, K
+        Less the linear part; as `flux`, None until it is solved for.
+    flux : (3, nx, ny, nz) float array, W/m2
+        Along Fourier's direction.
     """
 
     scene: Scene
     order: tuple
     voxels: Voxels
-    temperature: np.ndarray
-    flux: np.ndarray
     slope: np.ndarray
     level: float
     sharp: bool
+    temperature: np.ndarray | None = None
+    flux: np.ndarray | None = None
 
 
-def temperature_at(grid: Grid, points):
-    """Interpolation between the whole voxels of the point's own phase, (n, 3) m -> (n,) K; exact for linear fields.
+def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Interpolation between the whole voxels of the point's own phase; exact for linear fields.
 
     Each voxel tells its temperature T and slope g.  With weights w, offsets d from the voxels to the point and means
     under w, the sum of w (T + g.d / 2) + mean(g).mean(d) / 2 is linear-exact for any weights, and the cubic Hermite
     polynomial along each axis where all eight voxels count.
+
+    Parameters
+    ----------
+    grid : Grid
+    points : (n, 3) float array, m
+        In the user's axes; inside the box, which `demheat.field.Field` has seen to.
+
+    Returns
+    -------
+    (n,) float array, K
     """
-    points = _in_box(grid, points)
+    points = points[:, grid.order]
     phase = grid.scene.phase_at(points)
     value, weights = np.zeros(len(points)), np.zeros(len(points))
     slope, offset = np.zeros((3, len(points))), np.zeros((3, len(points)))
@@ -80,9 +88,19 @@ def temperature_at(grid: Grid, points):
     return grid.level + points @ grid.slope + mean
 
 
-def flux_at(grid: Grid, points):
-    """Trilinear interpolation between the whole voxels of the point's own phase, (n, 3) m -> (n, 3) W/m2."""
-    points = _in_box(grid, points)
+def flux_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Trilinear interpolation between the whole voxels of the point's own phase.
+
+    Parameters
+    ----------
+    grid, points : see `temperature_at`
+
+    Returns
+    -------
+    (n, 3) float array, W/m2
+        Along Fourier's direction, in the user's axes.
+    """
+    points = points[:, grid.order]
     phase = grid.scene.phase_at(points)
     total, weights = np.zeros((len(points), 3)), np.zeros(len(points))
     for index, weight, _, mirrored in _neighbours(grid, points):
@@ -91,7 +109,7 @@ def flux_at(grid: Grid, points):
         for axis in range(3):
             total[:, axis] += weight * _sign(axis, mirrored) * grid.flux[(axis, *index)]
     result = np.empty_like(total)
-    result[:, list(grid.order)] = total / weights[:, None]
+    result[:, grid.order] = total / weights[:, None]
     return result
 
 
@@ -112,20 +130,6 @@ def samples(grid: Grid) -> Samples:
     volumes = np.full(len(points), np.prod(spacing))
     phase = grid.voxels.phase.transpose(back).ravel().astype(np.int32)
     return Samples(points, volumes, temperature.transpose(back).ravel(), phase, flux)
-
-
-def _in_box(grid, points):
-    points = np.asarray(points, dtype=float).reshape(-1, 3)
-    if not np.all(np.isfinite(points)):
-        raise ValueError("points: must be finite coordinates in metres")
-    points = points[:, list(grid.order)]
-    if not grid.scene.periodic:
-        size = np.array(grid.scene.size)
-        slack = OUTSIDE * size.max()
-        outside = np.any((points < -slack) | (points > size + slack), axis=1)
-        if outside.any():
-            raise ValueError(f"points: {outside.sum()} lie outside the box 0 to {size[np.argsort(grid.order)]} m")
-    return points
 
 
 def _neighbours(grid, points):

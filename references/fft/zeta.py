@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import combinations
 from typing import NamedTuple
@@ -20,8 +21,8 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Material, Scene
-from references.fft.solver import thread_count
 from references.fft.transforms import fourier
+from references.threads import thread_count
 from references.voxels.paint import Voxels, grid_shape, voxelise
 
 # Errors found on cubic arrays (spheres 5 to 60 voxels across, three places each) and on random cells go as a h + c h^3
@@ -33,6 +34,21 @@ FEWEST = 8
 ROUNDING = 1e-12
 # The tangent at the Nyquist frequency: infinite, as far as its square can be told from 1 in floating point.
 NYQUIST = 1e9
+
+
+class Tangents(NamedTuple):
+    """Frequencies of the rotated scheme along an axis, tan(pi k/N) over the spacing.
+
+    Attributes
+    ----------
+    frequency : (n,) float array, 1/m
+        0 at the Nyquist frequency, so that no product of two axes has a sign there.
+    square : (n,) float array, 1/m2
+        Huge at the Nyquist frequency.
+    """
+
+    frequency: np.ndarray
+    square: np.ndarray
 
 
 class Zeta2(NamedTuple):
@@ -55,7 +71,9 @@ class Zeta2(NamedTuple):
     stats: dict
 
 
-def zeta2(scene: Scene, *, voxels=128, extrapolate=True, threads=2) -> Zeta2:
+def zeta2(
+    scene: Scene, *, voxels: int | Sequence[int] = 128, extrapolate: bool = True, threads: int | None = 2
+) -> Zeta2:
     """Find zeta_2 of a periodic cell; of an anisotropic one, that of the mean conductivity over the three axes.
 
     Parameters
@@ -167,17 +185,16 @@ def _whole(v, grid, threads):
     values[:] = v
     work.forward()
     spectrum = modes * work.scale
-    axes = [tangents(n, h) for n, h in zip(v.shape, grid.spacing, strict=True)]
-    axes[2] = axes[2][:, : v.shape[2] // 2 + 1]
-    axes = [a.reshape(2, *(-1 if b == axis else 1 for b in range(3))) for axis, a in enumerate(axes)]
-    square = axes[0][1] + axes[1][1] + axes[2][1]
+    x, y, z = axes = _axes(v.shape, grid.spacing)
+    square = x.square + y.square + z.square
     square[0, 0, 0] = 1.0  # k = 0, where all products of frequencies are 0.
     spectrum /= square
     cut = np.unravel_index(grid.cut, v.shape)
     outside = 2 * (1 - v[cut])
     total = 0.0
     for place, (i, j) in enumerate([(0, 0), (1, 1), (2, 2), *reversed(list(combinations(range(3), 2)))]):
-        np.multiply(spectrum, axes[i][1] if i == j else axes[i][0] * axes[j][0], out=modes)
+        product = axes[i].square if i == j else axes[i].frequency * axes[j].frequency
+        np.multiply(spectrum, product, out=modes)
         work.backward()
         pair = 1 if i == j else 2
         total += pair * np.einsum("ijk,ijk,ijk->", v, values, values)
@@ -187,12 +204,30 @@ def _whole(v, grid, threads):
     return float(total)
 
 
-def tangents(n, spacing):
-    """Frequencies of the rotated scheme along an axis and their squares, (2, n) float array, 1/m.
+def _axes(shape, spacing):
+    """Tangents of each axis, shaped to be multiplied with one another; half of them along the last axis."""
+    found = []
+    for axis, (n, h) in enumerate(zip(shape, spacing, strict=True)):
+        kept = n // 2 + 1 if axis == 2 else n
+        form = [-1 if axis == other else 1 for other in range(3)]
+        found.append(Tangents(*(values[:kept].reshape(form) for values in tangents(n, h))))
+    return found
 
-    At the Nyquist frequency the square is huge and the frequency itself 0, so that no product of two axes has a sign.
+
+def tangents(n: int, spacing: float) -> Tangents:
+    """Frequencies of the rotated scheme along an axis, as `numpy.fft.fftfreq` orders them.
+
+    Parameters
+    ----------
+    n : int
+        Voxels along the axis.
+    spacing : float, m
+
+    Returns
+    -------
+    Tangents
     """
     k = np.fft.fftfreq(n)
     nyquist = k == -0.5
     t = np.tan(np.pi * np.where(nyquist, 0.0, k))
-    return np.stack([t, np.where(nyquist, NYQUIST**2, t * t)]) / np.array([[spacing], [spacing**2]])
+    return Tangents(t / spacing, np.where(nyquist, NYQUIST**2, t * t) / spacing**2)
