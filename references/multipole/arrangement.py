@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Layer
-from references.multipole.system import Spheres, unmirrored
+from references.multipole.translations import Spheres, unmirrored
 
 # Of the box: rounding of coordinates that users type or work out.
 SAME = 1e-12

@@ -10,9 +10,10 @@ import math
 
 import numpy as np
 
-from references.multipole import kernels
+from references.multipole import field_kernels as kernels
 from references.multipole.sums import entries, harmonics, splitting, wave_weights
-from references.multipole.system import Solved, Spheres, scales
+from references.multipole.system import Solved
+from references.multipole.translations import Spheres, scales
 
 # Nanoseconds, about, of one harmonic of one image and of one wave at one point: they set the splitting.
 HARMONIC, WAVE = 4.0, 4.0

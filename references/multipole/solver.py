@@ -2,9 +2,9 @@
 
 Rayleigh (1892); McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; Sangani and Acrivos, Proc. R. Soc. A 386 (1983)
 263. The spheres may differ in radius and conductivity. The only errors are those of the highest degree kept, which
-is stated, and of the linear solve. A scene becomes spheres in `arrangement`, mirror images of walls included; their
-periodic sums are in `sums`, the linear system in `system`, the choice of the order in `truncation`, values at points in
-`field`, their compiled loops in `kernels`.
+is stated, and of the linear solve. A scene becomes spheres in `arrangement`, their mirror images in walls included;
+periodic sums are in `sums`, what spheres make at each other in `translations`, the linear system in `system`, the
+choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ import numpy as np
 
 from demheat.field import Field, Samples
 from demheat.scene import Scene
+from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
@@ -86,10 +87,8 @@ def _field(scene, arrangement, history, points_per_axis):
         return level + values[:, 0], -conductivities[phase][:, None] * values[:, 1:] / unit, phase
 
     def sampler():
-        axes = [(np.arange(points_per_axis) + 0.5) * length / points_per_axis for length in scene.size]
-        points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+        points, volumes = midpoints(scene, points_per_axis)
         temperature, flux, phase = at(points)
-        volumes = np.full(len(points), scene.volume / len(points))
         return Samples(points, volumes, temperature, phase.astype(np.int32), flux)
 
     # What mirror images share with their originals' box is what these share with the images'.
@@ -135,6 +134,6 @@ def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
         if not (isinstance(value, int | float) and 1e-14 <= value < 1):
             raise ValueError(f"{name} = {value!r}: must be a number from 1e-14 to below 1")
-    for name, value in (("points_per_axis", points_per_axis), ("threads", threads)):
-        if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < 1:
-            raise ValueError(f"{name} = {value!r}: must be an integer >= 1")
+    check_points_per_axis(points_per_axis)
+    if not isinstance(threads, int | np.integer) or isinstance(threads, bool) or threads < 1:
+        raise ValueError(f"threads = {threads!r}: must be an integer >= 1")

@@ -5,7 +5,7 @@ formula turns sum_R R_L(X + R) exp(-t |X + R|^2) into a sum over reciprocal vect
 r^-(2L+1) = int t^(L-1/2) exp(-t r^2) dt / Gamma(L+1/2) integrates to exp(-K^2/(4 eta)) / K^2. Without K = 0 the sums
 are those of the periodic Green function -laplace psi = 4 pi (delta - 1/volume), whose mean slope is zero: just what a
 mean gradient imposed on the cell asks for. Its uniform background appears only where two derivatives meet: see
-`system.received`.
+`translations.received`.
 
 Harmonics in Racah's normalisation, as in `references.exact.harmonics`; entry (L, M >= 0) of a table stands at
 L (L + 1)/2 + M.

@@ -9,7 +9,7 @@ import numpy as np
 from demheat.scene import Scene
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.sums import entries
-from references.multipole.system import received, translation
+from references.multipole.translations import received, translation
 
 # What the table of translations may cost, in bytes.
 MOST_BYTES = 3e9

@@ -9,7 +9,8 @@ import numpy as np
 
 from references.multipole.arrangement import Arrangement, smallest_gap
 from references.multipole.sums import entries
-from references.multipole.system import homogeneous, solve_order, translation
+from references.multipole.system import homogeneous, solve_order
+from references.multipole.translations import translation
 
 FIRST_ORDER, HIGHEST_ORDER = 8, 40
 # Periodic sums are made for so many orders more than asked for at once.

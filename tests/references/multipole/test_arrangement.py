@@ -10,7 +10,8 @@ from numpy.testing import assert_allclose
 from demheat import Flux, Material, Scene, Sphere, gallery
 from references import exact, fft, multipole
 from references.multipole import arrangement
-from references.multipole.system import solve_order, translation
+from references.multipole.system import solve_order
+from references.multipole.translations import translation
 
 # Nothing symmetric, two materials; the gaps to the walls and between the spheres are a fifth of a diameter or more.
 SPHERES = [Sphere((0.3, 0.4, 0.45), 0.2, Material(7.0)), Sphere((0.7, 0.75, 0.6), 0.22, Material(0.1))]
@@ -89,6 +90,15 @@ def test_images_that_only_repeat_the_box_are_left_out(monkeypatch):
     assert_allclose(few.mean_flux, many.mean_flux, rtol=0, atol=1e-9 * np.abs(many.mean_flux).max())
     assert_allclose(few.temperature_at(points), many.temperature_at(points), rtol=1e-9)
     assert_allclose(few.flux_at(points), many.flux_at(points), rtol=0, atol=1e-8 * np.abs(many.mean_flux).max())
+
+
+@pytest.mark.parametrize("other", [{"radius": 0.16}, {"material": Material(2.0)}, {"center": (0.71, 0.3, 0.45)}])
+def test_spheres_that_differ_from_their_mirror_image_are_mirrored(other):
+    pair = [Sphere((x, 0.3, 0.45), 0.15, Material(7.0)) for x in (0.3, 0.7)]
+    made = arrangement.arrange(box(spheres=pair)).spheres
+    assert len(made.radii) == 4 and not made.flips[:, [0, 2]].any()
+    changed = arrangement.arrange(box(spheres=[pair[0], replace(pair[1], **other)])).spheres
+    assert len(changed.radii) == 8 and changed.flips[:, 0].any()
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -11,9 +11,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import gamma, gammaincc
 
-from references.multipole import kernels
+from references.multipole import field_kernels as kernels
 from references.multipole.sums import Splitting
-from references.multipole.system import translation, unmirrored
+from references.multipole.translation_kernels import translate
+from references.multipole.translations import translation, unmirrored
 
 pytestmark = pytest.mark.twin
 SIZE = np.array([1.0, 1.2, 0.9])
@@ -92,7 +93,7 @@ def test_translate():
     sent, made = rng.normal(size=(2, 3, 10)), np.full((2, 2, 10), np.nan)
     sent[1][:, [0, 1, 3, 6]] = sent[:, :, 0] = 0
     for i in range(2):
-        kernels.translate(order, table, sent, made, i, i + 1)
+        translate(order, table, sent, made, i, i + 1)
     for i, (p, q) in product(range(2), pairs(order)):
         total = 0
         for j, n in product(range(3), range(1, order + 1)):

@@ -53,7 +53,7 @@ def test_periodic_sums_of_the_simple_cubic_lattice():
     for n in range(4, 31, 2):
         here = sums[n * (n + 1) // 2 : n * (n + 1) // 2 + n + 1]
         assert_allclose(here[::4], expected[n, : n // 4 + 1], rtol=0, atol=1e-13)  # rounding of sums of some 100 terms
-    # Degree 2 is zero here; lattice.py writes the share of the background in its place.
+    # Degree 2 is zero here; `lattice_sums` writes the share of the background in its place.
     assert_allclose(sums[3:6], 0, rtol=0, atol=1e-14)
 
 

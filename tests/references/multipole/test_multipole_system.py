@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 
 from demheat import gallery
 from references.multipole.arrangement import arrange
-from references.multipole.system import gmres, received, translation
+from references.multipole.system import gmres
+from references.multipole.translations import received, translation
 
 
 def test_entries_left_out_and_threads_do_not_matter():
