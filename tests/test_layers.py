@@ -13,15 +13,24 @@ OURS = ("demheat", "references", "studies", "tests")
 # What a module may import of ours; the longest prefix that fits decides. A prefix stands for itself and all below it.
 LAYERS = {
     "demheat": ("demheat.scene", "demheat.field", "demheat.dem"),
+    "demheat.bodies": (),
+    "demheat.addition": (),
     "demheat.parts": (),
-    "demheat.scene": ("demheat.parts",),
-    "demheat.field": ("demheat.scene", "demheat.parts"),
+    "demheat.scene": ("demheat.bodies", "demheat.parts"),
+    "demheat.field": ("demheat.bodies", "demheat.scene", "demheat.parts"),
     "demheat.threads": (),
     "demheat.referee": (),
-    "demheat.gallery": ("demheat.scene",),
-    "demheat.slices": ("demheat.scene", "demheat.field", "demheat.parts"),
+    "demheat.gallery": ("demheat.addition", "demheat.scene"),
+    "demheat.slices": ("demheat.bodies", "demheat.scene", "demheat.field", "demheat.parts"),
     "demheat.halo": ("demheat.sampling.halo",),
-    "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
+    "demheat.packing": (
+        "demheat.addition",
+        "demheat.bodies",
+        "demheat.parts",
+        "demheat.scene",
+        "demheat.threads",
+        "demheat.packing",
+    ),
     "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
     "demheat.conduction": (
         "demheat.scene",
@@ -31,6 +40,7 @@ LAYERS = {
         "demheat.conduction",
     ),
     "demheat.sampling": (
+        "demheat.bodies",
         "demheat.scene",
         "demheat.field",
         "demheat.threads",

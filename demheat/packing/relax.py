@@ -72,7 +72,7 @@ def relax(
     domain: str = "box",
     seed: int = 0,
     allow_few: bool = False,
-    **stop,
+    **knobs,
 ) -> Packing:
     """Pack exactly `number` spheres at packing fraction `phi` with small overlaps.
 
@@ -106,7 +106,7 @@ def relax(
         If an argument is not as described, or a sphere is too large for the box.
     """
     radii = Gaussian() if radii is None else distribution(radii)
-    goal = Relaxation(**stop)
+    goal = Relaxation(**knobs)
     _check_request(number, phi, seed, allow_few)
     size, periodic = check_box(size, periodic)
     check_domain(domain, size, periodic)

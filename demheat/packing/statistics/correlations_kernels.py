@@ -150,7 +150,8 @@ def _chords(points, grid, lines, line, buffer, spans):
         buffer, k = _neighbours(-1, p, grid, Reach(1.0, step / 2), buffer)
         if count + k > len(spans):
             grown = np.empty((2 * (count + k), 2))
-            grown[:count] = spans[:count]
+            for a in range(count):
+                grown[a, 0], grown[a, 1] = spans[a, 0], spans[a, 1]
             spans = grown
         found = count
         for t in range(k):

@@ -80,10 +80,12 @@ def held(contacts, half_space, before, now):
             count = 0
             for t in range(indptr[i], indptr[i + 1]):
                 if before[contacts.indices[t]]:
-                    found[count] = contacts.vectors[t]
+                    for axis in range(3):
+                        found[count, axis] = contacts.vectors[t, axis]
                     count += 1
             for t in range(wall_indptr[i], wall_indptr[i + 1]):
-                found[count] = contacts.wall_vectors[t]
+                for axis in range(3):
+                    found[count, axis] = contacts.wall_vectors[t, axis]
                 count += 1
             now[i] = count >= FEWEST and (not half_space or _spans(found, count))
 
