@@ -5,22 +5,17 @@ A scene knows nothing of meshes, voxels or particles; every method reads the sam
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.parts import Flux, Heating, Layer, Material, MovingCylinder, Sphere, check_material, finite, vector
 
 __all__ = ["WALLS", "Flux", "Heating", "Layer", "Material", "MovingCylinder", "Scene", "Sphere"]
 
-WALLS = ("x-", "x+", "y-", "y+", "z-", "z+")
-# Axes across which each domain is round.
-ROUND_AXES = {"box": (), "cylinder-x": (1, 2), "cylinder-y": (0, 2), "cylinder-z": (0, 1), "sphere": (0, 1, 2)}
-# Part of the box that a domain with so many round axes fills.
-SHARES = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
 # Points whose phases are found together.
@@ -220,11 +215,6 @@ class Scene:
                     raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
 
 
-def domain_volume(domain, size):
-    """Volume of a domain inscribed in a box, m3."""
-    return SHARES[len(ROUND_AXES[domain])] * math.prod(float(side) for side in size)
-
-
 def _plain(load):
     return load if callable(load) else float(load)
 
@@ -262,13 +252,6 @@ def _check_load(scene):
             raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(valid)}")
         if not isinstance(value, Flux) and not callable(value):
             finite(f"Scene.walls[{name!r}]", value, "a finite temperature, a function of time or a Flux")
-
-
-def wall_names(domain):
-    """Names of the walls of a domain."""
-    axes = ROUND_AXES[domain]
-    flat = tuple(name for name in WALLS if "xyz".index(name[0]) not in axes)
-    return (*flat, "round") if axes else flat
 
 
 def _check_domain(scene):

@@ -10,6 +10,7 @@ from scipy.spatial import cKDTree
 from demheat.laws import Calibrated
 from demheat.network.base import SIDES, Facets, row_numbers, wall_normals
 from demheat.packing.neighbours import as_graph, contacts
+from demheat.packing.walls import wall_distance
 from demheat.scene import ROUND_AXES
 
 MEANS = {
@@ -144,11 +145,7 @@ def surface_distances(facets, packing):
 
 def heights(packing, side):
     """Distance of every centre from a wall, (n,) float array, m; the wall by its number in `SIDES`."""
-    axes = list(ROUND_AXES[packing.domain])
-    if SIDES[side] == "round":
-        return packing.size[axes[0]] / 2 - np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
-    x = packing.centers[:, side // 2]
-    return packing.size[side // 2] - x if side % 2 else x
+    return wall_distance(packing, SIDES[side])
 
 
 def _wall_factor(facets, packing, axis):

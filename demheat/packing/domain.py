@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
-from demheat.scene import ROUND_AXES
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
@@ -21,7 +22,14 @@ UNTILED, TILE, LEAST_TILE = 2_000_000, 250_000, 1000
 DRAWN = (1.0, 6.0)
 
 
-def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside") -> Packing:
+def cut(
+    packing: Packing,
+    domain: str = "box",
+    *,
+    size: Sequence[float] | None = None,
+    center: Sequence[float] | None = None,
+    keep: str = "inside",
+) -> Packing:
     """Cut a domain out of a larger packing.
 
     The cut is rough: spheres lie at all distances from it, as in a sawn specimen, so that its outer layer is less dense
@@ -53,8 +61,7 @@ def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside"
         If an argument is not as described, the domain reaches beyond a wall, or no sphere is left.
     """
     _check_box_packing(packing)
-    if domain not in ROUND_AXES:
-        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    check_name("domain", domain)
     if keep not in KEEP:
         raise ValueError(f"keep = {keep!r}: must be one of {', '.join(KEEP)}")
     axes = list(ROUND_AXES[domain])
@@ -68,14 +75,14 @@ def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside"
     local = packing.centers - corner
     turns = np.floor((local - sides / 2) / packing.size + 0.5)
     local -= np.where(packing.periodic & ~whole, turns * packing.size, 0.0)
-    kept = _reach_inside(local, packing.radii if keep == "inside" else 0.0, sides, axes, np.flatnonzero(~whole))
+    kept = _reach_inside(local, packing.radii if keep == "inside" else 0.0, domain, sides, ~whole)
     if not kept.any():
         raise ValueError(f"size = {sides.tolist()}: no sphere of the packing is left in this {domain}; must be larger")
     provenance = {"algorithm": "cut", "keep": keep, "corner": corner.tolist(), "of": packing.provenance}
     return make_packing(local[kept], packing.radii[kept], sides, periodic, provenance, domain=domain)
 
 
-def tile(packing: Packing, repeats) -> Packing:
+def tile(packing: Packing, repeats: Sequence[int]) -> Packing:
     """Repeat a packing along its periodic axes.
 
     The larger packing is a legitimate periodic one, but holds no more information than the tile: a homogeneous periodic
@@ -119,7 +126,7 @@ def tile(packing: Packing, repeats) -> Packing:
     return packing._replace(centers=centers, radii=np.tile(packing.radii, len(cells)), size=size, provenance=provenance)
 
 
-def tile_counts(number, size, tiles=None):
+def tile_counts(number: int, size: Sequence[float], tiles: int | None = None) -> np.ndarray:
     """How often a packing of so many particles repeats a smaller one along each axis, (3,) int array.
 
     Parameters
@@ -205,13 +212,12 @@ def _checked_center(packing, center, sides):
     return middle
 
 
-def _reach_inside(local, reach, sides, axes, cut_axes):
-    """Which spheres, that reach so far around their centre, lie in the domain."""
+def _reach_inside(local, reach, domain, sides, is_cut):
+    """Which spheres, that reach so far around their centre, lie in the domain; its flat walls are cut on some axes."""
     inside = np.ones(len(local), dtype=bool)
-    for k in (k for k in cut_axes if k not in axes):
+    for k in set(np.flatnonzero(is_cut)) - set(ROUND_AXES[domain]):
         inside &= (local[:, k] >= reach) & (local[:, k] <= sides[k] - reach)
-    if axes:
-        off_axis = np.linalg.norm(local[:, axes] - sides[axes] / 2, axis=1)
-        # A hair less than the radius: the gate of `make_packing` squares in another order.
-        inside &= off_axis + reach <= sides[axes[0]] / 2 * (1 - ROUNDING)
+    if ROUND_AXES[domain]:
+        # A hair less than the radius: coordinates moved to the box's corner are rounded.
+        inside &= from_middle(local, domain, sides) + reach <= round_radius(domain, sides) * (1 - ROUNDING)
     return inside

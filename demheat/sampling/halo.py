@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.bodies import inside
 from demheat.network.laguerre_kernels import bin_points
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
@@ -187,11 +188,7 @@ def _halo_radius(field, ratio):
 def _checked_at(at, scene):
     at = _checked_points("at", at)
     if not scene.periodic:
-        outside = np.any((at < 0) | (at > np.array(scene.size)), axis=1)
-        axes = list(ROUND_AXES[scene.domain])
-        if axes:
-            size = np.array(scene.size)
-            outside |= np.linalg.norm((at - size / 2)[:, axes], axis=1) > (0.5 + 1e-9) * size[axes[0]]
+        outside = ~inside(at, "box", scene.size) | ~inside(at, scene.domain, scene.size, slack=1e-9)
         if outside.any():
             raise ValueError(
                 f"at: {outside.sum()} points lie outside the {scene.domain} with walls, 0 to {scene.size}; the first "
