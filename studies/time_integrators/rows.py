@@ -12,7 +12,7 @@ import numpy as np
 
 from demheat.build import network_of
 from demheat.conduction import transient
-from demheat.conduction.integrators import control, euler
+from demheat.conduction.integrators import control, euler, march
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.laws import Laguerre
@@ -52,7 +52,7 @@ def marched(body, particles, integrator, accuracy):
 
 
 def _integrated(system, start, end, integrator, accuracy):
-    return list(transient.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
+    return list(march.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
 
 
 def _described(system, start, end, state, accuracy):
@@ -93,7 +93,7 @@ def _kernel_speed(system, start, limit):
         best = min(best, (time.perf_counter() - begin) / steps)
         triad = max(triad, triad_gbs(threads=threads(), repeats=2))
     # Each link: conductance and index; each node: row pointer, temperature old and new, inverse capacity, heat.
-    moved = 12 * len(system.indices) + 40 * len(x)
+    moved = 12 * len(system.links.indices) + 40 * len(x)
     return {
         "million_particle_steps": 1e-6 * system.particles / best,
         "bandwidth_gbs": 1e-9 * moved / best,
