@@ -9,8 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.parts import axis_number, finite
-from demheat.scene import ROUND_AXES, Scene
+from demheat.bodies import inside
+from demheat.inputs import axis_number, finite
+from demheat.scene import Scene
+
+# Of the box: points computed to lie on a wall may be so far beyond it.
+ON_WALL = 1e-9
 
 
 class Samples(NamedTuple):
@@ -145,19 +149,17 @@ def _guarded(evaluate, scene):
         points = points[None] if points.shape == (3,) else points
         if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
             raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")
-        size = np.array(scene.size)
-        # 1e-9 of the box: points computed to lie on a wall.
-        outside = np.any((points < -1e-9 * size) | (points > (1 + 1e-9) * size), axis=1)
-        axes = list(ROUND_AXES[scene.domain])
-        if axes:
-            off = np.linalg.norm((points - size / 2)[:, axes], axis=1)
-            outside |= off > (0.5 + 1e-9) * size[axes[0]]
-        if not scene.periodic and outside.any():
-            first = points[outside][0].tolist()
-            raise ValueError(
-                f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
-                f"{first}"
-            )
+        if not scene.periodic:
+            _check_inside(points, scene)
         return evaluate(points)
 
     return at
+
+
+def _check_inside(points, scene):
+    outside = ~inside(points, scene.domain, scene.size, slack=ON_WALL)
+    if outside.any():
+        raise ValueError(
+            f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
+            f"{points[outside][0].tolist()}"
+        )

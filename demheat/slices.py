@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.bodies import inside
 from demheat.field import Field
-from demheat.parts import axis_number
-from demheat.scene import ROUND_AXES
+from demheat.inputs import axis_number
 
 
 class Slice(NamedTuple):
@@ -66,7 +66,7 @@ def plane(scene, *, axis, at, n=61):
     grid = np.empty((len(middles[1]), len(middles[0]), 3))
     grid[..., axis] = at
     grid[..., across[0]], grid[..., across[1]] = np.meshgrid(*middles)
-    mask = _inside(scene, grid)
+    mask = inside(grid, scene.domain, scene.size)
     if not mask.any():
         raise ValueError(f"at = {at!r}, n = {n!r}: none of the pixels' middles lies in the {scene.domain}")
     return grid[mask], mask
@@ -112,12 +112,3 @@ def filled(mask, values):
 def _middles(length, pixel):
     count = max(1, round(length / pixel))
     return (np.arange(count) + 0.5) / count * length
-
-
-def _inside(scene, grid):
-    """Points of a grid in the box that lie in the body."""
-    axes = list(ROUND_AXES[scene.domain])
-    if not axes:
-        return np.ones(grid.shape[:2], dtype=bool)
-    offsets = grid[..., axes] - np.array(scene.size)[axes] / 2
-    return np.linalg.norm(offsets, axis=-1) <= scene.size[axes[0]] / 2

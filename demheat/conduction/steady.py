@@ -80,7 +80,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         If the residual, recomputed after the solve, misses the tolerance.
     """
     check_solver(solver, tolerance)
-    scene.check_steady()
+    scene.require(steady=True)
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"

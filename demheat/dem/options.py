@@ -5,6 +5,7 @@ import numpy as np
 from demheat.conduction.sources import check_sources
 from demheat.network.calibrated import POLICIES, WALL_RULES
 from demheat.network.interface import check_rule
+from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 
 LAWS = ("laguerre", "calibrated", "platonic")
@@ -20,7 +21,10 @@ def check_steady(scene, *, law, conforming, interface, contact, packing, particl
     ValueError, NotImplementedError
     """
     wanted = _check_law(law, _wanted(conforming, law == "laguerre"), interface, contact)
-    scene.check_steady()
+    scene.require(steady=True)
+    if wanted:
+        # Refuses inclusions of shapes that are not known.
+        surfaces_of(scene)
     _check_walls(scene, law, contact["wall"])
     _check_packing(scene, packing, particles, allow_few)
     return wanted
@@ -35,11 +39,12 @@ def check_transient(scene, stop, *, law, conforming, interface, contact, packing
     """
     by_default = law == "laguerre" and bool(scene.inclusions)
     wanted = _check_law(law, _wanted(conforming, by_default), interface, contact)
-    if wanted and scene.domain != "box":
-        raise NotImplementedError(f"inclusions in a {scene.domain} have no conforming packing; pass conforming=False")
-    if contact["wall"] == "surface" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
-        raise NotImplementedError("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'")
-    scene.check_transient()
+    scene.require(steady=False)
+    if wanted:
+        scene.require("no conforming packing is known there; pass conforming=False", domain="box")
+        surfaces_of(scene)
+    if contact["wall"] == "surface":
+        scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
     _check_walls(scene, law, contact["wall"])
     _check_packing(scene, packing, particles, allow_few)
     check_sources(scene, stop)
@@ -93,11 +98,11 @@ def _finite_number(value, low):
 
 
 def _check_walls(scene, law, wall):
-    held = {name[0] for name in scene.wall_temperatures}
-    if law != "laguerre" and wall == "center" and len(held) > 1:
-        raise NotImplementedError(
-            f"law {law!r} with wall 'center' holds the centres of the particles at a wall at its temperature: "
-            "where two held walls meet, one particle would join them; use wall 'surface'"
+    if law != "laguerre" and wall == "center":
+        scene.require(
+            f"law {law!r} with wall 'center' holds the centres of the particles at a wall at its temperature: where "
+            "two held walls meet, one particle would join them; use wall 'surface'",
+            walls="isothermal ones apart",
         )
 
 

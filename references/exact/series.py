@@ -92,7 +92,7 @@ def evolve(scene, times, *, points_per_axis=24):
     NotImplementedError
         If the scene has no series here.
     """
-    scene.check_transient()
+    scene.require(steady=False)
     times = _checked_times(times)
     if not isinstance(points_per_axis, int) or points_per_axis < 1:
         raise ValueError(f"points_per_axis = {points_per_axis!r}: must be an integer >= 1")

@@ -48,7 +48,7 @@ def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
     """
     if not (isinstance(tolerance, float | int) and 0 < tolerance < 1):
         raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
-    scene.check_steady()
+    scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
     solved = solve_nodes(scene, mesh, tolerance)
     solution = Solution(scene, mesh, solved.temperature)

@@ -14,11 +14,12 @@ from itertools import pairwise
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import Layer
+from demheat.scene import Sphere
 from references.multipole.field import Evaluator
 from references.multipole.sums import entries
 from references.multipole.system import Spheres, homogeneous, received, solve_order, translation
 
+KNOWN = "multipole knows disjoint spheres in a periodic cell under a mean gradient"
 FIRST_ORDER, HIGHEST_ORDER = 8, 40
 # Periodic sums are made for so many orders more than asked for at once.
 AHEAD = 6
@@ -66,7 +67,7 @@ def solve(scene, *, order=None, accuracy=1e-5, tolerance=1e-10, points_per_axis=
         If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
-    scene.check_steady()
+    scene.require(steady=True)
     spheres, unit = _spheres(scene)
     history = _converged(spheres, np.array(scene.gradient) * unit, order, accuracy, tolerance, threads, unit)
     return _field(scene, spheres, unit, history, points_per_axis)
@@ -264,24 +265,17 @@ def _highest_order(count):
 
 def _spheres(scene, *, any_matrix=False):
     """The spheres in units of the largest diameter, and that unit in metres."""
-    if not scene.periodic:
-        raise NotImplementedError("multipole: walls; only periodic cells under a mean gradient are summed")
-    if any(isinstance(inclusion, Layer) for inclusion in scene.inclusions):
-        raise NotImplementedError("multipole: layers; only spheres have multipoles")
+    scene.require(KNOWN, walls="none", shapes=(Sphere,), nested=False)
     k = scene.matrix.conductivity
     if k == 0 and not any_matrix:
         raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")
     unit = 2 * max((sphere.radius for sphere in scene.inclusions), default=max(scene.size) / 2)
-    spheres = Spheres(
+    return Spheres(
         np.array([sphere.center for sphere in scene.inclusions]).reshape(-1, 3) / unit,
         np.array([sphere.radius for sphere in scene.inclusions]).reshape(-1) / unit,
         np.array([sphere.material.conductivity for sphere in scene.inclusions]) / (k if k > 0 else 1.0),
         np.array(scene.size) / unit,
-    )
-    # The scene lets spheres touch, disjoint or nested, to within rounding.
-    if _smallest_gap(spheres) < -1e-9:
-        raise NotImplementedError("multipole: nested spheres; only disjoint ones are solved")
-    return spheres, unit
+    ), unit
 
 
 def _smallest_gap(spheres):
