@@ -10,8 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.bodies import inside
-from demheat.parts import axis_number, finite
+from demheat.inputs import axis_number, finite
 from demheat.scene import Scene
+
+# Of the box: points computed to lie on a wall may be so far beyond it.
+ON_WALL = 1e-9
 
 
 class Samples(NamedTuple):
@@ -146,14 +149,17 @@ def _guarded(evaluate, scene):
         points = points[None] if points.shape == (3,) else points
         if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
             raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")
-        # 1e-9 of the box: points computed to lie on a wall.
-        outside = ~inside(points, scene.domain, scene.size, slack=1e-9)
-        if not scene.periodic and outside.any():
-            first = points[outside][0].tolist()
-            raise ValueError(
-                f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
-                f"{first}"
-            )
+        if not scene.periodic:
+            _check_inside(points, scene)
         return evaluate(points)
 
     return at
+
+
+def _check_inside(points, scene):
+    outside = ~inside(points, scene.domain, scene.size, slack=ON_WALL)
+    if outside.any():
+        raise ValueError(
+            f"points: {outside.sum()} lie outside the {scene.domain} with walls, 0 to {scene.size}; the first is "
+            f"{points[outside][0].tolist()}"
+        )

@@ -73,10 +73,8 @@ class Laguerre:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
-        if self.conforming and scene.inclusions and scene.domain != "box":
-            raise NotImplementedError(
-                f"inclusions in a {scene.domain} have no conforming packing; pass conforming=False"
-            )
+        if self.conforming and scene.inclusions:
+            scene.require("inclusions there have no conforming packing; pass conforming=False", domain="box")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -134,13 +132,13 @@ class _Contacts:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
-        if self.wall == "surface" and (scene.domain == "sphere" or "round" in (scene.walls or {})):
-            raise NotImplementedError("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'")
-        held = {name[0] for name in scene.wall_temperatures}
-        if self.wall == "center" and len(held) > 1:
-            raise NotImplementedError(
+        if self.wall == "surface":
+            scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
+        else:
+            scene.require(
                 f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"
-                " where two held walls meet, one particle would join them; use wall 'surface'"
+                " where two held walls meet, one particle would join them; use wall 'surface'",
+                walls="isothermal ones apart",
             )
 
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from demheat.bodies import inside
 from demheat.field import Field
-from demheat.parts import axis_number
+from demheat.inputs import axis_number
 
 
 class Slice(NamedTuple):

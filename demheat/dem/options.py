@@ -10,6 +10,7 @@ from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, tiled
 from demheat.packing.domain import tile_counts
+from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 from demheat.scene import Scene
 
@@ -58,8 +59,11 @@ class Particles:
         ValueError
             If the packing that is given is not of the scene's body, or there are too few particles for the tiles.
         NotImplementedError
-            For tiles in round bodies, and between walls where facets do not bound cells.
+            For tiles in round bodies, and between walls where facets do not bound cells; for inclusions that have no
+            conforming packing.
         """
+        if law.conforming:
+            surfaces_of(scene)  # refuses shapes that twins do not know
         if self.packing is not None:
             _check_body(self.packing, scene)
             return np.ones(3, dtype=int)

@@ -82,7 +82,7 @@ def solve(
     """
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.check_steady()
+    scene.require(steady=True)
     law.check(scene)
     counts = wanted.counts(scene, law)
     begun = time.perf_counter()
@@ -162,7 +162,7 @@ def evolve(
     """
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.check_transient()
+    scene.require(steady=False)
     law.check(scene)
     counts = wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))

@@ -10,8 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.packing.base import make_packing
-from demheat.packing.interfaces import SphereSurface, nearest_gap, surfaces_near, surfaces_of
+from demheat.packing.base import Packing, make_packing
+from demheat.packing.interfaces import nearest_gap, surfaces_near, surfaces_of
+from demheat.scene import Scene
 
 # In mean radii of the packing. Twins at half a radius make cells centred between the interface and the next layer,
 # which is what the two-point flux needs where the interface is curved; found best of offsets .3 to .95 and spacings 1.2
@@ -43,7 +44,7 @@ class _Twins(NamedTuple):
     offsets: np.ndarray  # (k,) m
 
 
-def conform(packing, scene, *, seed=0):
+def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     """Replace the particles near every interface of a scene by mirrored twins.
 
     Parameters
@@ -60,6 +61,11 @@ def conform(packing, scene, *, seed=0):
         Radii are square roots of the radical weights (up to a constant added to all). Twins stand closer in narrow
         gaps. Where two interfaces are nearer to each other than a fifth of a mean radius, or an interface to a wall
         than a tenth, twins do not fit and facets there cross the interface; provenance["pairs_left_out"] counts them.
+
+    Raises
+    ------
+    NotImplementedError
+        If there is an inclusion of a shape whose surface is not known; see `demheat.packing.interfaces.surfaces`.
     """
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "pairs_left_out": 0})
@@ -161,9 +167,7 @@ def _margin(radius):
 
 def _room(points, normals, surface, surfaces, scene, most):
     """Largest offset that leaves each twin its own place: a half of the way to a wall, a quarter to an interface."""
-    room = np.full(len(points), most)
-    if isinstance(surface, SphereSurface):
-        room = np.minimum(room, 0.5 * surface.radius)
+    room = np.full(len(points), min(most, 0.5 * surface.depth))
     for other in surfaces:
         room = np.minimum(room, 0.25 * other.gap(points, skip_self=other is surface))
     room = np.minimum(room, 0.5 * _way_to_wall(points, normals, scene))

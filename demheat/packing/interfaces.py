@@ -1,5 +1,6 @@
-"""The interfaces of a scene as surfaces: point patterns on them and distances to them."""
+"""The interfaces of a scene as surfaces, found by `surfaces_of`: point patterns on them and distances to them."""
 
+from functools import singledispatch
 from itertools import product
 from typing import NamedTuple
 
@@ -7,7 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from demheat.scene import Scene, Sphere
+from demheat.scene import Layer, Scene, Shape, Sphere
 
 # Points that are looked at together: some tens of microseconds of work for each surface that is near.
 BLOCK = 2048
@@ -18,55 +19,99 @@ ROUNDING = 1e-12
 class SphereSurface(NamedTuple):
     """The surface of a spherical inclusion."""
 
-    center: np.ndarray
-    radius: float
+    shape: Sphere
     scene: Scene
 
+    @property
+    def depth(self) -> float:
+        """How far inwards nothing is in the way, m."""
+        return self.shape.radius
+
+    def ball(self):
+        """A ball that holds the surface: centre, (3,) float array, and radius, m."""
+        return self.shape.ball()
+
     def pattern(self, spacing, rng):
-        """Evenly spread points and outward normals, both (k, 3) float arrays."""
-        count = max(12, int(np.ceil(4 * np.pi * self.radius**2 / (np.sqrt(0.75) * spacing**2))))
+        """Evenly spread points and outward normals, both (k, 3) float arrays.
+
+        Parameters
+        ----------
+        spacing : float, m
+        rng : numpy Generator
+            Turns the pattern.
+        """
+        center, radius = self.ball()
+        count = max(12, int(np.ceil(4 * np.pi * radius**2 / (np.sqrt(0.75) * spacing**2))))
         normals = Rotation.random(random_state=rng).apply(fibonacci_sphere(count))
-        return self.center + self.radius * normals, normals
+        return center + radius * normals, normals
 
     def touched(self, points, normals):
-        """The points moved inwards, onto the polyhedron of the sphere's volume with their tangent planes as facets."""
+        """The points moved inwards, onto the polyhedron of the sphere's volume with their tangent planes as facets.
+
+        Parameters
+        ----------
+        points : (k, 3) float array, m
+        normals : (k, 3) float array
+
+        Returns
+        -------
+        (k, 3) float array, m
+        """
         if len(normals) == 0:
             return points
         counted = None if self.scene.periodic else self._in_box
-        return self.center + inscribed_radius(normals, counted=counted) * self.radius * normals
+        center, radius = self.ball()
+        return center + inscribed_radius(normals, counted=counted) * radius * normals
 
     def _in_box(self, directions):
         """Directions in which the surface lies in the box: elsewhere it has no facets."""
-        points = self.center + self.radius * directions
+        center, radius = self.ball()
+        points = center + radius * directions
         return np.all((points > 0) & (points < self.scene.size), axis=1)
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the surface, its periodic images included; of its own points to its images only."""
-        box = np.array(self.scene.size)
-        if self.scene.periodic and skip_self:
-            nearest = np.full(len(points), np.inf)
+        """Distance of points to the surface, its periodic images included.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        skip_self : bool
+            The points are its own: their distance to its images only.
+
+        Returns
+        -------
+        (n,) float array, m
+        """
+        if not skip_self:
+            return np.abs(self.shape.distance(points, period=self.scene.period))
+        nearest = np.full(len(points), np.inf)
+        if self.scene.periodic:
+            (center, radius), box = self.ball(), np.array(self.scene.size)
             for shift in product((-1, 0, 1), repeat=3):
                 if any(shift):
-                    offsets = points - self.center - shift * box
-                    nearest = np.minimum(nearest, np.abs(np.linalg.norm(offsets, axis=1) - self.radius))
-            return nearest
-        if skip_self:
-            return np.full(len(points), np.inf)
-        offsets = points - self.center
-        if self.scene.periodic:
-            offsets -= box * np.round(offsets / box)
-        return np.abs(np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) - self.radius)
+                    offsets = points - center - shift * box
+                    nearest = np.minimum(nearest, np.abs(np.linalg.norm(offsets, axis=1) - radius))
+        return nearest
 
 
 class PlaneSurface(NamedTuple):
-    """One face of a layer."""
+    """One face of a layer; its methods are those of `SphereSurface`."""
 
     axis: int
     position: float
     scene: Scene
 
+    @property
+    def depth(self) -> float:
+        """How far inwards nothing is in the way, m: other surfaces tell."""
+        return np.inf
+
+    def ball(self):
+        """No ball holds a plane."""
+        return np.zeros(3), np.inf
+
     def pattern(self, spacing, rng):
-        """Touch points on a jittered triangular pattern that fits the box."""
+        """Touch points on a jittered triangular pattern that fits the box, and normals, both (k, 3) float arrays."""
         size = self.scene.size
         u, v = (k for k in range(3) if k != self.axis)
         columns = max(4, round(size[u] / spacing))
@@ -88,7 +133,7 @@ class PlaneSurface(NamedTuple):
         return points
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the plane, its periodic images included."""
+        """Distance of points to the plane, its periodic images included, (n,) float array, m."""
         if skip_self:
             return np.full(len(points), np.inf)
         offset = points[:, self.axis] - self.position
@@ -98,18 +143,52 @@ class PlaneSurface(NamedTuple):
         return np.abs(offset)
 
 
-def surfaces_of(scene):
-    """Every sphere and every plane between layers of a scene, once each."""
-    spheres, planes = [], set()
-    for inclusion in scene.inclusions:
-        if isinstance(inclusion, Sphere):
-            spheres.append(SphereSurface(np.array(inclusion.center), inclusion.radius, scene))
-            continue
-        length = scene.size[inclusion.axis]
-        for x in (inclusion.start, inclusion.stop):
-            if scene.periodic or 0.0 < x < length:
-                planes.add((inclusion.axis, x % length))
-    return spheres + [PlaneSurface(axis, x, scene) for axis, x in sorted(planes)]
+@singledispatch
+def surfaces(shape: Shape, scene: Scene) -> list:
+    """The surfaces of an inclusion on which facets are to lie: what the DEM must know of a shape.
+
+    Other shapes are registered with it by their type; a surface has the methods of `SphereSurface`.
+
+    Parameters
+    ----------
+    shape : Shape
+        One of the scene's inclusions.
+    scene : Scene
+
+    Raises
+    ------
+    NotImplementedError
+        If the shape is not known.
+    """
+    raise NotImplementedError(
+        f"inclusions of shape {type(shape).__name__} have no conforming packing; pass conforming=False"
+    )
+
+
+@surfaces.register
+def _(shape: Sphere, scene):
+    return [SphereSurface(shape, scene)]
+
+
+@surfaces.register
+def _(shape: Layer, scene):
+    length = scene.size[shape.axis]
+    faces = (x for x in (shape.start, shape.stop) if scene.periodic or 0.0 < x < length)
+    return [PlaneSurface(shape.axis, x % length, scene) for x in faces]
+
+
+def surfaces_of(scene: Scene) -> list:
+    """Every surface of a scene's bounded inclusions and every plane between its layers, once each.
+
+    Raises
+    ------
+    NotImplementedError
+        If there is an inclusion of unknown shape.
+    """
+    found = [surface for shape in scene.inclusions if shape.bounded for surface in surfaces(shape, scene)]
+    planes = [plane for shape in scene.inclusions if not shape.bounded for plane in surfaces(shape, scene)]
+    once = {(plane.axis, plane.position): plane for plane in planes}
+    return found + [once[place] for place in sorted(once)]
 
 
 def nearest_gap(points, surfaces):
@@ -117,6 +196,11 @@ def nearest_gap(points, surfaces):
 
     Cheap where neighbours in memory are near in space: of each block of points only the surfaces that can be nearest to
     one of them are looked at, since no distance changes by more than a point moves.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, m
+    surfaces : list of SphereSurface, PlaneSurface or the like
     """
     nearest = np.full(len(points), np.inf)
     if not surfaces or not len(points):
@@ -134,17 +218,26 @@ def nearest_gap(points, surfaces):
 
 
 def surfaces_near(surface, surfaces, reach):
-    """Those of some surfaces, itself for its images, that come within a distance of points of a surface."""
-    if not isinstance(surface, SphereSurface):
+    """Those of some surfaces, itself for its images, that come within a distance of points of a surface.
+
+    Parameters
+    ----------
+    surface : SphereSurface, PlaneSurface or the like
+    surfaces : list of such
+        Itself among them.
+    reach : float, m
+    """
+    center, radius = surface.ball()
+    if np.isinf(radius):
         return surfaces
     found = []
     for other in surfaces:
         if other is surface:
             # Its images: a period away.
-            between = min(surface.scene.size) - surface.radius if surface.scene.periodic else np.inf
+            between = min(surface.scene.size) - radius if surface.scene.periodic else np.inf
         else:
-            between = other.gap(surface.center[None])[0]
-        if between <= (surface.radius + reach) * (1 + ROUNDING):
+            between = other.gap(center[None])[0]
+        if between <= (radius + reach) * (1 + ROUNDING):
             found.append(other)
     return found
 
@@ -162,7 +255,13 @@ def inscribed_radius(normals, *, counted=None):
     """Radius of the sphere inscribed in the polyhedron with these facet normals and the unit sphere's volume.
 
     The polyhedron {x : n.x <= 1 for all n} has the volume of the mean of 1/cos^3 of the angle from a direction to
-    the nearest normal; the mean is taken over 40 directions per normal, or those of them that `counted` accepts.
+    the nearest normal; the mean is taken over 40 directions per normal, or those of them that are counted.
+
+    Parameters
+    ----------
+    normals : (k, 3) float array
+    counted : callable (n, 3) float array -> (n,) bool array, optional
+        Which directions count.
     """
     directions = fibonacci_sphere(40 * len(normals) + 7)
     if counted is not None:

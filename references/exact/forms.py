@@ -51,7 +51,7 @@ def laminate(scene):
     Layers of zero conductivity share a temperature jump evenly, the limit of equal small conductivities.
     """
     k = scene.conductivities
-    layered = all(isinstance(inclusion, Layer) for inclusion in scene.inclusions)
+    layered = scene.only(Layer)
     if not layered and not np.all(k == k[0]):
         return None
     normal = scene.inclusions[0].axis if layered and scene.inclusions else 0
@@ -225,7 +225,7 @@ def _solved(kind, contrast, fraction):
 def _array(scene):
     """Kind, edge in metres and spheres of a cubic array, or None."""
     spheres, edge = scene.inclusions, scene.size[0]
-    if len(spheres) not in (1, 2, 4) or not all(isinstance(sphere, Sphere) for sphere in spheres):
+    if len(spheres) not in (1, 2, 4) or not scene.only(Sphere):
         return None
     first = spheres[0]
     equal = all(
@@ -246,7 +246,7 @@ def _array(scene):
 
 def _coated(scene):
     """Pairs (outer, inner) if all inclusions are neutral coated spheres, else None; `fractions` refuses cut ones."""
-    if not scene.inclusions or not all(isinstance(sphere, Sphere) for sphere in scene.inclusions):
+    if not scene.inclusions or not scene.only(Sphere):
         return None
     centers = np.array([sphere.center for sphere in scene.inclusions])
     apart = centers[:, None] - centers[None]

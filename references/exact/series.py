@@ -94,7 +94,7 @@ def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -
     NotImplementedError
         If the scene has no series here.
     """
-    scene.check_transient()
+    scene.require(steady=False)
     times = checked_times(times)
     check_points_per_axis(points_per_axis)
     body = _body(scene)

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import Layer, Scene
+from demheat.scene import Scene
 from references.exact.forms import coated_spheres, cubic_array, laminate
 from references.midpoints import check_points_per_axis, midpoints
 
@@ -42,7 +40,7 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
         If the scene has no closed form here.
     """
     check_points_per_axis(points_per_axis)
-    scene.check_steady()
+    scene.require(steady=True)
     closed = laminate(scene) or cubic_array(scene) or coated_spheres(scene)
     if closed is None:
         load = f"gradient {scene.gradient}" if scene.periodic else f"walls {dict(scene.walls)}"
@@ -76,43 +74,10 @@ def fractions(scene):
     NotImplementedError
         If a wall cuts a sphere.
     """
-    volumes = [scene.volume]
-    for number, inclusion in enumerate(scene.inclusions):
-        middle = _middle(scene, inclusion)
-        holders = [i for i in range(number) if _holds(scene, scene.inclusions[i], middle)]
-        volume = _volume(scene, inclusion)
-        volumes.append(volume)
-        # The innermost inclusion around it, or the matrix, gives up the place.
-        volumes[holders[-1] + 1 if holders else 0] -= volume
-    return np.array(volumes) / scene.volume
-
-
-def _middle(scene, inclusion):
-    if not isinstance(inclusion, Layer):
-        return np.array(inclusion.center)
-    middle = np.array(scene.size) / 2
-    middle[inclusion.axis] = (inclusion.start + inclusion.stop) / 2
-    return middle
-
-
-def _holds(scene, inclusion, point):
-    if isinstance(inclusion, Layer):
-        x = point[inclusion.axis] % scene.size[inclusion.axis] if scene.periodic else point[inclusion.axis]
-        return inclusion.start <= x <= inclusion.stop
-    apart = point - inclusion.center
-    if scene.periodic:
-        apart -= np.array(scene.size) * np.round(apart / scene.size)
-    return bool(inclusion.contains(apart[None])[0])
-
-
-def _volume(scene, inclusion):
-    if isinstance(inclusion, Layer):
-        return (inclusion.stop - inclusion.start) * scene.volume / scene.size[inclusion.axis]
-    slack = 1e-12 * max(scene.size)
-    ends = [(c - inclusion.radius, c + inclusion.radius) for c in inclusion.center]
-    if not scene.periodic and any(a < -slack or b > n + slack for (a, b), n in zip(ends, scene.size, strict=True)):
-        raise NotImplementedError(f"no closed form for the volume of a sphere at {inclusion.center} cut by a wall")
-    return 4 / 3 * math.pi * inclusion.radius**3
+    volumes = np.append(scene.volume, [s.volume_in(scene.size, periodic=scene.periodic) for s in scene.inclusions])
+    # The innermost inclusion around each, or the matrix, gives up the place.
+    np.subtract.at(volumes, scene.parents()[1:], volumes[1:].copy())
+    return volumes / scene.volume
 
 
 def _wall_mean(scene, closed, axis, side):

@@ -137,9 +137,7 @@ def hexahedra(scene, size=None) -> Space:
     NotImplementedError
         If the body is not a box of layers.
     """
-    if scene.domain != "box" or not all(isinstance(inclusion, Layer) for inclusion in scene.inclusions):
-        what = scene.domain if scene.domain != "box" else "sphere"
-        raise NotImplementedError(f"hexahedra do not follow a {what}: use tetrahedra")
+    scene.require("hexahedra follow boxes of layers only; use tetrahedra", domain="box", shapes=(Layer,))
     grid = tuple(_grid(scene, axis, checked_size(scene, size)) for axis in range(3))
     centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
     phase = scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])

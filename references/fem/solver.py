@@ -51,7 +51,7 @@ def solve(
     """
     if not (isinstance(tolerance, float | int) and 0 < tolerance < 1):
         raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
-    scene.check_steady()
+    scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
     solved = solve_nodes(scene, mesh, tolerance)
     solution = Solution(scene, mesh, solved.temperature)

@@ -54,8 +54,7 @@ def check_sources(scene, last):
     for number, source in enumerate(scene.sources):
         if not isinstance(source, MovingCylinder):
             continue
-        if scene.domain != "box":
-            raise NotImplementedError(f"a MovingCylinder in a {scene.domain}: only boxes are known here")
+        scene.require("a MovingCylinder heats boxes only here", domain="box")
         if source.clip:
             continue
         low, high = _room(scene, source)

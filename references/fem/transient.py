@@ -10,7 +10,7 @@ from numbers import Real
 import numpy as np
 
 from demheat.field import Field
-from demheat.scene import Scene, Sphere
+from demheat.scene import Scene
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
@@ -22,7 +22,7 @@ from references.times import checked_times
 
 # Cube root of the body's volume over the default edge: 2.5e4 unknowns at either order, each solved some hundred times.
 EDGES = {1: 30, 2: 16}
-# Or if that is more, this times the cube root of the number of spheres.
+# Or if that is more, this times the cube root of the number of spheres, or other bounded inclusions.
 EDGES_APART = 8
 
 
@@ -80,7 +80,7 @@ def evolve(
     RuntimeError
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
     """
-    scene.check_transient()
+    scene.require("heat would not move in pores; transients do without", steady=False, pores=False)
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -88,8 +88,6 @@ def evolve(
             raise ValueError(f"{name} = {value!r}: must be a number between 0 and 1")
     if step is not None and not (_number(step) and step > 0):
         raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
-    if not np.all(scene.conductivities > 0):
-        raise NotImplementedError("pores (conductivity 0) in transients: their heat would not move")
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
@@ -149,8 +147,8 @@ def _space(scene, elements, order, size):
     if elements == "hexahedra":
         return hexahedra(scene, size)
     if size is None:
-        spheres = sum(isinstance(inclusion, Sphere) for inclusion in scene.inclusions)
-        size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * spheres ** (1 / 3))
+        bounded = sum(shape.bounded for shape in scene.inclusions)
+        size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     mesh = make(scene, size=size, order=order) if scene.domain == "box" else make_round(scene, size=size, order=order)
     return tetrahedra(scene, mesh)
 

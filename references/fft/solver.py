@@ -11,14 +11,14 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field
-from demheat.scene import Layer, Scene
+from demheat.scene import Scene
 from references.fft import cg, eyre_milton
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
 from references.fft.problem import Problem
 from references.threads import Team, thread_count
-from references.voxels.links import links
-from references.voxels.paint import grid_shape, parents, voxelise
+from references.voxels.links import cut, links
+from references.voxels.paint import grid_shape, paint, voxelise
 
 RULES = {"cg": ("auto", "plain", "laminate", "links"), "eyre-milton": ("auto", "plain", "laminate")}
 PRECISIONS = {"float64": np.float64, "float32": np.float32}
@@ -156,25 +156,23 @@ def _checked(scheme, rule, precision, tolerance, max_iterations):
 
 
 def _check_load(scene):
-    scene.check_steady()
-    names = sorted(scene.walls or {})
-    if scene.periodic or (not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0]):
-        return
-    raise NotImplementedError(
-        f"Scene.walls = {dict(scene.walls)}: fft.solve knows a periodic cell and two opposite walls with temperatures, "
-        "the others insulated; only their homogeneous problem is inverted by sines and cosines here"
+    scene.require(
+        "fft.solve knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
+        "homogeneous problem is inverted by sines and cosines here",
+        steady=True,
+        walls="one isothermal pair",
     )
 
 
 def _check_scheme(box, scheme, rule, shape):
-    pores = box.conductivities.min() == 0
-    if pores and scheme == "eyre-milton":
-        raise NotImplementedError(
-            "a conductivity is 0: Eyre and Milton's scheme converges like the square root of the contrast, which is "
-            "infinite; use scheme 'cg'"
+    if scheme == "eyre-milton":
+        box.require(
+            "Eyre and Milton's scheme converges like the square root of the contrast, which is infinite; use scheme "
+            "'cg'",
+            pores=False,
         )
-    if pores and rule == "links":
-        raise NotImplementedError("a conductivity is 0: links have a harmonic mean; use rule 'plain'")
+    if rule == "links":
+        box.require("links have a harmonic mean; use rule 'plain'", pores=False)
     if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
 
@@ -182,13 +180,16 @@ def _check_scheme(box, scheme, rule, shape):
 def _automatic(scheme, scene):
     """The rule with the smallest measured error for the worst of the scene's interfaces.
 
-    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes.
+    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
+    voxels in a way not known here has the phase of their centres only.
     """
+    if not (_registered(paint, scene) and _registered(cut, scene)):
+        return "plain"
     if scheme == "eyre-milton":
         return "laminate"
     conductivity = scene.conductivities
-    spheres = np.array([True] + [not isinstance(i, Layer) for i in scene.inclusions])
-    inner, outer = conductivity[spheres][1:], conductivity[parents(scene)][spheres][1:]
+    rounded = np.array([True] + [shape.bounded for shape in scene.inclusions])
+    inner, outer = conductivity[rounded][1:], conductivity[scene.parents()][rounded][1:]
     if not np.any(inner != outer):
         return "laminate"
     if conductivity.min() == 0:
@@ -198,6 +199,11 @@ def _automatic(scheme, scene):
     return min(worst, key=worst.get)
 
 
+def _registered(function, scene):
+    """Whether the shapes of all inclusions are registered with a `singledispatch` function."""
+    return all(function.dispatch(type(shape)) is not function.dispatch(object) for shape in scene.inclusions)
+
+
 def _turned(scene, order):
     """The same scene with its axes in another order."""
     place = {axis: new for new, axis in enumerate(order)}
@@ -205,10 +211,7 @@ def _turned(scene, order):
     def turned(vector):
         return tuple(vector[a] for a in order)
 
-    inclusions = [
-        replace(i, axis=place[i.axis]) if isinstance(i, Layer) else replace(i, center=turned(i.center))
-        for i in scene.inclusions
-    ]
+    inclusions = [shape.turned(order) for shape in scene.inclusions]
     walls = scene.walls and {"xyz"[place["xyz".index(name[0])]] + name[1]: v for name, v in scene.walls.items()}
     gradient = scene.gradient and turned(scene.gradient)
     return replace(scene, size=turned(scene.size), inclusions=inclusions, walls=walls, gradient=gradient)

@@ -7,10 +7,12 @@ reach gmsh, whose tolerances are absolute.
 
 from __future__ import annotations
 
+from functools import singledispatch
+
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import WALLS, Layer
+from demheat.scene import WALLS, Layer, Shape, Sphere
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import attempts, session, tetrahedra
 from references.mesh.sizes import checked_size, unit_lengths, wanted_sizes
@@ -42,12 +44,13 @@ def make(scene, *, size=None, order=2, curved=True):
     ValueError
         If an argument is not as described, or asks for more than 3e7 elements.
     NotImplementedError
-        If surfaces of the scene touch.
+        If surfaces of the scene touch, or inclusions are neither spheres nor layers.
     RuntimeError
         If gmsh fails at four neighbouring sizes.
     ImportError
         If gmsh or a system library that it needs is missing; the message lists the packages.
     """
+    scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
     size = checked_size(scene, size, order)
     sizes = unit_lengths(wanted_sizes(scene, size), max(scene.size))
 
@@ -82,23 +85,10 @@ def _attempt(scene, sizes, algorithm, quadratic, curved):
 def _geometry(gmsh, scene, scale):
     """Cut box, layers and spheres into one another; {volume tag: phase}."""
     occ, box = gmsh.model.occ, np.array(scene.size) / scale
-    tools = []
-    for phase, inclusion in enumerate(scene.inclusions, start=1):
-        if isinstance(inclusion, Layer):
-            low, span = np.zeros(3), box.copy()
-            start, stop = np.clip([inclusion.start / scale, inclusion.stop / scale], 0.0, box[inclusion.axis])
-            low[inclusion.axis], span[inclusion.axis] = start, stop - start
-            tools.append((phase, (3, occ.addBox(*low, *span))))
-    for phase, sphere in scene.images():
-        center = np.array(sphere.center) / scale
-        tag = occ.addSphere(*center, sphere.radius / scale)
-        # A generic turn keeps poles and seam off the faces, edges and symmetry planes of the scene.
-        occ.rotate([(3, tag)], *center, 1, 2, 3, 1.0)
-        tools.append((phase, (3, tag)))
+    tools = [(phase, (3, solid(shape, occ, box, scale))) for phase, shape in scene.images()]
     body = (3, occ.addBox(0, 0, 0, *box))
     phases = {body[1]: 0}
     if tools:
-        tools.sort()
         pieces, (kept, *parts) = occ.fragment([body], [tag for _, tag in tools])
         occ.remove(list(set(pieces) - set(kept)), recursive=True)
         phases = {tag: 0 for _, tag in kept}
@@ -106,6 +96,49 @@ def _geometry(gmsh, scene, scale):
             phases.update({tag: phase for _, tag in part if tag in phases})
     occ.synchronize()
     return phases
+
+
+@singledispatch
+def solid(shape: Shape, occ, box, scale: float) -> int:
+    """Add a shape to the geometry; shapes are registered by their type, and their sizes in `references.mesh.sizes`.
+
+    Parameters
+    ----------
+    shape : Shape
+        One image of an inclusion.
+    occ : gmsh.model.occ
+    box : (3,) float array, unit lengths
+    scale : float, m
+        The unit length.
+
+    Returns
+    -------
+    int
+        Tag of the volume.
+
+    Raises
+    ------
+    NotImplementedError
+        If the shape is not registered.
+    """
+    raise NotImplementedError(f"meshes around inclusions of shape {type(shape).__name__}: not known here")
+
+
+@solid.register
+def _(shape: Layer, occ, box, scale):
+    low, span = np.zeros(3), box.copy()
+    start, stop = np.clip([shape.start / scale, shape.stop / scale], 0.0, box[shape.axis])
+    low[shape.axis], span[shape.axis] = start, stop - start
+    return occ.addBox(*low, *span)
+
+
+@solid.register
+def _(shape: Sphere, occ, box, scale):
+    center = np.array(shape.center) / scale
+    tag = occ.addSphere(*center, shape.radius / scale)
+    # A generic turn keeps poles and seam off the faces, edges and symmetry planes of the scene.
+    occ.rotate([(3, tag)], *center, 1, 2, 3, 1.0)
+    return tag
 
 
 def _tie_faces(gmsh, box):

@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import Sphere
-
 # Unit lengths. Nodes this close to a face lie on it (found: they are 1e-15 off, or on spheres at least `TOUCH`).
 SNAP = 1e-9
 # Nodes and surfaces this close after the periodic shift are twins (OpenCASCADE's own tolerance is 1e-7).
@@ -217,5 +215,5 @@ def check(scene, mesh):
             raise RuntimeError(f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced")
     for number, inclusion in enumerate(scene.inclusions, start=1):
         # Other inclusions can fill a layer or the matrix, but never a sphere.
-        if isinstance(inclusion, Sphere) and not np.any(phase == number):
-            raise RuntimeError(f"phase {number}, a sphere, was lost")
+        if inclusion.bounded and not np.any(phase == number):
+            raise RuntimeError(f"phase {number}, a {inclusion.kind}, was lost")

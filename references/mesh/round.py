@@ -42,8 +42,7 @@ def make_round(scene, *, size, order):
     ImportError
         If gmsh or a system library that it needs is missing.
     """
-    if scene.inclusions:
-        raise NotImplementedError(f"inclusions in a {scene.domain}: only boxes can have them here")
+    scene.require("only boxes can have them here", shapes=())
     size = checked_size(scene, size, order)
     return attempts(lambda factor, algorithm: _attempt(scene, factor * size, algorithm, order), size)
 

@@ -8,8 +8,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Layer, Sphere
-
 # Cube root of the box volume over the default size: about 1e5 nodes at either order,
 EDGES = {1: 50, 2: 26}
 # or if that is more, this times the cube root of the number of spheres (found: 0.07 % on 83 of them at order 2).
@@ -68,8 +66,8 @@ def checked_size(scene, size, order):
     if order not in (1, 2):
         raise ValueError(f"order = {order!r}: must be 1 or 2")
     if size is None:
-        spheres = sum(isinstance(inclusion, Sphere) for inclusion in scene.inclusions)
-        return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * spheres ** (1 / 3))
+        bounded = sum(shape.bounded for shape in scene.inclusions)
+        return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     try:
         good = math.isfinite(size) and size > 0
     except TypeError:
@@ -88,6 +86,7 @@ def wanted_sizes(scene, size):
     Parameters
     ----------
     scene : Scene
+        Of spheres and layers; `references.mesh.make` refuses others.
     size : float, m
         Longest edge.
 
@@ -119,7 +118,7 @@ def wanted_sizes(scene, size):
 
 def _spheres(scene, size):
     """Centres and radii of the spheres, and of all images in a periodic cell, less than one edge from the box."""
-    spheres = [s for s in scene.inclusions if isinstance(s, Sphere)]
+    spheres = [shape for shape in scene.inclusions if shape.bounded]
     centers = np.array([s.center for s in spheres]).reshape(-1, 3)
     radii = np.array([s.radius for s in spheres])
     box = np.array(scene.size)
@@ -136,7 +135,7 @@ def _planes(scene):
     """Coordinates of the faces and layer planes along each axis."""
     planes, longest = [], max(scene.size)
     for axis, length in enumerate(scene.size):
-        layers = [x for x in scene.inclusions if isinstance(x, Layer) and x.axis == axis]
+        layers = [shape for shape in scene.inclusions if not shape.bounded and shape.axis == axis]
         values = np.clip([0.0, length, *(x.start for x in layers), *(x.stop for x in layers)], 0.0, length)
         values = np.unique(values)
         gaps = np.diff(values, prepend=-np.inf)

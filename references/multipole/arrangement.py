@@ -13,13 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Layer
+from demheat.scene import Sphere
 from references.multipole.translations import Spheres, unmirrored
 
 # Of the box: rounding of coordinates that users type or work out.
 SAME = 1e-12
-# The scene lets spheres touch, disjoint or nested, to within rounding; in units of the largest diameter.
-TOUCH = 1e-9
 
 
 class Arrangement(NamedTuple):
@@ -63,8 +61,7 @@ def arrange(scene, *, any_matrix=False) -> Arrangement:
         that a wall cuts (but not through the centre), a matrix of no conductivity.
     """
     gradient, level = _load(scene)
-    if any(isinstance(inclusion, Layer) for inclusion in scene.inclusions):
-        raise NotImplementedError("multipole: layers; only spheres have multipoles")
+    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False)
     k = scene.matrix.conductivity
     if k == 0 and not any_matrix:
         raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")
@@ -76,8 +73,6 @@ def arrange(scene, *, any_matrix=False) -> Arrangement:
         spheres = _with_images(spheres)
     unit = 2 * float(radii.max()) if len(radii) else max(scene.size) / 2
     spheres = spheres._replace(centers=spheres.centers / unit, radii=spheres.radii / unit, size=spheres.size / unit)
-    if smallest_gap(spheres) < -TOUCH:
-        raise NotImplementedError("multipole: nested spheres; only disjoint ones are solved")
     return Arrangement(spheres, gradient * unit, level, unit)
 
 

@@ -68,7 +68,7 @@ def solve(
         If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
-    scene.check_steady()
+    scene.require(steady=True)
     arrangement = arrange(scene)
     history = converged(arrangement, order=order, accuracy=accuracy, tolerance=tolerance, threads=threads)
     return _field(scene, arrangement, history, points_per_axis)

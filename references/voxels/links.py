@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from functools import singledispatch
+
 import numpy as np
 
-from demheat.scene import Layer, Scene
+from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
-from references.voxels.paint import parents, voxelise
+from references.voxels.paint import voxelise
 
 # A sphere's surface nearer to a node than this part of a link is taken this far away.  It moves the surface by 2e-4 of
 # a voxel in the mean (k changes by less than 0.002 % at 32^3) and saves half of the iterations at contrast 1e4, two
@@ -35,8 +37,8 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
         Shapes (nx + 1, ny, nz), (nx, ny + 1, nz) and (nx, ny, nz + 1).
     """
     resistivity = 1.0 / scene.conductivities
-    change = resistivity - resistivity[parents(scene)]
-    if phase is None and scene.images():
+    change = resistivity - resistivity[scene.parents()]
+    if phase is None and _rounded(scene):
         phase = voxelise(scene, shape, laminate=False).phase
     return tuple(_along(scene, shape, axis, resistivity, change, phase) for axis in range(3))
 
@@ -47,22 +49,18 @@ def _along(scene, shape, axis, resistivity, change, phase):
     spacing = np.array(scene.size) / counts
     counts[axis] += 1
     resistance = np.full(counts, resistivity[0])
-    # The kernel sees the links' axis last.
+    # Half links at both ends, where a face of the box cuts them.
     view = np.moveaxis(resistance, axis, 2)
     view[:, :, [0, -1]] *= 0.5
-    order = [a for a in range(3) if a != axis] + [axis]
-    for number, sphere in scene.images():
-        center = np.array(sphere.center)[order]
-        kernels.cut_links(view, change[number], center, sphere.radius, spacing[order])
-    for number, inclusion in enumerate(scene.inclusions, start=1):
-        if isinstance(inclusion, Layer):
-            _cut_by_layer(resistance, axis, change[number], inclusion, spacing)
+    # What has no end last: the order of addition decides how sums are rounded, nothing else.
+    for number, shape in sorted(scene.images(), key=lambda image: not image[1].bounded):
+        cut(shape, resistance, axis, change[number], spacing)
     if scene.periodic:
         view[:, :, 0] += view[:, :, -1]
         view[:, :, -1] = view[:, :, 0]
     else:
         view[:, :, [0, -1]] *= 2.0
-    if scene.images():
+    if _rounded(scene):
         kernels.keep_off(view, np.moveaxis(phase, axis, 2), NEAREST * resistivity, scene.periodic)
     conductivity = np.divide(1.0, resistance, out=resistance)
     if not scene.periodic and axis != scene.axis:
@@ -70,21 +68,60 @@ def _along(scene, shape, axis, resistivity, change, phase):
     return conductivity
 
 
-def _cut_by_layer(resistance, axis, change, layer, spacing):
-    """Add a layer's change of resistivity: by the part of a link inside it, or by where a parallel link lies."""
-    n, h = resistance.shape[layer.axis], spacing[layer.axis]
-    if axis == layer.axis:
+def _rounded(scene):
+    """Whether there are surfaces other than planes across the box."""
+    return any(shape.bounded for shape in scene.inclusions)
+
+
+@singledispatch
+def cut(shape: Shape, resistance, axis: int, change: float, spacing) -> None:
+    """Add a shape's change of resistivity to the links along one axis; shapes are registered by their type.
+
+    Parameters
+    ----------
+    shape : Shape
+        One image of an inclusion as it meets the box.
+    resistance : float array, m K/W
+        Of each link along the axis, over its length; changed in place.
+    axis : {0, 1, 2}
+    change : float, m K/W
+        Resistivity of the inclusion less that of the phase it was painted on.
+    spacing : (3,) float array, m
+
+    Raises
+    ------
+    NotImplementedError
+        If the shape is not registered.
+    """
+    raise NotImplementedError(
+        f"links cut by inclusions of shape {type(shape).__name__}: not known here; use rule='plain'"
+    )
+
+
+@cut.register
+def _(shape: Sphere, resistance, axis, change, spacing):
+    # The kernel sees the links' axis last.
+    order = [a for a in range(3) if a != axis] + [axis]
+    center = np.array(shape.center)[order]
+    kernels.cut_links(np.moveaxis(resistance, axis, 2), change, center, shape.radius, spacing[order])
+
+
+@cut.register
+def _(shape: Layer, resistance, axis, change, spacing):
+    # By the part of a link inside the layer, or by where a link parallel to it lies.
+    n, h = resistance.shape[shape.axis], spacing[shape.axis]
+    if axis == shape.axis:
         ends = np.clip((np.arange(n + 1) - 0.5) * h, 0.0, (n - 1) * h)
-        inside = np.clip(np.minimum(layer.stop, ends[1:]) - np.maximum(layer.start, ends[:-1]), 0.0, None) / h
+        inside = np.clip(np.minimum(shape.stop, ends[1:]) - np.maximum(shape.start, ends[:-1]), 0.0, None) / h
     else:
         middle = (np.arange(n) + 0.5) * h
         # Half-open: a link in the plane where two layers meet belongs to one of them.
-        inside = ((middle >= layer.start) & (middle < layer.stop)).astype(float)
+        inside = ((middle >= shape.start) & (middle < shape.stop)).astype(float)
     where = [1, 1, 1]
-    where[layer.axis] = -1
+    where[shape.axis] = -1
     whole = np.ones(resistance.shape[axis])
-    if axis != layer.axis:
+    if axis != shape.axis:
         whole[[0, -1]] = 0.5
     along = [1, 1, 1]
     along[axis] = -1
-    resistance += change * inside.reshape(where) * (1.0 if axis == layer.axis else whole.reshape(along))
+    resistance += change * inside.reshape(where) * (1.0 if axis == shape.axis else whole.reshape(along))

@@ -9,11 +9,12 @@ Engrg. 294 (2015) 168-188.
 
 from __future__ import annotations
 
+from functools import singledispatch
 from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Layer, Scene, Sphere
+from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
 
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
@@ -70,8 +71,20 @@ class Medium(NamedTuple):
     tensor: np.ndarray
 
 
-class _Cuts(NamedTuple):
-    """Voxels cut by the inclusions' surfaces, one row per voxel and surface, in painting order."""
+class Cuts(NamedTuple):
+    """Voxels cut by the inclusions' surfaces, one row per voxel and surface, in painting order.
+
+    Attributes
+    ----------
+    index : (m,) int64 array
+        Flat index of the voxel.
+    fraction : (m,) float array
+        Part of it inside.
+    moment : (m, 6) float array, m2
+        Integral of n n over the surface inside the voxel, order xx, yy, zz, yz, xz, xy.
+    phase : (m,) int64 array
+        Number of the inclusion.
+    """
 
     index: np.ndarray
     fraction: np.ndarray
@@ -125,17 +138,19 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     ------
     ValueError
         If there are 65536 inclusions or more.
+    NotImplementedError
+        If laminates are asked for and the voxels that a shape cuts are not known; see `paint`.
     """
     spacing = np.array(scene.size) / shape
     if len(scene.inclusions) >= MOST_PHASES:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
     phase = np.zeros(shape, dtype=np.uint16)
-    cuts = _paint(scene, phase, spacing)
+    cuts = _paint(scene, phase, spacing, laminate)
     conductivity = scene.conductivities
     count = kernels.count(phase.ravel(), len(conductivity))
     if not laminate:
         return Voxels(spacing, phase, conductivity, np.empty(0, np.int64), np.empty((0, 6)), count / phase.size)
-    parent = parents(scene)
+    parent = scene.parents()
     cut, first, rank = np.unique(cuts.index, return_index=True, return_inverse=True)
     part = _phase_parts(len(conductivity), rank, cuts, parent, parent[cuts.phase[first]])
     count = count - np.bincount(phase.ravel()[cut], minlength=len(conductivity))
@@ -157,39 +172,82 @@ def medium(voxels: Voxels, scalar, tensor, dtype) -> Medium:
     return Medium(voxels.phase, scalar.astype(dtype), start, place, np.ascontiguousarray(tensor, dtype=dtype))
 
 
-def _paint(scene, grid, spacing):
-    """Paint the inclusions in order by voxel centres; return the voxels that their surfaces cut."""
-    images = {}
-    for number, sphere in scene.images():
-        images.setdefault(number, []).append(sphere)
-    found = [_Cuts(np.empty(0, np.int64), np.empty(0), np.empty((0, 6)), np.empty(0, np.int64))]
-    for number, inclusion in enumerate(scene.inclusions, start=1):
-        if isinstance(inclusion, Layer):
-            found.append(_paint_layer(grid, spacing, number, inclusion))
-        for sphere in images.get(number, ()):
-            found.append(_paint_sphere(grid, spacing, number, sphere))
-    return _Cuts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+def _paint(scene, grid, spacing, cutting):
+    """Paint the inclusions in order; return the voxels that their surfaces cut, none if they are not asked for."""
+    found = [_none()]
+    for number, shape in scene.images():
+        found.append(paint(shape, grid, spacing, number, cutting=cutting))
+    return Cuts(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
-def _paint_sphere(grid, spacing, number, sphere: Sphere):
-    shape = np.array(grid.shape)
-    center = np.array(sphere.center)
-    low = np.clip(np.floor((center - sphere.radius) / spacing) - 1, 0, shape).astype(np.int64)
-    high = np.clip(np.ceil((center + sphere.radius) / spacing) + 1, 0, shape).astype(np.int64)
-    count = kernels.paint_sphere(grid, number, center, sphere.radius, spacing, low, high)
+def _none():
+    return Cuts(np.empty(0, np.int64), np.empty(0), np.empty((0, 6)), np.empty(0, np.int64))
+
+
+@singledispatch
+def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
+    """Paint one image of an inclusion; shapes for which more is known than `Shape` tells are registered by their type.
+
+    Parameters
+    ----------
+    shape : Shape
+        As it meets the box, without images.
+    grid : (nx, ny, nz) uint16 array
+        Phase of each voxel; those whose centres lie in the shape get its number.
+    spacing : (3,) float array, m
+    number : int
+    cutting : bool
+        Whether the voxels that the surface cuts are wanted, too.
+
+    Returns
+    -------
+    Cuts
+
+    Raises
+    ------
+    NotImplementedError
+        If cut voxels are wanted of a shape that is not registered.
+    """
+    if cutting:
+        raise NotImplementedError(
+            f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; use rule='plain' with fft"
+        )
+    low, high = (np.clip(ends, 0.0, grid.shape * spacing) / spacing for ends in shape.bounds())
+    low, high = np.floor(low).astype(int), np.ceil(high).astype(int)
+    y, z = (np.arange(low[axis], high[axis]) for axis in (1, 2))
+    # Slice by slice: no array of points as large as the grid.
+    for x in range(low[0], high[0]):
+        points = np.stack(np.meshgrid([x], y, z, indexing="ij"), axis=-1).reshape(-1, 3)
+        inside = shape.contains((points + 0.5) * spacing)
+        grid[tuple(points[inside].T)] = number
+    return _none()
+
+
+@paint.register
+def _(shape: Sphere, grid, spacing, number, *, cutting):
+    counts = np.array(grid.shape)
+    center = np.array(shape.center)
+    low = np.clip(np.floor((center - shape.radius) / spacing) - 1, 0, counts).astype(np.int64)
+    high = np.clip(np.ceil((center + shape.radius) / spacing) + 1, 0, counts).astype(np.int64)
+    count = kernels.paint_sphere(grid, number, center, shape.radius, spacing, low, high)
+    if not cutting:
+        return _none()
     index, fraction, moment = np.empty(count, np.int64), np.empty(count), np.empty((count + 1, 6))
-    n = kernels.cut_sphere(shape, center, sphere.radius, spacing, low, high, index, fraction, moment)
-    return _Cuts(index[:n], fraction[:n], moment[:n], np.full(n, number))
+    n = kernels.cut_sphere(counts, center, shape.radius, spacing, low, high, index, fraction, moment)
+    return Cuts(index[:n], fraction[:n], moment[:n], np.full(n, number))
 
 
-def _paint_layer(grid, spacing, number, layer):
-    axis, h = layer.axis, spacing[layer.axis]
+@paint.register
+def _(shape: Layer, grid, spacing, number, *, cutting):
+    axis, h = shape.axis, spacing[shape.axis]
     planes = np.arange(grid.shape[axis])
     middle = (planes + 0.5) * h
     whole = [slice(None)] * 3
-    whole[axis] = (middle >= layer.start) & (middle <= layer.stop)
+    whole[axis] = (middle >= shape.start) & (middle <= shape.stop)
     grid[tuple(whole)] = number
-    inside = np.clip((np.minimum(layer.stop, (planes + 1) * h) - np.maximum(layer.start, planes * h)) / h, 0.0, 1.0)
+    if not cutting:
+        return _none()
+    inside = np.clip((np.minimum(shape.stop, (planes + 1) * h) - np.maximum(shape.start, planes * h)) / h, 0.0, 1.0)
     cut = np.flatnonzero((inside > kernels.FULL) & (inside < 1 - kernels.FULL))
     places = [np.arange(n) for n in grid.shape]
     places[axis] = cut
@@ -197,39 +255,7 @@ def _paint_layer(grid, spacing, number, layer):
     part = np.broadcast_to(np.expand_dims(inside[cut], [a for a in range(3) if a != axis]), index.shape)
     moment = np.zeros((index.size, 6))
     moment[:, axis] = np.prod(np.delete(spacing, axis))
-    return _Cuts(index.ravel(), part.ravel(), moment, np.full(index.size, number))
-
-
-def parents(scene):
-    """Phase that each inclusion was painted on: (number of inclusions + 1,) int array, entry 0 unused.
-
-    Inclusions are disjoint or nested, so the one that holds a single point of another holds all of it.
-    """
-    box = np.array(scene.size)
-    points = np.array([_a_point(inclusion, scene) for inclusion in scene.inclusions]).reshape(-1, 3)
-    parent = np.zeros(len(points) + 1, dtype=np.int64)
-    for number, inclusion in enumerate(scene.inclusions, start=1):
-        later = points[number:]
-        if isinstance(inclusion, Layer):
-            inside = (later[:, inclusion.axis] >= inclusion.start) & (later[:, inclusion.axis] <= inclusion.stop)
-        else:
-            offsets = later - inclusion.center
-            if scene.periodic:
-                offsets -= box * np.round(offsets / box)
-            inside = inclusion.contains(offsets)
-        parent[number + 1 :][inside] = number
-    return parent
-
-
-def _a_point(inclusion, scene):
-    """A point of the box inside the inclusion."""
-    box = np.array(scene.size)
-    if isinstance(inclusion, Layer):
-        point = 0.5 * box
-        point[inclusion.axis] = 0.5 * (inclusion.start + inclusion.stop)
-        return point
-    center = np.array(inclusion.center)
-    return center % box if scene.periodic else np.clip(center, 0.0, box)
+    return Cuts(index.ravel(), part.ravel(), moment, np.full(index.size, number))
 
 
 def _phase_parts(n_phases, rank, cuts, parent, background):

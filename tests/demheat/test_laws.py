@@ -143,7 +143,7 @@ def test_a_keyword_that_nobody_knows(law):
 @pytest.mark.parametrize(
     ("law", "scene", "words"),
     [
-        (Laguerre(), Scene(**vars(SPHERE) | {"inclusions": [BALL]}), "inclusions in a sphere have no conforming"),
+        (Laguerre(), Scene(**vars(SPHERE) | {"inclusions": [BALL]}), "a sphere: inclusions there have no conforming"),
         (Calibrated(wall="surface"), SPHERE, "flat walls only"),
         (Platonic(wall="surface"), SPHERE, "flat walls only"),
         (Platonic(), Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}, initial=0.0), "two held walls meet"),

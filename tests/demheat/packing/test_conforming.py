@@ -148,7 +148,8 @@ def test_nearest_gap_and_neighbours_leave_nothing_out(periodic):
     slow = np.min([surface.gap(points) for surface in surfaces], axis=0)
     assert np.array_equal(nearest_gap(points, surfaces), slow)
     for surface in surfaces[:4]:
-        on = surface.center + surface.radius * fibonacci_sphere(2000)
+        center, radius = surface.ball()
+        on = center + radius * fibonacci_sphere(2000)
         near = surfaces_near(surface, surfaces, 0.06)
         far = [other for other in surfaces if not any(other is one for one in near)]
         assert len(near) < len(surfaces)

@@ -263,10 +263,14 @@ def test_what_is_not_known_is_refused():
     hot = MovingCylinder(2, 0.2, 1.0, (0.5, 0.5))
     for parts, knobs, words in [
         ({"matrix": Material(0.0, 1.0, 1.0)}, {}, "pores"),
-        ({"domain": "sphere", "sources": (hot,)}, {}, "MovingCylinder in a sphere"),
+        ({"domain": "sphere", "sources": (hot,)}, {}, "a sphere: a MovingCylinder"),
         ({"domain": "sphere", "inclusions": (ball,)}, {}, "inclusions in a sphere"),
-        ({"inclusions": (ball,)}, {"elements": "hexahedra"}, "do not follow a sphere"),
-        ({"domain": "cylinder-x"}, {"elements": "hexahedra"}, "do not follow a cylinder-x"),
+        (
+            {"inclusions": (ball,)},
+            {"elements": "hexahedra"},
+            r"a sphere, Scene.inclusions\[0\]: hexahedra follow",
+        ),
+        ({"domain": "cylinder-x"}, {"elements": "hexahedra"}, "a cylinder-x: hexahedra"),
     ]:
         of = Scene(**({"size": (1, 1, 1), "matrix": UNIT, "initial": 0.0} | parts))
         with pytest.raises(NotImplementedError, match=words):

@@ -151,7 +151,11 @@ def test_what_it_cannot_do_it_says():
         gradient=(1.0, 0.0, 0.0),
     )
     dead = Scene((1.0,) * 3, Material(0.0), [Sphere((0.5,) * 3, 0.2, material)], gradient=(1.0, 0.0, 0.0))
-    for scene, reason in ((layers, "layers"), (nested, "nested"), (dead, "no conductivity")):
+    for scene, reason in (
+        (layers, r"a layer, Scene.inclusions\[0\]: multipole knows disjoint spheres"),
+        (nested, r"Scene.inclusions\[1\], nested in \[0\]"),
+        (dead, "no conductivity"),
+    ):
         with pytest.raises(NotImplementedError, match=reason):
             multipole.solve(scene)
 

@@ -1,0 +1,45 @@
+"""What a body is made of."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from demheat.inputs import number
+
+
+@dataclass(frozen=True)
+class Material:
+    """A homogeneous, isotropic material.
+
+    Parameters
+    ----------
+    conductivity : float, W/(m K)
+        Finite and not negative; 0 is a perfect insulator (a pore).
+    density : float, kg/m3, optional
+        Needed by transients only.
+    heat_capacity : float, J/(kg K), optional
+        Specific heat, needed by transients only.
+    """
+
+    conductivity: float
+    density: float | None = None
+    heat_capacity: float | None = None
+
+    def __post_init__(self):
+        number(self, "conductivity", "a finite number >= 0 W/(m K)", lambda v: v >= 0)
+        for name in ("density", "heat_capacity"):
+            if getattr(self, name) is not None:
+                number(self, name, "a finite number > 0", lambda v: v > 0)
+
+
+def check_material(name: str, value) -> None:
+    """Raise ValueError unless a value is a Material.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : Material
+    """
+    if not isinstance(value, Material):
+        raise ValueError(f"{name} = {value!r}: must be a Material")

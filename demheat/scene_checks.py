@@ -1,0 +1,104 @@
+"""What a scene is checked for as it is made: inclusions and where they lie, body, load, sources, initial state."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from demheat.bodies import ROUND_AXES, check_name, wall_names
+from demheat.inputs import finite, vector
+from demheat.parts import Flux, Heating, MovingCylinder
+from demheat.shapes import Shape
+from demheat.shapes.base import TOUCH
+from demheat.shapes.pairs import check_pairs
+
+
+def checked_inclusions(inclusions) -> tuple[Shape, ...]:
+    """A sequence of shapes as a tuple, or a ValueError."""
+    if not isinstance(inclusions, Sequence):
+        raise ValueError(f"Scene.inclusions = {inclusions!r}: must be a sequence of Sphere or Layer")
+    for number, inclusion in enumerate(inclusions):
+        if not isinstance(inclusion, Shape):
+            raise ValueError(
+                f"Scene.inclusions[{number}] = {inclusion!r}: must be a Sphere or a Layer, or another Shape"
+            )
+    return tuple(inclusions)
+
+
+def check_domain(scene) -> None:
+    """Raise ValueError unless the domain of a Scene is known and its box square across the round axes."""
+    check_name("Scene.domain", scene.domain)
+    across = [scene.size[axis] for axis in ROUND_AXES[scene.domain]]
+    if across and max(across) > min(across):
+        raise ValueError(f"Scene.size = {scene.size} of a {scene.domain}: sides across its round axes must be equal")
+    if across and scene.gradient is not None:
+        raise ValueError(f"Scene.gradient with domain = {scene.domain!r}: only a box can be a periodic cell")
+
+
+def checked_load(scene) -> dict[str, object]:
+    """The one load of a Scene, as {"gradient": tuple} or {"walls": dict}, or a ValueError."""
+    transient = scene.initial is not None
+    both = scene.gradient is not None and scene.walls is not None
+    if both or (scene.gradient is None and scene.walls is None and not transient):
+        raise ValueError(
+            f"Scene.gradient, Scene.walls: {'both' if both else 'neither'} given; a scene needs exactly one load: a "
+            "mean gradient (periodic cell) or at least one wall with a temperature or Flux"
+        )
+    if scene.gradient is not None:
+        gradient = vector("Scene.gradient", scene.gradient)
+        if not any(gradient):
+            raise ValueError(f"Scene.gradient = {scene.gradient!r}: must not be zero")
+        return {"gradient": gradient}
+    walls = {} if scene.walls is None else scene.walls
+    _check_walls(walls, wall_names(scene.domain), or_none=transient)
+    return {"walls": dict(walls)}
+
+
+def _check_walls(walls, valid, *, or_none):
+    if not isinstance(walls, Mapping) or not (walls or or_none):
+        raise ValueError(f"Scene.walls = {walls!r}: must map at least one of {', '.join(valid)} to a load")
+    for name, value in walls.items():
+        if name not in valid:
+            raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(valid)}")
+        if not isinstance(value, Flux) and not callable(value):
+            finite(f"Scene.walls[{name!r}]", value, "a finite temperature, a function of time or a Flux")
+
+
+def check_initial(initial) -> None:
+    """Raise ValueError unless an initial temperature is None, a finite number or callable."""
+    if initial is not None and not callable(initial):
+        finite("Scene.initial", initial, "a finite temperature or a function of points")
+
+
+def checked_sources(sources) -> tuple[Heating | MovingCylinder, ...]:
+    """A sequence of heat sources as a tuple, or a ValueError."""
+    if not isinstance(sources, Sequence) or not all(isinstance(s, Heating | MovingCylinder) for s in sources):
+        raise ValueError(f"Scene.sources = {sources!r}: must be a sequence of Heating or MovingCylinder")
+    return tuple(sources)
+
+
+def check_geometry(scene) -> None:
+    """Raise ValueError unless the inclusions of a Scene fit its box, and are disjoint, touching or nested."""
+    size = np.array(scene.size)
+    for number, shape in enumerate(scene.inclusions):
+        low, high = shape.bounds()
+        if not shape.bounded:
+            _check_reach(f"Scene.inclusions[{number}]", shape, size)
+            continue
+        limit = size if scene.periodic else np.full(3, size.max())
+        for axis in np.flatnonzero(high - low > limit * (1 + TOUCH)):
+            raise ValueError(
+                f"Scene.inclusions[{number}]: {shape.kind} of diameter {(high - low)[axis]:.6g} is larger than the "
+                f"box; must be <= {limit[axis]}"
+            )
+        if not scene.periodic and not shape.meets(scene.size):
+            raise ValueError(f"Scene.inclusions[{number}]: {shape} lies outside the box {scene.size}")
+    check_pairs(scene.inclusions, scene.size, periodic=scene.periodic)
+
+
+def _check_reach(name, shape, size):
+    """Refuse a shape that has no end along some axis and leaves the box along another."""
+    for low, high, length in zip(*shape.bounds(), size, strict=True):
+        if np.isfinite(low) and (low < -TOUCH * length or high > length * (1 + TOUCH)):
+            raise ValueError(f"{name}: {shape.kind} from {low} to {high} must lie in the box, 0 to {length}")

@@ -1,0 +1,76 @@
+"""What a method may need of a scene, and what it is told that the scene has instead: behind `Scene.require`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from demheat.parts import Flux
+
+
+def _one_pair(scene):
+    names = sorted(scene.walls)
+    return not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0]
+
+
+# Walls that a method can be limited to, for scenes that have walls.
+WALLS = {
+    "none": lambda scene: False,
+    "one isothermal pair": _one_pair,
+    # All that have a temperature are on one axis: none of them meet.
+    "isothermal ones apart": lambda scene: len({name[0] for name in scene.wall_temperatures}) <= 1,
+    "flat": lambda scene: scene.domain != "sphere" and "round" not in scene.walls,
+}
+
+
+def check_steady(scene) -> None:
+    """Raise unless a Scene has a steady state under loads that do not depend on time."""
+    if scene.sources or scene.domain != "box":
+        what = "heat sources" if scene.sources else f"a {scene.domain}"
+        raise NotImplementedError(f"{what}: only transients take them; use evolve")
+    loads = {name: load.value if isinstance(load, Flux) else load for name, load in (scene.walls or {}).items()}
+    changing = [name for name, load in loads.items() if callable(load)]
+    if changing:
+        raise ValueError(f"Scene.walls: {changing} depend on time; must be numbers for a steady solution")
+    if not scene.periodic and not scene.wall_temperatures:
+        raise ValueError(
+            f"Scene.walls = {dict(scene.walls)}: a steady solution needs at least one wall with a temperature"
+        )
+
+
+def check_transient(scene) -> None:
+    """Raise ValueError unless a Scene has all that a transient needs: walls, initial temperature, heat capacities."""
+    if scene.periodic:
+        raise ValueError("Scene.gradient: a transient needs walls instead, or insulation all round")
+    if scene.initial is None:
+        raise ValueError("Scene.initial = None: a transient needs the temperature at time 0")
+    for phase, material in enumerate(scene.materials):
+        for name in ("density", "heat_capacity"):
+            if getattr(material, name) is None:
+                raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
+
+
+def refusals(scene, *, walls, domain, shapes, nested, pores) -> Iterator[str]:
+    """What in a Scene a method cannot do, one after the other.
+
+    Parameters
+    ----------
+    scene : Scene
+    walls, domain, shapes, nested, pores
+        As those of `Scene.require`.
+    """
+    if walls is not None and not scene.periodic and not WALLS[walls](scene):
+        yield f"Scene.walls = {dict(scene.walls)}"
+    if domain is not None and scene.domain != domain:
+        yield f"a {scene.domain}"
+    if shapes == () and scene.inclusions:
+        yield f"inclusions in a {scene.domain}"
+    if shapes is not None and not scene.only(*shapes):
+        number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
+        yield f"a {scene.inclusions[number].kind}, Scene.inclusions[{number}]"
+    if not nested and np.any(scene.parents()):
+        number = int(np.flatnonzero(scene.parents())[0])
+        yield f"Scene.inclusions[{number - 1}], nested in [{scene.parents()[number] - 1}]"
+    if not pores and np.any(scene.conductivities == 0):
+        yield "a conductivity is 0"

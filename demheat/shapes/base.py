@@ -1,0 +1,197 @@
+"""What every shape knows of itself: inside and outside, distance, normal, bounds and volume."""
+
+from __future__ import annotations
+
+import math
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from demheat.material import Material
+
+# Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
+TOUCH = 1e-12
+
+
+class Shape(ABC):
+    """A convex region of one material: what every inclusion is, and what the next one must supply.
+
+    A shape is a frozen dataclass in a file of its own. It checks its fields as it is made (`demheat.inputs`) and lives
+    in unbounded space: it knows neither box nor walls. All lengths are metres. What it must supply:
+
+    - the fields `center`, three floats, and `material`; a shape without a centre overrides what uses it: `images`
+      and `point_in`;
+    - `distance` and `normal` of (n, 3) points, `bounds`, `volume` and `turned`, as described below.
+
+    Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
+    along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
+    (`nearest`). What a shape may override, where it has something sharper or faster, is `contains`, `ball`, `meets`,
+    `volume_in` and `fills_bounds`.
+
+    That is enough for phases, voxels that belong to the phase of their centre, and the DEM without conforming facets.
+    What a method must know besides, it asks for by the shape's type, and refuses other shapes: `Scene.require`, and
+    the functions that shapes are registered with, `demheat.packing.interfaces.surfaces`,
+    `references.voxels.paint.paint` and `references.voxels.links.cut`.
+    """
+
+    center: tuple[float, float, float]
+    material: Material
+    # Whether it is all of the box of its `bounds`.
+    fills_bounds = False
+
+    @abstractmethod
+    def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Distance of points to the surface, negative inside.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        period : (3,) float array, m, optional
+            Of a periodic cell.
+
+        Returns
+        -------
+        (n,) float array, m
+        """
+
+    @abstractmethod
+    def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Outward normal of the surface where it is nearest to points, the gradient of `distance`.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        period : (3,) float array, m, optional
+            Of a periodic cell.
+
+        Returns
+        -------
+        (n, 3) float array
+            Of length 1; any of the nearest ones where there are several.
+        """
+
+    @abstractmethod
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates along each axis, two (3,) float arrays, m; infinite where it has no end."""
+
+    @property
+    @abstractmethod
+    def volume(self) -> float:
+        """Volume, m3; infinite where it has no end."""
+
+    @abstractmethod
+    def turned(self, order: Sequence[int]) -> Shape:
+        """The same shape with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+
+    def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Which points lie inside or on the surface; up to rounding those whose distance is not positive.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        period : (3,) float array, m, optional
+            Of a periodic cell.
+
+        Returns
+        -------
+        (n,) bool array
+        """
+        return self.distance(points, period=period) <= 0.0
+
+    @property
+    def kind(self) -> str:
+        """What it is called in messages."""
+        return type(self).__name__.lower()
+
+    @property
+    def bounded(self) -> bool:
+        """Whether it ends along every axis."""
+        return bool(np.all(np.isfinite(self.bounds())))
+
+    def ball(self) -> tuple[np.ndarray, float]:
+        """A ball that holds it: centre, (3,) float array, and radius, both m; infinite for what has no end."""
+        low, high = self.bounds()
+        if not self.bounded:
+            return np.zeros(3), math.inf
+        return 0.5 * (low + high), 0.5 * float(np.linalg.norm(high - low))
+
+    def meets(self, size: Sequence[float]) -> bool:
+        """Whether it reaches into the box from 0 to a size, three lengths in metres; if in doubt, it does."""
+        low, high = self.bounds()
+        return bool(np.all((high > 0) & (low < size)))
+
+    def images(self, size: Sequence[float], *, periodic: bool) -> list[Shape]:
+        """The shape as it meets a box.
+
+        Parameters
+        ----------
+        size : (3,) sequence of float, m
+        periodic : bool
+            If so its images count, that of the centre in the box first.
+
+        Returns
+        -------
+        list of Shape
+        """
+        if not periodic:
+            return [self] if self.meets(size) else []
+        home = tuple(c % side for c, side in zip(self.center, size, strict=True))
+        low, high = (ends - self.center + home for ends in self.bounds())
+        found = []
+        for shift in product((0, -1, 1), repeat=3):
+            sides = zip(shift, low, high, size, strict=True)
+            if all(b + s * side > -TOUCH * side and a + s * side < (1 + TOUCH) * side for s, a, b, side in sides):
+                image = replace(self, center=tuple(c + s * side for c, s, side in zip(home, shift, size, strict=True)))
+                found += [image] if image.meets(size) else []
+        return found
+
+    def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
+        """A point of the box that lies inside, (3,) float array, m.
+
+        Parameters
+        ----------
+        size : (3,) sequence of float, m
+        periodic : bool
+            Whether images count.
+        """
+        center, box = np.array(self.center), np.array(size)
+        return center % box if periodic else np.clip(center, 0.0, box)
+
+    def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
+        """Volume of the part in a box, m3.
+
+        Parameters
+        ----------
+        size : (3,) sequence of float, m
+        periodic : bool
+            If so all of it lies in the box, if not in one image then in another.
+
+        Raises
+        ------
+        NotImplementedError
+            If a wall cuts it.
+        """
+        low, high = self.bounds()
+        slack = TOUCH * max(size)
+        if not periodic and np.any((low < -slack) | (high > np.array(size) + slack)):
+            raise NotImplementedError(f"no closed form for the volume of a {self.kind} at {self.center} cut by a wall")
+        return self.volume
+
+
+def nearest(offsets: np.ndarray, period: np.ndarray | None) -> np.ndarray:
+    """Offsets to the nearest periodic image.
+
+    Parameters
+    ----------
+    offsets : (n, 3) float array, m
+    period : (3,) float array, m, or None
+        The offsets themselves without one.
+
+    Returns
+    -------
+    (n, 3) float array, m
+    """
+    return offsets if period is None else offsets - period * np.round(offsets / period)

@@ -1,0 +1,106 @@
+"""A plane layer."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from numbers import Integral
+
+import numpy as np
+
+from demheat.inputs import number
+from demheat.material import Material, check_material
+from demheat.shapes.base import TOUCH, Shape
+
+
+@dataclass(frozen=True)
+class Layer(Shape):
+    """A plane layer, start <= coordinate <= stop along one axis, across the whole box.
+
+    Parameters
+    ----------
+    axis : {0, 1, 2}
+    start, stop : float, m
+    material : Material
+    """
+
+    axis: int
+    start: float
+    stop: float
+    material: Material
+
+    fills_bounds = True
+
+    def __post_init__(self):
+        if not isinstance(self.axis, Integral) or self.axis not in (0, 1, 2):
+            raise ValueError(f"Layer.axis = {self.axis!r}: must be 0, 1 or 2")
+        object.__setattr__(self, "axis", int(self.axis))
+        number(self, "start", "a finite number of metres")
+        number(self, "stop", f"a finite number > start = {self.start}", lambda v: v > self.start)
+        check_material("Layer.material", self.material)
+
+    def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Which points lie inside or on a face; see `Shape.contains`."""
+        x = points[:, self.axis]
+        if period is not None:
+            x = x % period[self.axis]
+        return (x >= self.start) & (x <= self.stop)
+
+    def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Distance of points to the nearer face, m, negative inside; see `Shape.distance`.
+
+        A layer that fills the period has no face: the distance is then minus infinity.
+        """
+        if period is not None and self.stop - self.start >= (1 - TOUCH) * period[self.axis]:
+            return np.full(len(points), -math.inf)
+        x = self._middled(points, period)
+        return np.maximum(self.start - x, x - self.stop)
+
+    def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Outward normal of the nearer face; see `Shape.normal`."""
+        normals = np.zeros((len(points), 3))
+        above = self._middled(points, period) >= self._middle
+        normals[:, self.axis] = np.where(above, 1.0, -1.0)
+        return normals
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates along each axis, two (3,) float arrays, m; infinite along the layer."""
+        low, high = np.full(3, -math.inf), np.full(3, math.inf)
+        low[self.axis], high[self.axis] = self.start, self.stop
+        return low, high
+
+    @property
+    def volume(self) -> float:
+        """Infinite; see `volume_in`."""
+        return math.inf
+
+    def turned(self, order: Sequence[int]) -> Layer:
+        """The same layer with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+        return replace(self, axis=list(order).index(self.axis))
+
+    def images(self, size: Sequence[float], *, periodic: bool) -> list[Layer]:
+        """The layer itself, which lies in the box; see `Shape.images`."""
+        return [self]
+
+    def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
+        """A point of the box that lies inside, (3,) float array, m; see `Shape.point_in`."""
+        point = 0.5 * np.array(size)
+        point[self.axis] = self._middle
+        return point
+
+    def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
+        """Volume of the part in a box, m3; see `Shape.volume_in`."""
+        return (self.stop - self.start) * math.prod(size) / size[self.axis]
+
+    @property
+    def _middle(self):
+        return 0.5 * (self.start + self.stop)
+
+    def _middled(self, points, period):
+        """Coordinates along the normal, of the images nearest to the middle plane."""
+        x = points[:, self.axis]
+        if period is None:
+            return x
+        length = period[self.axis]
+        return x - length * np.round((x - self._middle) / length)

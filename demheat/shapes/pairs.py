@@ -1,0 +1,119 @@
+"""Which pairs of shapes a scene takes: disjoint, touching, or one inside the other and painted after it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.shapes.base import TOUCH, Shape, nearest
+
+
+class _Cell(NamedTuple):
+    size: np.ndarray  # (3,) m
+    period: np.ndarray | None  # (3,) m
+    tolerance: float  # m
+
+
+def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: bool) -> None:
+    """Refuse shapes that overlap partially, and shapes that later ones hide.
+
+    Exact for spheres, layers and what fills its bounds; of other shapes it takes those pairs that their bounds and
+    bounding balls show to be apart or nested.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+        In painting order.
+    size : (3,) sequence of float, m
+    periodic : bool
+        Whether images count.
+
+    Raises
+    ------
+    ValueError
+        For the first pair that is neither; the message has the numbers of both.
+    """
+    box = np.array(size)
+    cell = _Cell(box, box if periodic else None, TOUCH * box.max())
+    balls = [shape.ball() for shape in shapes]
+    centers, radii = np.array([c for c, _ in balls]).reshape(-1, 3), np.array([r for _, r in balls])
+    for i in range(len(shapes) - 1):
+        offsets = nearest(centers[i + 1 :] - centers[i], cell.period)
+        close = np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) < radii[i] + radii[i + 1 :] - cell.tolerance
+        for j in i + 1 + np.flatnonzero(close):
+            _check_pair(shapes, i, int(j), cell)
+
+
+def _check_pair(shapes, i, j, cell):
+    first, second = shapes[i], shapes[j]
+    if _crossed(first, second):
+        raise ValueError(f"Scene.inclusions[{i}], [{j}]: layers along different axes cross each other")
+    if _apart(first, second, cell):
+        return
+    if _holds(second, first, cell):
+        raise ValueError(f"Scene.inclusions[{i}] is hidden by inclusions[{j}]: list the outer one first")
+    if not _holds(first, second, cell):
+        raise ValueError(
+            f"Scene.inclusions[{i}] and [{j}] overlap partially: inclusions must be disjoint, touching or fully nested"
+        )
+
+
+def _crossed(first, second):
+    """Whether both end along one axis only, and not along the same."""
+    ends = [np.isfinite(shape.bounds()[0]) for shape in (first, second)]
+    return all(e.sum() == 1 for e in ends) and np.any(ends[0] != ends[1])
+
+
+def _apart(first, second, cell):
+    for one, other in ((first, second), (second, first)):
+        center, radius = one.ball()
+        if one.bounded and other.distance(center[None], period=cell.period)[0] >= radius - cell.tolerance:
+            return True
+    return any(
+        all(d <= a + cell.tolerance or b <= c + cell.tolerance for a, b in before for c, d in after)
+        for before, after in zip(_spans(first, cell), _spans(second, cell), strict=True)
+    )
+
+
+def _holds(outer, inner, cell):
+    if outer.fills_bounds and all(
+        _covers(a, b, cell.tolerance) for a, b in zip(_spans(outer, cell), _spans(inner, cell), strict=True)
+    ):
+        return True
+    if not inner.bounded:
+        return False
+    center, radius = inner.ball()
+    if outer.distance(center[None], period=cell.period)[0] <= cell.tolerance - radius:
+        return True
+    return outer.bounded and _holds_corners(outer, inner, cell)
+
+
+def _holds_corners(outer, inner, cell):
+    """Whether a bounded shape holds the corners of another's bounds, and so, convex, all of it."""
+    (middle, _), (center, _) = outer.ball(), inner.ball()
+    corners = np.array(list(product(*zip(*inner.bounds(), strict=True)))) - center
+    # By the image whose middle is nearest to the middle of the outer one, not corner by corner.
+    here = middle + nearest(center - middle, cell.period) + corners
+    return bool(np.all(outer.distance(here) <= cell.tolerance))
+
+
+def _spans(shape, cell):
+    """Intervals of the box that a shape takes along each axis; two if it crosses a periodic face."""
+    found = []
+    for low, high, length in zip(*shape.bounds(), cell.size, strict=True):
+        if cell.period is not None and np.isfinite(low):
+            turns = np.floor(0.5 * (low + high) / length) * length
+            low, high = low - turns, high - turns
+        spans = [(max(low, 0.0), min(high, length))]
+        if cell.period is not None and np.isfinite(low):
+            spans += [(low + length, length)] if low < -cell.tolerance else []
+            spans += [(0.0, high - length)] if high > length + cell.tolerance else []
+        found.append(spans)
+    return found
+
+
+def _covers(outer, inner, tolerance):
+    return all(any(a <= c + tolerance and d <= b + tolerance for a, b in outer) for c, d in inner)

@@ -1,0 +1,73 @@
+"""A sphere."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from demheat.inputs import number, vector
+from demheat.material import Material, check_material
+from demheat.shapes.base import Shape, nearest
+
+
+@dataclass(frozen=True)
+class Sphere(Shape):
+    """A spherical inclusion.
+
+    Parameters
+    ----------
+    center : (3,) sequence of float, m
+    radius : float, m
+    material : Material
+    """
+
+    center: tuple[float, float, float]
+    radius: float
+    material: Material
+
+    def __post_init__(self):
+        object.__setattr__(self, "center", vector("Sphere.center", self.center))
+        number(self, "radius", "a finite number > 0 m", lambda v: v > 0)
+        check_material("Sphere.material", self.material)
+
+    def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Which points lie inside or on the surface; see `Shape.contains`."""
+        offsets = nearest(points - self.center, period)
+        return np.einsum("ij,ij->i", offsets, offsets) <= self.radius**2
+
+    def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Distance of points to the surface, m, negative inside; see `Shape.distance`."""
+        offsets = nearest(points - self.center, period)
+        return np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) - self.radius
+
+    def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Outward normal at the nearest point of the surface, along x for the centre; see `Shape.normal`."""
+        offsets = nearest(points - self.center, period)
+        length = np.linalg.norm(offsets, axis=1, keepdims=True)
+        return np.divide(offsets, length, out=np.tile([1.0, 0.0, 0.0], (len(offsets), 1)), where=length > 0)
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates along each axis, two (3,) float arrays, m."""
+        center = np.array(self.center)
+        return center - self.radius, center + self.radius
+
+    @property
+    def volume(self) -> float:
+        """Volume, m3."""
+        return 4 / 3 * math.pi * self.radius**3
+
+    def turned(self, order: Sequence[int]) -> Sphere:
+        """The same sphere with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+        return replace(self, center=tuple(self.center[axis] for axis in order))
+
+    def ball(self) -> tuple[np.ndarray, float]:
+        """Centre and radius, m."""
+        return np.array(self.center), self.radius
+
+    def meets(self, size: Sequence[float]) -> bool:
+        """Whether it reaches into the box from 0 to a size, three lengths in metres."""
+        gap2 = sum(max(0.0, -c, c - side) ** 2 for c, side in zip(self.center, size, strict=True))
+        return gap2 < self.radius**2
