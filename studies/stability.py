@@ -10,6 +10,7 @@ import math
 import warnings
 from functools import cache
 
+from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.harness import methods
 from studies.harness.figures import GREY, look, resolution
@@ -68,7 +69,7 @@ def run(name, fraction, contrast, method, **knobs):
     """Solve and compare with the exact value; a refusal is a result, and so is a warning."""
     exact = _exact(fraction, contrast)
     if name == "lattice":
-        return {"k_ratio": exact, "error_percent": 100 * (exact / _exact(fraction, math.inf) - 1)}
+        return {"k_ratio": exact, "error_percent": 100 * referee.value_error(exact, _exact(fraction, math.inf))}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
@@ -123,7 +124,7 @@ def _single(df):
     keys = ["name", "fraction", "contrast", "voxels"]
     pair = pick(df, precision="float32").merge(pick(df, precision=None), on=keys, suffixes=("", "_double"))
     pair = pair[(pair["status"] == "ok") & (pair["status_double"] == "ok")]
-    return abs(pair["k_ratio"] / pair["k_ratio_double"] - 1).max(skipna=False)
+    return abs(referee.value_error(pair["k_ratio"], pair["k_ratio_double"])).max(skipna=False)
 
 
 def table(df):

@@ -136,16 +136,6 @@ def slice_grid(n=41):
     return plane(sphere(), axis=2, at=DIAMETER / 2, n=n)
 
 
-def text(values):
-    """Numbers as one cell of a table."""
-    return " ".join(f"{value:.6g}" for value in values)
-
-
-def numbers(cell):
-    """The numbers of such a cell."""
-    return np.array([float(word) for word in cell.split()])
-
-
 def name_of(row):
     """What a row is, in words without its resolution."""
     return f"DEM, {row['law']}" if row["method"] == "dem" else f"FEM, P{row['order']:.0f}"

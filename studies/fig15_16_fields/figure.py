@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
+from demheat import referee
+from studies.harness.cells import picture
 from studies.harness.figures import LOOK, resolution
 
 # Errors are coloured linearly up to the first, in %, then by decades, and beyond the second in the colour of the end.
@@ -128,8 +129,8 @@ def _errors_at_points(axis, df, paper, printed, points, label):
     exact, others = _pictured(df)
     bars = [(label(row), [abs(row[f"q_{letter}_error"]) for letter in points], _looks(row)) for row in others]
     for (name, key), marker in zip(printed.items(), "PX*", strict=True):
-        off = [100 * abs(paper[f"q_{letter}_{key}"] / exact[f"q_{letter}"] - 1) for letter in points]
-        bars.append((f"printed: {name}", off, {"color": "black", "marker": marker}))
+        off = [referee.value_error(paper[f"q_{letter}_{key}"], exact[f"q_{letter}"]) for letter in points]
+        bars.append((f"printed: {name}", 100 * np.abs(off), {"color": "black", "marker": marker}))
     for number, (name, values, look) in enumerate(bars):
         place = np.arange(len(points)) + 0.8 * ((number + 0.5) / len(bars) - 0.5)
         axis.plot(place, values, **look | {"linestyle": ""}, label=name)

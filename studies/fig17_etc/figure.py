@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat import referee
 from references import bounds
 from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, of_walls, witness
 from studies.harness.converged import TERMS, converged
@@ -94,15 +95,12 @@ def _errors(ax, df):
         fine = rows.loc[
             rows.groupby("fraction")[knob].idxmin() if knob == "size" else rows.groupby("fraction")[knob].idxmax()
         ]
-        errors = [
-            100 * abs(k / witness(df, "periodic", f) - 1)
-            for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)
-        ]
+        errors = [_percent_off(df, f, k) for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)]
         style = look(name)
         ax.plot(fine["fraction"], np.maximum(errors, FLOOR), **style | {"markerfacecolor": "none", "linestyle": ":"})
         if name in TERMS and TERMS[name][1]:
             limits = {f: converged(df, name, fraction=f, **HERE) for f in fine["fraction"]}
-            errors = [100 * abs(k / witness(df, "periodic", f) - 1) if k else np.nan for f, k in limits.items()]
+            errors = [_percent_off(df, f, k) if k else np.nan for f, k in limits.items()]
             ax.plot(
                 list(limits),
                 np.maximum(errors, FLOOR),
@@ -112,6 +110,10 @@ def _errors(ax, df):
     ax.set_title("One cell, all methods on the same spheres")
     ax.set_ylim(top=30 * ax.get_ylim()[1])  # room for the legend
     ax.legend(fontsize=7, loc="upper left")
+
+
+def _percent_off(df, fraction, k):
+    return 100 * abs(referee.value_error(k, witness(df, "periodic", fraction)))
 
 
 def _spreads(ax, df):
@@ -140,4 +142,4 @@ def _between(df, fraction):
     """Largest difference of two methods' converged values on the first cell, %; None with fewer than two."""
     k = [converged(df, name, fraction=fraction, **HERE) for name in TERMS]
     k = [each for each in k if each]
-    return 100 * (max(k) / min(k) - 1) if len(k) > 1 else None
+    return 100 * referee.value_error(max(k), min(k)) if len(k) > 1 else None

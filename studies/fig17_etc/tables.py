@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from demheat import referee
 from references import bounds
 from studies.fig17_etc.means import (
     CONTRAST,
@@ -97,11 +98,11 @@ def _errors(df, fractions, kind, boundary):
     for name in ("dem", "dem-calibrated", "fem", "fft", "fft-em"):
         for resolution, rows in _ladder(pick(df, name=name, **here)):
             k = dict(zip(rows["fraction"], rows["k_ratio"], strict=True))
-            values = {f: 100 * (k[f] / exact[f] - 1) if f in k and exact[f] else None for f in fractions}
+            values = {f: _percent_off(k.get(f), exact[f]) for f in fractions}
             yield _line(what, f"{LOOK[name][0]}, {resolution}", values, **_costs(rows))
         if name in TERMS:
             limits = {f: converged(df, name, fraction=f, **here) for f in fractions}
-            values = {f: 100 * (k / exact[f] - 1) if k and exact[f] else None for f, k in limits.items()}
+            values = {f: _percent_off(k, exact[f]) for f, k in limits.items()}
             yield _line(what, f"{LOOK[name][0]}, converged", values)
     yield _nearest(df, exact, kind, here)
     rows = pick(df, name="multipole", **here)
@@ -109,12 +110,17 @@ def _errors(df, fractions, kind, boundary):
     yield _line(what, "multipoles, by their own estimate", {f: left.get(f) for f in fractions}, **_costs(rows))
 
 
+def _percent_off(k, exact):
+    """Error, %; None if one of the two is missing."""
+    return 100 * referee.value_error(k, exact) if k and exact else None
+
+
 def _nearest(df, exact, kind, here):
     """Which converged value is nearest to the witness, and what its finest row cost."""
     line = {"quantity": f"nearest, {kind}", "of": "converged values; processor seconds of the finest row"}
     for fraction, right in exact.items():
         limits = {name: converged(df, name, fraction=fraction, **here) for name in TERMS}
-        off = {name: abs(k / right - 1) for name, k in limits.items() if right and k}
+        off = {name: abs(referee.value_error(k, right)) for name, k in limits.items() if right and k}
         if len(off) == len(TERMS):
             best = min(off, key=off.get)
             spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()

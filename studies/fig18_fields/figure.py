@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
+from demheat import referee
 from studies.fig18_fields.errors import BOUNDARIES, error_pictures, with_errors, witness
 from studies.fig18_fields.rows import POINTS
 from studies.fig18_fields.tables import label, words
+from studies.harness.cells import picture
 from studies.harness.figures import BLACK, LOOK
 from studies.harness.pick import pick
 
@@ -61,7 +62,7 @@ def _pictures(figure, df):
         for axis, row in zip(axes[line][1:], others, strict=True):
             error = np.abs(error_pictures(row, truth)[line])
             shown = axis.imshow(np.maximum(error, low), **look, norm=LogNorm(low, high), cmap="magma")
-            axis.set_xlabel(f"rms {np.sqrt(np.mean(error**2)):.2g} %, largest {error.max():.2g} %", fontsize=9)
+            axis.set_xlabel(f"rms {referee.rms(error):.2g} %, largest {error.max():.2g} %", fontsize=9)
             axis.set_title(f"{label(row)},\n{words(row)}", fontsize=9)
         if others:
             figure.colorbar(shown, ax=axes[line], shrink=0.8, label=errors[kind])
@@ -101,7 +102,7 @@ def _points(axis, found, paper):
                 values = [abs(row[f"q_{x}_error"]) for x in POINTS]
                 style = {"color": colour, "marker": marker, "mfc": colour if full else "white"}
                 series.append((f"{name.upper()}, {boundary}", values, style))
-    printed = [100 * abs(paper[f"q_{x}_de"] / paper[f"q_{x}_fe"] - 1) for x in POINTS]
+    printed = [100 * abs(referee.value_error(paper[f"q_{x}_de"], paper[f"q_{x}_fe"])) for x in POINTS]
     # 0 at C: printed to three digits, both are 20.3.
     series.append(("printed DE against printed FE", printed, {"color": BLACK, "marker": "P"}))
     for number, (name, values, style) in enumerate(series):

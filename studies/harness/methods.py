@@ -13,7 +13,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
-from demheat.referee import conductivity_error, heat_balance
+from demheat.referee import conductivity_error, heat_balance, value_error
 from studies.harness.cost import measured
 
 MATRIX = HADDAD.conductivity
@@ -120,7 +120,7 @@ def _maxwell_row(scene, ratio):
     fraction = 4 / 3 * math.pi * sphere.radius**3 / scene.volume
     found, cost = measured(maxwell, MATRIX, sphere.material.conductivity, fraction)
     found = float(found) / MATRIX
-    return {"k_ratio": found, "exact_ratio": ratio, "error_percent": 100 * (found / ratio - 1), **cost}
+    return {"k_ratio": found, "exact_ratio": ratio, "error_percent": 100 * value_error(found, ratio), **cost}
 
 
 def warm_up(method, **knobs):
