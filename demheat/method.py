@@ -127,7 +127,8 @@ class Method:
     resolution : Resolution, optional
         None if nothing refines it.
     small, coarse : float, optional
-        Values of that knob: for warm-ups, which are to cost next to nothing; for the suite of what methods owe.
+        Values of that knob: for warm-ups, which are to cost next to nothing, by default the other; for the suite of
+        what methods owe.
     tight : mapping
         Knobs there with which only rounding is left of what is solved.
     errors : Errors, optional
@@ -174,6 +175,7 @@ class Method:
         if self.resolution and self.coarse is None:
             raise ValueError(f"coarse of method {self.name!r} = None: must be a value of {self.resolution.knob!r}")
         object.__setattr__(self, "label", self.label or self.title)
+        object.__setattr__(self, "small", self.coarse if self.small is None else self.small)
 
     def at(self, value, edge=1.0):
         """Knobs at a value of the resolution, in a box of an edge.

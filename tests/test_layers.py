@@ -17,7 +17,7 @@ LAYERS = {
     "demheat.scene": ("demheat.parts",),
     "demheat.field": ("demheat.scene", "demheat.parts"),
     "demheat.threads": (),
-    "demheat.referee": (),
+    "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.gallery": ("demheat.scene",),
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.parts"),
     "demheat.halo": ("demheat.sampling.halo",),

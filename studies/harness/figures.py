@@ -27,7 +27,16 @@ STYLE = {
 }
 
 # One method looks the same everywhere: its name -> label, colour, marker, line.
-COLOURS = {"blue": BLUE, "orange": ORANGE, "green": GREEN, "red": RED, "sky": SKY, "pink": PINK, "black": BLACK, "grey": GREY}
+COLOURS = {
+    "blue": BLUE,
+    "orange": ORANGE,
+    "green": GREEN,
+    "red": RED,
+    "sky": SKY,
+    "pink": PINK,
+    "black": BLACK,
+    "grey": GREY,
+}
 LOOK = {name: (method.label, COLOURS[method.look[0]], *method.look[1:]) for name, method in methods.found().items()}
 
 
@@ -39,7 +48,8 @@ def look(name, **more):
 
 def resolution(row):
     """Resolution of a row, by its method's name, in words; empty if nothing refines the method."""
-    method = methods.found().get(row["name"])
-    if method is None or methods.value_of(row) != methods.value_of(row):
+    value = methods.value_of(row)
+    if value != value:
         return ""
-    return method.resolution.words.format(methods.value_of(row) / (methods.EDGE if method.resolution.metric else 1))
+    refined = methods.found()[row["name"]].resolution
+    return refined.words.format(value / methods.EDGE if refined.metric else value)

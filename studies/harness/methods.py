@@ -17,7 +17,7 @@ from importlib import import_module
 from importlib.util import find_spec
 
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
-from demheat.referee import conductivity_error, heat_balance
+from demheat.referee import conductivity_error, heat_balance, value_error
 from studies.harness.cost import measured
 
 MATRIX = HADDAD.conductivity
@@ -86,6 +86,29 @@ def spent(method, resolutions):
     own = method.orders.values if method.orders else (method.small, method.coarse)
     usual = resolutions.get(method.resolution.knob, (own[0], own[-1]))
     return tuple(resolutions.get(method.name, usual))
+
+
+def value_of(row):
+    """Value of the knob that refines a row's method, not-a-number if there is none.
+
+    Parameters
+    ----------
+    row : mapping
+        With the method's `name`.
+    """
+    method = found().get(row["name"])
+    refined = method.resolution if method else None
+    value = row.get(refined.column or refined.knob) if refined else None
+    return math.nan if value is None else value
+
+
+def size_of(row):
+    """Size of an element of a row, in edges of the cube; not-a-number if nothing refines its method."""
+    value = value_of(row)
+    if value != value:
+        return math.nan
+    refined = found()[row["name"]].resolution
+    return refined.size(value / EDGE if refined.metric else value)
 
 
 def at(method, value, seed=0):
@@ -175,24 +198,27 @@ def solved(scene, ratio, *, method, **knobs):
 
 def _estimated_row(scene, ratio, estimate, knobs):
     k, cost = measured(estimate, scene, **knobs)
-    return {"k_ratio": k / MATRIX, "exact_ratio": ratio, "error_percent": 100 * (k / MATRIX / ratio - 1), **cost}
+    error = 100 * value_error(k / MATRIX, ratio)
+    return {"k_ratio": k / MATRIX, "exact_ratio": ratio, "error_percent": error, **cost}
 
 
-def small(method):
-    """Knobs with which a module's first method costs next to nothing; none if it declares no method."""
-    declared = [each for each in found().values() if each.module == method]
-    return declared[0].at(declared[0].small, EDGE) if declared else {}
+def declared(module):
+    """The methods that a module declares; none of what is a solver of something else."""
+    return [method for method in found().values() if method.module == module]
+
+
+def small(module):
+    """Knobs with which a module's methods cost next to nothing."""
+    return next((method.at(method.small, EDGE) for method in declared(module)), {})
 
 
 def warm_up(method, **knobs):
     """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk."""
-    declared = [each for each in found().values() if each.module == method]
-    if not declared:
-        return
-    scene = sphere_in_cube(2.0, fraction=0.1, periodic="walls" in declared[0].refuses)
-    with tempfile.TemporaryDirectory() as folder, packings_in(folder):
-        # A cached packing would leave the packing's kernels unloaded.
-        solve_row(scene, 1.0, method=method, **{**knobs, **small(method)})
+    for first in declared(method)[:1]:
+        scene = sphere_in_cube(2.0, fraction=0.1, periodic="walls" in first.refuses)
+        with tempfile.TemporaryDirectory() as folder, packings_in(folder):
+            # A cached packing would leave the packing's kernels unloaded.
+            solve_row(scene, 1.0, method=method, **{**knobs, **small(method)})
 
 
 @contextmanager
