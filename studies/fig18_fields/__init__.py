@@ -41,11 +41,11 @@ def _cases():
     yield {"name": "arrangement", "method": "dispersion"}
     for boundary in BOUNDARIES:
         yield from (methods.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
-        for name in COMPARED if boundary == "gradient" else (*COMPARED, "fem-p1"):
-            values = methods.spent(methods.found()[name], RESOLUTIONS)
-            values = [value for value in values if name != "dem" or value <= finest_number(boundary)]
-            knobs = (methods.at(methods.found()[name], value) for value in values)
-            yield from (methods.case(name, boundary=boundary, **each) for each in knobs)
+        for method in methods.compared("fem-p1"):
+            if method.name in COMPARED or (method.name, boundary) == ("fem-p1", "walls"):
+                most = finest_number(boundary) if method.name == "dem" else math.inf
+                knobs = [methods.at(method, v) for v in methods.spent(method, RESOLUTIONS) if v is None or v <= most]
+                yield from (methods.case(method.name, boundary=boundary, **each) for each in knobs)
 
 
 CASES = list(_cases())

@@ -37,7 +37,10 @@ COLOURS = {
     "black": BLACK,
     "grey": GREY,
 }
-LOOK = {name: (method.label, COLOURS[method.look[0]], *method.look[1:]) for name, method in methods.found().items()}
+LOOK = {
+    name: (method.label, COLOURS.get(method.look[0], method.look[0]), *method.look[1:])
+    for name, method in methods.found().items()
+}
 
 
 def look(name, **more):
