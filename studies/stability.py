@@ -57,6 +57,7 @@ def _resolutions(method):
 
 
 CASES = list(_cases())
+MODULES = {"lattice": "references.exact.lattice"}
 PAPER = {}
 
 
