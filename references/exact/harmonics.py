@@ -1,4 +1,4 @@
-"""Solid harmonics and the lattice sums of cubic arrays, computed to rounding and kept for the process.
+"""Solid harmonics, and their sums over cubic lattices, computed to rounding and kept for the process.
 
 Racah's normalisation: R_l^m = sqrt((l-m)!/(l+m)!) r^l P_l^m(cos t) exp(i m p), so that |R_l^m| <= r^l, and the
 irregular I_l^m = R_l^m / r^(2l+1). Lengths of this module are in units of the cube's edge.
@@ -42,7 +42,22 @@ class Sums(NamedTuple):
 
 
 def legendre(z, square, order, m):
-    """Yield R_l^m / (x + i y)^m for l = m, ..., order at points given by z and r^2 (both (n,) float arrays)."""
+    """Values of R_l^m / (x + i y)^m, degree by degree.
+
+    Parameters
+    ----------
+    z : (n,) float array, length
+    square : (n,) float array, length^2
+        r^2.
+    order : int
+        Highest degree.
+    m : int
+
+    Yields
+    ------
+    (n,) float array, length^(l-m)
+        For l = m, ..., order.
+    """
     previous, current = np.zeros_like(z), np.full_like(z, _sectoral(m))
     for degree in range(m, order + 1):
         yield current
@@ -63,6 +78,7 @@ def series(tables, points):
     ----------
     tables : sequence of (n, n) float arrays
     points : (p, 3) float array
+        In the unit of length of the tables.
 
     Returns
     -------

@@ -21,7 +21,15 @@ LEAST_RINGS, MOST_RINGS = 8, 128
 
 
 class Deposit(NamedTuple):
-    """Heat into each node (n,) W; the power inside of the body, W; what lies outside, W."""
+    """What a source gives.
+
+    Attributes
+    ----------
+    heat : (n,) float array, W
+        Into each node.
+    power, lost : float, W
+        Inside of the body and outside.
+    """
 
     heat: np.ndarray
     power: float
@@ -30,6 +38,11 @@ class Deposit(NamedTuple):
 
 def check_sources(scene, last):
     """Refuse sources that leave the body before a time, unless they are clipped.
+
+    Parameters
+    ----------
+    scene : Scene
+    last : float, s
 
     Raises
     ------
@@ -75,7 +88,7 @@ def _leaves(source, low, high, last):
     return float(times.min()) if times.min() < last else None
 
 
-def deposit(scene, space, source, time):
+def deposit(scene, space, source, time) -> Deposit:
     """Heat of a source in each node.
 
     Parameters
@@ -127,7 +140,20 @@ def disc_points(rings):
 
 
 def overlap(center, radius, sides):
-    """Area that a disc and the rectangle from 0 to `sides` share, m2."""
+    """Area that a disc shares with a rectangle that begins at the origin.
+
+    Parameters
+    ----------
+    center : (2,) float array, m
+        Of the disc.
+    radius : float, m
+    sides : (2,) float array, m
+        Of the rectangle.
+
+    Returns
+    -------
+    float, m2
+    """
     (x0, y0), (x1, y1) = -np.asarray(center) / radius, (np.asarray(sides) - center) / radius
     return radius**2 * (_quadrant(x1, y1) - _quadrant(x0, y1) - _quadrant(x1, y0) + _quadrant(x0, y0))
 

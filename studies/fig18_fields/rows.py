@@ -1,17 +1,11 @@
-"""Rows of the study of fields among many spheres: the arrangement, its exact witnesses, and every method on it.
-
-A box with two isothermal and four insulated walls is one of eight mirror images in a periodic cell of twice its edge
-under a mean gradient: so multipoles are exact between walls as well.
-"""
+"""Rows of the study of fields among many spheres: the arrangement, its exact witnesses, and every method on it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
-from demheat.scene import Scene, Sphere
 from demheat.slices import filled, plane
 from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
@@ -30,22 +24,6 @@ BAND = 100_000
 def spheres_in(boundary):
     """The 83 spheres, between walls or, the same, in a periodic cell."""
     return silica_epoxy.scene("walled", 0.2, seed=0, boundary=boundary)
-
-
-def mirrored(scene):
-    """Periodic cell of the eight mirror images of a box between two isothermal walls, the others insulated.
-
-    Heat does not cross a mirror along the load, and temperatures are odd about the ones across it: both walls' loads.
-    """
-    size = np.array(scene.size)
-    images = []
-    for mirror in product((False, True), repeat=3):
-        for sphere in scene.inclusions:
-            center = np.where(mirror, 2 * size - sphere.center, sphere.center)
-            images.append(Sphere(tuple(center), sphere.radius, sphere.material))
-    walls, axis = scene.wall_temperatures, scene.axis
-    gradient = (walls["xyz"[axis] + "+"] - walls["xyz"[axis] + "-"]) / size[axis] * np.eye(3)[axis]
-    return Scene(tuple(2 * size), scene.matrix, images, gradient=gradient)
 
 
 def arrangement_row():
@@ -77,16 +55,12 @@ def field_row(boundary, *, method, **knobs):
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
     """
     scene = spheres_in(boundary)
-    exact = method == "multipole"
-    solve_this = mirrored(scene) if exact and boundary == "walls" else scene
-    field, row = silica_epoxy.solved(solve_this, method=method, **knobs)
+    field, row = silica_epoxy.solved(scene, method=method, **knobs)
     points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     both = np.vstack([np.array(list(POINTS.values())) * scene.size, points])
     (temperature, flux), cost = measured(lambda: (field.temperature_at(both), field.flux_at(both)))
     if boundary == "gradient":
         temperature = temperature + LOW + SPAN / 2 - temperature[len(POINTS) :].mean()
-    elif exact:
-        temperature = temperature + LOW
     row |= {"mean_flux": float(np.linalg.norm(field.mean_flux)), "sample_cpu_s": cost["cpu_s"]}
     for letter, t, q in zip(POINTS, temperature, flux, strict=False):
         row |= {f"T_{letter}": t, f"q_{letter}": float(np.linalg.norm(q))}

@@ -6,8 +6,8 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
 from demheat import Flux, Heating, Layer, Material, MovingCylinder, Scene
+from references.exact.responses import CROSSOVER, response, sphere_response
 from references.exact.series import evolve
-from references.exact.series_forms import CROSSOVER, response, sphere_response
 
 # Haddad et al. (2021): steel of the slab, aluminium of the sphere; Terreros et al. (2013): aluminium of the beam.
 SLAB, SPHERE, BEAM = Material(33.0, 7800.0, 0.9), Material(185.0, 2700.0, 900.0), Material(134.0, 2790.0, 880.0)

@@ -342,7 +342,7 @@ def test_where_held_walls_meet_nodes_take_the_mean_and_the_walls_share_the_heat(
 def test_separation_inverts_the_equations_of_a_grid():
     of = Scene((1.0, 0.7, 0.5), Material(3.0, 2.0, 5.0), walls={"x-": 0.0, "z-": 0.0, "z+": 0.0}, initial=0.0)
     on, uneven = bricks.hexahedra(of, 0.13), np.array([0.0, 0.1, 0.35, 0.5])
-    free = np.setdiff1d(np.arange(len(on.points)), np.concatenate([on.walls[name][0] for name in of.walls]))
+    free = np.setdiff1d(np.arange(len(on.points)), np.concatenate([on.walls[name].nodes for name in of.walls]))
     solution = np.random.default_rng(1).random(len(free))
     for tau in (1e-3, 0.1, 1e3):
         A = (on.mass / tau + on.stiffness)[free][:, free]

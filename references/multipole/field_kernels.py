@@ -1,8 +1,7 @@
-"""Numba kernels of the multipole method: translation between spheres, and series at points.
+"""Numba kernels of the multipole method at points: whose they are, regular series inside, Ewald's two sums outside.
 
-Unnormalised harmonics, R_l^m = r^l P_l^m exp(i m p) / (l+m)! and I_l^m = (l-m)! P_l^m exp(i m p) / r^(l+1) with Condon
-and Shortley's sign: translations of these are plain sums without binomials (Epton and Dembart, SIAM J. Sci. Comput. 16
-(1995) 865). Entry (l, m >= 0) of a table stands at l (l + 1)/2 + m; -m follows from f_l^-m = (-1)^m conj(f_l^m).
+Harmonics and their tables are those of `translation_kernels`. Spheres and Ewald's splitting come in as the NamedTuples
+`translations.Spheres` and `sums.Splitting`.
 """
 
 from __future__ import annotations
@@ -16,81 +15,18 @@ compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "
 
 
 @compiled
-def translate(order, sums, top, re, im, out_re, out_im, low, high):
-    """What all spheres and their images make at the spheres low, ..., high - 1.
-
-    I_l^m(X + y) = sum over l'm' of (-1)^l' conj(R_l'^m'(y)) I_(l+l')^(m+m')(X).
-
-    Parameters
-    ----------
-    order : int
-        Highest degree that spheres send and receive.
-    sums : (1 + pairs, entries) complex array
-        Periodic I_L^M: of a sphere's own images, then for i < j of X = x_i - x_j, j running fastest.
-    top : (1 + pairs,) int array
-        Highest degree L = l + l' that counts.
-    re, im : (spheres, entries) float arrays
-        Multipoles.
-    out_re, out_im : (spheres, entries) float arrays
-        Out: coefficients of R_l'^m'.
-    """
-    spheres, width = len(re), 2 * order
-    full = np.zeros((2, width + 1, 2 * width + 1))
-    send = np.zeros((2, order + 1, 2 * order + 1))
-    for i in range(low, high):
-        out_re[i], out_im[i] = 0.0, 0.0
-        for j in range(spheres):
-            a, b = min(i, j), max(i, j)
-            pair = 0 if a == b else 1 + a * spheres - a * (a + 1) // 2 + b - a - 1
-            most = min(top[pair], width)
-            _unfold(full, sums[pair].real, sums[pair].imag, most, i > j)
-            _unfold(send, re[j], im[j], order, False)
-            for p in range(min(order, most - 1) + 1):
-                sign = -1.0 if p % 2 else 1.0
-                for q in range(p + 1):
-                    x, y = _correlate(full, send, p, q, min(order, most - p), width, order)
-                    out_re[i, p * (p + 1) // 2 + q] += sign * x
-                    # The coefficient of conj(R) conjugated is that of R, for the sum is real.
-                    out_im[i, p * (p + 1) // 2 + q] -= sign * y
-
-
-@compiled
-def _unfold(full, re, im, degree, flip):
-    """Entries of both signs of m, in the middle of each row; times (-1)^l if `flip`."""
-    middle = full.shape[2] // 2
-    for n in range(degree + 1):
-        sign = -1.0 if flip and n % 2 else 1.0
-        for m in range(n + 1):
-            x, y = sign * re[n * (n + 1) // 2 + m], sign * im[n * (n + 1) // 2 + m]
-            other = -1.0 if m % 2 else 1.0
-            full[0, n, middle - m], full[1, n, middle - m] = other * x, -other * y
-            full[0, n, middle + m], full[1, n, middle + m] = x, y
-
-
-@compiled
-def _correlate(full, send, p, q, most, width, order):
-    """Sum over l = 1, ..., most and all m of I_(l+p)^(m+q) times the multipole lm."""
-    x, y = 0.0, 0.0
-    for n in range(1, most + 1):
-        there_re, there_im = full[0, n + p, width + q - n : width + q + n + 1], full[1, n + p, width + q - n :]
-        here_re, here_im = send[0, n, order - n : order + n + 1], send[1, n, order - n :]
-        for k in range(2 * n + 1):
-            x += there_re[k] * here_re[k] - there_im[k] * here_im[k]
-            y += there_re[k] * here_im[k] + there_im[k] * here_re[k]
-    return x, y
-
-
-@compiled
-def owners(points, centers, radii, size, owner):
+def owners(points, spheres, owner):
     """Sphere that a point lies in or on, or -1, and its offset from that sphere's nearest image.
 
     Parameters
     ----------
-    points : (n, 3) float array
+    points : (n, 3) float array, length
         Changed in place where a sphere owns the point: to the offset.
+    spheres : Spheres
     owner : (n,) int array
         Out.
     """
+    centers, radii, size = spheres.centers, spheres.radii, spheres.size
     for k in range(len(points)):
         owner[k] = -1
         for j in range(len(centers)):
@@ -106,7 +42,16 @@ def owners(points, centers, radii, size, owner):
 
 @compiled
 def regular(table, x, y, z, order):
-    """R_l^m of one point, into a complex table."""
+    """R_l^m of one point.
+
+    Parameters
+    ----------
+    table : (entries,) complex array, length^l
+        Out.
+    x, y, z : float, length
+    order : int
+        Highest degree.
+    """
     square = x * x + y * y + z * z
     table[0] = 1.0
     for m in range(order + 1):
@@ -121,7 +66,17 @@ def regular(table, x, y, z, order):
 
 @compiled
 def irregular(table, x, y, z, order):
-    """I_l^m of one point, into a complex table."""
+    """I_l^m of one point.
+
+    Parameters
+    ----------
+    table : (entries,) complex array, length^-(l+1)
+        Out.
+    x, y, z : float, length
+        Not all zero.
+    order : int
+        Highest degree.
+    """
     square = x * x + y * y + z * z
     table[0] = 1.0 / math.sqrt(square)
     for m in range(order + 1):
@@ -142,10 +97,13 @@ def inside(offsets, owner, coefficients, order, out):
 
     Parameters
     ----------
-    offsets : (n, 3) float array
+    offsets : (n, 3) float array, length
+        From the centres of these spheres.
     owner : (n,) int array
-    coefficients : (spheres, entries) complex array
-    out : (n, 4) float array
+    coefficients : (spheres, entries) complex array, K length^-l
+    order : int
+        Highest degree.
+    out : (n, 4) float array, K and K/length
         Out: temperature, then its slope.
     """
     table = np.zeros((order + 1) * (order + 2) // 2, dtype=np.complex128)
@@ -169,33 +127,47 @@ def inside(offsets, owner, coefficients, order, out):
 
 
 @compiled
-def screens(order, square, eta, screen, slope):
-    """Q(l+1/2, eta r^2) for l = 0, ..., order and twice its derivative by r^2, into two float arrays."""
+def screens(square, eta, screened):
+    """Q(l+1/2, eta r^2) for l = 0, 1, ..., and twice its derivative by r^2.
+
+    Parameters
+    ----------
+    square : float, length^2
+        r^2.
+    eta : float, length^-2
+    screened : (2, degrees) float array, 1 and length^-2
+        Out.
+    """
     x = eta * square
     q, term = math.erfc(math.sqrt(x)), math.sqrt(x) * math.exp(-x) / (0.5 * math.sqrt(math.pi))
-    for n in range(order + 1):
+    for n in range(screened.shape[1]):
         # term is x^(n+1/2) exp(-x) / Gamma(n+3/2); dQ(a, x)/dx = -x^(a-1) exp(-x) / Gamma(a).
-        screen[n] = q
-        slope[n] = -2.0 * eta * term * (n + 0.5) / x
+        screened[0, n] = q
+        screened[1, n] = -2.0 * eta * term * (n + 0.5) / x
         q += term
         term *= x / (n + 1.5)
 
 
 @compiled
-def near(points, centers, size, multipoles, order, eta, reach, out):
+def near(points, spheres, multipoles, order, split, out):
     """Add what spheres and images within reach make at points outside, each multipole screened.
 
     d/dz I_l^m = -I_(l+1)^m and (d/dx + i d/dy) I_l^m = I_(l+1)^(m+1).
 
     Parameters
     ----------
-    points : (n, 3) float array
-    multipoles : (spheres, entries) complex array
-    out : (n, 4) float array
+    points : (n, 3) float array, length
+    spheres : Spheres
+    multipoles : (spheres, entries) complex array, K length^(l+1)
+    order : int
+        Highest degree.
+    split : Splitting
+    out : (n, 4) float array, K and K/length
         Temperature, then its slope.
     """
+    centers, size, reach = spheres.centers, spheres.size, split.reach
     table = np.zeros((order + 2) * (order + 3) // 2, dtype=np.complex128)
-    screen, slope = np.zeros(order + 1), np.zeros(order + 1)
+    screened = np.zeros((2, order + 1))
     nx, ny, nz = int(reach / size[0] + 0.5), int(reach / size[1] + 0.5), int(reach / size[2] + 0.5)
     for k in range(len(points)):
         for j in range(len(centers)):
@@ -210,14 +182,14 @@ def near(points, centers, size, multipoles, order, eta, reach, out):
                         square = x * x + y * y + z * z
                         if square <= reach * reach:
                             irregular(table, x, y, z, order + 1)
-                            screens(order, square, eta, screen, slope)
-                            _add_screened(multipoles[j], table, screen, slope, x, y, z, order, out[k])
+                            screens(square, split.eta, screened)
+                            _add_screened(multipoles[j], table, screened, (x, y, z), out[k])
 
 
 @compiled
-def _add_screened(multipoles, table, screen, slope, x, y, z, order, out):
+def _add_screened(multipoles, table, screened, offset, out):
     value, across, along, radial = 0.0, 0.0 + 0.0j, 0.0, 0.0
-    for n in range(1, order + 1):
+    for n in range(1, screened.shape[1]):
         here, above = n * (n + 1) // 2, (n + 1) * (n + 2) // 2
         v, d, s = 0.0, 0.0 + 0.0j, 0.0
         for m in range(n + 1):
@@ -228,10 +200,11 @@ def _add_screened(multipoles, table, screen, slope, x, y, z, order, out):
             d += factor * table[above + m + 1]
             if m > 0:
                 d -= (factor * table[above + m - 1]).conjugate()
-        value += screen[n] * v
-        across += screen[n] * d
-        along += screen[n] * s
-        radial += slope[n] * v
+        value += screened[0, n] * v
+        across += screened[0, n] * d
+        along += screened[0, n] * s
+        radial += screened[1, n] * v
+    x, y, z = offset
     out[0] += value
     out[1] += across.real + radial * x
     out[2] += across.imag + radial * y
@@ -239,18 +212,21 @@ def _add_screened(multipoles, table, screen, slope, x, y, z, order, out):
 
 
 @compiled
-def far(points, size, waves, amplitudes, out):
+def far(points, size, split, amplitudes, out):
     """Add 2 Re(F exp(i K.x)) over half of the reciprocal vectors, and its slope.
 
     Parameters
     ----------
-    points : (n, 3) float array
-    waves : (w, 3) int array
-        K in units of 2 pi/size.
-    amplitudes : (w,) complex array
+    points : (n, 3) float array, length
+    size : (3,) float array, length
+        Of the cell.
+    split : Splitting
+    amplitudes : (waves,) complex array, K
         F.
-    out : (n, 4) float array
+    out : (n, 4) float array, K and K/length
+        Temperature, then its slope.
     """
+    waves = split.waves
     most = np.abs(waves).max() if len(waves) else 0
     turns = np.zeros((3, 2 * most + 1), dtype=np.complex128)
     for k in range(len(points)):
