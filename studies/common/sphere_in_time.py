@@ -23,8 +23,6 @@ CONTACTS, PAPERS = ("calibrated", "platonic"), 100_000
 SIZES = {1: (0.008, 0.005, 0.00276), 2: (0.012, 0.008, 0.005, 0.00276)}
 # Temporal errors far below the spatial ones: of the whole march, and of each of some 200 steps.
 ACCURACY = {"dem": 1e-5, "fem": 2e-6}
-# What a warm-up solves: the same code at a size that costs next to nothing.
-SMALL = {"dem": {"particles": 500, "seed": 99}, "fem": {"size": DIAMETER / 5}}
 
 
 def sphere():
@@ -105,7 +103,7 @@ def prepare(times, look, *, method, **knobs):
             from demheat.calibration import cube_like
 
             cube_like(packing)
-    marched(times, look, method=method, **{**knobs, **SMALL[method]})
+    marched(times, look, method=method, **{**knobs, **methods.small(method)})
 
 
 def radii(points):
@@ -134,16 +132,6 @@ def slice_grid(n=41):
     from demheat.slices import plane
 
     return plane(sphere(), axis=2, at=DIAMETER / 2, n=n)
-
-
-def text(values):
-    """Numbers as one cell of a table."""
-    return " ".join(f"{value:.6g}" for value in values)
-
-
-def numbers(cell):
-    """The numbers of such a cell."""
-    return np.array([float(word) for word in cell.split()])
 
 
 def name_of(row):

@@ -83,37 +83,3 @@ def binned(x, values, bins=20):
     mean = np.full(bins, np.nan)
     np.divide(np.bincount(place, values, bins), count, out=mean, where=count > 0)
     return (edges[1:] + edges[:-1]) / 2, mean
-
-
-def dispersion(curves):
-    """Mean over time of (max - min)/max over packings, in per cent: the paper's measure.
-
-    Parameters
-    ----------
-    curves : (packings, times) float array, degrees Celsius
-
-    Returns
-    -------
-    float
-    """
-    curves = np.asarray(curves, dtype=float)
-    highest = curves.max(axis=0)
-    return float(100 * np.mean((highest - curves.min(axis=0)) / highest))
-
-
-def largest_difference(curve, reference):
-    """Where two curves differ most: its index, and the difference there in per cent of the reference.
-
-    Parameters
-    ----------
-    curve, reference : (times,) float array, degrees Celsius
-
-    Returns
-    -------
-    at : int
-    percent : float
-        Signed.
-    """
-    off = np.asarray(curve) - np.asarray(reference)
-    at = int(np.argmax(np.abs(off)))
-    return at, float(100 * off[at] / reference[at])

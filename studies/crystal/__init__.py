@@ -12,7 +12,7 @@ import math
 
 import numpy as np
 
-from demheat import Flux, Material, Scene, Sphere
+from demheat import Flux, Material, Scene, Sphere, referee
 from demheat.scene import WALLS
 from studies.harness.figures import BLUE, GREY, ORANGE
 from studies.harness.pick import pick
@@ -90,11 +90,11 @@ def _compared(cells, walls, sphere):
     rough = np.random.default_rng(0).uniform(298.0, 798.0, grid.k.shape)
     dt = float((grid.capacity / (12.0 * EDGE * grid.k)).min())
     after = rough[place] + dt / capacity * _received(network, scene, rough[place])
-    row["step"] = float(abs(after - stencil.explicit_step(grid, rough, dt)[place]).max() / SPAN)
+    row["step"] = _off(after, stencil.explicit_step(grid, rough, dt)[place], scale=SPAN)
     knobs = {"law": "platonic", "coordination": 6.0, "wall": "surface"}
     field = solve(scene, packing=packing, tolerance=1e-14, **knobs)
     at = tuple(np.floor(field.samples.points / EDGE).astype(int).T)
-    row["steady"] = float(abs(field.samples.temperature - stencil.steady(grid)[at]).max() / SPAN)
+    row["steady"] = _off(field.samples.temperature, stencil.steady(grid)[at], scale=SPAN)
     return row | {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
 
 
@@ -158,9 +158,9 @@ def _received(network, scene, temperature):
     return received
 
 
-def _off(ours, theirs):
-    """Largest difference over the largest value; NaN if any is missing."""
-    return float(abs(ours - theirs).max() / abs(theirs).max())
+def _off(ours, theirs, scale=None):
+    """Largest difference over a scale, by default the largest value; NaN if any is missing."""
+    return float(abs(referee.value_error(ours, theirs, scale=scale or abs(theirs).max())).max())
 
 
 def _conducting(cells, crystal):
@@ -192,12 +192,12 @@ def claims(df):
         limit = 1e-11 if quantity == "steady" else 1e-13
         text = f"Simple cubic crystal, network against finite differences: {name}, largest relative difference"
         yield text, grids[quantity].max(skipna=False), limit
-    off = (others["conductivity"] / others["formula"] - 1).abs().max(skipna=False)
+    off = referee.value_error(others["conductivity"], others["formula"]).abs().max(skipna=False)
     yield "Crystals: conductivity off polyhedron over cell, n s f / (4 pi), relative", off, 1e-11
-    off = (others["capacity_ratio"] - 1).abs().max(skipna=False)
+    off = referee.value_error(others["capacity_ratio"], 1.0).abs().max(skipna=False)
     yield "Crystals: heat capacity off that of the body, relative", off, 1e-12
     wrong = others[others["crystal"] != "simple cubic"]
-    least = (wrong["conductivity"] - 1).abs().min()
+    least = referee.value_error(wrong["conductivity"], 1.0).abs().min()
     yield "Crystals other than simple cubic: least error of the conductivity", least, ">= 0.01"
 
 

@@ -1,5 +1,6 @@
 """Figure of the study `fig10_halo`, and its rows by halo radius."""
 
+from studies.harness.cells import numbers
 from studies.harness.pick import pick
 from studies.harness.store import printed
 
@@ -20,15 +21,11 @@ def long(df):
 
     rows = []
     for row in df[df["status"] == "ok"].to_dict("records"):
-        lists = [_numbers(row[f"{part}{name}"]) for part in ("", "bulk_") for name in STATISTICS]
+        lists = [numbers(row[f"{part}{name}"]) for part in ("", "bulk_") for name in STATISTICS]
         names = [f"{part}{name}" for part in ("", "bulk_") for name in STATISTICS]
         case = {name: row[name] for name in ("law", "split", "walls", "particles", "seed")}
         rows += [case | {"ratio": r} | dict(zip(names, v, strict=True)) for r, *v in zip(RATIOS, *lists, strict=True)]
     return pd.DataFrame(rows)
-
-
-def _numbers(cell):
-    return [float(word) for word in cell.split()]
 
 
 def plot(df):
@@ -114,7 +111,7 @@ def _densities(raw, halos, df):
         for part, style in (("bulk_", "-"), ("", ":")):
             for cell in pick(rows, split=split)[f"{part}density_{ratio:g}"].dropna():
                 label = f"{'no halo' if ratio == 0 else f'halo of {ratio:g}'}, {split}, {part.strip('_') or 'all'}"
-                density = np.array(_numbers(cell)) * BINS / (high - low)
+                density = numbers(cell) * BINS / (high - low)
                 axes.plot(middle, density, style, color=colour, label=label)
     number = int(rows["particles"].max())
     for axes, what in ((raw, "no halo, and a narrow one"), (halos, "halos")):

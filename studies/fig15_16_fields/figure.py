@@ -7,8 +7,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
+from demheat import referee
+from studies.harness.cells import picture
 from studies.harness.figures import LOOK, resolution
+from studies.harness.pick import with_size
 
 # Errors are coloured linearly up to the first, in %, then by decades, and beyond the second in the colour of the end.
 REACH = {"temperature": (0.1, 10.0), "flux": (1.0, 100.0)}
@@ -68,7 +70,7 @@ def _pictured(df):
 
 
 def _title(name, row):
-    words = resolution(*(row[key] for key in ("particles", "size", "voxels")))
+    words = resolution(row)
     # A column is some 25 letters wide.
     return (name if len(name) < 25 else name.replace(", ", ",\n", 1)) + (f",\n{words}" if words else "")
 
@@ -128,8 +130,8 @@ def _errors_at_points(axis, df, paper, printed, points, label):
     exact, others = _pictured(df)
     bars = [(label(row), [abs(row[f"q_{letter}_error"]) for letter in points], _looks(row)) for row in others]
     for (name, key), marker in zip(printed.items(), "PX*", strict=True):
-        off = [100 * abs(paper[f"q_{letter}_{key}"] / exact[f"q_{letter}"] - 1) for letter in points]
-        bars.append((f"printed: {name}", off, {"color": "black", "marker": marker}))
+        off = [referee.value_error(paper[f"q_{letter}_{key}"], exact[f"q_{letter}"]) for letter in points]
+        bars.append((f"printed: {name}", 100 * np.abs(off), {"color": "black", "marker": marker}))
     for number, (name, values, look) in enumerate(bars):
         place = np.arange(len(points)) + 0.8 * ((number + 0.5) / len(bars) - 0.5)
         axis.plot(place, values, **look | {"linestyle": ""}, label=name)
@@ -142,7 +144,7 @@ def _errors_at_points(axis, df, paper, printed, points, label):
 def _errors_by_size(axis, df, column, title, label):
     rows = df[df["name"] != "exact"]
     for _, group in rows.groupby(["name", "ratio"], dropna=False, sort=False):
-        means = group.groupby(["particles", "size", "voxels"], dropna=False)[["unknowns", column]].mean()
+        means = with_size(group).groupby("h", dropna=False)[["unknowns", column]].mean()
         means = means.sort_values("unknowns")
         axis.plot(means["unknowns"], means[column], **_looks(group.iloc[0]), label=label(group.iloc[0]))
     _whole_decades(axis.set_xlim, rows["unknowns"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat import referee
 from demheat.gallery import EPOXY, SILICA
 from references import bounds
 from studies.harness.converged import converged
@@ -51,7 +52,7 @@ def along_one_axis(df, fraction):
 def change(df, fraction, kind):
     """Change of that mean from equal periodic cells to another kind, %; None if one is missing."""
     equal, other = (interval(df, each, fraction) for each in ("periodic", kind))
-    return 100 * (other.mean / equal.mean - 1) if equal and other else None
+    return 100 * referee.value_error(other.mean, equal.mean) if equal and other else None
 
 
 def change_interval(df, fraction, kind):
@@ -71,7 +72,7 @@ def of_walls(df, fraction):
     if rows["boundary"].nunique() < 2:
         return rows["k_ratio"][:0]
     k = rows.pivot(index="realisation", columns="boundary", values="k_ratio")
-    return 100 * (k["walls"] / k["gradient"] - 1)
+    return 100 * referee.value_error(k["walls"], k["gradient"])
 
 
 def walls_less_gradient(df, name, fraction):
@@ -80,4 +81,4 @@ def walls_less_gradient(df, name, fraction):
         converged(df, name, kind="walled", boundary=boundary, fraction=fraction, realisation=0, axes="y")
         for boundary in ("walls", "gradient")
     ]
-    return None if None in pair else 100 * (pair[0] / pair[1] - 1)
+    return None if None in pair else 100 * referee.value_error(*pair)

@@ -8,7 +8,9 @@ import numpy as np
 
 from demheat.slices import filled, plane
 from studies.common import silica_epoxy
-from studies.common.field_errors import cell, mean_diameter
+from studies.common.field_errors import mean_diameter
+from studies.harness import methods
+from studies.harness.cells import cell
 from studies.harness.cost import measured
 
 # Table 3 of the paper, in edges of the cube; all four lie on the plane x = L/2.
@@ -35,8 +37,8 @@ def arrangement_row():
     points, _ = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
-    row["slice_face"] = cell(face / scene.size[0], 4)
-    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], 4)}
+    row["slice_face"] = cell(face / scene.size[0], "g", decimals=4)
+    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], "g", decimals=4)}
 
 
 def distance(scene, points):
@@ -65,19 +67,18 @@ def field_row(boundary, *, method, **knobs):
         row |= {f"q{axis}_{letter}": part for axis, part in zip("xyz", q, strict=True)}
     warm, flux = filled(mask, temperature[len(POINTS) :]), filled(mask, flux[len(POINTS) :])
     # Two digits behind the point: 0.02 % of the mean flux of 29 W/m2; three: 0.0005 % of the span.
-    row |= {f"slice_{axis}": cell(flux[..., k], 2) for k, axis in enumerate("xyz")}
-    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, 3)}
+    row |= {f"slice_{axis}": cell(flux[..., k], "g", decimals=2) for k, axis in enumerate("xyz")}
+    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, "g", decimals=3)}
 
 
 def warm_up(boundary, *, method, **knobs):
     """Make the dispersion and the packing, load and compile, also what looks at the field."""
     scene = spheres_in(boundary)
-    silica_epoxy.warm_up(method, **knobs)
+    methods.warm_up(method, **knobs)
     if "particles" in knobs:
         from demheat import dem
         from demheat.packing.cache import relaxed
-        from studies.harness.methods import SMALL
 
         relaxed(knobs["particles"], size=scene.size, periodic=scene.periodic, seed=knobs["seed"])
-        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **SMALL[method]})
+        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **methods.small(method)})
         small.temperature_at(np.array([scene.size]) / 2), small.flux_at(np.array([scene.size]) / 2)

@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from studies.harness.cells import numbers
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from studies.harness.pick import pick
-from studies.packings.packers import GAPS, numbers
+from studies.packings.rows import GAPS
 
 OURS = {"lsa": ("ours", RED, "o"), "spheropack": ("spheropack", BLUE, "s")}
 

@@ -10,6 +10,7 @@ import time
 
 import numpy as np
 
+from demheat import referee
 from demheat.build import network_of
 from demheat.conduction import transient
 from demheat.conduction.integrators import control, euler, march
@@ -61,7 +62,7 @@ def _described(system, start, end, state, accuracy):
     span = float(np.ptp(np.append(start - system.level, system.held_at(end))))
     names = ("steps", "rejected", "stages", "iterations", "residual", "unknowns", "energy_error", "spectral_ratio")
     row = {name: state.stats[name] for name in names} | {"taken": state.stats["integrator"]}
-    error = float(np.sqrt(np.mean((state.temperature - right) ** 2))) / span
+    error = referee.rms(referee.value_error(state.temperature, right, scale=1.0)) / span
     return row | {"error_percent": 100 * error, "reference": finest, "extrapolated": False}
 
 

@@ -7,6 +7,7 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat import referee
 from demheat.packing import statistics
 from demheat.packing.base import make_packing
 from demheat.packing.lsa import lsa
@@ -14,6 +15,7 @@ from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian
 from demheat.packing.relax import relax
 from demheat.scene import ROUND_AXES
+from studies.harness.cells import cell
 from studies.harness.cost import measured
 
 # Surface distances, as parts of r_i + r_j, at which contacts are counted.
@@ -96,7 +98,7 @@ def described(packing, row, *, curves):
     margin = 0.0 if packing.periodic.all() else 5.0
     found = {"phi_reached": packing.phi, "phi_core": statistics.packing_fraction(packing, margin=margin)}
     found |= {"overlap": overlap(packing), "bytes_per_sphere": row["peak_mib"] * 2**20 / packing.number}
-    found |= {"z_of_gap": _text(_z_of_gap(packing))}
+    found |= {"z_of_gap": cell(_z_of_gap(packing))}
     touching = contacts(packing, gap=TOUCH)[:2]
     held = statistics.backbone(packing, *touching, gap=TOUCH)
     found |= {"rattlers": float(held.rattler.mean()), "backbone_z": held.coordination}
@@ -149,11 +151,11 @@ def _curves(packing, indptr, indices):
     scaled = statistics.radial_distribution(packing, r_max=2.0, bins=100, scaled=True)
     s2 = statistics.two_point(packing, r_max=3.0, points=61)
     polar = statistics.directions(packing, indptr, indices)
-    worst = int(np.argmax(abs(s2.slope / s2.exact_slope - 1)))
-    found = {"r": _text(g.r), "g": _text(g.g), "scaled_r": _text(scaled.r), "scaled_g": _text(scaled.g)}
-    found |= {f"s2_{k}": _text(s2.s2[k]) for k in range(3)}
+    worst, _ = referee.worst(referee.value_error(s2.slope, s2.exact_slope))
+    found = {"r": cell(g.r), "g": cell(g.g), "scaled_r": cell(scaled.r), "scaled_g": cell(scaled.g)}
+    found |= {f"s2_{k}": cell(s2.s2[k]) for k in range(3)}
     found |= {
-        "s2_r": _text(s2.r),
+        "s2_r": cell(s2.r),
         "s2_error": float(s2.error[:, 1:].mean()),
         "s2_spread": float(np.ptp(s2.s2, 0).max()),
     }
@@ -163,14 +165,5 @@ def _curves(packing, indptr, indices):
         "slope_worst": float(s2.slope[worst]),
     }
     found |= {"slope_error": float(math.sqrt(np.sum(s2.slope_error**2)) / len(s2.slope))}
-    names = {f"polar_{axis}": _text(polar.density[k]) for k, axis in enumerate("xyz")}
-    return found | names | {"polar_error": float(polar.error.max()), "polar_angle": _text(polar.angles)}
-
-
-def _text(values):
-    return " ".join(f"{value:.6g}" for value in values)
-
-
-def numbers(text):
-    """Array of what `described` wrote as text."""
-    return np.array([float(word) for word in str(text).split()])
+    names = {f"polar_{axis}": cell(polar.density[k]) for k, axis in enumerate("xyz")}
+    return found | names | {"polar_error": float(polar.error.max()), "polar_angle": cell(polar.angles)}

@@ -6,6 +6,8 @@ import math
 
 import numpy as np
 
+from demheat import referee
+from studies.harness.cells import numbers
 from studies.harness.pick import pick, student
 
 KEYS = ("placed", "gap", "ratio", "fraction")
@@ -26,13 +28,13 @@ def pooled(df):
 
     rows = []
     for key, group in pick(df, part="cells").groupby(list(KEYS), sort=False):
-        values = np.array([float(word) for text in group["values"] for word in text.split()])
+        values = np.concatenate([numbers(text) for text in group["values"]])
         row = dict(zip(KEYS, key, strict=True)) | {"cells": len(values), "spheres": int(group["spheres"].iloc[0])}
         mean = student(values)
         row |= {"zeta2": mean.mean, "scatter": mean.deviation, "half": mean.half}
         row["se"] = mean.deviation / math.sqrt(mean.number)
         row["polynomial"] = float(zeta2_hard_spheres(row["fraction"]))
-        rows.append(row | {"off_percent": 100 * (row["zeta2"] / row["polynomial"] - 1)})
+        rows.append(row | {"off_percent": 100 * referee.value_error(row["zeta2"], row["polynomial"])})
     return pd.DataFrame(rows, columns=[*rows[0]] if rows else [*KEYS])
 
 
@@ -55,7 +57,7 @@ def below(means, lower, upper):
     both = pick(means, **lower).merge(pick(means, **upper), on="fraction", suffixes=("", "_upper"))
     if not len(both):
         return None, None
-    difference = 100 * (1 - both["zeta2"] / both["zeta2_upper"])
+    difference = -100 * referee.value_error(both["zeta2"], both["zeta2_upper"])
     variance = (100 * both["se"] / both["zeta2_upper"]) ** 2 + (100 * both["se_upper"] / both["zeta2_upper"]) ** 2
     weight = 1 / variance
     return float((weight * difference).sum() / weight.sum()), float(1 / math.sqrt(weight.sum()))
@@ -74,38 +76,3 @@ def with_bounds(df):
     rows["torquato"] = bounds.torquato(*pair, own)
     rows["torquato_polynomial"] = bounds.torquato(*pair, bounds.zeta2_hard_spheres(pair[2]))
     return rows
-
-
-def lines(df):
-    """Lines of the table: arrays on their finest grid, then random cells."""
-    arrays = [group for _, group in pick(df, part="array").groupby(["array", "fraction"], sort=False)]
-    return [*map(_array_line, arrays), *(_cell_line(df, mean) for _, mean in pooled(df).iterrows())]
-
-
-SOLVED = {"k": "conductivity", "lower": "lower", "upper": "upper", "Torquato": "torquato"}
-SOLVED |= {"with polynomial": "torquato_polynomial"}
-NOTHING = {"grid": "", "voxels": float("nan"), "raw": float("nan")}
-
-
-def _array_line(group):
-    last = group.loc[group["voxels"].idxmax()]
-    line = {"structure": last["array"].upper(), "gap": "", "L/D": "", "f": last["fraction"], "cells": ""}
-    line |= {"zeta_2": f"{last['exact']:.6f}", "+-": "", "scatter": float("nan"), "polynomial": ""}
-    return line | {"off, %": float("nan")} | _errors(last) | {"surface": ""} | dict.fromkeys(SOLVED, "")
-
-
-def _errors(row):
-    return {"grid": f"{row['voxels']:.0f}^3", "voxels": row["error_percent"], "raw": row["raw_percent"]}
-
-
-def _cell_line(df, mean):
-    here = {key: mean[key] for key in KEYS}
-    voxels, surface = pick(df, part="voxels", **here), pick(df, part="surface", **here)
-    solved = pick(with_bounds(df), **here)
-    line = {"structure": mean["placed"].upper(), "gap": f"{mean['gap']:g} D", "L/D": f"{mean['ratio']:g}"}
-    line |= {"f": mean["fraction"], "cells": str(mean["cells"]), "zeta_2": f"{mean['zeta2']:.5f}"}
-    line |= {"+-": f"{mean['half']:.5f}", "scatter": 100 * mean["scatter"] / mean["zeta2"]}
-    line |= {"polynomial": f"{mean['polynomial']:.5f}", "off, %": mean["off_percent"]}
-    line |= _errors(voxels.loc[voxels["voxels"].idxmax()]) if len(voxels) else NOTHING
-    line["surface"] = "".join(f"{row.error_percent:+.2f} +- {row.error_se:.2f}" for row in surface.itertuples())
-    return line | {title: f"{solved[name].iloc[0]:.4f}" if len(solved) else "" for title, name in SOLVED.items()}

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from references.mixing import (
+from references.bounds.mixing import (
     checked_fraction,
     checked_pair,
     checked_phases,
