@@ -54,6 +54,7 @@ def _cases():
 
 
 CASES = list(_cases())
+MODULES = {"lattice": "references.exact.lattice"}
 PAPER = {}
 
 

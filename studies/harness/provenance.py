@@ -171,8 +171,20 @@ def _parse(path):
 
 def _text(nodes):
     """Statements as text, without imports of ours and what only describes a module (`__all__`, `METHODS`)."""
-    kept = [_Moved().visit(copy.deepcopy(node)) for node in nodes if not _bound(node) & DESCRIBING]
-    return "\n".join(ast.dump(node) for node in kept if node is not None)
+    return "\n".join(filter(None, (_dump(node) for node in nodes if not _bound(node) & DESCRIBING)))
+
+
+@cache
+def _dump(node):
+    """One statement as text; empty if it is an import of ours. A module's statements count in many hashes."""
+    kept = _Moved().visit(copy.deepcopy(node)) if _imports_in(node) else node
+    return "" if kept is None else ast.dump(kept)
+
+
+@cache
+def _imports_in(node):
+    """Import statements inside another one."""
+    return [part for part in ast.walk(node) if isinstance(part, ast.Import | ast.ImportFrom)]
 
 
 class _Moved(ast.NodeTransformer):
@@ -209,10 +221,10 @@ def _bound(node):
 def _imported(nodes):
     """Pairs (module name, whether all of it counts) of the imports of ours inside some statements."""
     names = []
-    for node in (part for top in nodes for part in ast.walk(top)):
+    for node in (part for top in nodes for part in _imports_in(top)):
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
+        else:
             inner = [f"{node.module}.{alias.name}" for alias in node.names]
             names += [name if _file_of(name) else node.module for name in inner]
     names = [name for name in names if name.split(".")[0] in PACKAGES]

@@ -27,7 +27,7 @@ import traceback
 from pathlib import Path
 
 from studies.harness.cost import measured, triad_gbs
-from studies.harness.provenance import SAME, provenance
+from studies.harness.provenance import SAME, code_hash, module_of, provenance
 from studies.harness.store import TAIL, case_key, read_rows, write_rows
 
 TIMEOUT = 1800.0
@@ -106,6 +106,31 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
         write_rows(path, (rows[case_key(c)] for c in study.CASES if case_key(c) in rows))
         say(_progress(number, len(todo), rows[key], time.perf_counter() - start))
     return path
+
+
+def state(study, rows):
+    """How many of a study's cases have a stored row that the code beside it would give again.
+
+    Only the code counts here: rows that were measured on another machine are no less its own, though `run_study` would
+    repeat them.
+
+    Parameters
+    ----------
+    study : module
+    rows : dict of str to dict
+        From `store.read_rows`.
+
+    Returns
+    -------
+    dict of str to int
+        "held", "stale" (made by other code) and "missing".
+    """
+    found = dict.fromkeys(("held", "stale", "missing"), 0)
+    for case in study.CASES:
+        row = rows.get(case_key(case))
+        code = code_hash(study.__file__, module_of(study, case.get("method", "")))
+        found["missing" if row is None else "held" if row["code"] == code else "stale"] += 1
+    return found
 
 
 def _holds(row, study, case):
