@@ -6,10 +6,9 @@ from functools import cache
 
 import numpy as np
 
+from demheat.build import network_of
 from demheat.calibration import calibration
-from demheat.network.calibrated import contact_facets
-from demheat.network.laguerre import laguerre, without_hidden
-from demheat.network.platonic import platonic_facets
+from demheat.laws import LAWS
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Uniform
@@ -53,22 +52,18 @@ def steady_conductivity(packing, law, **contact):
     packing : Packing
         Of the beam.
     law : {"laguerre", "calibrated", "platonic"}
-    contact : coordination
+    contact : coordination, float
         As in `demheat.dem.evolve`; end temperatures act in the centres of particles, as its default has it.
 
     Returns
     -------
     float
     """
-    if law == "laguerre":
-        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain=packing.domain)
-    elif law == "platonic":
-        facets = platonic_facets(packing, **contact)
-    else:
-        facets = contact_facets(packing, links=contacts(packing, **contact))
-    packing, facets = without_hidden(packing, facets)
+    kind = LAWS[law]
+    if kind.factor is None:  # of a law that is calibrated
+        contact["factor"] = 1.0
     between_ends = Scene(size=tuple(packing.size), matrix=Material(1.0), walls={"x-": 0.0, "x+": 1.0})
-    return 1.0 / calibration(facets, packing, between_ends)
+    return 1.0 / calibration(network_of(between_ends, packing, kind(**contact)), between_ends)
 
 
 @cache

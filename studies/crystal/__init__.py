@@ -112,14 +112,12 @@ def _grid(scene, cells):
 
 def _network(scene, packing):
     """The Platonic network of the crystal, as `solve` makes it, and its heat capacities."""
-    from demheat.network.interface import connect
-    from demheat.network.platonic import platonic_facets
+    from demheat.build import network_of
+    from demheat.conduction.transient import capacities
+    from demheat.laws import Platonic
 
-    facets = platonic_facets(packing, coordination=6.0, wall="surface")
-    phase = scene.phase_at(packing.centers)
-    per_volume = np.array([material.density * material.heat_capacity for material in scene.materials])
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
-    return network, per_volume[phase] * facets.volumes
+    network = network_of(scene, packing, Platonic(coordination=6.0, wall="surface"))
+    return network, capacities(network, scene)
 
 
 def _links(network, place, cells):

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.build import network_of
 from demheat.calibration import calibration
-from demheat.network.calibrated import contact_facets
-from demheat.network.laguerre import without_hidden
+from demheat.laws import Calibrated
 from demheat.packing.cache import grown, relaxed
 from demheat.packing.domain import tile
 from demheat.packing.neighbours import contacts
@@ -68,7 +68,7 @@ def calibrated(
         Of unit size.
     loading : {"flux", "isothermal", "across", "periodic"}
     wall, poor, mean
-        As in `contact_facets`; the default is "center" with walls all round, as in the papers, and else "surface".
+        As in `demheat.Calibrated`; the default is "center" with walls all round, as in the papers, and else "surface".
     additive, margin
         As in `contacts`; the default is no margin with walls all round, as in the papers.
     wanted : float
@@ -86,39 +86,52 @@ def calibrated(
     as_papers = loading in ("flux", "isothermal")
     wall = wall or ("center" if as_papers else "surface")
     margin = (0.0 if as_papers else 4.0) if margin is None else margin
+    load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
+    scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
     target = wanted
     for _ in range(4 if count == "rest" else 1):
         links = contacts(packing, coordination=target, margin=margin, additive=additive)
-        rest, facets = without_hidden(packing, contact_facets(packing, links=links, mean=mean, poor=poor, wall=wall))
-        reached = len(facets.indices) / rest.number
+        law = Calibrated(gap=links[2], additive=additive, mean=mean, poor=poor, wall=wall, factor=1.0)
+        network = network_of(scene, packing, law)
+        left = len(network.radii)
+        reached = len(network.indices) / left
         target += wanted - reached
     found, gap = coordination(packing, *links[:2]), links[2]
     report = {"gap": gap, "links": found.mean, "least": found.least, "under_2": found.under_2, "under_4": found.under_4}
-    report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": rest.number}
+    report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": left}
     del links
-    load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
-    scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
     how = "flux" if loading == "flux" else "isothermal"
     # Tiles of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.
     solver = "cg" if packing.provenance.get("algorithm") == "tile" else "auto"
-    ct = calibration(facets, rest, scene, loading=how, solver=solver)
-    return {"ct": float(ct)} | affine(rest, facets) | report
+    ct = calibration(network, scene, loading=how, solver=solver)
+    return {"ct": float(ct)} | affine(packing, network) | report
 
 
-def affine(packing, facets):
+def affine(packing, network):
     """C_t under a linear temperature field.
 
     A linear field is a trial field of the periodic cell: the conductivity with C_t = 1 is at most
     sum over links of S d cos^2 / V, the angle being that to the load, hence C_t at least its inverse (`bound`). For
     isotropic links that touch, d = 2 R_m, and the sum is (N Z / 2)(1/3) 2 pi <R_m^3> / V with N / V = phi / <4/3 pi
     R^3>: C_t >= 4 <R^3> / (Z phi <R_m^3>) (`formula`), with <R^3> over particles and <R_m^3> over links.
+
+    Parameters
+    ----------
+    packing : Packing
+    network : Network
+        Of it or of a part of its particles, with C_t = 1 and conductivity 1.
+
+    Returns
+    -------
+    dict of float
     """
-    here = np.repeat(packing.radii, np.diff(facets.indptr))
-    there = packing.radii[facets.indices]
-    length = facets.distance * (here + there) / here
-    y = packing.centers[:, 1]
-    step = y[facets.indices] - np.repeat(y, np.diff(facets.indptr))
-    step -= np.where(packing.periodic[1], np.round(step / packing.size[1]) * packing.size[1], 0.0)
-    slope = 0.5 * (facets.area / length) @ step**2 / packing.volume
-    z, cubes = len(here) / packing.number, np.mean((facets.area / np.pi) ** 1.5)
-    return {"bound": 1 / slope, "formula": 4 * np.mean(packing.radii**3) / (z * packing.phi * cubes)}
+    rest = packing._replace(centers=network.centers, radii=network.radii)
+    here = np.repeat(rest.radii, np.diff(network.indptr))
+    there = rest.radii[network.indices]
+    length = network.distance * (here + there) / here
+    y = rest.centers[:, 1]
+    step = y[network.indices] - np.repeat(y, np.diff(network.indptr))
+    step -= np.where(rest.periodic[1], np.round(step / rest.size[1]) * rest.size[1], 0.0)
+    slope = 0.5 * (network.area / length) @ step**2 / rest.volume
+    z, cubes = len(here) / rest.number, np.mean((network.area / np.pi) ** 1.5)
+    return {"bound": 1 / slope, "formula": 4 * np.mean(rest.radii**3) / (z * rest.phi * cubes)}

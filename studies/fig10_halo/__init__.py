@@ -95,27 +95,22 @@ def _calibrated(packing, walls, split):
     """Field of the paper's network, with the flux of each particle by one of the two splits."""
     from dataclasses import replace
 
-    from demheat.calibration import calibration
+    from demheat.build import network_of
     from demheat.conduction.steady import solve_steady
     from demheat.field import Samples
-    from demheat.network.calibrated import contact_facets
-    from demheat.network.interface import connect
-    from demheat.network.laguerre import without_hidden
-    from demheat.packing.neighbours import contacts
+    from demheat.laws import Calibrated
     from demheat.sampling.field_of import field_of
     from demheat.sampling.particle_flux import particle_flux
 
     scene = _scene(walls)
-    packing, facets = without_hidden(packing, contact_facets(packing, links=contacts(packing)))
-    ct = calibration(facets, packing, scene)
-    facets = facets._replace(area=ct * facets.area, wall_distance=facets.wall_distance / ct)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
+    network = network_of(scene, packing, Calibrated())
     solution = solve_steady(network, scene)
-    field = field_of(scene, packing, facets, network, solution, law="calibrated", stats={"law": "calibrated"})
-    flux = particle_flux(packing, facets, network, solution, split=split)
-    samples = Samples(packing.centers, network.volumes, solution.fluctuation, phase, flux)
-    row = {"ct": ct} | {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
+    field = field_of(scene, network, solution, stats={})
+    flux = particle_flux(network, solution, split=split)
+    samples = Samples(network.centers, network.volumes, solution.fluctuation, network.phase, flux)
+    row = {"ct": network.stats["calibration"]} | {
+        name: field.stats[name] for name in ("unknowns", "iterations", "residual")
+    }
     return replace(field, sampler=lambda: samples), row
 
 

@@ -11,12 +11,12 @@ import time
 import numpy as np
 
 from demheat import referee
+from demheat.build import network_of
 from demheat.conduction import transient
 from demheat.conduction.integrators import control, euler
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre
+from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 from demheat.scene import Material, Scene
 from studies.common.slab import packing_of, slab
@@ -38,9 +38,7 @@ def system_of(body, particles):
         metal = Material(185.0, density=2700.0, heat_capacity=900.0)
         scene = Scene(size=(0.1,) * 3, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
         packing = relaxed(particles, size=scene.size, periodic=False, domain="sphere", seed=0)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain=packing.domain)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
+    network = network_of(scene, packing, Laguerre())
     start = transient.initial_temperature(scene, network.centers)
     return semi_discrete(network, scene, transient.capacities(network, scene), level=float(start.mean())), start
 

@@ -1,4 +1,4 @@
-"""The referee scores everything: no study defines an error of temperature, flux or conductivity, read off the source."""
+"""The referee scores everything: no study defines an error of temperature, flux or conductivity."""
 
 import ast
 from pathlib import Path
