@@ -1,6 +1,29 @@
 """Rayleigh's multipole method for any number of disjoint spheres in a periodic cell."""
 
+from demheat.method import DEGREE, Errors, Method, Orders
+
 __all__ = ["solve", "zeta2"]  # noqa: F822, found by `__getattr__`
+
+METHODS = (
+    Method(
+        name="multipole",
+        title="multipoles",
+        role="witness",
+        resolution=DEGREE,
+        small=3,
+        coarse=16,
+        errors=Errors(1.0, 1.0, 1.0),
+        # Errors fall by a factor with each degree, faster than any power of it.
+        orders=Orders((3, 5, 7, 9), 4.0, 4.0, 2.0),
+        exceptions={"integral": "its samples are the middles of equal cells, blind to interfaces"},
+        refuses={
+            "walls": "multipole: walls",
+            "layers": "multipole: layers",
+            "nested": "multipole: nested spheres",
+        },
+        look=("grey", "*", "-"),
+    ),
+)
 
 
 def __getattr__(name):

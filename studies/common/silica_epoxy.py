@@ -5,6 +5,7 @@ from __future__ import annotations
 from demheat.gallery import EDGE, EPOXY, SILICA
 from studies.harness import methods
 from studies.harness.cost import measured
+from studies.harness.figures import resolution
 
 RATIO = 6.0  # edge of the cube over the diameter
 GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for
@@ -14,13 +15,6 @@ STATS = (
     *("unknowns", "iterations", "residual", "truncation", "smallest_gap", "elements"),
     *("packing_s", "tessellation_s", "network_s", "solve_s", "transform_s", "iteration_s"),
 )
-
-
-def case(name, **more):
-    """Case of one method, as `methods.case`; "multipole" besides, the exact witness."""
-    if name == "multipole":
-        return {"name": name, **more, "method": "multipole"}
-    return methods.case(name, **more)
 
 
 def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
@@ -68,9 +62,9 @@ def together(rows, axes):
     return row
 
 
-def warm_up(method, **knobs):
-    """Load and compile what a row needs."""
-    if method == "multipole":
-        methods.load(method).solve(scene("periodic", 0.01, seed=99), order=3)
-    else:
-        methods.warm_up(method, **knobs)
+def words(row):
+    """Resolution of a row; sizes as parts of the cube's edge."""
+    refined = methods.found()[row["name"]].resolution
+    if refined and refined.metric:
+        return f"h = L/{1 / methods.size_of(row):.0f}"
+    return resolution(row).removesuffix(" voxels")

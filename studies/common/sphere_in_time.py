@@ -23,8 +23,6 @@ CONTACTS, PAPERS = ("calibrated", "platonic"), 100_000
 SIZES = {1: (0.008, 0.005, 0.00276), 2: (0.012, 0.008, 0.005, 0.00276)}
 # Temporal errors far below the spatial ones: of the whole march, and of each of some 200 steps.
 ACCURACY = {"dem": 1e-5, "fem": 2e-6}
-# What a warm-up solves: the same code at a size that costs next to nothing.
-SMALL = {"dem": {"particles": 500, "seed": 99}, "fem": {"size": DIAMETER / 5}}
 
 
 def sphere():
@@ -105,7 +103,7 @@ def prepare(times, look, *, method, **knobs):
             from demheat.calibration import cube_like
 
             cube_like(packing)
-    marched(times, look, method=method, **{**knobs, **SMALL[method]})
+    marched(times, look, method=method, **{**knobs, **methods.small(method)})
 
 
 def radii(points):

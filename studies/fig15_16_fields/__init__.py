@@ -14,7 +14,7 @@ particles (eq. 20) averaged over halos of 4 or 11 mean radii (eqs. 22-23), which
 from demheat import referee
 from demheat.gallery import sphere_in_cube
 from studies.harness import methods
-from studies.harness.pick import order, pick, present
+from studies.harness.pick import order, pick, present, with_size
 from studies.harness.store import printed
 
 # Table 2, in edges of the cube.
@@ -88,7 +88,7 @@ def warm_up(name, ratio=None, *, method, **knobs):
 
     scene = sphere_in_cube()
     relaxed(knobs["particles"], size=scene.size, periodic=False, seed=knobs["seed"])
-    small = dem.solve(scene, **{**knobs, **methods.SMALL[method]})
+    small = dem.solve(scene, **{**knobs, **methods.small(method)})
     middle = np.array([scene.size]) / 2
     small.temperature_at(middle), _flux_at(small, ratio)(middle)
 
@@ -224,7 +224,7 @@ SHOWN = {"flux_rms": "flux rms", "flux_max": "max", "flux_rms_band": "band rms",
 
 
 def _grouped(df):
-    return df[df["status"] == "ok"].groupby(["name", "ratio", "particles", "size", "voxels"], dropna=False, sort=False)
+    return with_size(df[df["status"] == "ok"]).groupby(["name", "ratio", "h"], dropna=False, sort=False)
 
 
 def label(row):
@@ -243,7 +243,7 @@ def _line(name, group):
     from studies.harness.figures import resolution
 
     mean = group.mean(numeric_only=True)
-    line = {"method": name, "resolution": resolution(*(mean[key] for key in ("particles", "size", "voxels")))}
+    line = {"method": name, "resolution": resolution(group.iloc[0])}
     line |= {f"T_{letter}": f"{mean[f'T_{letter}']:.3f}" for letter in POINTS}
     line |= {f"q_{letter}": mean[f"q_{letter}"] for letter in POINTS}
     line["worst q, %"] = _largest(group, _errors("q"))

@@ -10,6 +10,7 @@ import numpy as np
 from demheat import referee
 from studies.harness.cells import picture
 from studies.harness.figures import LOOK, resolution
+from studies.harness.pick import with_size
 
 # Errors are coloured linearly up to the first, in %, then by decades, and beyond the second in the colour of the end.
 REACH = {"temperature": (0.1, 10.0), "flux": (1.0, 100.0)}
@@ -69,7 +70,7 @@ def _pictured(df):
 
 
 def _title(name, row):
-    words = resolution(*(row[key] for key in ("particles", "size", "voxels")))
+    words = resolution(row)
     # A column is some 25 letters wide.
     return (name if len(name) < 25 else name.replace(", ", ",\n", 1)) + (f",\n{words}" if words else "")
 
@@ -143,7 +144,7 @@ def _errors_at_points(axis, df, paper, printed, points, label):
 def _errors_by_size(axis, df, column, title, label):
     rows = df[df["name"] != "exact"]
     for _, group in rows.groupby(["name", "ratio"], dropna=False, sort=False):
-        means = group.groupby(["particles", "size", "voxels"], dropna=False)[["unknowns", column]].mean()
+        means = with_size(group).groupby("h", dropna=False)[["unknowns", column]].mean()
         means = means.sort_values("unknowns")
         axis.plot(means["unknowns"], means[column], **_looks(group.iloc[0]), label=label(group.iloc[0]))
     _whole_decades(axis.set_xlim, rows["unknowns"])

@@ -7,9 +7,10 @@ import numpy as np
 from demheat import referee
 from references import bounds
 from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, of_walls, witness
-from studies.harness.converged import TERMS, converged
+from studies.harness import methods
+from studies.harness.converged import converged
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
-from studies.harness.pick import pick
+from studies.harness.pick import pick, with_size
 
 HERE = {"kind": "periodic", "boundary": "gradient", "realisation": 0, "axes": "y"}
 FLOOR = 1e-4  # per cent; what is below is drawn there
@@ -87,18 +88,15 @@ def _once(ax, label):
 
 def _errors(ax, df):
     """On the first cell: the finest row of each method open, its converged value filled."""
-    for name in ("dem-calibrated", *TERMS):
-        rows = pick(df, name=name, **HERE)
+    for method in (methods.found()["dem-calibrated"], *methods.compared()):
+        name, rows = method.name, with_size(pick(df, name=method.name, **HERE)).fillna({"h": 0.0})
         if not len(rows):
             continue
-        knob = TERMS.get(name, ("particles",))[0]
-        fine = rows.loc[
-            rows.groupby("fraction")[knob].idxmin() if knob == "size" else rows.groupby("fraction")[knob].idxmax()
-        ]
+        fine = rows.loc[rows.groupby("fraction")["h"].idxmin()]
         errors = [_percent_off(df, f, k) for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)]
         style = look(name)
         ax.plot(fine["fraction"], np.maximum(errors, FLOOR), **style | {"markerfacecolor": "none", "linestyle": ":"})
-        if name in TERMS and TERMS[name][1]:
+        if method.terms:
             limits = {f: converged(df, name, fraction=f, **HERE) for f in fine["fraction"]}
             errors = [_percent_off(df, f, k) if k else np.nan for f, k in limits.items()]
             ax.plot(
@@ -140,6 +138,6 @@ def _spreads(ax, df):
 
 def _between(df, fraction):
     """Largest difference of two methods' converged values on the first cell, %; None with fewer than two."""
-    k = [converged(df, name, fraction=fraction, **HERE) for name in TERMS]
+    k = [converged(df, name, fraction=fraction, **HERE) for name in (method.name for method in methods.compared())]
     k = [each for each in k if each]
     return 100 * referee.value_error(max(k), min(k)) if len(k) > 1 else None

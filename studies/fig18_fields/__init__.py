@@ -14,7 +14,8 @@ the band is the rest. In the periodic cell, where the level of temperature is fr
 
 import math
 
-from studies.common import silica_epoxy
+from studies.fig18_fields.tables import COMPARED
+from studies.harness import methods
 from studies.harness.figures import resolution
 from studies.harness.methods import EDGE
 from studies.harness.pick import pick, present
@@ -25,6 +26,7 @@ NUMBERS = (30_000, 100_000, 300_000, 1_000_000)
 # Longest edges, in edges of the cube.
 SIZES = {"fem": (0.06, 0.03, 0.015), "fem-p1": (0.012,)}
 VOXELS = (64, 128, 256)
+RESOLUTIONS = {"particles": NUMBERS, "size": SIZES["fem"], "fem-p1": SIZES["fem-p1"], "voxels": VOXELS}
 DEGREES = {"gradient": (8, 14), "walls": (6, 9)}
 PAPER = printed("fig18_fields")
 TIMEOUT = 3600.0
@@ -38,14 +40,12 @@ def finest_number(boundary):
 def _cases():
     yield {"name": "arrangement", "method": "dispersion"}
     for boundary in BOUNDARIES:
-        yield from (silica_epoxy.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
-        for number in NUMBERS:
-            if number <= finest_number(boundary):
-                yield silica_epoxy.case("dem", boundary=boundary, particles=number, seed=0)
-        for name, sizes in SIZES.items():
-            if name == "fem" or boundary == "walls":
-                yield from (silica_epoxy.case(name, boundary=boundary, size=size * EDGE) for size in sizes)
-        yield from (silica_epoxy.case("fft", boundary=boundary, voxels=voxels) for voxels in VOXELS)
+        yield from (methods.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
+        for method in methods.compared("fem-p1"):
+            if method.name in COMPARED or (method.name, boundary) == ("fem-p1", "walls"):
+                most = finest_number(boundary) if method.name == "dem" else math.inf
+                knobs = [methods.at(method, v) for v in methods.spent(method, RESOLUTIONS) if v is None or v <= most]
+                yield from (methods.case(method.name, boundary=boundary, **each) for each in knobs)
 
 
 CASES = list(_cases())
@@ -56,9 +56,12 @@ def QUICK(case):
     """Each method at its coarsest; between walls the finite elements stand in for the multipoles of 664 images."""
     if case["name"] == "multipole":
         return (case["boundary"], case["order"]) == ("gradient", DEGREES["gradient"][0])
-    coarsest = {"particles": NUMBERS[0], "size": SIZES["fem"][0] * EDGE, "voxels": VOXELS[0]}
-    fits = all(case[key] == value for key, value in coarsest.items() if key in case)
-    return fits and (case["name"], case.get("boundary")) != ("fem", "gradient")
+    if case["name"] == "arrangement":
+        return True
+    method = methods.found()[case["name"]]
+    coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
+    fits = coarsest.items() <= case.items() and method.role == "main"
+    return fits and (case["name"], case["boundary"]) != ("fem", "gradient")
 
 
 def run(name, boundary=None, *, method, **knobs):
@@ -133,14 +136,10 @@ def _methods(found):
                 if name == "dem" and size == fine:
                     size = finest_number(boundary)
                 rows = pick(found, name=name, boundary=boundary, **{knob: size})
-                text = f"{name.upper()}, {_words(knob, size)}, {boundary}, worst point of Table 3: "
+                words = resolution({"name": name, knob: size})
+                text = f"{name.upper()}, {words}, {boundary}, worst point of Table 3: "
                 yield text + f"temperature off {whom}, % of the span", _worst(rows, "worst_T"), limits[0]
                 yield text + f"flux off {whom}, % of the local one", _worst(rows, "worst_q"), limits[1]
-
-
-def _words(knob, size):
-    nothing = dict.fromkeys(("particles", "size", "voxels"), float("nan"))
-    return resolution(**nothing | {knob: size})
 
 
 def _worst(rows, column):

@@ -15,6 +15,7 @@ from demheat.scene import Scene, Sphere
 from demheat.slices import filled, plane
 from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
+from studies.harness import methods
 from studies.harness.cells import cell
 from studies.harness.cost import measured
 
@@ -99,12 +100,11 @@ def field_row(boundary, *, method, **knobs):
 def warm_up(boundary, *, method, **knobs):
     """Make the dispersion and the packing, load and compile, also what looks at the field."""
     scene = spheres_in(boundary)
-    silica_epoxy.warm_up(method, **knobs)
+    methods.warm_up(method, **knobs)
     if "particles" in knobs:
         from demheat import dem
         from demheat.packing.cache import relaxed
-        from studies.harness.methods import SMALL
 
         relaxed(knobs["particles"], size=scene.size, periodic=scene.periodic, seed=knobs["seed"])
-        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **SMALL[method]})
+        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **methods.small(method)})
         small.temperature_at(np.array([scene.size]) / 2), small.flux_at(np.array([scene.size]) / 2)

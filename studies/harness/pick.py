@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from studies.harness import methods
+
 CONFIDENCE = 0.95
 
 
@@ -29,10 +31,15 @@ def pick(df, **where):
     return df[mask]
 
 
+def with_size(df):
+    """The rows with a column `h`, the size of an element over the cube's edge; not-a-number if nothing refines them."""
+    return df.assign(h=np.array([methods.size_of(row) for row in df.to_dict("records")], dtype=float))
+
+
 def finest(rows):
-    """Rows of the finest resolution among them: most particles or voxels, or smallest elements."""
-    fineness = rows["particles"].fillna(0) + rows["voxels"].fillna(0) - rows["size"].fillna(0)
-    return rows[fineness == fineness.max()]
+    """Rows of the finest resolution among them, whatever the knob; all of them if there is none."""
+    size = with_size(rows)["h"]
+    return rows if size.isna().all() else rows[size == size.min()]
 
 
 def mean_errors(df, by="contrast", **where):

@@ -12,7 +12,7 @@ import tempfile
 from demheat import referee
 from studies.common import silica_epoxy
 from studies.harness import methods
-from studies.harness.converged import TITLES, converged
+from studies.harness.converged import converged
 from studies.harness.pick import largest, pick, present
 from studies.harness.store import printed
 
@@ -22,6 +22,7 @@ NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # tiles along an edge, and par
 VOXELS = (64, 128, 256, 512)
 SINGLE = (128, 512)  # voxels in float32
 SIZES = {"fem": (1 / 24, 1 / 34, 1 / 48), "fem-p1": (1 / 20, 1 / 40, 0.012)}  # in edges of the cube
+RESOLUTIONS = {"particles": PARTICLES, "voxels": VOXELS, "size": SIZES["fem"], "fem-p1": SIZES["fem-p1"]}
 DEGREES = (4, 6, 8, 10, 12, 14, 16)
 GAPS = (0.003, 0.001)
 SOLVED = 1_000_000  # particles of the matrix that pyamg solves too
@@ -30,17 +31,16 @@ TIMEOUT = 7200.0
 
 
 def _cases():
-    yield from (silica_epoxy.case("multipole", highest=degree) for degree in DEGREES)
-    yield from (silica_epoxy.case("dem", particles=number, seed=0) for number in PARTICLES)
-    # Tiles of the same size: what is repeated does not matter for errors of some per cent.
-    for tiles, number in NETWORKS.items():
-        yield silica_epoxy.case("dem-calibrated", particles=number, seed=0, tiles=tiles)
-    for name, sizes in SIZES.items():
-        yield from (silica_epoxy.case(name, size=size * methods.EDGE) for size in sizes)
-    for name in ("fft", "fft-em"):
-        yield from (silica_epoxy.case(name, voxels=voxels) for voxels in VOXELS)
-    yield from (silica_epoxy.case("fft", voxels=voxels, precision="float32") for voxels in SINGLE)
-    yield from (silica_epoxy.case("fem", gap=gap, size=methods.EDGE / 24) for gap in GAPS)
+    yield from (methods.case("multipole", highest=degree) for degree in DEGREES)
+    for method in methods.compared("dem-calibrated", "fem-p1"):
+        if method.name == "dem-calibrated":
+            # Tiles of the same size: what is repeated does not matter for errors of some per cent.
+            knobs = [methods.at(method, number) | {"tiles": tiles} for tiles, number in NETWORKS.items()]
+        else:
+            knobs = [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
+        yield from (methods.case(method.name, **each) for each in knobs)
+    yield from (methods.case("fft", voxels=voxels, precision="float32") for voxels in SINGLE)
+    yield from (methods.case("fem", gap=gap, size=methods.EDGE / 24) for gap in GAPS)
     yield {"name": "steady", "particles": PARTICLES[0], "seed": 0, "method": "dem"}
     yield {"name": "steady", "particles": SOLVED, "seed": 0, "method": "dem"}
 
@@ -52,9 +52,11 @@ def QUICK(case):
     """Coarse rows of the one cell, without quadratic elements, which spheres make fine."""
     if case["name"] == "multipole":
         return case["highest"] in DEGREES[:3]
-    small = case.get("particles", 0) <= PARTICLES[0] and case.get("voxels", 0) <= VOXELS[0] and "gap" not in case
-    size = SIZES.get(case["name"], (0,))[0] * methods.EDGE
-    return small and case.get("size", size) == size and case["name"] != "fem"
+    if case["name"] == "steady":
+        return case["particles"] == PARTICLES[0]
+    method = methods.found()[case["name"]]
+    coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
+    return coarsest.items() <= case.items() and method.name != "fem" and "gap" not in case
 
 
 def run(name, gap=None, highest=None, *, method, **knobs):
@@ -74,7 +76,7 @@ def run(name, gap=None, highest=None, *, method, **knobs):
 def warm_up(name, gap=None, highest=None, tiles=None, *, method, **knobs):
     """Make the dispersion, load and compile; what is solved for that is between walls and needs no tiles."""
     _scene(gap)
-    silica_epoxy.warm_up(method, **knobs)
+    methods.warm_up(method, **knobs)
 
 
 def _scene(gap):
@@ -124,7 +126,7 @@ def _dem(df):
 
 def _others(df):
     for name in ("fft", "fft-em"):
-        title = TITLES[name]
+        title = methods.found()[name].title
         for voxels, limit in ((VOXELS[0], 1.0), (VOXELS[-1], 0.05)):
             rows = pick(df, name=name, voxels=voxels)
             yield f"{title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
@@ -137,9 +139,8 @@ def _others(df):
     if len(double) and len(single):
         lost = referee.value_error(*(float(rows["k_ratio"].iloc[0]) for rows in (single, double)))
         yield f"FFT, scalar, {VOXELS[-1]}^3: what float32 changes, %", 100 * abs(lost), 0.001
-    for name, limit in (("fem", 0.05), ("fem-p1", 0.5)):
+    for name, title, limit in (("fem", "FEM, P2", 0.05), ("fem-p1", "FEM, P1", 0.5)):
         rows = pick(df, name=name, size=SIZES[name][-1] * methods.EDGE, gap=None)
-        title = {"fem": "FEM, P2", "fem-p1": "FEM, P1"}[name]
         yield f"{title}, finest elements: error, %", largest(rows, "error_percent"), limit
     rows = pick(df, name="fem-p1")
     if len(rows) == len(SIZES["fem-p1"]):
@@ -162,4 +163,4 @@ def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
     from studies.many_inclusions.page import draw
 
-    return draw(errors(df[df["status"] == "ok"]))
+    return draw(errors(df[df["status"] == "ok"]), PAPER)

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 
-from studies.harness.figures import BLACK, EDGE, GREY, LOOK, look
+from studies.common import silica_epoxy
+from studies.harness import methods
+from studies.harness.figures import BLACK, GREY, LOOK, look
 
-METHODS = ("dem", "dem-calibrated", "fem", "fem-p1", "fft", "fft-em")
 FLOOR = 1e-4  # per cent; smaller errors are drawn there
 SHOWN = ("unknowns", "iterations", "cpu_s")
 
@@ -20,7 +21,7 @@ def lines(df):
 
 def _line(row):
     voxels, degree = row["voxels"], row["degree"]
-    line = {"method": LOOK[row["name"]][0] if row["name"] in LOOK else "multipoles", "resolution": _resolution(row)}
+    line = {"method": LOOK[row["name"]][0], "resolution": _resolution(row)}
     line |= {"error, %": row["error_percent"], "per inclusion": row["per_inclusion"]}
     line |= {name: row[name] for name in SHOWN} | {"GiB": row["peak_mib"] / 1024}
     line["bytes"] = row["peak_mib"] * 2**20 / row["unknowns"]
@@ -33,13 +34,7 @@ def _line(row):
 
 
 def _resolution(row):
-    if row["degree"] == row["degree"]:
-        return f"degree {row['degree']:.0f}"
-    if row["particles"] == row["particles"]:
-        return f"{row['particles']:.0f} particles"
-    if row["voxels"] == row["voxels"]:
-        return f"{row['voxels']:.0f}^3" + (" float32" if row.get("precision") == "float32" else "")
-    words = f"h = L/{EDGE / row['size']:.0f}"
+    words = silica_epoxy.words(row) + (" float32" if row.get("precision") == "float32" else "")
     if row.get("elements", math.nan) == row.get("elements", math.nan):
         words += f", {row['elements']:.0f} tetrahedra"
     return words + (f", least gap {row['gap']:g} D" if row.get("gap", math.nan) == row.get("gap", math.nan) else "")
@@ -63,8 +58,8 @@ def _steady(df):
             yield line | {"GiB": peak / 1024, "bytes": peak * 2**20 / row["unknowns"]}
 
 
-def draw(df):
-    """Three panels."""
+def draw(df, paper):
+    """Three panels; the last shows what the paper prints."""
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(1, 3, figsize=(15, 5))
@@ -74,28 +69,26 @@ def draw(df):
     spheres = spheres[spheres["degree"] < spheres["degree"].max()]
     for ax, cost, name in ((axes[0], "cpu_s", "CPU time, s"), (axes[1], "peak_mib", "peak memory, GiB")):
         unit = 1024 if cost == "peak_mib" else 1
-        for method in METHODS:
-            rows = double[double["name"] == method].sort_values(cost)
+        for method in methods.compared("dem-calibrated", "fem-p1"):
+            rows = double[double["name"] == method.name].sort_values(cost)
             if len(rows):
-                ax.plot(rows[cost] / unit, rows["off"], **look(method))
-        ax.plot(spheres[cost] / unit, spheres["off"], "*-", color=GREY, label="multipoles")
+                ax.plot(rows[cost] / unit, rows["off"], **look(method.name))
+        ax.plot(spheres[cost] / unit, spheres["off"], **look("multipole"))
         ax.set(xscale="log", yscale="log", xlabel=name, ylabel="|error| of k, %")
     axes[0].set_title("83 spheres: error against CPU time")
     axes[1].set_title("and against memory")
     axes[0].legend(fontsize=7)
-    _per_inclusion(axes[2], df)
+    _per_inclusion(axes[2], df, paper)
     return figure
 
 
-def _per_inclusion(ax, df):
-    from studies.many_inclusions import PAPER
-
+def _per_inclusion(ax, df, paper):
     for method in ("dem", "dem-calibrated"):
         rows = df[df["name"] == method].sort_values("per_inclusion")
         if len(rows):
             ax.plot(rows["per_inclusion"], rows["off"], **look(method))
-    ax.axvline(PAPER["per_inclusion"], color=BLACK, linestyle=":", label="enough, says the paper")
-    ax.axhline(PAPER["dem_fft"], color=GREY, linestyle="--", label="DEM - FFT in the paper")
+    ax.axvline(paper["per_inclusion"], color=BLACK, linestyle=":", label="enough, says the paper")
+    ax.axhline(paper["dem_fft"], color=GREY, linestyle="--", label="DEM - FFT in the paper")
     ax.set(xscale="log", yscale="log", xlabel="elements per inclusion", ylabel="|error| of k, %")
     ax.set_title("How many elements an inclusion needs")
     ax.legend(fontsize=8)
