@@ -154,13 +154,13 @@ def table(df):
     of it that the transforms take. `steady` is one solve of the spheres between walls, beside plain pyamg's
     Ruge-Stueben and smoothed aggregation on the same matrix (CPU seconds).
     """
-    from studies.many_inclusions.page import lines
+    from studies.many_inclusions.tables import lines
 
     return lines(errors(df))
 
 
 def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
-    from studies.many_inclusions.page import draw
+    from studies.many_inclusions.figure import draw
 
     return draw(errors(df[df["status"] == "ok"]), PAPER)

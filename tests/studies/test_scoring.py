@@ -11,7 +11,7 @@ QUANTITIES = {"temperature", "flux", "conductivity", "k_ratio", "mean_flux"}
 # Where the same arithmetic says something else, and what.
 EXCEPTIONS = {
     ("common/field_errors.py", "field_pictures"): "temperature over that of the coldest wall",
-    ("crystal/__init__.py", "_received"): "heat that flows along links",
+    ("crystal/rows.py", "_received"): "heat that flows along links",
     ("fig18_fields/rows.py", "field_row"): "level of the temperature in a periodic cell",
     ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
     ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",
