@@ -59,8 +59,8 @@ def arrangement_row():
     points, _ = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
-    row["slice_face"] = cell(face / scene.size[0], "g", decimals=4)
-    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], "g", decimals=4)}
+    row["slice_face"] = cell(face / scene.size[0], decimals=4)
+    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], decimals=4)}
 
 
 def distance(scene, points):
@@ -93,8 +93,8 @@ def field_row(boundary, *, method, **knobs):
         row |= {f"q{axis}_{letter}": part for axis, part in zip("xyz", q, strict=True)}
     warm, flux = filled(mask, temperature[len(POINTS) :]), filled(mask, flux[len(POINTS) :])
     # Two digits behind the point: 0.02 % of the mean flux of 29 W/m2; three: 0.0005 % of the span.
-    row |= {f"slice_{axis}": cell(flux[..., k], "g", decimals=2) for k, axis in enumerate("xyz")}
-    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, "g", decimals=3)}
+    row |= {f"slice_{axis}": cell(flux[..., k], decimals=2) for k, axis in enumerate("xyz")}
+    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, decimals=3)}
 
 
 def warm_up(boundary, *, method, **knobs):

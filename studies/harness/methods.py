@@ -15,6 +15,7 @@ from dataclasses import replace
 from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
 from demheat.referee import conductivity_error, heat_balance, value_error
@@ -57,8 +58,7 @@ def found():
 
 
 def _declares(path):
-    spec = find_spec(path)
-    return bool(re.search(r"^METHODS\b", spec.loader.get_source(path) or "", re.MULTILINE))
+    return bool(re.search(r"^METHODS\b", Path(find_spec(path).origin).read_text(encoding="utf-8"), re.MULTILINE))
 
 
 def compared(*beside):
