@@ -9,7 +9,8 @@ the simple cubic array by Rayleigh's multipoles.
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.harness import methods
-from studies.harness.figures import GREY, LOOK, look, resolution
+from studies.harness.figures import GREY, LOOK, look
+from studies.harness.methods import resolution
 from studies.harness.pick import extrapolated, finest, mean_errors, pick, present, with_size, worst
 from studies.harness.store import printed
 

@@ -12,7 +12,8 @@ from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.common import peers
 from studies.harness import methods
-from studies.harness.figures import LOOK, look, resolution
+from studies.harness.figures import LOOK, look
+from studies.harness.methods import resolution
 from studies.harness.pick import pick, present, with_size
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}

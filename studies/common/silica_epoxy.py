@@ -5,7 +5,7 @@ from __future__ import annotations
 from demheat.gallery import EDGE, EPOXY, SILICA
 from studies.harness import methods
 from studies.harness.cost import measured
-from studies.harness.figures import resolution
+from studies.harness.methods import resolution
 
 RATIO = 6.0  # edge of the cube over the diameter
 GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for

@@ -10,7 +10,8 @@ import numpy as np
 from demheat import referee
 from studies.fig15_16_fields.tables import PRINTED, label
 from studies.harness.cells import picture
-from studies.harness.figures import LOOK, resolution
+from studies.harness.figures import LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import with_size
 
 # Errors are coloured linearly up to the first, in %, then by decades, and beyond the second in the colour of the end.

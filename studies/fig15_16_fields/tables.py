@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from demheat import referee
-from studies.harness.figures import resolution
+from studies.harness.methods import resolution
 from studies.harness.pick import pick, with_size
 
 PRINTED = {"DE, 1.5e5": "150k", "DE, 5e5": "500k", "FE, 1e5 tetrahedra": "fe"}

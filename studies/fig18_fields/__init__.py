@@ -16,8 +16,7 @@ import math
 
 from studies.fig18_fields.tables import COMPARED
 from studies.harness import methods
-from studies.harness.figures import resolution
-from studies.harness.methods import EDGE
+from studies.harness.methods import EDGE, resolution
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 

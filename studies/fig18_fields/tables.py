@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from studies.fig18_fields.errors import BOUNDARIES, witness
 from studies.harness import methods
-from studies.harness.figures import LOOK, resolution
+from studies.harness.figures import LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
 # Eyre and Milton's scheme has the voxels of the scalar one, whose fields stand for both.

@@ -144,13 +144,15 @@ def code_hash(study_file, module=""):
     module : str
         Path of the module that the case names, if any.
     """
-    used = _reached(_parse(Path(study_file)).body, ("run", "warm_up"))
+    study_file = Path(study_file)
+    used = _reached(_parse(study_file).body, ("run", "warm_up"))
     texts, seen = {_text(used)}, set()
     queue = [*_imported(used), (module, True)]
     while queue:
         name, deep = queue.pop()
         path = _file_of(name)
-        if path is None or (name, deep) in seen:
+        # Of a study that is a package its own parts import no more than `_reached` found.
+        if path is None or (name, deep) in seen or (path == study_file and not deep):
             continue
         seen.add((name, deep))
         tree = _parse(path)

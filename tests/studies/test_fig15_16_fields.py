@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 
 from studies import fig15_16_fields as study
 from studies.fig15_16_fields.tables import error_columns
-from studies.harness import provenance
 from studies.harness.cells import picture
 
 
@@ -69,12 +68,3 @@ def test_claims_see_an_error():
     found = {text.split(": ")[1]: value for text, value, _ in study._laguerre(pd.DataFrame([row])) if value is not None}
     assert found["largest error of a flux of Table 2, %"] == 0.7
     assert found["largest error of a temperature of Table 2, K"] == 0.01
-
-
-def test_a_new_drawing_repeats_no_row(monkeypatch):
-    parse, seen = provenance._parse, set()
-    monkeypatch.setattr(provenance, "_parse", lambda path: seen.add(path.stem) or parse(path))
-    provenance.code_hash.cache_clear()
-    provenance.code_hash(study.__file__, "demheat.dem")
-    provenance.code_hash.cache_clear()
-    assert {"field_errors", "slices", "halo"} <= seen and "field_pictures" not in seen
