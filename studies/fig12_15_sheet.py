@@ -95,7 +95,13 @@ def warm_up(law, method, **case):
 
 
 def curves_of(rows, name):
-    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius."""
+    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius.
+
+    Parameters
+    ----------
+    rows : data frame
+    name : {"A", "B", "C"}
+    """
     return np.array([numbers(text) for text in rows[name]])
 
 
@@ -108,6 +114,13 @@ def reference(df):
 
 def compared(df, law, particles, name):
     """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time.
+
+    Parameters
+    ----------
+    df : data frame
+    law : str
+    particles : int
+    name : {"A", "B", "C"}
 
     Returns
     -------

@@ -144,7 +144,15 @@ def _off(ours, theirs, scale=None):
 
 
 def crystal_row(cells, crystal):
-    """Steady conductivity and heat capacity of a periodic crystal; arguments as those of `spheres`."""
+    """Steady conductivity and heat capacity of a periodic crystal; arguments as those of `spheres`.
+
+    Parameters
+    ----------
+    cells : (3,) tuple of int
+        Along each axis.
+    crystal : str
+        One of `demheat.network.platonic.CRYSTALS`.
+    """
     packing = spheres(cells, crystal, periodic=True)
     number, _ = crystal_packing(CRYSTALS[crystal])
     scene = Scene(tuple(packing.size), MATRIX, gradient=(0.0, 1.0, 0.0))

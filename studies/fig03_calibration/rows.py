@@ -25,7 +25,22 @@ PERIODIC = {"flux": False, "isothermal": False, "across": (True, False, True), "
 
 
 def packed(loading, domain, packing, particles, seed, *, spread=0.3, tiles=1):
-    """Packing of unit size for a load, kept in the cache; tiles is the number of repeats along each axis."""
+    """Packing of unit size for a load, kept in the cache; tiles is the number of repeats along each axis.
+
+    Parameters
+    ----------
+    loading : {"flux", "isothermal", "across", "periodic"}
+    domain : {"cube", "cylinder"}
+    packing : {"lsa", "relaxed"}
+    particles, seed : int
+    spread : float
+        Of the radii: standard deviation over mean of the Gaussian before it is cut.
+    tiles : int
+
+    Returns
+    -------
+    Packing
+    """
     if tiles > 1:
         whole = packed(loading, domain, packing, particles // tiles**3, seed, spread=spread)
         return tile(whole, (tiles, tiles, tiles)).scaled(1 / tiles)

@@ -56,7 +56,17 @@ def scene_of(walls):
 
 
 def packing_of(walls, particles, seed):
-    """Packing between the walls or in the cell, kept in the cache."""
+    """Packing between the walls or in the cell, kept in the cache.
+
+    Parameters
+    ----------
+    walls : {"held", "periodic"}
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     return relaxed(particles, size=(LENGTH,) * 3, periodic=walls == "periodic", seed=seed)
 
 

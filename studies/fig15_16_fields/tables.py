@@ -33,12 +33,32 @@ def lines(df, paper, points):
 
 
 def largest(rows, columns):
-    """Largest size in some columns of rows; None without rows."""
+    """Largest size in some columns of rows; None without rows.
+
+    Parameters
+    ----------
+    rows : data frame
+    columns : list of str
+
+    Returns
+    -------
+    float or None
+    """
     return rows[columns].abs().max(axis=1, skipna=False).max(skipna=False) if len(rows) else None
 
 
 def error_columns(kind, points):
-    """Columns of the errors at the points, of "T" or of "q"."""
+    """Columns of the errors at the points, of "T" or of "q".
+
+    Parameters
+    ----------
+    kind : {"T", "q"}
+    points : iterable of str
+
+    Returns
+    -------
+    list of str
+    """
     return [f"{kind}_{letter}_error" for letter in points]
 
 

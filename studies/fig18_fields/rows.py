@@ -64,7 +64,18 @@ def arrangement_row():
 
 
 def distance(scene, points):
-    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m."""
+    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m.
+
+    Parameters
+    ----------
+    scene : Scene
+        With disjoint spheres.
+    points : (n, 3) float array, m
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     centers = np.array([sphere.center for sphere in scene.inclusions])
     radii = np.array([sphere.radius for sphere in scene.inclusions])
     # Spheres are disjoint: the least signed distance is that of the sphere around the point, if there is one.
@@ -75,6 +86,16 @@ def field_row(boundary, *, method, **knobs):
     """Solve, and keep temperature and flux at the points and over the plane.
 
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
+
+    Parameters
+    ----------
+    boundary : {"gradient", "walls"}
+    method : str
+    knobs : keywords of its `solve`
+
+    Returns
+    -------
+    dict
     """
     scene = spheres_in(boundary)
     exact = method == "multipole"

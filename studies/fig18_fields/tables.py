@@ -21,7 +21,20 @@ def label(row):
 
 
 def lines(df, found, paper):
-    """Where the points lie; rows of each load, its witness first; what the paper prints."""
+    """Where the points lie; rows of each load, its witness first; what the paper prints.
+
+    Parameters
+    ----------
+    df : data frame
+    found : data frame
+        With errors, from `errors.with_errors`.
+    paper : dict
+        Printed numbers.
+
+    Returns
+    -------
+    list of dict
+    """
     place = pick(df, name="arrangement").iloc[0]
     blank = {"load": "", "method": "where the points lie", "resolution": ""}
     where = {f"T_{x}": place[f"phase_{x}"] for x in "ABCD"}

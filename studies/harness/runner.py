@@ -62,7 +62,17 @@ def load(name):
 
 
 def find_case(study, case):
-    """Case of a study by its key, or by its number in CASES."""
+    """Case of a study by its key, or by its number in CASES.
+
+    Parameters
+    ----------
+    study : module
+    case : str
+
+    Returns
+    -------
+    dict
+    """
     cases = {case_key(each): each for each in study.CASES}
     if case.isdecimal() and int(case) < len(study.CASES):
         return study.CASES[int(case)]
@@ -151,7 +161,20 @@ def _progress(number, total, row, elapsed):
 
 
 def spawn_row(name, study, case):
-    """Compute a row in a fresh process; whatever happens to that process, a row comes back."""
+    """Compute a row in a fresh process; whatever happens to that process, a row comes back.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    study : module
+    case : dict
+
+    Returns
+    -------
+    dict
+        Its status says what happened: "ok", "unsupported", "failed" or "timeout".
+    """
     key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
@@ -224,7 +247,13 @@ def compute_row(study, case, *, warm=True):
 
 
 def write_json(row, path):
-    """Hand a row over to the process that asked for it."""
+    """Hand a row over to the process that asked for it.
+
+    Parameters
+    ----------
+    row : dict
+    path : path
+    """
     Path(path).write_text(json.dumps(row, default=lambda value: value.item()))
 
 

@@ -9,7 +9,15 @@ FLOOR = 1e-4  # per cent; smaller errors are drawn there
 
 
 def draw(df, paper):
-    """Three panels; the last shows what the paper prints."""
+    """Three panels; the last shows what the paper prints.
+
+    Parameters
+    ----------
+    df : data frame
+        With errors.
+    paper : dict
+        Printed numbers.
+    """
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(1, 3, figsize=(15, 5))

@@ -1,16 +1,8 @@
-"""The slab of Haddad et al.: its scene and its slices."""
+"""The slab of Haddad et al.: its scene."""
 
-import numpy as np
 from numpy.testing import assert_allclose
 
 from studies.common import slab
-
-
-def test_means_over_slices():
-    y = slab.LENGTH * np.array([0.0, 0.01, 0.26, 0.99, 1.0])
-    middle, mean = slab.binned(y, np.array([1.0, 3.0, 5.0, 7.0, 9.0]), bins=4)
-    assert_allclose(middle, [0.125, 0.375, 0.625, 0.875])
-    assert mean.tolist() == [2.0, 5.0, 0.0, 8.0]
 
 
 def test_the_slab_is_the_papers():

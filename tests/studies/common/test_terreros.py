@@ -17,14 +17,6 @@ def own_cache(tmp_path_factory, monkeypatch):
     monkeypatch.setenv("DEMHEAT_CACHE", str(tmp_path_factory.getbasetemp() / "terreros"))
 
 
-def test_means_over_slices_of_the_beam():
-    x = terreros.LENGTH * np.array([0.0, 0.01, 0.3, 0.99, 1.0])
-    middle, mean = terreros.binned(x, np.array([1.0, 3.0, 5.0, 7.0, 9.0]), bins=4)
-    assert_allclose(middle, [0.125, 0.375, 0.625, 0.875], rtol=1e-15)
-    # The third slice is empty.
-    assert_allclose(mean, [2.0, 5.0, np.nan, 8.0], rtol=1e-15)
-
-
 def test_the_gap_gives_the_wanted_contacts_in_bulk():
     packing = relaxed(terreros.BULK, radii=terreros.SPREAD, seed=0)
     indptr, _, _ = contacts(packing, gap=terreros.bulk_gap(7.2))
