@@ -86,7 +86,11 @@ def warm_up(law, wall, particles, seed, method):
 
 
 def claims(df):
-    """Laguerre's facets far below the paper's 0.7 % and below either law of contacts; second order; heat kept."""
+    """Laguerre's errors, order and heat, and the laws of contacts beside it.
+
+    Limits at 1e5 particles lie 7 to 20 % above what was found; that of |dT|/T is a fourteenth of the paper's 0.7 %. The
+    order expected is two; heat is kept to rounding.
+    """
     yield from present([*_accuracy(df), *_order(df), *_balance(df)])
 
 

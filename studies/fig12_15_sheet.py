@@ -135,7 +135,11 @@ def compared(df, law, particles, name):
 
 
 def claims(df):
-    """Scatter over packings below the paper's 4 %; packings beside bricks, bricks beside finer ones; heat kept."""
+    """Scatter over packings; packings beside bricks, bricks beside finer ones; heat.
+
+    The paper's dispersion, below 4 % with 20000 elements, is the yardstick: Laguerre is held to 1.5 % from 1000 on and
+    to 0.5 % with 20000, and to within 1 % of the bricks there.
+    """
     return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
 
 

@@ -86,7 +86,11 @@ def _scene(gap):
 
 
 def claims(df):
-    """Every method against the multipoles at full size, their costs within the machine; the like for the quick rows."""
+    """Every method against the multipoles at full size, and what it costs.
+
+    With a million and with 8 million elements the DEM is held to 0.05 and 0.02 %, far below the 0.5 % between DEM and
+    FFT in the paper, and to 20 GiB; voxels to 0.05 %, quadratic elements too. Quick rows are coarse.
+    """
     df = errors(df)
     yield from present([*_witness(df), *_dem(df), *_others(df)])
 
