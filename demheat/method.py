@@ -16,6 +16,7 @@ PROPERTIES = {
     "field": "temperature and flux at any point, not the conductivity alone",
     "errors": "declared errors, against an exact solution",
     "orders": "declared orders of these errors, fitted over refinements",
+    "volumes": "the volumes of its samples sum to that of the body",
     "integral": "its samples integrate to its mean flux",
     "samples": "to rounding; without it within the error of the conductivity",
     "maximum": "temperatures stay between those of the walls",

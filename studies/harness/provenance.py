@@ -8,6 +8,7 @@ import hashlib
 import os
 import platform
 import subprocess
+import sys
 from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -20,8 +21,9 @@ PACKAGES = ("demheat", "references", "studies")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
 # What must agree for a stored row to stand for a new one.
 SAME = ("code", "machine", "threads", "versions")
-# Names of a module that no number depends on.
+# Names of a module that no number depends on, and a module of such.
 DESCRIBING = {"__all__", "__version__", "METHODS"}
+DECLARING = "demheat.method"
 
 
 def provenance(study, case):
@@ -152,7 +154,8 @@ def code_hash(study_file, module=""):
         name, deep = queue.pop()
         path = _file_of(name)
         # Of a study that is a package its own parts import no more than `_reached` found.
-        if path is None or (name, deep) in seen or (path == study_file and not deep):
+        own = path == study_file and not deep
+        if path is None or name == DECLARING or own or (name, deep) in seen:
             continue
         seen.add((name, deep))
         tree = _parse(path)
@@ -235,8 +238,8 @@ def _imported(nodes):
 
 
 def _file_of(name):
-    """Path of a module of ours, None for any other name."""
+    """Path of a module of ours, None for any other name; a method may lie elsewhere on Python's path."""
     if name.split(".")[0] not in PACKAGES:
         return None
-    base = ROOT.joinpath(*name.split("."))
-    return next((p for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)
+    bases = (Path(folder).joinpath(*name.split(".")) for folder in (ROOT, *sys.path))
+    return next((p for base in bases for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)
