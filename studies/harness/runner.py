@@ -10,6 +10,10 @@ A study is a module with
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
   seconds per row.
+
+One that is too long for a file is a folder of its name: beside these, in `__init__`, what computes is in `rows`, what is
+made of rows in `errors` or `means`, the lines of the table in `tables`, the drawing in `figure`. Errors are defined by
+`demheat.referee` alone.
 """
 
 from __future__ import annotations
