@@ -13,6 +13,11 @@ from studies.harness.cost import measured
 def tessellation(particles, seed):
     """CPU time of the radical cells of one walled packing by our kernel and by Voro++ (multivoro).
 
+    Parameters
+    ----------
+    particles, seed : int
+        Of the packing between walls.
+
     Returns
     -------
     dict

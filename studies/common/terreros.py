@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
-
 from demheat.build import network_of
 from demheat.calibration import calibration
 from demheat.laws import LAWS
@@ -39,7 +37,17 @@ def sheet():
 
 
 def packing_of(scene, particles, seed):
-    """Packing between the walls of a body, radii as in the paper, kept in the cache."""
+    """Packing between the walls of a body, radii as in the paper, kept in the cache.
+
+    Parameters
+    ----------
+    scene : Scene
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     domain = {} if scene.domain == "box" else {"domain": scene.domain}
     return relaxed(particles, size=scene.size, periodic=False, radii=SPREAD, seed=seed, **domain)
 
@@ -73,13 +81,3 @@ def bulk_gap(coordination):
     The sheet has no particle four radii away from every wall, whose contacts could be counted.
     """
     return contacts(relaxed(BULK, radii=SPREAD, seed=0), coordination=coordination)[2]
-
-
-def binned(x, values, bins=20):
-    """Mean of values in equal slices of the beam, and the slices' middles in its lengths; NaN in empty ones."""
-    edges = np.linspace(0.0, 1.0, bins + 1)
-    place = np.clip(np.digitize(x / LENGTH, edges) - 1, 0, bins - 1)
-    count = np.bincount(place, minlength=bins)
-    mean = np.full(bins, np.nan)
-    np.divide(np.bincount(place, values, bins), count, out=mean, where=count > 0)
-    return (edges[1:] + edges[:-1]) / 2, mean

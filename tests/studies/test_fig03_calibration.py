@@ -8,7 +8,7 @@ from demheat import Calibrated, Material, Scene
 from demheat.build import network_of
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
-from studies.fig03_calibration.homogeneous import affine, calibrated, packed
+from studies.fig03_calibration.rows import affine, calibrated, packed
 
 EDGE = 12  # spheres along each side: walls leave bulk between layers of 6 radii
 
