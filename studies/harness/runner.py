@@ -11,8 +11,8 @@ A study is a module with
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
   seconds per row.
 
-One that is too long for a file is a folder of its name: beside these, in `__init__`, what computes is in `rows`, what is
-made of rows in `errors` or `means`, the lines of the table in `tables`, the drawing in `figure`. Errors are defined by
+One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
+made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
 `demheat.referee` alone.
 """
 
