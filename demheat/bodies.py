@@ -35,17 +35,23 @@ def domain_volume(domain, size) -> float:
 
     Parameters
     ----------
-    domain : str
-        Key of `ROUND_AXES`, here and below.
+    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
     size : (3,) sequence of float, m
     """
     return SHARES[len(ROUND_AXES[domain])] * math.prod(float(side) for side in size)
 
 
-def wall_names(domain) -> tuple[str, ...]:
-    """Names of the walls of a domain, the round one last."""
+def wall_names(domain, periodic=(False, False, False)) -> tuple[str, ...]:
+    """Names of the walls of a domain, the round one last.
+
+    Parameters
+    ----------
+    domain : str
+    periodic : (3,) sequence of bool
+        Axes along which it goes on without a wall.
+    """
     axes = ROUND_AXES[domain]
-    flat = tuple(name for name in WALLS if "xyz".index(name[0]) not in axes)
+    flat = tuple(name for name in WALLS if not ((axis := "xyz".index(name[0])) in axes or periodic[axis]))
     return (*flat, "round") if axes else flat
 
 
