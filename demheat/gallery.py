@@ -1,13 +1,9 @@
-"""Named scenes. Every function gives a good default and takes the same load knobs.
-
-`periodic=True` makes a periodic cell, else two opposite walls are held at a temperature and the other four faces are
-insulated. `axis` is the axis of the load; `temperatures` are those of its low and its high wall; in a periodic cell
-their difference over the length of the box is the mean gradient, so both loads drive the same mean flux.
-"""
+"""Named scenes. Every function gives a good default and takes the same knobs of the load, which `loaded` describes."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -19,26 +15,33 @@ from demheat.scene import Layer, Material, Scene, Sphere
 HADDAD = Material(conductivity=33.0, density=7800.0, heat_capacity=0.9)
 EDGE = 0.1
 TEMPERATURES = (25.0, 35.0)
+AXIS = 1
 # Silica spheres in epoxy, Haddad et al. 2021, section 4.3.
 EPOXY, SILICA = Material(conductivity=0.195), Material(conductivity=1.5)
 
 
-def slab(*, size=(EDGE, EDGE, EDGE), material=HADDAD, periodic=False, axis=1, temperatures=TEMPERATURES):
-    """Homogeneous box."""
-    return Scene(size, material, **_load(size, periodic, axis, temperatures))
+def slab(*, size: Sequence[float] = (EDGE, EDGE, EDGE), material: Material = HADDAD, **load) -> Scene:
+    """Homogeneous box.
+
+    Parameters
+    ----------
+    size : (3,) sequence of float, m
+    material : Material
+    **load
+        As those of `loaded`, in all scenes here.
+    """
+    return Scene(size, material, **loaded(size, **load))
 
 
 def laminate(
     *,
-    direction="across",
-    contrast=5.0,
-    layers=2,
-    edge=EDGE,
-    matrix=HADDAD,
-    periodic=False,
-    axis=1,
-    temperatures=TEMPERATURES,
-):
+    direction: str = "across",
+    contrast: float = 5.0,
+    layers: int = 2,
+    edge: float = EDGE,
+    matrix: Material = HADDAD,
+    **load,
+) -> Scene:
     """Cube of equally thick layers of matrix and of a second material in turn.
 
     Parameters
@@ -56,25 +59,24 @@ def laminate(
         raise ValueError(f"direction = {direction!r}: must be 'across' or 'along'")
     if not isinstance(layers, int) or layers < 1:
         raise ValueError(f"layers = {layers!r}: must be an integer >= 1")
+    size = (edge,) * 3
+    drive, axis = loaded(size, **load), load.get("axis", AXIS)
     normal = axis if direction == "across" else (axis + 1) % 3
     second, pitch = scaled(matrix, contrast), edge / layers
     # Centred in its period, so that no interface lies on a wall.
     painted = [Layer(normal, (i + 0.25) * pitch, (i + 0.75) * pitch, second) for i in range(layers)]
-    size = (edge,) * 3
-    return Scene(size, matrix, painted, **_load(size, periodic, axis, temperatures))
+    return Scene(size, matrix, painted, **drive)
 
 
 def sphere_in_cube(
-    contrast=5.0,
+    contrast: float = 5.0,
     *,
-    radius=None,
-    fraction=None,
-    edge=EDGE,
-    matrix=HADDAD,
-    periodic=False,
-    axis=1,
-    temperatures=TEMPERATURES,
-):
+    radius: float | None = None,
+    fraction: float | None = None,
+    edge: float = EDGE,
+    matrix: Material = HADDAD,
+    **load,
+) -> Scene:
     """Sphere at the centre of a cube, the single inclusion of Haddad et al. 2021, section 4.1.
 
     Parameters
@@ -94,10 +96,12 @@ def sphere_in_cube(
         radius = _radius(fraction, 1, edge)
     size = (edge,) * 3
     sphere = Sphere((edge / 2,) * 3, edge / 3 if radius is None else radius, scaled(matrix, contrast))
-    return Scene(size, matrix, [sphere], **_load(size, periodic, axis, temperatures))
+    return Scene(size, matrix, [sphere], **loaded(size, **load))
 
 
-def simple_cubic(contrast=10.0, *, fraction=0.3, edge=EDGE, matrix=HADDAD, axis=1, temperatures=TEMPERATURES):
+def simple_cubic(
+    contrast: float = 10.0, *, fraction: float = 0.3, edge: float = EDGE, matrix: Material = HADDAD, **load
+) -> Scene:
     """Periodic cell of the simple cubic array, its sphere at the centre.
 
     Parameters
@@ -110,33 +114,47 @@ def simple_cubic(contrast=10.0, *, fraction=0.3, edge=EDGE, matrix=HADDAD, axis=
     matrix : Material
     """
     sites = [(0.5, 0.5, 0.5)]
-    return _array(sites, contrast, fraction, edge, matrix, axis, temperatures)
+    return _array(sites, contrast, fraction, edge, matrix, **load)
 
 
-def body_centred(contrast=10.0, *, fraction=0.3, edge=EDGE, matrix=HADDAD, axis=1, temperatures=TEMPERATURES):
-    """Periodic cell of the body-centred cubic array, two spheres; they touch at 0.6802. Arguments: `simple_cubic`."""
+def body_centred(
+    contrast: float = 10.0, *, fraction: float = 0.3, edge: float = EDGE, matrix: Material = HADDAD, **load
+) -> Scene:
+    """Periodic cell of the body-centred cubic array, two spheres; they touch at 0.6802.
+
+    Parameters
+    ----------
+    contrast, fraction, edge, matrix, **load
+        As those of `simple_cubic`.
+    """
     sites = [(0.25, 0.25, 0.25), (0.75, 0.75, 0.75)]
-    return _array(sites, contrast, fraction, edge, matrix, axis, temperatures)
+    return _array(sites, contrast, fraction, edge, matrix, **load)
 
 
-def face_centred(contrast=10.0, *, fraction=0.3, edge=EDGE, matrix=HADDAD, axis=1, temperatures=TEMPERATURES):
-    """Periodic cell of the face-centred cubic array, four spheres; they touch at 0.7405. Arguments: `simple_cubic`."""
+def face_centred(
+    contrast: float = 10.0, *, fraction: float = 0.3, edge: float = EDGE, matrix: Material = HADDAD, **load
+) -> Scene:
+    """Periodic cell of the face-centred cubic array, four spheres; they touch at 0.7405.
+
+    Parameters
+    ----------
+    contrast, fraction, edge, matrix, **load
+        As those of `simple_cubic`.
+    """
     sites = [(0.25, 0.25, 0.25), (0.25, 0.75, 0.75), (0.75, 0.25, 0.75), (0.75, 0.75, 0.25)]
-    return _array(sites, contrast, fraction, edge, matrix, axis, temperatures)
+    return _array(sites, contrast, fraction, edge, matrix, **load)
 
 
 def coated_sphere(
-    core=165.0,
-    shell=16.5,
+    core: float = 165.0,
+    shell: float = 16.5,
     *,
-    radius=0.3,
-    core_fraction=0.4,
-    center=(0.5, 0.5, 0.5),
-    edge=EDGE,
-    periodic=False,
-    axis=1,
-    temperatures=TEMPERATURES,
-):
+    radius: float = 0.3,
+    core_fraction: float = 0.4,
+    center: Sequence[float] = (0.5, 0.5, 0.5),
+    edge: float = EDGE,
+    **load,
+) -> Scene:
     """Hashin's coated sphere in the matrix that does not notice it: outside, the temperature is exactly linear.
 
     The matrix has k* = k1 (1 + 2 beta f)/(1 - beta f), beta = (k2 - k1)/(k2 + 2 k1) (Hashin, J. Appl. Mech. 29 (1962)
@@ -164,23 +182,21 @@ def coated_sphere(
         Sphere(middle, radius * edge, Material(k1)),
         Sphere(middle, radius * edge * core_fraction ** (1 / 3), Material(k2)),
     ]
-    return Scene(size, Material(neutral), spheres, **_load(size, periodic, axis, temperatures))
+    return Scene(size, Material(neutral), spheres, **loaded(size, **load))
 
 
 def random_dispersion(
-    count=None,
+    count: int | None = None,
     *,
-    fraction=None,
-    diameter=1 / 6,
-    gap=0.05,
-    seed=0,
-    edge=EDGE,
-    matrix=EPOXY,
-    inclusion=SILICA,
-    periodic=True,
-    axis=1,
-    temperatures=TEMPERATURES,
-):
+    fraction: float | None = None,
+    diameter: float = 1 / 6,
+    gap: float = 0.05,
+    seed: int = 0,
+    edge: float = EDGE,
+    matrix: Material = EPOXY,
+    inclusion: Material = SILICA,
+    **load,
+) -> Scene:
     """Equal spheres dropped one by one at random, refused where they come too close (random sequential addition).
 
     By default silica in epoxy with six diameters to the edge, as in Haddad et al. 2021, section 4.3. Between walls all
@@ -200,6 +216,8 @@ def random_dispersion(
         Of NumPy's default generator; the same seed gives the same spheres.
     edge : float, m
     matrix, inclusion : Material
+    **load
+        As those of `loaded`, but a periodic cell by default.
 
     Raises
     ------
@@ -217,22 +235,48 @@ def random_dispersion(
             f"count = {count}, diameter = {diameter:.4g}, gap = {gap}: spheres and gaps fill {filled:.3f} of the box; "
             f"adding one by one reaches at most {MOST_FILLED}"
         )
-    margin = 0.0 if periodic else diameter * (0.5 + gap)
+    load = {"periodic": True} | load
+    margin = 0.0 if load["periodic"] else diameter * (0.5 + gap)
     if 2 * margin >= 1:
         raise ValueError(f"diameter = {diameter!r}: spheres and gaps must fit between the walls")
     wide, rng = np.full(count, diameter * (1 + gap) / 2), np.random.default_rng(seed)
-    centers = add_spheres(wide, np.ones(3), rng, periodic=periodic, margin=margin, reuse=True)
+    centers = add_spheres(wide, np.ones(3), rng, periodic=load["periodic"], margin=margin, reuse=True)
     size = (edge,) * 3
     spheres = [Sphere(center, diameter * edge / 2, inclusion) for center in centers * edge]
-    return Scene(size, matrix, spheres, **_load(size, periodic, axis, temperatures))
+    return Scene(size, matrix, spheres, **loaded(size, **load))
 
 
-def scaled(material, contrast):
-    """The material with its conductivity multiplied by `contrast`, all else kept."""
+def scaled(material: Material, contrast: float) -> Material:
+    """The material with its conductivity multiplied by a contrast, all else kept.
+
+    Parameters
+    ----------
+    material : Material
+    contrast : float
+    """
     return Material(material.conductivity * contrast, material.density, material.heat_capacity)
 
 
-def _load(size, periodic, axis, temperatures):
+def loaded(
+    size: Sequence[float],
+    *,
+    periodic: bool = False,
+    axis: int = AXIS,
+    temperatures: Sequence[float] = TEMPERATURES,
+) -> dict[str, object]:
+    """Load of a box, as keywords of `Scene`.
+
+    Parameters
+    ----------
+    size : (3,) sequence of float, m
+    periodic : bool
+        A periodic cell; else two opposite walls are held at a temperature and the other four faces are insulated.
+    axis : {0, 1, 2}
+        Of the load.
+    temperatures : (2,) sequence of float, K or degrees Celsius
+        Of its low and its high wall. In a periodic cell their difference over the length of the box is the mean
+        gradient, so both loads drive the same mean flux.
+    """
     if axis not in (0, 1, 2):
         raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
     low, high = temperatures
@@ -249,11 +293,11 @@ def _radius(fraction, spheres, edge):
     return edge * (3 * fraction / (4 * math.pi * spheres)) ** (1 / 3)
 
 
-def _array(sites, contrast, fraction, edge, matrix, axis, temperatures):
+def _array(sites, contrast, fraction, edge, matrix, **load):
     radius, material = _radius(fraction, len(sites), edge), scaled(matrix, contrast)
     spheres = [Sphere(tuple(c * edge for c in site), radius, material) for site in sites]
     size = (edge,) * 3
-    return Scene(size, matrix, spheres, **_load(size, True, axis, temperatures))
+    return Scene(size, matrix, spheres, **loaded(size, periodic=True, **load))
 
 
 def _dispersion(count, fraction, diameter):

@@ -100,7 +100,15 @@ def snap(points, box, periodic):
 
 
 def twins(count, pairs):
-    """The one node, of `count`, that stands for each node and its periodic twins, (count,) int array."""
+    """The one node that stands for each node and its periodic twins, (count,) int array.
+
+    Parameters
+    ----------
+    count : int
+        Of nodes.
+    pairs : (p, 2) int array
+        Periodic twins.
+    """
     twin = np.arange(count)
     twin[pairs[:, 0]] = pairs[:, 1]
     for _ in range(2):  # a corner of the box reaches its last twin in three steps
@@ -109,7 +117,16 @@ def twins(count, pairs):
 
 
 def wall(points, cells, box, name):
-    """`Wall` of the tetrahedra that have three corners on the face `name` of the box."""
+    """`Wall` of the tetrahedra that have three corners on a face of the box.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, longest edge of the box
+    cells : (m, 4) or (m, 10) int array
+    box : (3,) float array, longest edge of the box
+    name : str
+        Of the face.
+    """
     axis = "xyz".index(name[0])
     on = points[:, axis] == (0.0 if name[1] == "-" else box[axis])
     triangles, owners = [], []
@@ -200,7 +217,13 @@ def volumes_of(nodes):
 
 
 def check(scene, mesh):
-    """Raise RuntimeError for inverted elements, a body that does not fill the box, or misplaced phases."""
+    """Raise RuntimeError for inverted elements, a body that does not fill the box, or misplaced phases.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh
+    """
     volumes, phase = mesh.volumes, mesh.phase
     if volumes.min() <= 0:
         raise RuntimeError(f"{np.sum(volumes <= 0)} inverted elements")

@@ -184,11 +184,25 @@ def _box_gaps(scene, centers, radii, planes):
 
 
 def unit_lengths(sizes, scale):
-    """The same sizes divided by a length in metres."""
+    """The same sizes in another unit.
+
+    Parameters
+    ----------
+    sizes : Sizes
+    scale : float, m
+        The unit.
+    """
     slabs = sizes.slabs / np.array([1.0, scale, scale, scale])
     return sizes._replace(size=sizes.size / scale, balls=sizes.balls / scale, shells=sizes.shells / scale, slabs=slabs)
 
 
 def estimated_cells(scene, size):
-    """Number of tetrahedra of a uniform mesh (found: 4.2 to 4.6 times volume over size cubed)."""
+    """Number of tetrahedra of a uniform mesh (found: 4.2 to 4.6 times volume over size cubed).
+
+    Parameters
+    ----------
+    scene : Scene
+    size : float, m
+        Of the edges.
+    """
     return 4.5 * math.prod(scene.size) / size**3

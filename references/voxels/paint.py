@@ -160,12 +160,29 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
 
 
 def centers(shape, spacing) -> list:
-    """Coordinates of the voxel centres along each axis, m."""
+    """Coordinates of the voxel centres along each axis, m.
+
+    Parameters
+    ----------
+    shape : (3,) tuple of int
+    spacing : (3,) float array, m
+    """
     return [(np.arange(n) + 0.5) * h for n, h in zip(shape, spacing, strict=True)]
 
 
 def medium(voxels: Voxels, scalar, tensor, dtype) -> Medium:
-    """A property given per phase and per cut voxel, laid out for kernels."""
+    """A property given per phase and per cut voxel, laid out for kernels.
+
+    Parameters
+    ----------
+    voxels : Voxels
+    scalar : (phases,) float array
+        The property of each phase.
+    tensor : (m, 6) float array
+        That of each cut voxel.
+    dtype : numpy dtype
+        Of both as kernels read them.
+    """
     nx, ny, nz = voxels.phase.shape
     start = np.searchsorted(voxels.cut, np.arange(nx * ny + 1) * nz)
     place = (voxels.cut % nz).astype(np.int32)

@@ -304,6 +304,39 @@ def test_bad_transients(make, match):
         make()
 
 
+NESTED = (ball(0.5, 0.5, 0.5, 0.3), ball(0.5, 0.5, 0.4, 0.1))
+
+
+@pytest.mark.parametrize(
+    ("given", "needs", "what"),
+    [
+        (scene(), {"walls": "none"}, r"Scene.walls = \{'y-': 0.0, 'y\+': 1.0\}"),
+        (scene(walls={"y-": 0.0, "y+": Flux(1.0)}), {"walls": "one isothermal pair"}, "Scene.walls = .*"),
+        (scene(walls={"y-": 0.0, "x+": 1.0}), {"walls": "one isothermal pair"}, "Scene.walls = .*"),
+        (scene(walls={"y-": 0.0, "x+": 1.0}), {"walls": "isothermal ones apart"}, "Scene.walls = .*"),
+        (transient(size=BOX, domain="cylinder-z", walls={"round": 1.0}), {"walls": "flat"}, "Scene.walls = .*"),
+        (transient(size=BOX, domain="sphere"), {"walls": "flat"}, r"Scene.walls = \{\}"),
+        (transient(size=BOX, domain="sphere"), {"domain": "box"}, "a sphere"),
+        (scene(Layer(0, 0.8, 0.9, B), *NESTED), {"shapes": (Layer,)}, r"a sphere, Scene.inclusions\[1\]"),
+        (scene(*NESTED), {"shapes": ()}, "inclusions in a box"),
+        (scene(*NESTED), {"nested": False}, r"Scene.inclusions\[1\], nested in \[0\]"),
+        (scene(ball(0.5, 0.5, 0.5, 0.3, Material(0.0))), {"pores": False}, "a conductivity is 0"),
+    ],
+)
+def test_what_a_method_cannot_do_is_named_with_what_it_can(given, needs, what):
+    given.require("it can all")
+    with pytest.raises(NotImplementedError, match=f"^{what}: it knows better$"):
+        given.require("it knows better", **needs)
+
+
+def test_what_a_method_can_do_is_not_refused():
+    needs = {"shapes": (Sphere, Layer), "nested": False, "pores": False, "domain": "box"}
+    for walls in ("one isothermal pair", "isothermal ones apart", "flat"):
+        scene(ball(0.5, 0.5, 0.5, 0.3), Layer(0, 0.8, 0.9, B)).require("it knows", steady=True, walls=walls, **needs)
+    scene(ball(0.5, 0.5, 0.5, 0.3), **PERIODIC).require("it knows", steady=True, walls="none", **needs)
+    transient(size=BOX, domain="cylinder-z", walls={"z-": 1.0}).require("it knows", steady=False, walls="flat")
+
+
 @pytest.mark.parametrize("periodic", [True, False])
 def test_phases_of_many_points_are_those_of_each_inclusion_asked_apart(periodic):
     rng = np.random.default_rng(3)
