@@ -17,6 +17,12 @@ SPHERES = [
 ]
 
 
+def case(sphere):
+    """The same as kernels take it."""
+    shape, spacing, center, radius = sphere
+    return np.array(shape), np.array(spacing), np.array(center), radius
+
+
 def corners(shape, spacing, center):
     """Lowest corner of each voxel relative to the centre, m."""
     return np.moveaxis(np.indices(shape), 0, -1) * spacing - center
@@ -58,7 +64,7 @@ def slow_cuts(shape, spacing, center, radius):
 
 def fast_cuts(shape, spacing, center, radius):
     """Painted grid, bound of the number of cut voxels, and what the kernel tells of them; with room to spare."""
-    grid, low, high = np.zeros(shape, np.uint16), np.zeros(3, int), np.array(shape)
+    grid, low, high = np.zeros(tuple(shape), np.uint16), np.zeros(3, int), shape
     count = kernels.paint_sphere(grid, 3, center, radius, spacing, low, high)
     index, fraction, moment = np.full(grid.size, -1), np.full(grid.size, np.nan), np.full((grid.size + 1, 6), np.nan)
     n = kernels.cut_sphere(high, center, radius, spacing, low, high, index, fraction, moment)
@@ -75,8 +81,8 @@ def test_count():
 @pytest.mark.twin
 @pytest.mark.parametrize("sphere", SPHERES)
 def test_paint_sphere(sphere):
-    shape, spacing, center, radius = (np.array(part) for part in sphere)
-    grid, count, index, _, _ = fast_cuts(*(np.array(part) for part in sphere))
+    shape, spacing, center, radius = case(sphere)
+    grid, count, index, _, _ = fast_cuts(shape, spacing, center, radius)
     distance = np.linalg.norm(corners(shape, spacing, center) + 0.5 * spacing, axis=-1)
     assert np.array_equal(grid, np.where(distance <= radius, 3, 0))
     reach = 0.5 * np.linalg.norm(spacing)
@@ -96,22 +102,21 @@ def test_paint_sphere_looks_at_its_window_only():
 @pytest.mark.twin
 @pytest.mark.parametrize("sphere", SPHERES)
 def test_cut_sphere(sphere):
-    sphere = [np.array(part) for part in sphere]
-    index, fraction, moment = slow_cuts(*sphere)
-    _, _, found, part, second = fast_cuts(*sphere)
+    shape, spacing, center, radius = case(sphere)
+    index, fraction, moment = slow_cuts(shape, spacing, center, radius)
+    _, _, found, part, second = fast_cuts(shape, spacing, center, radius)
     assert np.array_equal(found, index)
     # Rounding of 64 columns, the thinnest of which are 1e-3 of a voxel.
     assert_allclose(part, fraction, rtol=1e-12)
-    second = second[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]]
-    size = sphere[1].max() ** 2
-    assert_allclose(second, moment, atol=1e-8 * size)
+    second, size = second[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]], spacing.max() ** 2
     # Where no column meets the surface, the normal is that at the voxel's centre, and weighs next to nothing.
     bare = np.trace(moment, axis1=1, axis2=2) == 0
-    middle = (corners(*(np.array(part) for part in sphere[:3])).reshape(-1, 3) + 0.5 * sphere[1])[index[bare]]
+    assert_allclose(second[~bare], moment[~bare], rtol=1e-10, atol=1e-14 * size)
+    assert_allclose(second[bare], 0, atol=1e-8 * size)
+    middle = (corners(shape, spacing, center).reshape(-1, 3) + 0.5 * spacing)[index[bare]]
     normal = middle / np.linalg.norm(middle, axis=1, keepdims=True)
     direction = second[bare] / np.trace(second[bare], axis1=1, axis2=2)[:, None, None]
     assert_allclose(direction, np.einsum("ma,mb->mab", normal, normal), atol=1e-12)
-    assert_allclose(second[~bare], moment[~bare], rtol=1e-10, atol=1e-14 * size)
 
 
 @pytest.mark.parametrize("voxels", [3, 5, 7, 9, 11, 13, 15, 17, 25, 31, 49, 63])
@@ -119,7 +124,9 @@ def test_cut_sphere(sphere):
 def test_a_sphere_on_the_centre_of_a_voxel(voxels, radius, cut):
     # Rounding puts the centre on the voxel's or 1e-17 beside it: more voxels were cut than counted, and written beyond
     # the end of the arrays.
-    _, count, index, fraction, _ = fast_cuts((voxels,) * 3, np.full(3, 1 / voxels), np.full(3, 0.5), radius / voxels)
+    _, count, index, fraction, _ = fast_cuts(
+        np.full(3, voxels), np.full(3, 1 / voxels), np.full(3, 0.5), radius / voxels
+    )
     # The voxel in the middle, unless the columns of quadrature find it full; the six beside it, and those at its edges.
     assert len(index) == cut <= count
     whole = voxels**3 // 2 not in index
