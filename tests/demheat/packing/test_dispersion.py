@@ -227,6 +227,6 @@ def test_bad_scenes():
 
 
 def test_no_room_is_said(monkeypatch):
-    monkeypatch.setattr(module, "TRIALS", 2560)
+    monkeypatch.setattr("demheat.addition.TRIALS", 2560)
     with pytest.raises(RuntimeError, match="no room for sphere .* in 2560 trials"):
         dispersion(fraction=0.3, method="rsa", periodic=False, ratio=4.0)

@@ -1,10 +1,12 @@
 import numba
 import numpy as np
 import pytest
+from crystals import distances
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.cells_kernels import Reach
+from demheat.packing.neighbours import build_grid, contacts, neighbours
 from demheat.packing.relax import relax
 
 
@@ -14,15 +16,6 @@ def random_packing(seed, *, most=300, ratio=10.0):
     number, size, periodic = int(rng.integers(1, most)), rng.uniform(0.2, 2.0, 3), rng.random(3) < 0.5
     radii = 0.1 * np.exp(-rng.uniform(0, np.log(ratio), number))
     return make_packing(rng.random((number, 3)) * size, radii, size, periodic, {})
-
-
-def distances(packing):
-    """All nearest-image distances, (n, n): the slow twin."""
-    offsets = packing.centers[None] - packing.centers[:, None]
-    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
-    result = np.sqrt((offsets**2).sum(axis=-1))
-    np.fill_diagonal(result, np.inf)
-    return result
 
 
 def rows(near):
@@ -55,13 +48,11 @@ def test_size_ratio_1000_and_centres_beyond_a_wall():
 
 def test_a_wide_distribution_costs_few_candidates():
     """Cells visited must follow the size of each level: one large sphere must not coarsen the grid of the others."""
-    from demheat.packing.neighbours import build_grid
-
     rng = np.random.default_rng(0)
     points = np.column_stack((rng.random((5000, 3)), np.full(5000, 0.01)))
     points[0, 3] = 0.2
     box = np.ones(3)
-    grid = build_grid(points, box, np.ones(3, dtype=bool), scale=1.0, skin=0.0)
+    grid = build_grid(points, box, np.ones(3, dtype=bool), Reach(1.0, 0.0))
     # 4 particles per cell of the small level; with one grid the cells would be as large as the large sphere.
     assert grid.dims[1:].prod() >= 5000 / 8
 

@@ -5,15 +5,15 @@ from itertools import product
 import numba
 import numpy as np
 import pytest
-from crystals import random_packing, simple_cubic
+from crystals import distances, random_packing, simple_cubic
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat.packing import statistics_kernels as kernels
 from demheat.packing.base import make_packing, wrap
-from demheat.packing.neighbours import build_grid, neighbours
+from demheat.packing.neighbours import neighbours
 from demheat.packing.statistics import backbone, radial_distribution, two_point
 from demheat.packing.statistics.links import _unit_vectors
-from demheat.packing.statistics.regions import inscribed_box, wall_distances
+from demheat.packing.statistics.regions import inscribed_box
+from demheat.packing.walls import wall_distances
 
 # Radial distribution
 
@@ -27,14 +27,6 @@ def test_shells_of_a_simple_cubic_crystal(periodic):
     expected[[6, 9, 11]] = 6, 12, 8  # distances 1, sqrt 2, sqrt 3
     assert_allclose(numbers, expected, rtol=1e-12)
     assert found.origins == (512 if periodic else 64)  # depth > 1.95: beyond two layers of spheres
-
-
-def distances(packing):
-    offsets = packing.centers[None] - packing.centers[:, None]
-    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
-    result = np.sqrt((offsets**2).sum(axis=-1))
-    np.fill_diagonal(result, np.inf)
-    return result
 
 
 @pytest.mark.parametrize("scaled", [False, True])
@@ -100,57 +92,6 @@ def test_one_sphere_in_a_periodic_box():
     assert np.all(np.abs(found.s2 - expected) <= 4 * found.error + 1e-15)
     assert np.all(np.abs(found.slope - found.exact_slope) <= 4 * found.slope_error)
     assert found.error.max() < 0.05 * found.phi and found.slope_error.max() < 0.05 * -found.exact_slope
-
-
-def union(packing, start, along, length):
-    """Spans of the union of chords, by brute force over periodic images: the slow twin."""
-    spans = []
-    for shift in product(*(range(-2, 3) if p else (0,) for p in packing.periodic)):
-        offsets = packing.centers + np.array(shift) * packing.size - start
-        middle = offsets @ along
-        half2 = packing.radii**2 - (offsets**2).sum(axis=1) + middle**2
-        for m, h in zip(middle[half2 > 0], np.sqrt(half2[half2 > 0]), strict=True):
-            if m + h > 0 and m - h < length:
-                spans.append((max(m - h, 0.0), min(m + h, length)))
-    joined = []
-    for low, high in sorted(spans):
-        if joined and low <= joined[-1][1]:
-            joined[-1][1] = max(high, joined[-1][1])
-        else:
-            joined.append([low, high])
-    return joined
-
-
-def check_line(packing, start, along, steps):
-    """Compare one line of length .9 with its slow twin; returns the number of spans."""
-    points, lags = np.column_stack((packing.centers, packing.radii)), np.linspace(0.0, 0.45, 10)
-    grid = build_grid(points, packing.size, packing.periodic, scale=1.0, skin=0.9 / steps / 2)
-    sums = np.empty((kernels.TASKS, 2, 11))
-    kernels.line_correlations(points, grid, start[None], along, lags, steps, sums)
-    spans = union(packing, start, along, 0.9)
-    shared = [sum(max(0.0, min(b, d - r, 0.45) - max(a, c - r)) for a, b in spans for c, d in spans) for r in lags]
-    ends = sum(b < 0.45 for _, b in spans)
-    # Rounding of lengths, 1e-16, over chords that may be short.
-    assert_allclose(sums[:, 0].sum(axis=0), [*np.array(shared) / 0.45, -ends / 0.45], rtol=1e-11, atol=1e-12)
-    assert_allclose(sums[:, 1].sum(axis=0), sums[:, 0].sum(axis=0) ** 2, rtol=1e-12)
-    return len(spans)
-
-
-@pytest.mark.parametrize("periodic", [True, False, (False, True, True)])
-def test_lines_are_cut_and_overlaid_exactly(periodic):
-    packing = random_packing(5, 400, periodic=periodic, radius=0.07)  # many overlaps
-    rng, cut = np.random.default_rng(6), 0
-    for _ in range(20):
-        along = rng.standard_normal(3)
-        cut += check_line(packing, rng.random(3), along / np.linalg.norm(along), 7)
-    assert cut > 30
-
-
-def test_a_line_may_run_into_a_crowd():
-    """One sphere first, then more at once than the buffers of a line hold: they grow and keep the first."""
-    crowd = np.array([0.25, 0.45, 0.45]) + [0.2, 0.1, 0.1] * np.random.default_rng(0).random((1000, 3))
-    packing = make_packing(np.vstack(([[0.1, 0.5, 0.5]], crowd)), np.full(1001, 0.006), (1, 1, 1), True, {})
-    assert check_line(packing, np.array([0.0, 0.5, 0.5]), np.array([1.0, 0.0, 0.0]), 5) > 3
 
 
 def test_standard_errors_are_the_scatter_of_repeats():
