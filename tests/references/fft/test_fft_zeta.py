@@ -100,10 +100,10 @@ def test_the_slow_twin_agrees():
 
 def test_plain_voxels_are_hopeless_because_errors_are_amplified():
     scene, exact = gallery.sphere_in_cube(2.0, matrix=ONE, edge=1.0, periodic=True), 0.00200341
-    v, normals, spacing = voxels_of(scene, (65, 65, 65))
+    v, normals, spacing = voxels_of(scene, (33, 33, 33))
     plain = (v > 0.5).astype(float)
     found, third = twin(plain, np.zeros(normals.shape), spacing)
-    # Found 0.0147, from a_3 off by 3 %.
+    # Found 0.0242, from a_3 off by 5 %.
     assert found > 4 * exact
     f = plain.mean()
     right = f * (1 - f) * (1 - f + 2 * exact) / 9
