@@ -20,7 +20,7 @@ def box(gradient=(0.0, 0.0, 1.0), shift=(0.0, 0.0, 0.0), parts=PARTS, size=SIZE)
 
 @cache
 def solved(order=14):
-    return multipole.solve(box((0.5, -1.0, 2.0)), order=order, points_per_axis=30)
+    return multipole.solve(box((0.5, -1.0, 2.0)), order=order, points_per_axis=20)
 
 
 def tensor(spheres, order):

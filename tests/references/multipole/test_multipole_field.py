@@ -71,7 +71,7 @@ def test_samples_average_to_the_mean_flux():
     samples, field = solved().samples, solved()
     assert_allclose(samples.volumes.sum(), field.scene.volume, rtol=1e-12)
     mean = samples.volumes @ samples.flux / samples.volumes.sum()
-    # Midpoints of 30^3 cells, 1 in 10 cut by a surface at random.
+    # Midpoints of 20^3 cells, 1 in 10 cut by a surface at random.
     assert_allclose(mean, field.mean_flux, rtol=0, atol=0.01 * np.linalg.norm(field.mean_flux))
     periodic = samples.temperature - samples.points @ (0.5, -1.0, 2.0)
     assert abs(samples.volumes @ periodic) < 1e-3 * np.abs(periodic).max() * field.scene.volume
