@@ -8,7 +8,7 @@ from demheat.packing import cells_kernels as kernels
 from demheat.packing.neighbours import build_grid
 
 pytestmark = pytest.mark.twin
-SIZE, REACH = np.array([1.0, 0.7, 1.4]), kernels.Reach(1.2, 0.05)
+SIZE, REACH = np.array([1.0, 0.7, 0.8]), kernels.Reach(1.2, 0.05)
 
 
 def some_points(number, seed=0):
@@ -67,6 +67,8 @@ def test_near_rows(periodic):
     assert len(grid.largest) == 2
     expected = near(points, points, period, REACH)
     np.fill_diagonal(expected, False)
+    for axis in np.flatnonzero(period):
+        assert near(points, points, period * (np.arange(3) != axis), REACH).sum() < expected.sum()  # some cross it
     buffer, lengths = np.empty((1, expected.sum() + 1), dtype=np.uint32), np.empty(70, dtype=np.int64)
     kernels.near_rows(points, grid, REACH, buffer, lengths)
     assert_array_equal(lengths, expected.sum(axis=1))

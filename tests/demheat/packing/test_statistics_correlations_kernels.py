@@ -77,7 +77,7 @@ def test_line_correlations(periodic):
     for _ in range(20):
         along = rng.standard_normal(3)
         cut += check_line(packing, rng.random(3), along / np.linalg.norm(along), 7)
-    assert cut > 30
+    assert cut > 20
 
 
 def test_a_line_may_run_into_a_crowd():

@@ -67,6 +67,7 @@ def test_held(half_space):
     assert 3 < now.sum() < before.sum()
 
 
+@pytest.mark.twin
 def test_what_holds_a_particle():
     tetrahedron = np.array([(1, 1, 1), (1, -1, -1), (-1, 1, -1), (-1, -1, 1)]) / np.sqrt(3)
     assert held(tetrahedron) and not held(tetrahedron[:3])
