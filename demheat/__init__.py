@@ -5,15 +5,19 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 """
 
 from demheat.field import Field, Samples
+from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
 
 __all__ = [
+    "Calibrated",
     "Field",
     "Flux",
     "Heating",
+    "Laguerre",
     "Layer",
     "Material",
     "MovingCylinder",
+    "Platonic",
     "Samples",
     "Scene",
     "Sphere",

@@ -11,7 +11,8 @@ measure, as it seems, is |dT|/T with T in degrees Celsius. Temporal accuracy is 
 import numpy as np
 
 from demheat import referee
-from studies.common.slab import LENGTH, TIMES, binned, packing_of, slab
+from studies.common.slab import LENGTH, TIMES, packing_of, slab
+from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import order, pick, present
 from studies.harness.store import printed
@@ -63,17 +64,17 @@ def run(law, wall, particles, seed, method):
 
 def _errors(field, exact):
     off, span = referee.temperature_error(field, exact, unit="K"), referee.span(field.scene, exact)
-    y, temperature, t = off.points[:, 1], field.samples.temperature, f"{field.time:g}"
+    y, temperature, t = off.points[:, 1] / LENGTH, field.samples.temperature, f"{field.time:g}"
     right = exact.temperature_at(off.points)
     local = referee.value_error(temperature, right, scale=right)
-    middle, mean = binned(y, temperature)
+    middle, mean = slice_means(y, temperature)
     return {
         f"worst_{t}": 100 * off.max / span,
         f"rms_{t}": 100 * off.rms / span,
         f"relative_{t}": 100 * np.abs(local).max(),
         "profile_y": cell(middle),
         f"profile_{t}": cell(mean),
-        f"profile_error_{t}": cell(100 * binned(y, off.values)[1] / span),
+        f"profile_error_{t}": cell(100 * slice_means(y, off.values)[1] / span),
     }
 
 
@@ -85,7 +86,11 @@ def warm_up(law, wall, particles, seed, method):
 
 
 def claims(df):
-    """Laguerre's facets far below the paper's 0.7 % and below either law of contacts; second order; heat kept."""
+    """Laguerre's errors, order and heat, and the laws of contacts beside it.
+
+    Limits at 1e5 particles lie 7 to 20 % above what was found; that of |dT|/T is a fourteenth of the paper's 0.7 %. The
+    order expected is two; heat is kept to rounding.
+    """
     yield from present([*_accuracy(df), *_order(df), *_balance(df)])
 
 

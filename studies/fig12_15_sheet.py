@@ -95,7 +95,13 @@ def warm_up(law, method, **case):
 
 
 def curves_of(rows, name):
-    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius."""
+    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius.
+
+    Parameters
+    ----------
+    rows : data frame
+    name : {"A", "B", "C"}
+    """
     return np.array([numbers(text) for text in rows[name]])
 
 
@@ -108,6 +114,13 @@ def reference(df):
 
 def compared(df, law, particles, name):
     """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time.
+
+    Parameters
+    ----------
+    df : data frame
+    law : str
+    particles : int
+    name : {"A", "B", "C"}
 
     Returns
     -------
@@ -122,7 +135,11 @@ def compared(df, law, particles, name):
 
 
 def claims(df):
-    """Scatter over packings below the paper's 4 %; packings beside bricks, bricks beside finer ones; heat kept."""
+    """Scatter over packings; packings beside bricks, bricks beside finer ones; heat.
+
+    The paper's dispersion, below 4 % with 20000 elements, is the yardstick: Laguerre is held to 1.5 % from 1000 on and
+    to 0.5 % with 20000, and to within 1 % of the bricks there.
+    """
     return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
 
 

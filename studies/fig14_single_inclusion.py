@@ -9,7 +9,8 @@ the simple cubic array by Rayleigh's multipoles.
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.harness import methods
-from studies.harness.figures import GREY, LOOK, look, resolution
+from studies.harness.figures import GREY, LOOK, look
+from studies.harness.methods import resolution
 from studies.harness.pick import extrapolated, finest, mean_errors, pick, present, with_size, worst
 from studies.harness.store import printed
 
@@ -78,7 +79,11 @@ def warm_up(name, scene, contrast, periodic=False, **solver):
 
 
 def claims(df):
-    """Small errors of every method at every contrast; the DEM a tenth of the paper's; the like for the quick rows."""
+    """Every method against the exact value at every contrast; the DEM beside the paper's network.
+
+    Full rows of the default DEM are held to 0.06 % and to a tenth of the error that the paper prints, of quadratic
+    elements to 0.005 %, of laminate voxels to 0.15 %; quick rows have twice the error found or more.
+    """
     yield from present([*_dem_claims(df), *_fem_claims(df), *_fft_claims(df), *_exact_claims(df)])
 
 

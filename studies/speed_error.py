@@ -12,7 +12,8 @@ from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.common import peers
 from studies.harness import methods
-from studies.harness.figures import LOOK, look, resolution
+from studies.harness.figures import LOOK, look
+from studies.harness.methods import resolution
 from studies.harness.pick import pick, present, with_size
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
@@ -80,7 +81,10 @@ def warm_up(name, particles=None, seed=None, scene=None, **solver):
 
 
 def claims(df):
-    """Kernels faster than their peers, three methods that reach 0.1 %; costs of a quick run are too small to judge."""
+    """Kernels beside their peers on the same data; how many methods reach 0.1 %.
+
+    A kernel must not be slower than its peer. Costs of a quick run are too small to judge.
+    """
     yield from present([*_kernel_claims(df), *_scheme_claims(df)])
     for scene in sorted(df["scene"].dropna().unique()):
         found = cheapest(df[df["scene"] == scene])

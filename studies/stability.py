@@ -15,7 +15,8 @@ import numpy as np
 from demheat import referee
 from demheat.gallery import sphere_in_cube
 from studies.harness import methods
-from studies.harness.figures import GREY, look, resolution
+from studies.harness.figures import GREY, look
+from studies.harness.methods import resolution
 from studies.harness.pick import finest, pick
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)

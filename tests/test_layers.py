@@ -18,12 +18,13 @@ LAYERS = {
     "demheat.scene": ("demheat.parts",),
     "demheat.field": ("demheat.scene", "demheat.parts"),
     "demheat.method": (),
+    "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.gallery": ("demheat.scene",),
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.parts"),
     "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
-    "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
+    "demheat.network": ("demheat.scene", "demheat.laws", "demheat.threads", "demheat.packing", "demheat.network"),
     "demheat.conduction": (
         "demheat.scene",
         "demheat.parts",
@@ -46,22 +47,29 @@ LAYERS = {
         "demheat.packing",
         "demheat.network",
         "demheat.conduction.steady",
-        "demheat.sampling.field_of",
+        "demheat.sampling.fluxes",
+    ),
+    # Above what it calibrates with: a steady solve.
+    "demheat.build": (
+        "demheat.scene",
+        "demheat.laws",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.calibration",
     ),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
-        "demheat.threads",
+        "demheat.laws",
         "demheat.packing",
-        "demheat.network",
         "demheat.conduction",
         "demheat.sampling",
-        "demheat.calibration",
+        "demheat.build",
         "demheat.method",
         "demheat.dem",
     ),
     # The front of the package and nothing else.
-    "demheat": ("demheat.scene", "demheat.field", "demheat.dem"),
+    "demheat": ("demheat.scene", "demheat.field", "demheat.laws", "demheat.dem"),
     # Witnesses know the engine's nouns and not the engine.
     "references.threads": (),
     "references.times": (),
@@ -265,6 +273,8 @@ def test_a_circle_is_seen():
         ("demheat.packing.relax", "from ..network.base import Network"),
         ("demheat.network.base", "from demheat import solve"),
         ("demheat.dem", "from demheat import referee"),
+        ("demheat.dem.solver", "from demheat.network.laguerre import laguerre"),
+        ("demheat.laws", "from demheat.network.calibrated import contact_facets"),
         ("references.exact", "from demheat import gallery"),
         ("references.fem", "import demheat"),
         ("references.bounds", "from studies.harness.store import printed"),
@@ -310,7 +320,13 @@ DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(
 
 
 @pytest.mark.parametrize(
-    "statement", ["import demheat", "from demheat import gallery, referee", *(f"import {name}" for name in DECLARING)]
+    "statement",
+    [
+        "import demheat",
+        "from demheat import gallery, referee",
+        "from demheat import Calibrated, Laguerre, Platonic",
+        *(f"import {name}" for name in DECLARING),
+    ],
 )
 def test_the_package_loads_numpy_only(statement):
     code = f"import sys; {statement}; print([name for name in {HEAVY} if name in sys.modules])"

@@ -81,6 +81,11 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     """
     check_solver(solver, tolerance)
     scene.check_steady()
+    return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
+
+
+def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
+    """The same as `solve_steady` of arguments that were checked before."""
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"

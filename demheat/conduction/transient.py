@@ -7,13 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.conduction import steady_kernels
 from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
 from demheat.conduction.integrators.pace import ANY, Pace, pace_of
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import initial_state, load_at, loaded_areas, semi_discrete
 from demheat.conduction.steady import Solution
-from demheat.network.base import SIDES, wall_normals
+from demheat.network.base import SIDES
 from demheat.scene import Flux
 
 # Error that an implicit solve may leave, in units of the accuracy; less for more accuracy, as steps become more.
@@ -111,6 +110,11 @@ def integrate(system, temperature, times, *, integrator="auto", accuracy=1e-3, s
         If steps or linear solves do not converge.
     """
     times = check_request(times, integrator, accuracy, step)
+    return march(system, temperature, times, integrator=integrator, accuracy=accuracy, step=step, pace=pace)
+
+
+def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None, pace=ANY):
+    """The same as `integrate` of a request that was checked before."""
     accuracy, step = float(accuracy), None if step is None else float(step)
     rates = spectrum_of(system)
     needed = pace.steps(times[-1])
@@ -217,7 +221,7 @@ def evolve(network, scene, times, *, capacity=None, power=None, passes=(), pinne
     capacity = capacities(network, scene) if capacity is None else capacity
     system = semi_discrete(network, scene, capacity, power=power, pinned=pinned, level=float(start.mean()))
     pace = pace_of(changing_loads(scene), passes, float(times[-1]), accuracy)
-    for state in integrate(system, start, times, accuracy=accuracy, pace=pace, **knobs):
+    for state in march(system, start, times, accuracy=accuracy, pace=pace, **knobs):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
 
 
@@ -288,16 +292,3 @@ def _tied(system, state):
     x = np.zeros(len(system.capacity))
     system.hold(x, state.time)
     return x[system.tie_node] + system.level
-
-
-def mean_flux(network, scene, solution):
-    """Volume average of the flux density from the heat carried along links and wall links, (3,) float array, W/m2.
-
-    Exact for linear temperatures on a Laguerre network. Unlike the mean of the heat that enters and leaves it holds
-    while heat is stored.
-    """
-    first = np.empty((len(network.volumes), 3))
-    links = network.centers, network.size, network.indptr, network.indices, network.image
-    steady_kernels.moments(*links, network.conductance, np.zeros(3), solution.fluctuation, first)
-    towards = wall_normals(network) * network.wall_distance[:, None]
-    return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume

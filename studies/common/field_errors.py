@@ -160,4 +160,4 @@ def error_pictures(field, flux_at, reference, where, n):
 
 def _cells(mask, warm, flux):
     pictures = {"slice_temperature": (warm, 3), "slice_flux": (flux, 2)}
-    return {name: cell(filled(mask, values), "g", decimals=digits) for name, (values, digits) in pictures.items()}
+    return {name: cell(filled(mask, values), decimals=digits) for name, (values, digits) in pictures.items()}

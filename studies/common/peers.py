@@ -13,6 +13,11 @@ from studies.harness.cost import measured
 def tessellation(particles, seed):
     """CPU time of the radical cells of one walled packing by our kernel and by Voro++ (multivoro).
 
+    Parameters
+    ----------
+    particles, seed : int
+        Of the packing between walls.
+
     Returns
     -------
     dict
@@ -91,16 +96,13 @@ TILE = 130_000
 
 
 def _network(scene, particles, seed):
-    from demheat.network.interface import connect
-    from demheat.network.laguerre import laguerre
+    from demheat.build import network_of
+    from demheat.laws import Laguerre
     from demheat.packing.cache import tiled
-    from demheat.packing.conforming import conform
 
     counts = [math.ceil((particles / TILE) ** (1 / 3))] * 3
     packing = tiled(particles, counts, size=scene.size, periodic=scene.periodic, seed=seed)
-    packing = conform(packing, scene, seed=seed)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
-    return connect(facets, packing.centers, packing.size, scene.phase_at(packing.centers), scene.conductivities)
+    return network_of(scene, packing, Laguerre(), seed=seed)
 
 
 def _matrix(network, scene):

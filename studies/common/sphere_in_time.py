@@ -53,7 +53,16 @@ def quick(case):
 
 
 def packing_of(particles, seed):
-    """Packing in the sphere, kept in the cache."""
+    """Packing in the sphere, kept in the cache.
+
+    Parameters
+    ----------
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     from demheat.packing.cache import relaxed
 
     return relaxed(particles, size=sphere().size, periodic=False, domain="sphere", seed=seed)
@@ -96,7 +105,13 @@ def marched(times, look, *, method, **knobs):
 
 
 def prepare(times, look, *, method, **knobs):
-    """Make and keep the packing, load and compile: nothing of it is part of what is compared."""
+    """Make and keep the packing, load and compile: nothing of it is part of what is compared.
+
+    Parameters
+    ----------
+    times, look, method, knobs
+        As those of `marched`.
+    """
     if "particles" in knobs:
         packing = packing_of(knobs["particles"], knobs["seed"])
         if knobs["law"] == "calibrated":
@@ -113,6 +128,14 @@ def radii(points):
 
 def in_shells(r, values, weights, shells=20):
     """Weighted mean and largest size of values in shells of equal thickness; not-a-number in empty ones.
+
+    Parameters
+    ----------
+    r : (n,) float array
+        Distance from the centre, in radii.
+    values : (n,) float array, any unit
+    weights : (n,) float array, m3
+    shells : int
 
     Returns
     -------
@@ -146,7 +169,18 @@ def solved(df):
 
 
 def order_of(rows, column):
-    """Order in the particle spacing of a column's mean over packings."""
+    """Order in the particle spacing of a column's mean over packings.
+
+    Parameters
+    ----------
+    rows : data frame
+    column : str
+        Of errors.
+
+    Returns
+    -------
+    float
+    """
     means = rows.groupby("particles")[column].agg(lambda errors: errors.mean(skipna=False))
     return -3 * np.polyfit(np.log(means.index), np.log(means), 1)[0]
 

@@ -10,10 +10,8 @@ of the bulk; "tiled" repeats a relaxed periodic one.
 """
 
 from demheat import referee
-from studies.fig03_calibration.rows import PAPER, PRINTED, VARIANTS, VARIED, plot, table, unchanged, variant
+from studies.fig03_calibration.variants import PAPER, PRINTED, VARIANTS, VARIED, unchanged, variant
 from studies.harness.pick import pick, present
-
-__all__ = ["CASES", "PAPER", "QUICK", "claims", "plot", "run", "table", "warm_up"]
 
 SEEDS = (0, 1, 2, 3)
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000, 1_000_000)
@@ -70,7 +68,7 @@ def QUICK(case):
 
 def run(loading, domain, packing, particles, seed, method, *, spread=0.3, tiles=1, **knobs):
     """C_t of one packing under one load."""
-    from studies.fig03_calibration.homogeneous import calibrated, packed
+    from studies.fig03_calibration.rows import calibrated, packed
 
     sample = packed(loading, domain, packing, particles, seed, spread=spread, tiles=tiles)
     return calibrated(sample, loading, **knobs)
@@ -78,13 +76,17 @@ def run(loading, domain, packing, particles, seed, method, *, spread=0.3, tiles=
 
 def warm_up(loading, domain, packing, particles, seed, **more):
     """Load the solver; the packing, kept or made anew, is not part of what is compared."""
-    from studies.fig03_calibration.homogeneous import calibrated, packed
+    from studies.fig03_calibration.rows import calibrated, packed
 
     calibrated(packed("periodic", "cube", "relaxed", 1_000, 0), "periodic")
 
 
 def claims(df):
-    """No drift of C_t without walls or with links at them; the paper's drift, level and scatter with its walls."""
+    """C_t does not drift without walls or with links at them; with the paper's walls it does.
+
+    Where walls do not matter C_t is held to 1 % from 3000 particles on and 0.3 % from 1e5; with the paper's walls the
+    printed range, 0.806 at 1e5 and a scatter within the printed one are the yardsticks.
+    """
     plain = df[unchanged(df)]
     yield from present([*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)])
 
@@ -162,3 +164,21 @@ def _by_packing(rows):
 def _differ(one, other):
     """Largest relative difference of what is in both."""
     return float(referee.value_error(one, other).abs().max())
+
+
+def table(df):
+    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
+
+    Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
+    C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.
+    """
+    from studies.fig03_calibration.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """C_t over the number of particles by load, and at 1e5 by what else is changed."""
+    from studies.fig03_calibration.figure import draw
+
+    return draw(df)

@@ -16,8 +16,7 @@ import math
 
 from studies.fig18_fields.tables import COMPARED
 from studies.harness import methods
-from studies.harness.figures import resolution
-from studies.harness.methods import EDGE
+from studies.harness.methods import EDGE, resolution
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
@@ -82,7 +81,11 @@ def warm_up(name, boundary=None, *, method, **knobs):
 
 
 def claims(df):
-    """Points clear of interfaces; the witnesses' own error; each method at points and on the plane beside them."""
+    """Points clear of interfaces; the witnesses' own error; each method at points and on the plane.
+
+    The finest rows are held to 0.1 % of the span and 1 % of the local flux, a third of what the paper's two methods
+    differ by in print, 3.1 %.
+    """
     from studies.fig18_fields.errors import with_errors
 
     found = with_errors(df)

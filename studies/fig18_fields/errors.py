@@ -13,7 +13,17 @@ BOUNDARIES = {"gradient": "periodic cell, mean gradient", "walls": "isothermal a
 
 
 def witness(df, boundary):
-    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM."""
+    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM.
+
+    Parameters
+    ----------
+    df : data frame
+    boundary : {"gradient", "walls"}
+
+    Returns
+    -------
+    row of the data frame, or None without any
+    """
     rows = pick(df, boundary=boundary)
     exact = pick(rows, name="multipole")
     if len(exact):

@@ -9,7 +9,8 @@ from studies.fig18_fields.errors import BOUNDARIES, error_pictures, with_errors,
 from studies.fig18_fields.rows import POINTS
 from studies.fig18_fields.tables import COMPARED, label
 from studies.harness.cells import picture
-from studies.harness.figures import BLACK, LOOK, resolution
+from studies.harness.figures import BLACK, LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
 LOGARITHMIC = {"temperature": (1e-3, 1.0), "flux": (0.1, 100.0)}

@@ -37,12 +37,23 @@ def arrangement_row():
     points, _ = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
-    row["slice_face"] = cell(face / scene.size[0], "g", decimals=4)
-    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], "g", decimals=4)}
+    row["slice_face"] = cell(face / scene.size[0], decimals=4)
+    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], decimals=4)}
 
 
 def distance(scene, points):
-    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m."""
+    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m.
+
+    Parameters
+    ----------
+    scene : Scene
+        With disjoint spheres.
+    points : (n, 3) float array, m
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     centers = np.array([sphere.center for sphere in scene.inclusions])
     radii = np.array([sphere.radius for sphere in scene.inclusions])
     # Spheres are disjoint: the least signed distance is that of the sphere around the point, if there is one.
@@ -53,6 +64,16 @@ def field_row(boundary, *, method, **knobs):
     """Solve, and keep temperature and flux at the points and over the plane.
 
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
+
+    Parameters
+    ----------
+    boundary : {"gradient", "walls"}
+    method : str
+    knobs : keywords of its `solve`
+
+    Returns
+    -------
+    dict
     """
     scene = spheres_in(boundary)
     field, row = silica_epoxy.solved(scene, method=method, **knobs)
@@ -67,8 +88,8 @@ def field_row(boundary, *, method, **knobs):
         row |= {f"q{axis}_{letter}": part for axis, part in zip("xyz", q, strict=True)}
     warm, flux = filled(mask, temperature[len(POINTS) :]), filled(mask, flux[len(POINTS) :])
     # Two digits behind the point: 0.02 % of the mean flux of 29 W/m2; three: 0.0005 % of the span.
-    row |= {f"slice_{axis}": cell(flux[..., k], "g", decimals=2) for k, axis in enumerate("xyz")}
-    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, "g", decimals=3)}
+    row |= {f"slice_{axis}": cell(flux[..., k], decimals=2) for k, axis in enumerate("xyz")}
+    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, decimals=3)}
 
 
 def warm_up(boundary, *, method, **knobs):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from studies.fig18_fields.errors import BOUNDARIES, witness
 from studies.harness import methods
-from studies.harness.figures import LOOK, resolution
+from studies.harness.figures import LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
 # Eyre and Milton's scheme has the voxels of the scalar one, whose fields stand for both.
@@ -20,7 +21,20 @@ def label(row):
 
 
 def lines(df, found, paper):
-    """Where the points lie; rows of each load, its witness first; what the paper prints."""
+    """Where the points lie; rows of each load, its witness first; what the paper prints.
+
+    Parameters
+    ----------
+    df : data frame
+    found : data frame
+        With errors, from `errors.with_errors`.
+    paper : dict
+        Printed numbers.
+
+    Returns
+    -------
+    list of dict
+    """
     place = pick(df, name="arrangement").iloc[0]
     blank = {"load": "", "method": "where the points lie", "resolution": ""}
     where = {f"T_{x}": place[f"phase_{x}"] for x in "ABCD"}

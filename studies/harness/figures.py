@@ -47,12 +47,3 @@ def look(name, **more):
     """Keywords of a line for a method: its label, colour, marker and line style."""
     label, colour, marker, style = LOOK[name]
     return {"label": label, "color": colour, "marker": marker, "linestyle": style} | more
-
-
-def resolution(row):
-    """Resolution of a row, by its method's name, in words; empty if nothing refines the method."""
-    value = methods.value_of(row)
-    if value != value:
-        return ""
-    refined = methods.found()[row["name"]].resolution
-    return refined.words.format(value / methods.EDGE if refined.metric else value)

@@ -102,6 +102,15 @@ def value_of(row):
     return math.nan if value is None else value
 
 
+def resolution(row):
+    """Resolution of a row, by its method's name, in words; empty if nothing refines the method."""
+    value = value_of(row)
+    if value != value:
+        return ""
+    refined = found()[row["name"]].resolution
+    return refined.words.format(value / EDGE if refined.metric else value)
+
+
 def size_of(row):
     """Size of an element of a row, in edges of the cube; not-a-number if nothing refines its method."""
     value = value_of(row)

@@ -86,7 +86,11 @@ def _scene(gap):
 
 
 def claims(df):
-    """Every method against the multipoles at full size, their costs within the machine; the like for the quick rows."""
+    """Every method against the multipoles at full size, and what it costs.
+
+    With a million and with 8 million elements the DEM is held to 0.05 and 0.02 %, far below the 0.5 % between DEM and
+    FFT in the paper, and to 20 GiB; voxels to 0.05 %, quadratic elements too. Quick rows are coarse.
+    """
     df = errors(df)
     yield from present([*_witness(df), *_dem(df), *_others(df)])
 
@@ -154,13 +158,13 @@ def table(df):
     of it that the transforms take. `steady` is one solve of the spheres between walls, beside plain pyamg's
     Ruge-Stueben and smoothed aggregation on the same matrix (CPU seconds).
     """
-    from studies.many_inclusions.page import lines
+    from studies.many_inclusions.tables import lines
 
     return lines(errors(df))
 
 
 def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
-    from studies.many_inclusions.page import draw
+    from studies.many_inclusions.figure import draw
 
     return draw(errors(df[df["status"] == "ok"]), PAPER)

@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 from small_networks import JUMP, KINDS, dense, network_of, system_of
 
+from demheat.build import network_of as built
 from demheat.conduction.integrators import spectrum as module
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import System, semi_discrete
 from demheat.conduction.transient import capacities
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre
+from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 
 
@@ -75,9 +75,8 @@ def test_no_exchange_of_heat_is_no_limit():
 def ratio(periodic):
     """Spectral radius over the mean row of Laguerre cells between walls, from a packing made with walls or not."""
     packing = relaxed(3000, periodic=periodic, seed=0)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, np.array([2.0]))
+    # Walls all round, whatever the packing was made for.
+    network = built(JUMP, packing._replace(periodic=np.zeros(3, dtype=bool)), Laguerre())
     found = spectrum(semi_discrete(network, JUMP, capacities(network, JUMP)))
     return found.radius / found.mean_row
 

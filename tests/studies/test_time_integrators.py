@@ -1,4 +1,4 @@
-"""LAMMPS beside our kernel of explicit Euler: the same links, the same temperatures."""
+"""The study of integrators: errors against finer runs; LAMMPS and our kernel, the same links and temperatures."""
 
 import itertools
 import math
@@ -13,6 +13,7 @@ from demheat.packing.base import make_packing
 from studies import time_integrators
 from studies.common.slab import METAL
 from studies.time_integrators import lammps_peer
+from studies.time_integrators import rows as integrator_rows
 
 
 def bed_and_network():
@@ -61,3 +62,25 @@ def test_claims_with_and_without_lammps():
     # The first two have 3000 particles: their speeds are not judged.
     values = [value for _, value, _ in time_integrators._peer(pd.DataFrame(measured))]
     assert values == [1.0, 12.0, 13.0]
+
+
+@pytest.mark.parametrize("integrator", ["rkl2", "euler"])
+def test_error_is_against_a_finer_run(integrator):
+    row = integrator_rows.marched("slab", 500, integrator, None if integrator == "euler" else 1e-2)
+    system, start = integrator_rows.system_of("slab", 500)
+    coarse, fine = (
+        integrator_rows._integrated(system, start, 0.2, name, accuracy).temperature
+        for name, accuracy in ((integrator, 1e-2), ("rkl2", 1e-6))
+    )
+    right = 100 * np.sqrt(np.mean((coarse - fine) ** 2)) / 10.0
+    # The row's own reference is at 1e-5 of the span, 0.001 %.
+    assert_allclose(row["error_percent"], right, atol=2e-3)
+    assert right > 0.01 and row["taken"] == integrator and not row["extrapolated"]
+
+
+def test_a_long_run_of_euler_is_extrapolated(monkeypatch):
+    monkeypatch.setattr(integrator_rows, "MOST_STEPS", 50)
+    monkeypatch.setattr(integrator_rows, "SAMPLE", 20)
+    row = integrator_rows.marched("sphere", 500, "euler", None)
+    assert row["extrapolated"] and row["steps"] > 50 and "error_percent" not in row
+    assert row["cpu_s"] > 0 and row["bandwidth_share"] > 0 and row["million_particle_steps"] > 0

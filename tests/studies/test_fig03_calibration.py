@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.network.calibrated import contact_facets
+from demheat import Calibrated, Material, Scene
+from demheat.build import network_of
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
-from studies.fig03_calibration.homogeneous import affine, calibrated, packed
+from studies.fig03_calibration.rows import affine, calibrated, packed
 
 EDGE = 12  # spheres along each side: walls leave bulk between layers of 6 radii
 
@@ -68,9 +69,10 @@ def test_affine_of_a_stretched_crystal():
     """Twice the spheres' distance along y doubles the length of those links: the bound follows the geometry."""
     crystal = simple_cubic(True)
     stretched = make_packing(crystal.centers * [1, 2, 1], crystal.radii, (1, 2, 1), True, {})
-    facets = contact_facets(stretched, links=contacts(stretched, gap=1.01), poor="keep")
-    rows = np.repeat(np.arange(stretched.number), np.diff(facets.indptr))
-    step = stretched.centers[facets.indices] - stretched.centers[rows]
+    scene = Scene(size=(1, 2, 1), matrix=Material(1.0), gradient=(0, 1, 0))
+    network = network_of(scene, stretched, Calibrated(gap=1.01, poor="keep", factor=1.0))
+    rows = np.repeat(np.arange(stretched.number), np.diff(network.indptr))
+    step = stretched.centers[network.indices] - stretched.centers[rows]
     step -= stretched.size * np.round(step / stretched.size)
     expected = 0.5 * (np.pi * (0.5 / EDGE) ** 2 / np.linalg.norm(step, axis=1)) @ step[:, 1] ** 2 / 2.0
-    assert_allclose(affine(stretched, facets)["bound"], 1 / expected, rtol=1e-12)
+    assert_allclose(affine(stretched, network)["bound"], 1 / expected, rtol=1e-12)

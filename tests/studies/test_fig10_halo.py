@@ -7,18 +7,21 @@ from numpy.testing import assert_allclose
 
 from demheat.field import Field, Samples
 from studies import fig10_halo
-from studies.fig10_halo.figure import RATIOS, STATISTICS, long
+from studies.fig10_halo import rows as halo_rows
+from studies.fig10_halo import statistics
+from studies.fig10_halo.statistics import RATIOS, STATISTICS, long
 from studies.harness import table
+from studies.harness.cells import numbers
 
-LENGTH = fig10_halo.LENGTH
+LENGTH = halo_rows.LENGTH
 
 
 def test_statistics_of_a_few_numbers():
-    number, cov, cov_volume, least, mean, most = fig10_halo._of(np.array([1.0, 2.0, 3.0]), np.array([1.0, 0.0, 3.0]))
+    number, cov, cov_volume, least, mean, most = statistics._of(np.array([1.0, 2.0, 3.0]), np.array([1.0, 0.0, 3.0]))
     assert (number, least, most) == (3, 1.0, 3.0)
     assert_allclose([cov, mean], [100 * np.sqrt(2 / 3) / 2, 2.5], rtol=1e-14)
     assert_allclose(cov_volume, 100 * np.sqrt((1.5**2 + 3 * 0.5**2) / 4) / 2.5, rtol=1e-14)
-    assert np.isnan(fig10_halo._of(np.empty(0), np.empty(0))[1:]).all()
+    assert np.isnan(statistics._of(np.empty(0), np.empty(0))[1:]).all()
 
 
 @pytest.mark.parametrize("walls", ["held", "periodic"])
@@ -30,10 +33,10 @@ def test_the_bulk_is_what_no_halo_reaches_a_wall_from(walls):
     flux = np.zeros((4000, 3))
     flux[:, 1] = -3300.0 * ((depth > 2 * radius).astype(float) + (depth > 4 * radius))
     samples = Samples(points, np.ones(4000), np.zeros(4000), np.zeros(4000, int), flux)
-    scene, stats = fig10_halo._scene(walls), {"mean_radius": radius, "law": "calibrated"}
+    scene, stats = halo_rows.scene_of(walls), {"mean_radius": radius, "law": "calibrated"}
     field = Field(scene, np.zeros(3), np.ones(1), lambda: samples, None, None, stats=stats)
-    row = fig10_halo._statistics(field, {ratio: flux for ratio in (0.0, 4.0, 5.5)})
-    found = {name: np.array([float(word) for word in cell.split()]) for name, cell in row.items()}
+    row = statistics.by_radius(field, {ratio: flux for ratio in (0.0, 4.0, 5.5)})
+    found = {name: numbers(cell) for name, cell in row.items()}
     here = [RATIOS.index(ratio) for ratio in (0.0, 4.0, 5.5, 7.0)]
     assert found["number"][here].tolist() == [4000, 4000, 4000, 0]
     assert_allclose(found["least"][here], [0, 0, 0, np.nan])

@@ -17,39 +17,6 @@ def own_cache(tmp_path_factory, monkeypatch):
     monkeypatch.setenv("DEMHEAT_CACHE", str(tmp_path_factory.getbasetemp() / "terreros"))
 
 
-def test_dispersion_by_hand():
-    # (20 - 10)/20 and (40 - 30)/40: the mean of 50 and 25 %.
-    assert_allclose(terreros.dispersion([[10.0, 40.0], [20.0, 30.0], [15.0, 35.0]]), 37.5, rtol=1e-15)
-
-
-def test_largest_difference_is_of_the_reference_and_signed():
-    at, percent = terreros.largest_difference([10.0, 17.0, 41.0], [10.0, 20.0, 40.0])
-    assert at == 1
-    assert_allclose(percent, -15.0, rtol=1e-15)
-
-
-def test_means_over_slices_of_the_beam():
-    x = terreros.LENGTH * np.array([0.0, 0.01, 0.3, 0.99, 1.0])
-    middle, mean = terreros.binned(x, np.array([1.0, 3.0, 5.0, 7.0, 9.0]), bins=4)
-    assert_allclose(middle, [0.125, 0.375, 0.625, 0.875], rtol=1e-15)
-    # The third slice is empty.
-    assert_allclose(mean, [2.0, 5.0, np.nan, 8.0], rtol=1e-15)
-
-
-def test_the_source_stays_inside_and_reaches_the_edge():
-    scene = terreros.sheet()
-    source = scene.sources[0]
-    # Terreros et al. 2013: the rim is at the far edge, x = 50 mm, when the axis is 4 mm before it.
-    last = (terreros.SHEET[0] - terreros.START[0] - source.diameter / 2) / terreros.SPEED
-    assert_allclose(source.position(last), [46e-3, 15e-3], rtol=1e-12)
-    from studies.fig12_15_sheet import STOP
-
-    # The study stops within a millisecond before.
-    assert 0 < last - STOP < 1e-3
-    for point in terreros.POINTS.values():
-        assert all(0 < x < side for x, side in zip(point, scene.size, strict=True))
-
-
 def test_the_gap_gives_the_wanted_contacts_in_bulk():
     packing = relaxed(terreros.BULK, radii=terreros.SPREAD, seed=0)
     indptr, _, _ = contacts(packing, gap=terreros.bulk_gap(7.2))

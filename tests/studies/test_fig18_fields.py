@@ -8,9 +8,9 @@ from numpy.testing import assert_allclose
 from demheat.gallery import sphere_in_cube
 from demheat.scene import Material, Scene, Sphere
 from studies import fig18_fields as study
-from studies.common.field_errors import cell
 from studies.fig18_fields import errors as fig18_errors
 from studies.fig18_fields import rows as fig18_rows
+from studies.harness.cells import cell, numbers
 
 BOX = Scene(
     (0.1, 0.1, 0.1), Material(0.195),
@@ -39,15 +39,24 @@ def rows():
     base = {"boundary": "walls", "mean_flux": 10.0, "unknowns": 10, "degree": np.nan, "case": "a"}
     base |= {f"T_{x}": 30.0 for x in "ABCD"} | {f"q_{x}": 10.0 for x in "ABCD"}
     base |= {f"q{axis}_{x}": -10.0 if axis == "y" else 0.0 for axis in "xyz" for x in "ABCD"}
-    base |= {"slice_temperature": cell(5 * flat, 3), "slice_x": cell(0 * flat, 2), "slice_z": cell(0 * flat, 2)}
-    witness = base | {"name": "multipole", "degree": 8, "slice_y": cell(-flat, 2)}
+    base |= {
+        "slice_temperature": cell(5 * flat, decimals=3),
+        "slice_x": cell(0 * flat, decimals=2),
+        "slice_z": cell(0 * flat, decimals=2),
+    }
+    witness = base | {"name": "multipole", "degree": 8, "slice_y": cell(-flat, decimals=2)}
     other = base | {"name": "dem", "particles": study.NUMBERS[-1], "case": "b", "T_B": 30.02, "q_C": 10.3, "qz_C": 1.0}
     bent = -flat
     bent[0, 0] = -14.0
-    other |= {"slice_y": cell(bent, 2)}
+    other |= {"slice_y": cell(bent, decimals=2)}
     gaps = np.full((4, 4), 0.5)
     gaps[:2] = 0.01
-    place = {"name": "arrangement", "slice_gap": cell(gaps, 4), "slice_face": cell(gaps, 4), "band": 0.02}
+    place = {
+        "name": "arrangement",
+        "slice_gap": cell(gaps, decimals=4),
+        "slice_face": cell(gaps, decimals=4),
+        "band": 0.02,
+    }
     return pd.DataFrame([witness, other, place | {f"gap_{x}": 0.03 for x in "ABCD"}])
 
 
@@ -80,7 +89,7 @@ def test_without_multipoles_the_finest_elements_are_the_witness():
 def test_temperatures_of_the_cell_are_level(monkeypatch):
     monkeypatch.setattr(fig18_rows, "spheres_in", lambda boundary: cube(boundary))
     row = study.run("fft", "gradient", method="fft", voxels=16)
-    values = np.array([float(word) for word in row["slice_temperature"].split()])
+    values = numbers(row["slice_temperature"])
     assert len(values) == fig18_rows.GRID**2
     assert values.mean() == pytest.approx(50.0, abs=1e-3)  # rounded to three digits
     walls = study.run("fft", "walls", method="fft", voxels=16)

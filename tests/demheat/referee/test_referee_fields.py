@@ -4,46 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from known_fields import CELL, POINTS, WALLED, exact_flux, exact_temperature, field, with_errors
 from numpy.testing import assert_allclose
 
-from demheat import Field, Flux, Material, Samples, Scene, referee
-
-WALLED = Scene((1.0, 2.0, 1.0), Material(3.0), walls={"y-": 10.0, "y+": 30.0})
-CELL = Scene((1.0, 2.0, 1.0), Material(3.0), gradient=(0.0, 10.0, 0.0))
-POINTS = np.array([[0.5, 0.5, 0.5], [0.5, 1.5, 0.5], [0.2, 1.0, 0.5]])
-VOLUMES = np.array([1.0, 0.5, 0.5])
-
-
-def field(scene, temperature, flux, *, conductivity=3.0, **rest):
-    """A Field with given temperature and flux functions and samples at POINTS."""
-
-    def sampler():
-        return Samples(POINTS, VOLUMES, temperature(POINTS), np.zeros(3, dtype=int), flux(POINTS))
-
-    rest.setdefault("wall_temperature", scene.wall_temperatures)
-    mean = np.array([0.0, -10.0 * conductivity, 0.0])
-    return Field(scene, mean, np.ones(1), sampler, temperature, flux, **rest)
-
-
-def exact_temperature(points):
-    return 10.0 + 10.0 * points[:, 1]
-
-
-def exact_flux(points):
-    return np.tile([0.0, -30.0, 0.0], (len(points), 1))
-
-
-def with_errors(scene, temperature_errors, flux_errors=(0.0, 0.0, 0.0)):
-    """A Field that is off by the given amounts at POINTS, in the flux along x."""
-
-    def at(points, errors):
-        return np.array([errors[np.argmin(np.abs(POINTS - p).sum(axis=1))] for p in points])
-
-    return field(
-        scene,
-        lambda points: exact_temperature(points) + at(points, temperature_errors),
-        lambda points: exact_flux(points) + at(points, flux_errors)[:, None] * [1.0, 0.0, 0.0],
-    )
+from demheat import Field, Flux, Material, Scene, referee
 
 
 @pytest.fixture
@@ -122,19 +86,67 @@ def test_no_relative_flux_error_without_flux(reference):
         referee.flux_error(reference, still)
 
 
-def test_heat_balance():
-    assert referee.heat_balance(field(WALLED, None, None, wall_heat={"y-": -10.0, "y+": 10.5})) == 0.5 / 10.5
-    assert referee.heat_balance(field(WALLED, None, None, wall_heat={"y-": 0.0, "y+": 0.0})) == 0.0
-    with pytest.raises(ValueError, match="periodic"):
-        referee.heat_balance(field(CELL, None, None))
+def test_units_are_of_one_error(reference):
+    wrong = with_errors(WALLED, (1.0, -3.0, 2.0), (3.0, 0.0, -6.0))
+    kelvin = referee.temperature_error(wrong, reference, unit="K")
+    # Rounding of temperatures of tens of kelvin.
+    assert_allclose(kelvin.values, [1.0, -3.0, 2.0], rtol=1e-12)
+    for unit, scale in (("%", 20 / 100), ("span", 20)):
+        found = referee.temperature_error(wrong, reference, unit=unit)
+        assert_allclose([found.rms, found.max], [kelvin.rms / scale, 3 / scale], rtol=1e-12)
+    assert_allclose(referee.flux_error(wrong, reference, unit="%").max, 20.0, rtol=1e-12)
+    with pytest.raises(ValueError, match="unit = 'C': must be one of 'span', '%', 'K'"):
+        referee.temperature_error(wrong, reference, unit="C")
+    with pytest.raises(ValueError, match="unit = 'K': must be one of 'mean', '%'"):
+        referee.flux_error(wrong, reference, unit="K")
 
 
-def test_bound_violation(reference):
-    assert referee.bound_violation(reference, 2.0, 4.0) == 0.0
-    assert referee.bound_violation(reference, 3.0, 3.0) == 0.0
-    assert_allclose(referee.bound_violation(reference, 4.0, 5.0), -0.25, rtol=1e-12)
-    assert_allclose(referee.bound_violation(reference, 0.0, 2.0), 0.5, rtol=1e-12)
-    assert referee.bound_violation(reference, 0.0, 0.0) == math.inf
-    for lower, upper in ((2.0, 1.0), (-1.0, 1.0), (math.nan, 1.0)):
-        with pytest.raises(ValueError, match="must be 0 <= lower <= upper"):
-            referee.bound_violation(reference, lower, upper)
+def test_values_at_hand_stand_in_for_the_fields_own(reference):
+    found = referee.temperature_error(reference, reference, POINTS, values=exact_temperature(POINTS) + 2.0)
+    assert_allclose(found.values, 0.1, rtol=1e-12)
+    sideways = exact_flux(POINTS) + [0.0, 0.0, 15.0]
+    assert_allclose(referee.flux_error(reference, reference, values=sideways).values, 0.5, rtol=1e-12)
+    with pytest.raises(ValueError, match="values of length 2: must be one for each of 3 points"):
+        referee.temperature_error(reference, reference, POINTS, values=np.zeros(2))
+
+
+def test_flux_along_the_mean_flux_is_signed(reference):
+    off = exact_flux(POINTS) + np.array([[5.0, -3.0, 0.0], [0.0, 6.0, 7.0], [1.0, 0.0, 0.0]])
+    found = referee.flux_error(reference, reference, POINTS, values=off, along=True)
+    # The mean flux of 30 points down y.
+    assert_allclose(found.values, [0.1, -0.2, 0.0], rtol=1e-12)
+
+
+def test_part_of_an_error(reference):
+    found = referee.temperature_error(with_errors(WALLED, (1.0, -3.0, 2.0)), reference, unit="K")
+    part = found.part(np.array([True, False, True]))
+    assert_allclose([part.rms, part.max], [math.sqrt((1 * 1 + 0.5 * 4) / 1.5), 2.0], rtol=1e-12)
+    assert_allclose(part.where, POINTS[2], rtol=0)
+    assert referee.temperature_error(reference, reference, POINTS).part(np.array([True, False, False])).weights is None
+
+
+def heated(time, walls, initial):
+    """A reference at a time."""
+    scene = Scene((1.0, 2.0, 1.0), Material(3.0, 1.0, 1.0), walls=walls, initial=initial)
+    return field(scene, exact_temperature, exact_flux, time=time, wall_temperature={"y-": 10.0, "y+": 30.0})
+
+
+@pytest.mark.parametrize(
+    ("walls", "initial", "expected"),
+    [
+        ({"y-": 10.0, "y+": 30.0}, 10.0, 20.0),
+        ({"y-": 10.0, "y+": 30.0}, 50.0, 40.0),
+        ({"y-": 10.0}, 25.0, 15.0),
+        ({"y-": lambda time: 10.0 * time}, 0.0, 40.0),
+        ({"y+": Flux(1.0)}, 12.0, 20.0),  # walls at 10 and 30 in the reference
+    ],
+)
+def test_span_in_time_counts_the_initial_temperature(walls, initial, expected):
+    reference = heated(4.0, walls, initial)
+    assert referee.span(reference.scene, reference) == expected
+
+
+def test_errors_in_time_are_of_that_span():
+    reference = heated(4.0, {"y-": 10.0}, 110.0)
+    found = referee.temperature_error(with_errors(reference.scene, (1.0, -3.0, 2.0)), reference, unit="%")
+    assert_allclose(found.values, [1.0, -3.0, 2.0], rtol=1e-12)

@@ -3,28 +3,12 @@
 import numpy as np
 import pandas as pd
 import pytest
+from known_rows import ladder
 from numpy.testing import assert_allclose
 
-from studies import fig17_etc, many_inclusions
+from studies import fig17_etc
 from studies.fig17_etc import means as dispersion_means
 from studies.fig17_etc import tables as dispersion_table
-from studies.harness.converged import converged
-
-
-def ladder(name, knob, sizes, values, **where):
-    return pd.DataFrame({"name": name, knob: sizes, "k_ratio": values, "status": "ok", **where})
-
-
-def test_converged_takes_off_the_terms_that_it_names():
-    h = np.array([1 / 64, 1 / 128, 1 / 256])
-    voxels = ladder("fft", "voxels", [64, 128, 256], 1.5 + 2 * h - 30 * h**2)
-    assert_allclose(converged(voxels, "fft"), 1.5, rtol=1e-12)  # rounding
-    particles = ladder("dem", "particles", [1e3, 1e4, 1e5], 1.5 + np.array([9.0, 1e4 ** (-2 / 3), 1e5 ** (-2 / 3)]))
-    # Rounding again; the coarsest does not count.
-    assert_allclose(converged(particles, "dem"), 1.5, rtol=1e-12)
-    assert converged(ladder("fem", "size", [0.1, 0.05], [2.0, 1.6]), "fem") == 1.6
-    assert converged(voxels.iloc[:2], "fft") is None
-    assert np.isnan(converged(voxels.assign(k_ratio=[1.5, np.nan, 1.5]), "fft"))
 
 
 def cells(kind, boundary, values, **more):
@@ -65,16 +49,6 @@ def test_bounds_are_those_of_the_cell_and_of_the_methods_own_fraction():
     assert_allclose([low, high], (1 + 0.5 * beta) / (1 - 0.25 * beta), rtol=1e-12)
     with pytest.raises(ValueError, match="zeta2"):
         dispersion_means.bounds_of(df, {"fraction": 0.2, "realisation": 4, "inclusion": 0.25})
-
-
-def test_errors_hang_on_the_highest_degree_even_if_it_failed():
-    rows = [{"name": "multipole", "highest": n, "k_ratio": k} for n, k in ((4, 1.49), (6, 1.5), (8, 1.5))]
-    df = pd.DataFrame([*rows, {"name": "dem", "particles": 1e4, "number": 83, "k_ratio": 1.53}])
-    found = many_inclusions.errors(df)
-    assert_allclose(found["error_percent"], [-100 * 0.01 / 1.5, 0.0, 0.0, 2.0])
-    assert_allclose(found["per_inclusion"].iloc[-1], 1e4 * 0.2 / 83)
-    df.loc[2, "k_ratio"] = np.nan
-    assert many_inclusions.errors(df)["error_percent"].isna().all()
 
 
 def test_the_nearest_method_is_named_with_its_cost():

@@ -75,6 +75,22 @@ def test_a_moved_module_keeps_the_hash(tree):
     assert code("references.fft") == before[0] and code("demheat.dem") != before[1]
 
 
+def test_claims_of_a_package_do_not_count(tree):
+    """A study of several files: its parts lie below the module that has its claims."""
+    write, _ = tree
+    run = "def run():\n    from studies.two.rows import row\n    return row()\n"
+    study = f"LIMIT = 2\nfrom studies.two.figure import draw\n{run}"
+    root = write("studies/two/__init__.py", study)
+    write("studies/two/rows.py", "def row():\n    return 1")
+    write("studies/two/figure.py", "def draw():\n    return 1")
+    before = provenance.code_hash(root / "studies/two/__init__.py")
+    write("studies/two/figure.py", "def draw():\n    return 2")
+    write("studies/two/__init__.py", study.replace("LIMIT = 2", "LIMIT = 3") + "def claims():\n    return LIMIT\n")
+    assert provenance.code_hash(root / "studies/two/__init__.py") == before
+    write("studies/two/rows.py", "def row():\n    return 2")
+    assert provenance.code_hash(root / "studies/two/__init__.py") != before
+
+
 def test_what_a_method_declares_of_itself_does_not_count(tree):
     write, code = tree
     before = code("references.fft")

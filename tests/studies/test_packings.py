@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat.packing.base import make_packing
-from studies.packings import packers
+from studies.packings import rows as packers
 
 
 def cubic(side=6, radius=0.5):
@@ -33,11 +33,6 @@ def test_neighbours_within_a_gap():
     z = packers._z_of_gap(cubic(radius=0.495))
     # Six at a distance of 1 / 0.99 contacts: a gap of 0.0101.
     assert z[packers.GAPS < 0.0101].max() == 0 and set(z[packers.GAPS > 0.0102]) == {6.0}
-
-
-def test_text_round_trip():
-    values = np.array([1.5, np.nan, 1e-7])
-    assert_allclose(packers.numbers(packers._text(values)), values, rtol=1e-5)  # six digits are written
 
 
 def test_makers_get_the_same_radii():
