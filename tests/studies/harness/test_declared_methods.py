@@ -11,7 +11,7 @@ import pytest
 from demheat.method import PARTICLES, SIZE, VOXELS, Errors, Method, Resolution
 from studies.harness import figures, methods, pick, runner, store
 
-RESULTS = sorted((Path(__file__).parents[2] / "results").glob("*.csv"))
+RESULTS = sorted((Path(__file__).parents[3] / "results").glob("*.csv"))
 
 
 def test_methods_come_in_one_order():
