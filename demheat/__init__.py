@@ -4,15 +4,16 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 `evolve`.
 """
 
+import warnings
+
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
-from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 
 __all__ = [
     "Calibrated",
     "Field",
     "Flux",
-    "Heating",
     "Laguerre",
     "Layer",
     "Material",
@@ -21,10 +22,12 @@ __all__ = [
     "Samples",
     "Scene",
     "Sphere",
+    "UniformSource",
     "evolve",
     "solve",
 ]
 __version__ = "0.1.0"
+RENAMED = {"Heating": "UniformSource"}
 
 
 def __getattr__(name):
@@ -32,4 +35,7 @@ def __getattr__(name):
         from demheat import dem
 
         return getattr(dem, name)
+    if name in RENAMED:
+        warnings.warn(f"demheat.{name} is now demheat.{RENAMED[name]}", DeprecationWarning, stacklevel=2)
+        return globals()[RENAMED[name]]
     raise AttributeError(f"module 'demheat' has no attribute {name!r}")

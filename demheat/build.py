@@ -5,12 +5,12 @@ import warnings
 
 import numpy as np
 
-from demheat.calibration import calibration, cube_like, loaded_flat
+from demheat.calibration import calibration, calibration_scene, cube_like
 from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
 from demheat.network.base import Network
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre, without_hidden
+from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.network.platonic import platonic_facets
 from demheat.packing.base import Packing
 from demheat.packing.conforming import conform
@@ -76,7 +76,7 @@ _FACETS = {Laguerre: _cells, Calibrated: contact_facets, Platonic: platonic_face
 
 def _facets(packing, law):
     """The particles that take part, and their facets before they are calibrated."""
-    return without_hidden(packing, _FACETS[type(law)](packing, law))
+    return drop_empty_cells(packing, _FACETS[type(law)](packing, law))
 
 
 def _calibrated(scene, packing, facets, law):
@@ -85,7 +85,7 @@ def _calibrated(scene, packing, facets, law):
         packing = cube_like(packing)
         packing, facets = _facets(packing, law)
         scene = Scene(size=tuple(packing.size), matrix=scene.matrix, initial=0.0)
-    flat = loaded_flat(scene)
+    flat = calibration_scene(scene)
     return calibration(connect(packing, facets, flat.phase_at(packing.centers), flat.conductivities), flat)
 
 

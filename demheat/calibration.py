@@ -76,7 +76,7 @@ def cube_like(packing, *, seed=0):
     )
 
 
-def loaded_flat(scene):
+def calibration_scene(scene):
     """A scene of the same size and conductivity 1 whose load is like that of another.
 
     The mean gradient of a periodic cell; else temperatures along the first flat wall of the other scene, or its axis,

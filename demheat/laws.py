@@ -19,7 +19,7 @@ MEANS = ("arithmetic", "harmonic", "geometric")
 POLICIES = ("nearest", "keep", "drop")
 WALL_RULES = ("center", "surface")
 # Short forms give the choices of all laws: those of the contact laws at these values ask nothing of another law.
-UNASKED = {"poor": "nearest", "wall": "center", "coordination": None, "gap": None}
+UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -84,7 +84,7 @@ class _Contacts:
     interface: str = "harmonic"
     coordination: float | None = None
     gap: float | None = None
-    poor: str = "nearest"
+    sparse: str = "nearest"
     wall: str = "center"
 
     cells: ClassVar[bool] = False
@@ -92,7 +92,7 @@ class _Contacts:
 
     def __post_init__(self):
         _choice("interface", self.interface, RULES)
-        _choice("poor", self.poor, POLICIES)
+        _choice("sparse", self.sparse, POLICIES)
         _choice("wall", self.wall, WALL_RULES)
         if self.coordination is not None:
             _number("coordination", self.coordination, 0.0, "a finite number > 0")
@@ -155,7 +155,7 @@ class Calibrated(_Contacts):
     gap : float, optional
         Contacts are within this part of r_i + r_j, instead of as many as `coordination` asks for. For bodies too thin
         to have particles away from walls.
-    poor : {"nearest", "keep", "drop"}
+    sparse : {"nearest", "keep", "drop"}
         Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
         that touch nobody become islands without heat); or take out, again and again until none is left, particles with
         fewer than 2 links (walls count as one) and all clusters but the largest.
@@ -204,7 +204,7 @@ class Platonic(_Contacts):
         As in `Calibrated`.
     coordination : float, optional
         As in `Calibrated`, but 7.2 where no gap is given: the paper states no number.
-    poor : {"nearest", "keep", "drop"}
+    sparse : {"nearest", "keep", "drop"}
         As in `Calibrated`. A particle without any neighbour, whose capacity the paper's table would make infinite,
         takes no part.
 

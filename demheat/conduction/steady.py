@@ -22,11 +22,10 @@ class Solution(NamedTuple):
 
     Attributes
     ----------
-    fluctuation : (n,) float array, K
-        Temperature minus the linear field of the mean gradient (periodic cell), or the temperature itself (walls);
-        NaN on islands that no wall temperature reaches.
-    gradient : (3,) float array, K/m
-        Mean gradient; zero with walls.
+    temperature : (n,) float array, K
+        Of each particle, less the linear field of the mean gradient; NaN on islands that no wall temperature reaches.
+    mean_gradient : (3,) float array, K/m
+        Of a periodic cell; zero with walls.
     wall_temperature : (w,) float array, K
         At each wall facet of the network.
     wall_heat : (w,) float array, W
@@ -35,8 +34,8 @@ class Solution(NamedTuple):
         unknowns, iterations, residual, solver, islands.
     """
 
-    fluctuation: np.ndarray
-    gradient: np.ndarray
+    temperature: np.ndarray
+    mean_gradient: np.ndarray
     wall_temperature: np.ndarray
     wall_heat: np.ndarray
     stats: dict

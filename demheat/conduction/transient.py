@@ -29,7 +29,7 @@ def capacities(network, scene):
     return per_volume[network.phase] * network.volumes
 
 
-def evolve(network, scene, times, *, power=None, passes=(), pinned=None, accuracy=1e-3, **knobs):
+def evolve(network, scene, times, *, power=None, transits=(), held_centers=None, accuracy=1e-3, **knobs):
     """Temperatures, wall temperatures and wall heat of a network at the asked times.
 
     Parameters
@@ -42,9 +42,9 @@ def evolve(network, scene, times, *, power=None, passes=(), pinned=None, accurac
         As `demheat.conduction.integrators.march.check_request` gives them, with what else is asked.
     power : callable (time, s) -> (n,) float array, W, optional
         Heat sources.
-    passes : sequence of (start, s, stop, s, crossing, s)
-        Of moving sources, see `demheat.conduction.sources.passes`; steps heed them.
-    pinned : (n,) bool array, optional
+    transits : sequence of (start, s, stop, s, crossing, s)
+        Of moving sources, see `demheat.conduction.sources.transits`; steps heed them.
+    held_centers : (n,) bool array, optional
         Particles held at the temperature of the wall they touch.
     accuracy : float
         Of the temperature span.
@@ -65,8 +65,8 @@ def evolve(network, scene, times, *, power=None, passes=(), pinned=None, accurac
         If steps or linear solves do not converge.
     """
     start, capacity = initial_temperature(scene, network.centers), capacities(network, scene)
-    system = semi_discrete(network, scene, capacity, power=power, pinned=pinned, level=float(start.mean()))
-    pace = pace_of(changing_loads(scene), passes, float(times[-1]), accuracy)
+    system = semi_discrete(network, scene, capacity, power=power, held_centers=held_centers, level=float(start.mean()))
+    pace = pace_of(changing_loads(scene), transits, float(times[-1]), accuracy)
     for state in march(system, start, times, accuracy=accuracy, pace=pace, **knobs):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
 
@@ -110,7 +110,7 @@ def initial_temperature(scene, points):
     return values.astype(float)
 
 
-def try_functions(scene):
+def check_callables(scene):
     """Raise ValueError unless the functions of a scene give numbers at time 0, in the middle of the body and near it.
 
     What they give elsewhere and later is checked where they are asked for.
@@ -125,16 +125,16 @@ def _walls(network, scene, system, state):
     """Temperature and entering heat of each wall facet at a time."""
     here = state.temperature[network.wall_particle]
     temperature, heat = here.copy(), np.zeros(len(here))
-    pinned = np.isin(network.wall_particle, system.held)
-    given = _given_on(network, system, state) if pinned.any() else None
+    held_centers = np.isin(network.wall_particle, system.held)
+    given = _given_on(network, system, state) if held_centers.any() else None
     for name, load in (scene.walls or {}).items():
         value, at = load_at(name, load, state.time), network.wall_side == SIDES.index(name)
         conductance = network.wall_conductance[at]
         if name in scene.wall_temperatures:
             temperature[at] = value
             heat[at] = conductance * (value - here[at])
-            if pinned.any():
-                held = at & pinned
+            if held_centers.any():
+                held = at & held_centers
                 heat[held] = given[network.wall_particle[held]]
         else:
             heat[at] = value * loaded_areas(network, scene, name)

@@ -2,17 +2,21 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, fields
 
 import numpy as np
 
 from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
 from demheat.packing.base import Packing
-from demheat.packing.cache import relaxed, tiled
-from demheat.packing.domain import tile_counts
+from demheat.packing.cache import relaxed, replicated
+from demheat.packing.domain import replica_counts
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 from demheat.scene import Scene
+
+# Old keywords of `solve` and `evolve`.
+RENAMED = {"poor": "sparse", "tiles": "replicas"}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +28,7 @@ class Particles:
     particles : int
     seed : int
     packing : Packing, optional
-    tiles : int, optional
+    replicas : int, optional
         Along the shortest side of the box.
     allow_few : bool
 
@@ -37,7 +41,7 @@ class Particles:
     particles: int
     seed: int
     packing: Packing | None = None
-    tiles: int | None = None
+    replicas: int | None = None
     allow_few: bool = False
 
     def __post_init__(self):
@@ -48,18 +52,18 @@ class Particles:
             raise ValueError(f"particles = {number!r}: must be an integer >= 1")
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
-        if self.packing is not None and self.tiles is not None:
-            raise ValueError(f"tiles = {self.tiles!r} of a packing that is given: must be None")
+        if self.packing is not None and self.replicas is not None:
+            raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 
     def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
-        """How many tiles the packing has along each axis, (3,) int array.
+        """How many replicas the packing has along each axis, (3,) int array.
 
         Raises
         ------
         ValueError
-            If the packing that is given is not of the scene's body, or there are too few particles for the tiles.
+            If the packing that is given is not of the scene's body, or there are too few particles for the replicas.
         NotImplementedError
-            For tiles in round bodies, and between walls where facets do not bound cells; for inclusions that have no
+            For replicas in round bodies, and between walls where facets do not bound cells; for inclusions that have no
             conforming packing.
         """
         if law.conforming:
@@ -68,20 +72,20 @@ class Particles:
             _check_body(self.packing, scene)
             return np.ones(3, dtype=int)
         if scene.domain == "box" and (scene.periodic or law.cells):
-            return tile_counts(self.particles, scene.size, self.tiles)
-        if self.tiles is not None and self.tiles != 1:
+            return replica_counts(self.particles, scene.size, self.replicas)
+        if self.replicas is not None and self.replicas != 1:
             raise NotImplementedError(
-                f"tiles in a {scene.domain} with walls and law {law.name!r}: only in boxes by 'laguerre'"
+                f"replicas in a {scene.domain} with walls and law {law.name!r}: only in boxes by 'laguerre'"
             )
         return np.ones(3, dtype=int)
 
     def packed(self, scene: Scene, counts) -> Packing:
-        """The packing that was given, or a relaxed one in the scene's body, or (3,) tiles of one."""
+        """The packing that was given, or a relaxed one in the scene's body, or (3,) replicas of one."""
         if self.packing is not None:
             return self.packing
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
         if counts.prod() > 1:
-            return tiled(self.particles, counts, **body)
+            return replicated(self.particles, counts, **body)
         domain = {} if scene.domain == "box" else {"domain": scene.domain}
         return relaxed(self.particles, allow_few=self.allow_few, **body, **domain)
 
@@ -103,6 +107,9 @@ def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic
     TypeError
         If nobody knows a knob.
     """
+    for old in RENAMED.keys() & knobs.keys():
+        warnings.warn(f"{old}= is now {RENAMED[old]}=", DeprecationWarning, stacklevel=3)
+    knobs = {RENAMED.get(name, name): value for name, value in knobs.items()}
     own = {field.name for field in fields(Particles)}
     wanted = Particles(particles=particles, seed=seed, **{name: knobs[name] for name in own & knobs.keys()})
     return _law(law, {name: value for name, value in knobs.items() if name not in own}), wanted

@@ -9,10 +9,10 @@ import numpy as np
 
 from demheat.build import network_of
 from demheat.conduction.integrators.march import check_request
-from demheat.conduction.sources import check_sources, lost_power, passes, source_power
+from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import check_solver, solve_checked
+from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
-from demheat.conduction.transient import try_functions
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
@@ -46,15 +46,15 @@ def solve(
     solver : {"auto", "cg", "amg"}
     tolerance : float
         On the relative residual of the heat balance.
-    conforming, interface, poor, wall, coordination, gap : bool, str, str, str, float and float, optional
+    conforming, interface, sparse, wall, coordination, gap : bool, str, str, str, float and float, optional
         Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
         `demheat.Platonic`.
     packing : Packing, optional
         Used instead of a relaxed one; must have the scene's box and periodicity.
-    tiles : int, optional
-        Of the packing, along the box's shortest side: a smaller one repeated. By default more than 2 million particles
-        are tiles of 250 000 or fewer, which cost a few CPU-seconds instead of 90 for each million, and are as accurate;
-        twins at interfaces are not repeated. Between walls only with law "laguerre", and in boxes only.
+    replicas : int, optional
+        Of a smaller packing, along the box's shortest side. By default more than 2 million particles are replicas of
+        250 000 or fewer, which cost a few CPU-seconds instead of 90 for each million, and are as accurate; twins at
+        interfaces are not repeated. Between walls only with law "laguerre", and in boxes only.
     allow_few : bool, optional
         Accept fewer than 100 particles.
 
@@ -69,7 +69,7 @@ def solve(
     TypeError
         If neither `solve` nor the law knows a keyword.
     NotImplementedError
-        For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for tiles between
+        For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for replicas between
         walls with such a law.
     RuntimeError
         If the solver does not converge.
@@ -138,7 +138,7 @@ def evolve(
     step : float, s, optional
         Equal steps of at most this size instead of chosen ones; they end at jumps as well, but sources and functions
         may change within a step as they like.
-    conforming, interface, poor, wall, coordination, gap, packing, tiles, allow_few : optional
+    conforming, interface, sparse, wall, coordination, gap, packing, replicas, allow_few : optional
         As in `solve`; a packing must have the scene's box and domain.
 
     Returns
@@ -166,13 +166,13 @@ def evolve(
     law.check(scene)
     counts = wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))
-    try_functions(scene)
+    check_callables(scene)
 
     def fields():
         network = network_of(scene, wanted.packed(scene, counts), law, seed=seed)
-        loads = {"power": source_power(scene, network.centers, network.volumes), "passes": passes(scene)}
+        loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}
         if law.holds_centers:
-            loads["pinned"] = np.ones(len(network.volumes), dtype=bool)
+            loads["held_centers"] = np.ones(len(network.volumes), dtype=bool)
         how = {"integrator": integrator, "accuracy": accuracy, "step": step}
         for now, solution in evolve_network(network, scene, times, **loads, **how):
             yield field_of(scene, network, solution, stats=_lost(scene, now), time=now)

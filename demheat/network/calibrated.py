@@ -22,7 +22,7 @@ MEANS = {
 # radii, holds the centre at the wall's temperature to 1e-4 of the drop over one link.
 ISOTHERMAL = 1e-4
 # A particle overlapping or touching a wall within this part of its radius is always in contact with it.
-TOUCH = 1e-3
+LEAST_GAP = 1e-3
 # Packings are layered near a wall. Under a linear field their links were found to carry 4 % less than in the bulk at 3
 # mean radii from it, 1.5 % less at 5, and as much within the scatter of 0.5 % from 6 on.
 LAYER = 6.0
@@ -43,8 +43,8 @@ def contact_facets(packing, law: Calibrated) -> Facets:
     Facets
         Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
         areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls;
-        links to a round one then are as long as centres are away from it. What `poor = "drop"` takes out has neither
-        links nor volume (see `demheat.network.laguerre.without_hidden`).
+        links to a round one then are as long as centres are away from it. What `sparse = "drop"` takes out has neither
+        links nor volume (see `demheat.network.laguerre.drop_empty_cells`).
 
     Raises
     ------
@@ -53,13 +53,13 @@ def contact_facets(packing, law: Calibrated) -> Facets:
         `demheat.packing.neighbours.contacts`.
     """
     links = contacts(packing, coordination=law.coordination, gap=law.gap, additive=law.additive)
-    facets = joined_facets(packing, links, poor=law.poor)
+    facets = joined_facets(packing, links, sparse=law.sparse)
     here, there = np.repeat(packing.radii, np.diff(facets.indptr)), packing.radii[facets.indices]
     facets = facets._replace(area=np.pi * MEANS[law.mean](here, there) ** 2)
     return at_walls(packing, facets, law.wall)
 
 
-def joined_facets(packing, links, *, poor) -> Facets:
+def joined_facets(packing, links, *, sparse) -> Facets:
     """Links and wall links of particles in contact, before their law gives them surfaces.
 
     Parameters
@@ -67,7 +67,7 @@ def joined_facets(packing, links, *, poor) -> Facets:
     packing : Packing
     links : (indptr, indices, gap)
         As `demheat.packing.neighbours.contacts` returns them.
-    poor : {"nearest", "keep", "drop"}
+    sparse : {"nearest", "keep", "drop"}
         As in `demheat.laws.Calibrated`.
 
     Returns
@@ -76,11 +76,11 @@ def joined_facets(packing, links, *, poor) -> Facets:
         With areas still to be set, None, and wall links that hold the centres at the temperature of the wall.
     """
     indptr, indices, gap = links
-    walls = _wall_contacts(packing, max(gap, TOUCH))
+    walls = _wall_contacts(packing, max(gap, LEAST_GAP))
     alive = np.ones(packing.number, dtype=bool)
-    if poor == "nearest":
+    if sparse == "nearest":
         indptr, indices = _joined(packing, indptr, indices, 2)
-    elif poor == "drop":
+    elif sparse == "drop":
         alive = _well_linked(indptr, indices, walls[0])
         indptr, indices = _without(indptr, indices, ~alive)
         walls = [column[alive[walls[0]]] for column in walls]
@@ -189,17 +189,17 @@ def _side_depth(packing, axis):
 
 def _joined(packing, indptr, indices, least):
     """Rows with links added, both ways, from each particle with fewer than `least` to its nearest."""
-    poor = np.flatnonzero(np.diff(indptr) < least)
-    if len(poor) == 0:
+    sparse = np.flatnonzero(np.diff(indptr) < least)
+    if len(sparse) == 0:
         return indptr, indices
     box, n = np.where(packing.periodic, packing.size, 0.0), packing.number
-    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[poor], k=min(n, 33))
-    offsets = packing.centers[near] - packing.centers[poor][:, None]
+    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[sparse], k=min(n, 33))
+    offsets = packing.centers[near] - packing.centers[sparse][:, None]
     offsets -= box * np.round(offsets / packing.size)
     surface = np.linalg.norm(offsets, axis=2) - packing.radii[near]
-    surface[near == poor[:, None]] = np.inf
+    surface[near == sparse[:, None]] = np.inf
     chosen = np.take_along_axis(near, np.argsort(surface, axis=1, kind="stable")[:, :least], axis=1).ravel()
-    ends = np.repeat(poor, len(chosen) // len(poor))
+    ends = np.repeat(sparse, len(chosen) // len(sparse))
     # One number per link, ascending as the rows are.
     present = row_numbers(indptr) * n + indices.astype(np.int64)
     added = np.setdiff1d(np.concatenate((ends * n + chosen, chosen * n + ends)), present)
@@ -213,11 +213,11 @@ def _well_linked(indptr, indices, touching):
     held[touching] = 1
     alive = np.ones(len(held), dtype=bool)
     while True:
-        poor = alive & (np.diff(indptr) + held < 2)
-        if not poor.any():
+        sparse = alive & (np.diff(indptr) + held < 2)
+        if not sparse.any():
             break
-        alive &= ~poor
-        indptr, indices = _without(indptr, indices, poor)
+        alive &= ~sparse
+        indptr, indices = _without(indptr, indices, sparse)
     _, cluster = csgraph.connected_components(as_graph(indptr, indices), directed=False)
     return alive & (cluster == np.argmax(np.bincount(cluster)))
 

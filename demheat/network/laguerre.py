@@ -65,7 +65,7 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     return _with_normals(facets, side, centers, wall)
 
 
-def without_hidden(packing, facets):
+def drop_empty_cells(packing, facets):
     """Leave out the points that have no cell.
 
     Parameters

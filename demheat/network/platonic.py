@@ -10,7 +10,7 @@ import numpy as np
 
 from demheat.laws import Platonic
 from demheat.network.base import Facets
-from demheat.network.calibrated import TOUCH, at_walls, heights, joined_facets, walls_of
+from demheat.network.calibrated import LEAST_GAP, at_walls, heights, joined_facets, walls_of
 from demheat.packing.neighbours import contacts
 
 # Edges of a face and faces at a vertex of the regular polyhedra.
@@ -159,7 +159,7 @@ def platonic_facets(packing, law: Platonic) -> Facets:
         If a particle has more than 29 neighbours; as `demheat.packing.neighbours.contacts`.
     """
     links = contacts(packing, coordination=law.coordination, gap=law.gap)
-    facets = joined_facets(packing, links, poor=law.poor)
+    facets = joined_facets(packing, links, sparse=law.sparse)
     # What is taken out has no volume there.
     neighbours = np.where(facets.volumes > 0, count_neighbours(packing, facets.indptr, links[2]), 0)
     surface = surface_factors(neighbours) * packing.radii**2
@@ -186,7 +186,7 @@ def count_neighbours(packing, indptr, gap=0.0):
     -------
     (n,) int array
     """
-    reach = packing.radii * (1.0 + max(gap, TOUCH))
+    reach = packing.radii * (1.0 + max(gap, LEAST_GAP))
     return np.diff(indptr) + sum(heights(packing, side) <= reach for side in walls_of(packing))
 
 

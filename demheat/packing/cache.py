@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from demheat.packing.base import Packing, check_box
-from demheat.packing.domain import tile, walled
+from demheat.packing.domain import replicate, walled
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
@@ -105,23 +105,25 @@ def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, fo
     return _of_shape(lsa, LSA, request, size, radii, periodic, folder)
 
 
-def tiled(number, counts, *, size=(1.0, 1.0, 1.0), periodic=True, seed=0, folder=None) -> Packing:
-    """Tiles of one relaxed packing, which is made once; between walls for tessellations only.
+def replicated(number, counts, *, size=(1.0, 1.0, 1.0), periodic=True, seed=0, folder=None) -> Packing:
+    """Replicas of one relaxed packing, which is made once; between walls for tessellations only.
 
     Parameters
     ----------
     number : int
-        Rounded so that every tile has as many.
+        Rounded so that every replica has as many.
     counts : (3,) sequence of int
-        Tiles along each axis, see `demheat.packing.domain.tile_counts`.
+        Replicas along each axis, see `demheat.packing.domain.replica_counts`.
     size, seed, folder
         As in `relaxed`.
     periodic : bool
-        If not, the tiles' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
+        If not, the replicas' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
     """
     sides, counts = np.array(size, dtype=float), np.array(counts)
-    packing = tile(relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder), counts)
-    # The size is met exactly: its tiles' may differ by rounding.
+    packing = replicate(
+        relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder), counts
+    )
+    # The size is met exactly: its replicas' may differ by rounding.
     centers = np.minimum(packing.centers, np.nextafter(sides, 0.0), out=packing.centers)
     packing = packing._replace(centers=centers, size=sides)
     return packing if periodic else walled(packing)

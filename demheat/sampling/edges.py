@@ -70,9 +70,9 @@ def _interfaces(scene, network, solution):
     ends = np.concatenate([[0], np.cumsum(here)])[network.indptr]
     step = branches(network.centers, network.size, ends, other, network.image[here])
     normal, away = step / np.linalg.norm(step, axis=1)[:, None], network.distance[here]
-    rise = solution.fluctuation[other] - solution.fluctuation[row] + step @ solution.gradient
+    rise = solution.temperature[other] - solution.temperature[row] + step @ solution.mean_gradient
     slope = network.conductance[here] * rise / (k[row] * network.area[here])
-    value = solution.fluctuation[row] + away * (slope - normal @ solution.gradient)
+    value = solution.temperature[row] + away * (slope - normal @ solution.mean_gradient)
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])

@@ -55,7 +55,7 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
 
 def _described(network):
     packing = (network.stats or {}).get("packing", {})
-    made = packing.get("of", packing)  # a tile's
+    made = packing.get("of", packing)  # a replica's
     return {"mean_radius": float(network.radii.mean()), "cached": made.get("cached"), **(network.stats or {})}
 
 
@@ -75,7 +75,7 @@ def _between_walls(network, scene, solution):
 
 
 def _temperatures(network, solution):
-    return solution.fluctuation + network.centers @ solution.gradient
+    return solution.temperature + network.centers @ solution.mean_gradient
 
 
 class _Locator:
@@ -107,14 +107,14 @@ def _samplers(scene, network, solution):
     if network.cells:
         how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivities": scene.conductivities}
         edges = cache(lambda: edges_of(scene, network, solution))
-        parts = solution.fluctuation, solution.gradient
+        parts = solution.temperature, solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
         return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
     locate = cache(lambda: _Locator(network))
 
     def temperature_at(points):
         cell, offsets = locate()(points)
-        level = solution.fluctuation[cell] + (points - offsets) @ solution.gradient
+        level = solution.temperature[cell] + (points - offsets) @ solution.mean_gradient
         return level + np.einsum("ij,ij->i", slopes()[cell], offsets)
 
     def flux_at(points):
@@ -142,11 +142,11 @@ def _heat_through(network, solution, axis, position):
         return np.floor((at - position) / length) if network.periodic[axis] else (at >= position).astype(float)
 
     temperature = filled(solution)
-    rise = temperature[network.indices] - temperature[row] + solution.gradient[axis] * (step - x[row])
-    for k in (k for k in range(3) if solution.gradient[k] and k != axis):
+    rise = temperature[network.indices] - temperature[row] + solution.mean_gradient[axis] * (step - x[row])
+    for k in (k for k in range(3) if solution.mean_gradient[k] and k != axis):
         y = network.centers[:, k]
         there = y[network.indices] + image_shifts(network.image, network.size)[:, k]
-        rise += solution.gradient[k] * (there - y[row])
+        rise += solution.mean_gradient[k] * (there - y[row])
     # Each link stands in two rows, with both signs changed.
     heat = -0.5 * float((side(step) - side(x[row])) @ (network.conductance * rise))
     for end in (0, 1):

@@ -26,7 +26,7 @@ def mean_flux(network, scene, solution):
     (3,) float array, W/m2
     """
     first = np.empty((len(network.volumes), 3))
-    kernels.moments(links_of(network), places_of(network), solution.gradient, filled(solution), first)
+    kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
     towards = wall_normals(network) * network.wall_distance[:, None]
     return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
 
@@ -52,7 +52,7 @@ def cell_fluxes(network, solution):
     n = len(network.volumes)
     shape, flow = np.empty((n, 3, 3)), np.empty((n, 3))
     where = links_of(network), places_of(network)
-    kernels.reconstruct(*where, network.area, solution.gradient, filled(solution), shape, flow)
+    kernels.reconstruct(*where, network.area, solution.mean_gradient, filled(solution), shape, flow)
     normal = wall_normals(network)
     outer = normal[:, :, None] * normal[:, None, :]
     np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
@@ -62,4 +62,4 @@ def cell_fluxes(network, solution):
 
 def filled(solution):
     """Fluctuations with islands, which exchange no heat, set to zero, (n,) float array, K."""
-    return np.nan_to_num(solution.fluctuation)
+    return np.nan_to_num(solution.temperature)

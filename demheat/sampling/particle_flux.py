@@ -46,11 +46,11 @@ def particle_flux(network, solution, *, split="half"):
     """
     if split not in SPLITS:
         raise ValueError(f"split = {split!r}: must be one of {', '.join(SPLITS)}")
-    sizes = {"network": len(network.volumes), "solution": len(solution.fluctuation)}
+    sizes = {"network": len(network.volumes), "solution": len(solution.temperature)}
     if len(set(sizes.values())) > 1:
         raise ValueError(f"network, solution: must be of the same particles, not {sizes}")
     flow = np.empty((len(network.volumes), 3))
-    state = links_of(network), places_of(network), solution.gradient, np.nan_to_num(solution.fluctuation)
+    state = links_of(network), places_of(network), solution.mean_gradient, np.nan_to_num(solution.temperature)
     kernels.shared_moments(*state, network.radii, network.distance, SPLITS[split], flow)
     if split == "cell":
         depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)

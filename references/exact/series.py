@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import ROUND_AXES, Flux, Heating, Scene
+from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource
 from references.exact.responses import CROSSOVER, response, sphere_response
 from references.midpoints import check_points_per_axis
 from references.times import checked_times
@@ -75,7 +75,7 @@ def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -
     ----------
     scene : Scene
         With one material, one initial temperature, and either walls across one axis (any body whose sides are straight
-        along it, and insulated) or a round wall of a sphere. Sources must be `Heating`.
+        along it, and insulated) or a round wall of a sphere. Sources must be `UniformSource`.
     times : sequence of float, s
         Increasing, >= 0.
     points_per_axis : int
@@ -113,8 +113,10 @@ def _body(scene):
     if callable(scene.initial):
         raise NotImplementedError("Scene.initial is a function: the series start from one temperature")
     for source in scene.sources:
-        if not isinstance(source, Heating):
-            raise NotImplementedError(f"Scene.sources: {type(source).__name__} has no series here; only Heating has")
+        if not isinstance(source, UniformSource):
+            raise NotImplementedError(
+                f"Scene.sources: {type(source).__name__} has no series here; only UniformSource has"
+            )
     for name, load in scene.walls.items():
         if callable(getattr(load, "value", load)):
             raise NotImplementedError(f"Scene.walls[{name!r}] depends on time: the series need constants")

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Heating
+from demheat.scene import UniformSource
 from references.fem.sources import deposit
 
 
@@ -57,9 +57,9 @@ class Loads:
         for nodes in self.walls.values():
             self.count[nodes] += 1
         self.held = np.flatnonzero(self.count)
-        steady = sum(source.power_density for source in scene.sources if isinstance(source, Heating))
+        steady = sum(source.power_density for source in scene.sources if isinstance(source, UniformSource))
         self.heating = steady * space.volumes
-        self.moving = [source for source in scene.sources if not isinstance(source, Heating)]
+        self.moving = [source for source in scene.sources if not isinstance(source, UniformSource)]
         self._known = {}
 
     def at(self, time):

@@ -15,7 +15,7 @@ import numpy as np
 from demheat.scene import MovingCylinder
 
 # Of the box: a rim that touches the edge, as typed, is inside.
-TOUCH = 1e-9
+SLACK = 1e-9
 # Points of the disc along its radius.
 LEAST_RINGS, MOST_RINGS = 8, 128
 
@@ -71,7 +71,7 @@ def check_sources(scene, last):
 def _room(scene, source):
     """Lowest and highest place of the axis of a source inside."""
     across = np.array([scene.size[axis] for axis in range(3) if axis != source.axis])
-    slack, radius = TOUCH * across, source.diameter / 2
+    slack, radius = SLACK * across, source.diameter / 2
     return radius - slack, across - radius + slack
 
 
@@ -106,7 +106,7 @@ def deposit(scene, space, source, time) -> Deposit:
     center = source.position(time)
     rings = int(np.clip(math.ceil(radius / space.spacing), LEAST_RINGS, MOST_RINGS))
     disc = center + radius * disc_points(rings)
-    slack = TOUCH * sides
+    slack = SLACK * sides
     disc = np.clip(disc[np.all((disc >= -slack) & (disc <= sides + slack), axis=1)], 0, sides)
     per_area = source.power_density * scene.size[source.axis]
     whole = per_area * math.pi * radius**2

@@ -6,7 +6,7 @@ read at the top in the centres of the particles there, the sides insulated, 7.5 
 between walls; "isothermal" has two temperatures instead. "across" has walls along the load only, is periodic across,
 counts links in the bulk and puts imposed temperatures at the wall; "periodic" has no walls. Packings: "lsa" is hard
 spheres grown to a reduced pressure of 120, "relaxed" is overlapping spheres pushed apart, at the same packing fraction
-of the bulk; "tiled" repeats a relaxed periodic one.
+of the bulk; "replicated" repeats a relaxed periodic one.
 """
 
 from demheat import referee
@@ -27,7 +27,7 @@ CURES = (
     ("isothermal", {"margin": 4.0, "wall": "surface"}),
     ("across", {"wall": "center"}),
 )
-POLICIES = ({"poor": "keep"}, {"poor": "drop"}, {"poor": "drop", "count": "rest"})
+POLICIES = ({"sparse": "keep"}, {"sparse": "drop"}, {"sparse": "drop", "count": "rest"})
 TIMEOUT = 3600.0
 
 
@@ -50,9 +50,9 @@ def _cases():
     for change in POLICIES:
         yield _case("periodic", "relaxed", 3_000, 0, **change)
         yield from (_case("periodic", "lsa", 10_000, seed, **change) for seed in SEEDS)
-    yield _case("flux", "lsa", 10_000, 0, poor="drop")
+    yield _case("flux", "lsa", 10_000, 0, sparse="drop")
     yield _case("periodic", "relaxed", 80_000, 0)
-    yield from (_case("periodic", "tiled", number, 0, tiles=2) for number in (80_000, 8_000_000))
+    yield from (_case("periodic", "replicated", number, 0, replicas=2) for number in (80_000, 8_000_000))
 
 
 CASES = list(_cases())
@@ -61,16 +61,16 @@ CASES = list(_cases())
 def QUICK(case):
     """One relaxed packing of 3000 for each load that the claims compare, and a smaller one for the drift."""
     small = case["packing"] == "relaxed" and case["seed"] == 0 and case.get("count") is None
-    if not small or case["particles"] > 3_000 or case["loading"] == "isothermal" or case.get("poor") == "keep":
+    if not small or case["particles"] > 3_000 or case["loading"] == "isothermal" or case.get("sparse") == "keep":
         return False
     return case["particles"] == 3_000 or (case["loading"], case["domain"]) == ("flux", "cube")
 
 
-def run(loading, domain, packing, particles, seed, method, *, spread=0.3, tiles=1, **knobs):
+def run(loading, domain, packing, particles, seed, method, *, spread=0.3, replicas=1, **knobs):
     """C_t of one packing under one load."""
     from studies.fig03_calibration.rows import calibrated, packed
 
-    sample = packed(loading, domain, packing, particles, seed, spread=spread, tiles=tiles)
+    sample = packed(loading, domain, packing, particles, seed, spread=spread, replicas=replicas)
     return calibrated(sample, loading, **knobs)
 
 
@@ -141,19 +141,19 @@ def _level_claims(df):
 def _other_claims(df, plain):
     cell = pick(df, loading="periodic")
     yield "Periodic cell: least C_t over its affine bound", (cell["ct"] / cell["bound"]).min(), ">= 1"
-    joined, kept, dropped = (_by_packing(rows) for rows in (plain, pick(df, poor="keep"), pick(df, poor="drop")))
+    joined, kept, dropped = (_by_packing(rows) for rows in (plain, pick(df, sparse="keep"), pick(df, sparse="drop")))
     if len(kept):
         yield "Poorly linked particles dropped or kept: difference of C_t", _differ(kept, dropped), 1e-6
     text = "Poorly linked particles dropped or joined to the nearest: difference of C_t, %"
     yield text, 100 * _differ(joined, dropped), 0.5
-    tiles, one, true = (
+    replicas, one, true = (
         pick(df, loading="periodic", packing=packing, particles=number, seed=0)["ct"].to_numpy()
-        for packing, number in (("tiled", 80_000), ("relaxed", 10_000), ("relaxed", 80_000))
+        for packing, number in (("replicated", 80_000), ("relaxed", 10_000), ("relaxed", 80_000))
     )
-    if len(tiles) == len(one) == len(true) == 1:
-        text = "Periodic cell of 8 tiles of 1e4: C_t off that of"
-        yield f"{text} one tile", abs(referee.value_error(tiles, one))[0], 1e-6
-        yield f"{text} a packing of 8e4, %", 100 * abs(referee.value_error(tiles, true))[0], 1.0
+    if len(replicas) == len(one) == len(true) == 1:
+        text = "Periodic cell of 8 replicas of 1e4: C_t off that of"
+        yield f"{text} one replica", abs(referee.value_error(replicas, one))[0], 1e-6
+        yield f"{text} a packing of 8e4, %", 100 * abs(referee.value_error(replicas, true))[0], 1.0
 
 
 def _by_packing(rows):

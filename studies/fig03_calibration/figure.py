@@ -33,8 +33,10 @@ def draw(df):
             if len(mean):
                 left.plot(mean.index, mean, label=label, **style)
                 label = None
-    tiled = pick(df, packing="tiled")
-    left.plot(tiled["particles"], tiled["ct"], "*", color=GREEN, markersize=11, label="periodic cell of 8 tiles")
+    replicated = pick(df, packing="replicated")
+    left.plot(
+        replicated["particles"], replicated["ct"], "*", color=GREEN, markersize=11, label="periodic cell of 8 replicas"
+    )
     left.axhspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15, label="range that the paper prints")
     left.plot(list(PRINTED), list(PRINTED.values()), "x", color=BLACK, markersize=9, label="paper")
     left.set(xscale="log", xlabel="particles", ylabel="C_t")

@@ -8,7 +8,7 @@ from demheat.build import network_of
 from demheat.calibration import calibration
 from demheat.laws import Calibrated
 from demheat.packing.cache import grown, relaxed
-from demheat.packing.domain import tile
+from demheat.packing.domain import replicate
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Gaussian
 from demheat.packing.statistics import coordination
@@ -24,8 +24,8 @@ PRESSURE = 120.0
 PERIODIC = {"flux": False, "isothermal": False, "across": (True, False, True), "periodic": True}
 
 
-def packed(loading, domain, packing, particles, seed, *, spread=0.3, tiles=1):
-    """Packing of unit size for a load, kept in the cache; tiles is the number of repeats along each axis.
+def packed(loading, domain, packing, particles, seed, *, spread=0.3, replicas=1):
+    """Packing of unit size for a load, kept in the cache; replicas is the number of repeats along each axis.
 
     Parameters
     ----------
@@ -35,15 +35,15 @@ def packed(loading, domain, packing, particles, seed, *, spread=0.3, tiles=1):
     particles, seed : int
     spread : float
         Of the radii: standard deviation over mean of the Gaussian before it is cut.
-    tiles : int
+    replicas : int
 
     Returns
     -------
     Packing
     """
-    if tiles > 1:
-        whole = packed(loading, domain, packing, particles // tiles**3, seed, spread=spread)
-        return tile(whole, (tiles, tiles, tiles)).scaled(1 / tiles)
+    if replicas > 1:
+        whole = packed(loading, domain, packing, particles // replicas**3, seed, spread=spread)
+        return replicate(whole, (replicas, replicas, replicas)).scaled(1 / replicas)
     kind = {"periodic": PERIODIC[loading], "domain": "box" if domain == "cube" else "cylinder-y", "seed": seed}
     radii = Gaussian(spread)
     if packing == "lsa":
@@ -68,7 +68,7 @@ def calibrated(
     loading,
     *,
     wall=None,
-    poor="nearest",
+    sparse="nearest",
     mean="arithmetic",
     additive=False,
     margin=None,
@@ -82,21 +82,21 @@ def calibrated(
     packing : Packing
         Of unit size.
     loading : {"flux", "isothermal", "across", "periodic"}
-    wall, poor, mean
+    wall, sparse, mean
         As in `demheat.Calibrated`; the default is "center" with walls all round, as in the papers, and else "surface".
     additive, margin
         As in `contacts`; the default is no margin with walls all round, as in the papers.
     wanted : float
         Mean coordination number.
     count : {"all", "rest"}
-        Over all particles, or over those that poor = "drop" leaves.
+        Over all particles, or over those that sparse = "drop" leaves.
 
     Returns
     -------
     dict
         ct; bound, 1 over the conductivity under a linear field, below which C_t cannot lie in a periodic cell;
         formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap; links (mean number), least, under_2, under_4, islands as in
-        `coordination`; phi; linked (mean number after poor particles are dealt with); left (particles then).
+        `coordination`; phi; linked (mean number after sparse particles are dealt with); left (particles then).
     """
     as_papers = loading in ("flux", "isothermal")
     wall = wall or ("center" if as_papers else "surface")
@@ -106,7 +106,7 @@ def calibrated(
     target = wanted
     for _ in range(4 if count == "rest" else 1):
         links = contacts(packing, coordination=target, margin=margin, additive=additive)
-        law = Calibrated(gap=links[2], additive=additive, mean=mean, poor=poor, wall=wall, factor=1.0)
+        law = Calibrated(gap=links[2], additive=additive, mean=mean, sparse=sparse, wall=wall, factor=1.0)
         network = network_of(scene, packing, law)
         left = len(network.radii)
         reached = len(network.indices) / left
@@ -116,8 +116,8 @@ def calibrated(
     report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": left}
     del links
     how = "flux" if loading == "flux" else "isothermal"
-    # Tiles of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.
-    solver = "cg" if packing.provenance.get("algorithm") == "tile" else "auto"
+    # Replicas of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.
+    solver = "cg" if packing.provenance.get("algorithm") == "replicate" else "auto"
     ct = calibration(network, scene, loading=how, solver=solver)
     return {"ct": float(ct)} | affine(packing, network) | report
 

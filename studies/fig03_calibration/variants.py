@@ -21,7 +21,7 @@ VARIED = 100_000
 PAPER = printed("fig03_calibration")
 PRINTED = {100_000: PAPER["ct_1e5"], 1_000_000: PAPER["ct_1e6"]}
 # What a case may change.
-KNOBS = ("mean", "additive", "wanted", "spread", "margin", "wall", "poor", "count", "tiles")
+KNOBS = ("mean", "additive", "wanted", "spread", "margin", "wall", "sparse", "count", "replicas")
 
 
 def unchanged(df):

@@ -82,7 +82,7 @@ def _calibrated(packing, walls, split):
     solution = solve_steady(network, scene)
     field = field_of(scene, network, solution, stats={})
     flux = particle_flux(network, solution, split=split)
-    samples = Samples(network.centers, network.volumes, solution.fluctuation, network.phase, flux)
+    samples = Samples(network.centers, network.volumes, solution.temperature, network.phase, flux)
     row = {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
     row = {"ct": network.stats["calibration"]} | row
     return replace(field, sampler=lambda: samples), row

@@ -18,7 +18,7 @@ from studies.harness.store import printed
 
 FRACTION, CLOSE = 0.2, 0.3
 PARTICLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 8_000_000)
-NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # tiles along an edge, and particles, of the paper's law
+NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # replicas along an edge, and particles, of the paper's law
 VOXELS = (64, 128, 256, 512)
 SINGLE = (128, 512)  # voxels in float32
 SIZES = {"fem": (1 / 24, 1 / 34, 1 / 48), "fem-p1": (1 / 20, 1 / 40, 0.012)}  # in edges of the cube
@@ -34,8 +34,8 @@ def _cases():
     yield from (methods.case("multipole", highest=degree) for degree in DEGREES)
     for method in methods.compared("dem-calibrated", "fem-p1"):
         if method.name == "dem-calibrated":
-            # Tiles of the same size: what is repeated does not matter for errors of some per cent.
-            knobs = [methods.at(method, number) | {"tiles": tiles} for tiles, number in NETWORKS.items()]
+            # Replicas of the same size: what is repeated does not matter for errors of some per cent.
+            knobs = [methods.at(method, number) | {"replicas": replicas} for replicas, number in NETWORKS.items()]
         else:
             knobs = [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
         yield from (methods.case(method.name, **each) for each in knobs)
@@ -73,8 +73,8 @@ def run(name, gap=None, highest=None, *, method, **knobs):
         return silica_epoxy.solved(made, method=method, **knobs)[1]
 
 
-def warm_up(name, gap=None, highest=None, tiles=None, *, method, **knobs):
-    """Make the dispersion, load and compile; what is solved for that is between walls and needs no tiles."""
+def warm_up(name, gap=None, highest=None, replicas=None, *, method, **knobs):
+    """Make the dispersion, load and compile; what is solved for that is between walls and needs no replicas."""
     _scene(gap)
     methods.warm_up(method, **knobs)
 

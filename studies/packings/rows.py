@@ -21,7 +21,7 @@ from studies.harness.cost import measured
 # Surface distances, as parts of r_i + r_j, at which contacts are counted.
 GAPS = np.logspace(-6, -1, 16)
 # Contacts that hold a jammed packing: closed to some 1 / pressure, but for those that growth to the end leaves open.
-TOUCH = 1e-4
+CONTACT_GAP = 1e-4
 STRAIN = 0.03
 
 
@@ -99,8 +99,8 @@ def described(packing, row, *, curves):
     found = {"phi_reached": packing.phi, "phi_core": statistics.packing_fraction(packing, margin=margin)}
     found |= {"overlap": overlap(packing), "bytes_per_sphere": row["peak_mib"] * 2**20 / packing.number}
     found |= {"z_of_gap": cell(_z_of_gap(packing))}
-    touching = contacts(packing, gap=TOUCH)[:2]
-    held = statistics.backbone(packing, *touching, gap=TOUCH)
+    touching = contacts(packing, gap=CONTACT_GAP)[:2]
+    held = statistics.backbone(packing, *touching, gap=CONTACT_GAP)
     found |= {"rattlers": float(held.rattler.mean()), "backbone_z": held.coordination}
     indptr, indices, gap = contacts(packing, coordination=7.5, margin=margin)
     links = statistics.coordination(packing, indptr, indices, margin=margin)

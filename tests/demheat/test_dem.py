@@ -86,7 +86,7 @@ def test_calibrated_and_laguerre_agree_where_homogeneous(law):
     assert field.stats["calibration"] == 1.0 or 0.5 < field.stats["calibration"] < 0.9
 
 
-@pytest.mark.parametrize("knobs", [{"poor": "keep"}, {"poor": "drop"}, {"wall": "surface"}])
+@pytest.mark.parametrize("knobs", [{"sparse": "keep"}, {"sparse": "drop"}, {"wall": "surface"}])
 def test_calibrated_law_is_exact_where_homogeneous_with_every_choice(knobs):
     scene = Scene(size=(1, 1, 1), matrix=TEN, walls={"z-": 0.0, "z+": 1.0})
     field = demheat.solve(scene, particles=3000, law="calibrated", **knobs)
@@ -94,7 +94,7 @@ def test_calibrated_law_is_exact_where_homogeneous_with_every_choice(knobs):
     assert_allclose(field.conductivity, 10.0, rtol=1e-4)
     own = field.samples
     assert_allclose(own.volumes.sum(), 1.0, rtol=1e-12)
-    if knobs.get("poor") == "drop":
+    if knobs.get("sparse") == "drop":
         assert 2900 < len(own.volumes) < 3000
         assert np.isfinite(own.temperature).all()
 
@@ -139,7 +139,7 @@ def test_calibration_by_a_flux_is_that_by_temperatures_up_to_the_ends(between_wa
 def test_kept_particles_carry_no_steady_heat(between_walls):
     """Dead ends and islands conduct nothing between periodic images: without them C_t is the same."""
     packing = between_walls[0]
-    networks = (uncalibrated(packing, poor=poor) for poor in ("keep", "drop", "nearest"))
+    networks = (uncalibrated(packing, sparse=sparse) for sparse in ("keep", "drop", "nearest"))
     kept, dropped, joined = (calibration(network, homogeneous(packing)) for network in networks)
     # Solver tolerance, 1e-8 on each particle's balance.
     assert_allclose(kept, dropped, rtol=1e-6)
@@ -272,9 +272,9 @@ def _python(code, env):
         ({"particles": float("nan")}, "nan"),
         ({"interface": "median"}, "interface = 'median'"),
         ({"solver": "lu"}, "solver = 'lu'"),
-        ({"poor": "drop"}, "poor = 'drop'"),
+        ({"sparse": "drop"}, "sparse = 'drop'"),
         ({"wall": "surface"}, "wall = 'surface'"),
-        ({"law": "calibrated", "poor": "join"}, "poor = 'join'"),
+        ({"law": "calibrated", "sparse": "join"}, "sparse = 'join'"),
         ({"law": "calibrated", "wall": "face"}, "wall = 'face'"),
         ({"tolerance": -1.0}, "tolerance"),
         ({"seed": -1}, "seed"),

@@ -28,9 +28,12 @@ SHORT = [
     (Laguerre(conforming=False), {"conforming": False}),
     (Laguerre(conforming=False, interface="arithmetic"), {"conforming": False, "interface": "arithmetic"}),
     (Calibrated(), {"law": "calibrated", "conforming": False, **UNASKED}),
-    (Calibrated(coordination=6.5, poor="drop"), {"law": "calibrated", "coordination": 6.5, "poor": "drop"}),
+    (Calibrated(coordination=6.5, sparse="drop"), {"law": "calibrated", "coordination": 6.5, "sparse": "drop"}),
     (Calibrated(gap=0.1, wall="surface"), {"law": "calibrated", "gap": 0.1, "wall": "surface"}),
-    (Calibrated(interface="arithmetic", poor="keep"), {"law": "calibrated", "interface": "arithmetic", "poor": "keep"}),
+    (
+        Calibrated(interface="arithmetic", sparse="keep"),
+        {"law": "calibrated", "interface": "arithmetic", "sparse": "keep"},
+    ),
     (Platonic(), {"law": "platonic", "conforming": None}),
     (Platonic(coordination=6.2, wall="surface"), {"law": "platonic", "coordination": 6.2, "wall": "surface"}),
 ]
@@ -62,8 +65,8 @@ def test_defaults_are_those_of_the_papers():
 
 
 CONTACT = [
-    ({"poor": "join"}, "poor = 'join': must be one of nearest, keep, drop"),
-    ({"poor": None}, "poor = None: must be"),
+    ({"sparse": "join"}, "sparse = 'join': must be one of nearest, keep, drop"),
+    ({"sparse": None}, "sparse = None: must be"),
     ({"wall": "face"}, "wall = 'face': must be one of center, surface"),
     ({"coordination": -1.0}, "coordination = -1.0: must be a finite number > 0"),
     ({"coordination": 0}, "coordination = 0: must be"),
@@ -116,13 +119,16 @@ def test_choices_of_the_calibrated_law_alone(knobs, words):
         ({"law": "voronoi"}, "law = 'voronoi': must be one of laguerre, calibrated, platonic"),
         ({"law": None}, "law = None: must be one of"),
         ({"law": Laguerre}, "must be one of laguerre, calibrated, platonic, or a law such as Laguerre()"),
-        ({"law": Calibrated(), "poor": "drop"}, "poor beside law = Calibrated("),
+        ({"law": Calibrated(), "sparse": "drop"}, "sparse beside law = Calibrated("),
         ({"law": Laguerre(), "conforming": True}, "conforming beside law = Laguerre("),
-        ({"poor": "drop"}, "poor = 'drop' with law = 'laguerre': only the laws 'calibrated' and 'platonic'"),
+        ({"sparse": "drop"}, "sparse = 'drop' with law = 'laguerre': only the laws 'calibrated' and 'platonic'"),
         ({"gap": 0.1, "wall": "surface"}, "gap = 0.1, wall = 'surface' with law = 'laguerre'"),
         ({"law": "calibrated", "conforming": True}, "conforming = True with law = 'calibrated': twins need not touch"),
         ({"law": "platonic", "conforming": "no"}, "conforming = 'no': must be"),
-        ({"packing": relaxed(200, periodic=False), "tiles": 2}, "tiles = 2 of a packing that is given: must be None"),
+        (
+            {"packing": relaxed(200, periodic=False), "replicas": 2},
+            "replicas = 2 of a packing that is given: must be None",
+        ),
     ],
 )
 def test_what_does_not_go_together(knobs, words):
@@ -172,7 +178,7 @@ def packed(scene):
 
 
 @pytest.mark.parametrize(
-    "law", [Laguerre(), Laguerre(conforming=False), Calibrated(), Calibrated(poor="drop"), Platonic()]
+    "law", [Laguerre(), Laguerre(conforming=False), Calibrated(), Calibrated(sparse="drop"), Platonic()]
 )
 @pytest.mark.parametrize("scene", [WALLED, CELL])
 def test_a_network_has_all_that_evaluation_needs(scene, law):
@@ -225,7 +231,7 @@ def test_choices_of_the_papers_that_only_the_object_has():
     assert_array_equal(arithmetic.indices, harmonic.indices)
     assert np.all(harmonic.area <= arithmetic.area * (1 + 1e-14)) and np.any(harmonic.area < 0.9 * arithmetic.area)
     indptr, indices, _ = contacts(packing, coordination=7.5, additive=True)
-    network = network_of(CELL, packing, Calibrated(poor="keep", additive=True, factor=1.0))
+    network = network_of(CELL, packing, Calibrated(sparse="keep", additive=True, factor=1.0))
     assert_array_equal(network.indptr, indptr)
     assert_array_equal(network.indices, indices)
     field = demheat.solve(CELL, packing=packing, law=Calibrated(mean="geometric", additive=True))
@@ -253,7 +259,7 @@ def test_an_inclusion_that_no_particle_hits_is_warned_of():
 def test_every_choice_is_at_work():
     """What laws may be asked for is what networks know: no name without a rule, nor the other way round."""
     packing = packed(BLOCK)
-    for knob, valid in (("poor", POLICIES), ("wall", WALL_RULES), ("interface", RULES)):
+    for knob, valid in (("sparse", POLICIES), ("wall", WALL_RULES), ("interface", RULES)):
         found = [network_of(WALLED, packing, Platonic(gap=0.07, **{knob: value})) for value in valid]
         numbers = {(len(net.indices), net.conductance.sum(), net.wall_conductance.sum()) for net in found}
         assert len(numbers) == len(valid)

@@ -43,7 +43,7 @@ def test_formula_is_the_bound_of_isotropic_links():
 
 def test_links_of_those_that_are_left():
     packing = packed("periodic", "cube", "relaxed", 1_000, 0)
-    every, rest = (calibrated(packing, "periodic", poor="drop", count=count) for count in ("all", "rest"))
+    every, rest = (calibrated(packing, "periodic", sparse="drop", count=count) for count in ("all", "rest"))
     # One pair more or less; without count what is left has more than the 7.5 links that all have on average.
     assert_allclose(rest["linked"], 7.5, atol=0.01)
     assert every["linked"] > 7.52 and every["links"] == pytest.approx(7.5, abs=2e-3)
@@ -51,7 +51,7 @@ def test_links_of_those_that_are_left():
 
 
 def test_tiles_have_the_conductivity_of_one():
-    one, eight = (packed("periodic", "cube", "relaxed", n, 0, tiles=t) for n, t in ((1_000, 1), (8_000, 2)))
+    one, eight = (packed("periodic", "cube", "relaxed", n, 0, replicas=t) for n, t in ((1_000, 1), (8_000, 2)))
     assert eight.number == 8_000
     assert_allclose(eight.size, 1.0, rtol=1e-15)
     # Solver tolerance, 1e-8 on each particle's balance.
@@ -70,7 +70,7 @@ def test_affine_of_a_stretched_crystal():
     crystal = simple_cubic(True)
     stretched = make_packing(crystal.centers * [1, 2, 1], crystal.radii, (1, 2, 1), True, {})
     scene = Scene(size=(1, 2, 1), matrix=Material(1.0), gradient=(0, 1, 0))
-    network = network_of(scene, stretched, Calibrated(gap=1.01, poor="keep", factor=1.0))
+    network = network_of(scene, stretched, Calibrated(gap=1.01, sparse="keep", factor=1.0))
     rows = np.repeat(np.arange(stretched.number), np.diff(network.indptr))
     step = stretched.centers[network.indices] - stretched.centers[rows]
     step -= stretched.size * np.round(step / stretched.size)

@@ -88,7 +88,7 @@ class System(NamedTuple):
         return out
 
 
-def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.0):
+def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, level=0.0):
     """Balance of a network under a scene's loads.
 
     Parameters
@@ -99,7 +99,7 @@ def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.
     capacity : (n,) float array, J/K
     power : callable (time, s) -> (n,) float array, W, optional
         Heat sources.
-    pinned : (n,) bool array, optional
+    held_centers : (n,) bool array, optional
         Particles held at the temperature of the wall that they touch (the papers' way), where that is imposed.
     level : float
         Temperatures are solved for relative to it.
@@ -116,7 +116,7 @@ def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.
     n = len(capacity)
     if not np.all(np.isfinite(capacity) & (capacity > 0)):
         raise ValueError(f"capacity: {np.sum(~(capacity > 0))} of {n} are not > 0; all must be finite and > 0 J/K")
-    held, sides = _held(network, scene, pinned, n)
+    held, sides = _held(network, scene, held_centers, n)
     links = _links(network, scene, np.isin(np.arange(n), held), n)
     capacity = np.concatenate([capacity, np.zeros(len(SIDES))])
     capacity[held] = 0.0
@@ -159,12 +159,12 @@ def initial_state(system, temperature, time):
     return x
 
 
-def _held(network, scene, pinned, n):
+def _held(network, scene, held_centers, n):
     """Held nodes and their sides."""
     imposed = [SIDES.index(name) for name in scene.wall_temperatures]
     nodes, sides = [n + np.array(imposed, dtype=np.int64)], [np.array(imposed, dtype=np.int64)]
-    if pinned is not None:
-        here = pinned[network.wall_particle] & np.isin(network.wall_side, imposed)
+    if held_centers is not None:
+        here = held_centers[network.wall_particle] & np.isin(network.wall_side, imposed)
         nodes.append(network.wall_particle[here].astype(np.int64))
         sides.append(network.wall_side[here].astype(np.int64))
     return np.concatenate(nodes), np.concatenate(sides)

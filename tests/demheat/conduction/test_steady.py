@@ -41,7 +41,7 @@ def test_against_a_direct_solver(solver, load, k):
     if scene.periodic:
         x -= np.average(x, weights=network.volumes)
     # tolerance 1e-11 of the heat passing times the condition of the system (about n^(2/3) times the contrast).
-    assert_allclose(solution.fluctuation, x, atol=1e-6 * np.ptp(x), rtol=0)
+    assert_allclose(solution.temperature, x, atol=1e-6 * np.ptp(x), rtol=0)
     assert solution.stats["residual"] <= 1e-11 and solution.stats["solver"] == solver
 
 
@@ -51,7 +51,7 @@ def test_residual_is_that_of_the_returned_temperatures():
     solution = solve_steady(network, scene, tolerance=1e-9)
     assert 0 < solution.stats["residual"] <= 1e-9
     system = _system(network, scene, np.ones(len(network.volumes), bool))
-    now = np.linalg.norm(_residual(system, solution.fluctuation - system.level))
+    now = np.linalg.norm(_residual(system, solution.temperature - system.level))
     assert now < 1e-6 * np.linalg.norm(_residual(system, np.zeros(len(network.volumes))))
 
 
@@ -67,7 +67,7 @@ def test_flux_wall_gives_the_same_field_as_its_temperature():
     network = built(scene)
     solution = solve_steady(network, scene, tolerance=1e-12)
     # linear in y with slope q/k = 6 K/m, exact on any packing (solver tolerance, times n^(2/3) for its condition)
-    assert_allclose(solution.fluctuation, 10.0 + 6.0 * network.centers[:, 1], atol=1e-8)
+    assert_allclose(solution.temperature, 10.0 + 6.0 * network.centers[:, 1], atol=1e-8)
     top = network.wall_side == 3
     assert_allclose(solution.wall_temperature[top], 22.0, atol=1e-8)
     assert_allclose(solution.wall_heat[top].sum(), 30.0, rtol=1e-12)
@@ -80,7 +80,7 @@ def test_islands_are_reported_and_left_without_a_temperature(load):
     solution = solve_steady(network, scene)
     inside = scene.phase_at(network.centers) == 1
     assert solution.stats["islands"] == inside.sum() > 50
-    assert np.array_equal(np.isnan(solution.fluctuation), inside)
+    assert np.array_equal(np.isnan(solution.temperature), inside)
 
 
 def test_conductances_are_left_as_they_were():

@@ -7,7 +7,7 @@ from demheat.laws import Calibrated
 from demheat.network.base import SIDES, branches, row_numbers, wall_normals
 from demheat.network.calibrated import MEANS, _joined, contact_facets
 from demheat.network.interface import connect
-from demheat.network.laguerre import without_hidden
+from demheat.network.laguerre import drop_empty_cells
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
 from demheat.packing.relax import relax
@@ -44,7 +44,7 @@ def test_links_are_symmetric_and_carry_the_papers_surface(packing, mean, formula
 
 
 def test_branches_are_nearest_images(packing):
-    facets = contact_facets(packing, Calibrated(poor="keep"))
+    facets = contact_facets(packing, Calibrated(sparse="keep"))
     length = np.linalg.norm(
         branches(packing.centers, packing.size, facets.indptr, facets.indices, facets.image), axis=1
     )
@@ -56,7 +56,9 @@ def test_branches_are_nearest_images(packing):
 
 
 def test_mean_coordination_and_policies(packing):
-    kept, joined = (np.diff(contact_facets(packing, Calibrated(poor=poor)).indptr) for poor in ("keep", "nearest"))
+    kept, joined = (
+        np.diff(contact_facets(packing, Calibrated(sparse=sparse)).indptr) for sparse in ("keep", "nearest")
+    )
     # The gap is the midpoint between two pair distances: Z is met to one pair, 2/n.
     assert_allclose(kept.mean(), 7.5, atol=2 / 1000 + 1e-12)
     assert kept.min() < 2 <= joined.min()
@@ -85,11 +87,11 @@ def test_dropping_peels_chains_and_islands():
     triangle, lone = [(15, 15), (17, 15), (16, 16.7)], [(3, 17)]
     centers = np.array([(x, y, 10.0) for x, y in square + tail + triangle + lone])
     packing = make_packing(centers, np.full(len(centers), 1.0), (20, 20, 20), True, {})
-    facets = contact_facets(packing, Calibrated(gap=0.02, poor="drop"))
+    facets = contact_facets(packing, Calibrated(gap=0.02, sparse="drop"))
     alive = np.isin(packing.centers[:, :2], (3, 5)).all(axis=1)
     assert_array_equal(facets.volumes > 0, alive)
     assert_array_equal(np.diff(facets.indptr), np.where(alive, 2, 0))
-    rest, facets = without_hidden(packing, facets)
+    rest, facets = drop_empty_cells(packing, facets)
     assert rest.number == 4 and facets.indices.max() < 4
     assert_allclose(facets.volumes.sum(), packing.volume, rtol=1e-12)  # rounding
 
@@ -97,14 +99,14 @@ def test_dropping_peels_chains_and_islands():
 def test_a_column_between_two_walls_is_not_dropped():
     centers = np.array([(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.0, 1.0, 1.0)])
     packing = make_packing(centers, np.full(6, 1.0), (10, 10, 10), (True, False, True), {})
-    facets = contact_facets(packing, Calibrated(gap=0.02, poor="drop"))
+    facets = contact_facets(packing, Calibrated(gap=0.02, sparse="drop"))
     assert_array_equal(facets.volumes > 0, packing.centers[:, 0] == 5.0)
     assert len(facets.wall_particle) == 2  # that of the lone sphere is gone
 
 
 def test_volumes_fill_the_domain(packing):
-    for poor in ("keep", "drop"):
-        assert_allclose(contact_facets(packing, Calibrated(poor=poor)).volumes.sum(), 1.0, rtol=1e-12)
+    for sparse in ("keep", "drop"):
+        assert_allclose(contact_facets(packing, Calibrated(sparse=sparse)).volumes.sum(), 1.0, rtol=1e-12)
     inside = np.linalg.norm(packing.centers[:, [0, 2]] - 0.5, axis=1) < 0.5
     drum = make_packing(
         packing.centers[inside], packing.radii[inside], (1, 1, 1), (False, True, False), {}, domain="cylinder-y"
@@ -169,7 +171,11 @@ def test_center_links_hold_the_centres(between_walls):
 
 @pytest.mark.parametrize(
     ("change", "words"),
-    [({"mean": "median"}, "mean = 'median'"), ({"poor": "join"}, "poor = 'join'"), ({"wall": "face"}, "wall = 'face'")],
+    [
+        ({"mean": "median"}, "mean = 'median'"),
+        ({"sparse": "join"}, "sparse = 'join'"),
+        ({"wall": "face"}, "wall = 'face'"),
+    ],
 )
 def test_bad_choices(packing, change, words):
     with pytest.raises(ValueError, match=words):

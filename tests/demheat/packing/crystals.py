@@ -9,7 +9,7 @@ from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
 
 # Crystals touch to rounding, 1e-15; their second neighbours are 1.41 away.
-TOUCH = 1e-6
+CONTACT_GAP = 1e-6
 
 
 def crystal(cells, basis, radius, *, periodic=True, size=None):
@@ -40,7 +40,7 @@ def random_packing(seed, number=400, *, periodic=True, domain="box", size=(1.0, 
 
 
 def touching(packing):
-    return contacts(packing, gap=TOUCH)[:2]
+    return contacts(packing, gap=CONTACT_GAP)[:2]
 
 
 def distances(packing):

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from crystals import TOUCH, face_centred, random_packing, simple_cubic, touching
+from crystals import CONTACT_GAP, face_centred, random_packing, simple_cubic, touching
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import make_packing
@@ -50,13 +50,13 @@ def test_a_stack_unravels_from_its_free_top():
     n = 5
     packing = simple_cubic(n, periodic=(True, True, False), size=(n, n, n + 0.5))
     rows = touching(packing)
-    found = backbone(packing, *rows, gap=TOUCH, rule="half-space")
+    found = backbone(packing, *rows, gap=CONTACT_GAP, rule="half-space")
     # One layer per round, and a round that finds nothing more.
     assert found.rattler.all() and found.rounds == n + 1 and np.isnan(found.coordination)
-    counted = backbone(packing, *rows, gap=TOUCH)
+    counted = backbone(packing, *rows, gap=CONTACT_GAP)
     assert not counted.rattler.any()
     closed = simple_cubic(n, periodic=(True, True, False))
-    found = backbone(closed, *touching(closed), gap=TOUCH, rule="half-space")
+    found = backbone(closed, *touching(closed), gap=CONTACT_GAP, rule="half-space")
     pairs, walls = 2 * n**3 + n * n * (n - 1), 2 * n * n
     assert not found.rattler.any() and found.rounds == 1
     assert_allclose(found[1:3], [2 * pairs / n**3, (pairs + walls) / (3 * n**3)], rtol=1e-15)
@@ -67,7 +67,7 @@ def test_rattlers_fall_one_after_another():
     block = simple_cubic(4)
     top = np.array([[1.5, 1.5, z] for z in (4.5, 5.5, 6.5)])
     packing = make_packing(np.vstack((block.centers, top)), np.full(67, 0.5), (4, 4, 8), (True, True, False), {})
-    found = backbone(packing, *touching(packing), gap=TOUCH)
+    found = backbone(packing, *touching(packing), gap=CONTACT_GAP)
     assert_array_equal(packing.centers[found.rattler][:, 2].round(1), [4.5, 5.5, 6.5])
     assert_allclose(found.coordination, 2 * (2 * 64 + 48) / 64, rtol=1e-15)
 

@@ -13,7 +13,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import demheat
 from demheat import Material, Scene, Sphere
 from demheat.build import network_of
-from demheat.calibration import calibration, loaded_flat
+from demheat.calibration import calibration, calibration_scene
 from demheat.conduction.steady import solve_steady
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre
@@ -277,7 +277,7 @@ def test_round_bodies_have_no_mirrors():
 def solved(packing, scene, law):
     """Network and solution of a law."""
     if law == "calibrated":
-        flat = loaded_flat(scene)
+        flat = calibration_scene(scene)
         unit = network_of(flat, packing, Calibrated(gap=0.07, factor=1.0))
         made = Calibrated(gap=0.07, factor=calibration(unit, flat, tolerance=1e-12))
     else:
@@ -326,7 +326,9 @@ def test_every_split_conserves_the_flux_of_a_periodic_cell(law):
     network, solution = parts
     here, there = row_numbers(network.indptr), network.indices
     step = branches(network.centers, network.size, network.indptr, network.indices, network.image)
-    heat = network.conductance * (solution.fluctuation[there] - solution.fluctuation[here] + step @ solution.gradient)
+    heat = network.conductance * (
+        solution.temperature[there] - solution.temperature[here] + step @ solution.mean_gradient
+    )
     first = -0.5 * heat @ step
     shares = {
         "half": np.full(len(here), 0.5),

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 
-from demheat import Flux, Heating, Layer, Material, MovingCylinder, Scene
+from demheat import Flux, Layer, Material, MovingCylinder, Scene, UniformSource
 from references.exact.series import evolve
 
 # Haddad et al. (2021): steel of the slab, aluminium of the sphere; Terreros et al. (2013): aluminium of the beam.
@@ -73,7 +73,7 @@ def test_beam_of_terreros(domain):
 def test_against_finite_volumes(load, heated):
     """Two hundred cells, integrated to 1e-9 in time: their own error is the square of the cell."""
     walls, n, length, power = LOADS[load], 200, 2.0, 5.0
-    scene = slab(sources=[Heating(power)] if heated else (), **walls)
+    scene = slab(sources=[UniformSource(power)] if heated else (), **walls)
     h, k, capacity = length / n, ONE.conductivity, 1.0
 
     def rate(_, temperature):
@@ -98,7 +98,7 @@ def test_against_finite_volumes(load, heated):
 @pytest.mark.parametrize("time", [0.005, 0.3])  # images, modes
 def test_walls_flux_and_heat_of_a_slab(load, time):
     walls = LOADS[load]
-    scene = slab(sources=[Heating(5.0)], **walls)
+    scene = slab(sources=[UniformSource(5.0)], **walls)
     field, area = last(scene, time), 0.75
     for name, letter, y, sign in (("low", "y-", 0.0, 1), ("high", "y+", 2.0, -1)):
         end = np.array([0.2, y, 0.4])
@@ -122,9 +122,9 @@ def slope(field, points, step=1e-5):
 
 
 BODIES = {
-    "box": slab(axis=2, low=5.0, high=Flux(3.0), sources=[Heating(5.0)]),
+    "box": slab(axis=2, low=5.0, high=Flux(3.0), sources=[UniformSource(5.0)]),
     "cylinder": Scene((1, 1, 2), ONE, domain="cylinder-z", walls={"z-": 5.0, "z+": -2.0}, initial=3.0),
-    "sphere": Scene((1, 1, 1), ONE, domain="sphere", walls={"round": 5.0}, initial=3.0, sources=[Heating(5.0)]),
+    "sphere": Scene((1, 1, 1), ONE, domain="sphere", walls={"round": 5.0}, initial=3.0, sources=[UniformSource(5.0)]),
 }
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from fem_scenes import cube, last
 from numpy.testing import assert_allclose
 
-from demheat.scene import Heating, Material, Scene, Sphere
+from demheat.scene import Material, Scene, Sphere, UniformSource
 from references.fem import bricks, implicit, loads, separable, trbdf2
 
 
@@ -31,7 +31,7 @@ def test_weights_of_the_integrator():
 
 
 def test_rates_at_the_start():
-    of = cube(walls={"y-": lambda t: math.sin(5 * t)}, sources=(Heating(2.0),))
+    of = cube(walls={"y-": lambda t: math.sin(5 * t)}, sources=(UniformSource(2.0),))
     on = bricks.hexahedra(of, 0.34)
     driven = loads.Loads(of, on, level=0.0)
     free = np.setdiff1d(np.arange(len(on.points)), driven.held)

@@ -7,7 +7,7 @@ import pytest
 from fem_scenes import KINDS, UNIT, cube, last
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 from references import fem
 
 STEEL = Material(33.0, 7800.0, 0.9)  # Haddad et al. 2021, table 1
@@ -159,7 +159,7 @@ def test_heat_is_conserved(kind):
     """To ten times the linear tolerance, whatever loads it."""
     walls = {"x-": lambda t: 3 * t, "y-": 0.0, "z+": Flux(lambda t: 2 - t), "z-": 1.0}
     source = MovingCylinder(2, 0.3, 50.0, (0.3, 0.5), (3.0, 0.0))
-    of = cube(walls=walls, sources=(Heating(2.0), source), initial=lambda x: x[:, 0] - 0.5)
+    of = cube(walls=walls, sources=(UniformSource(2.0), source), initial=lambda x: x[:, 0] - 0.5)
     for tolerance in (1e-6, 1e-10):
         for field in fem.evolve(of, [0.05, 0.1], size=kind_size(kind), tolerance=tolerance, accuracy=1e-3, **kind):
             stats = field.stats
@@ -175,7 +175,7 @@ def test_heat_is_conserved(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_uniform_heating_of_an_insulated_body_is_exact(kind):
-    of = cube(Material(2.0, 3.0, 4.0), sources=(Heating(24.0),), initial=7.0)
+    of = cube(Material(2.0, 3.0, 4.0), sources=(UniformSource(24.0),), initial=7.0)
     field = last(of, [0.0, 1.5], size=kind_size(kind), **kind)
     assert_allclose(field.samples.temperature, 7 + 24 / 12 * 1.5, rtol=1e-9)  # linear tolerance
     assert field.stats["steps"] < 20

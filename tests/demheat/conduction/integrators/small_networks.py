@@ -37,8 +37,8 @@ def network_of(kind, number=600, seed=1):
 def system_of(kind, number=600):
     """Balance of a network of a kind, heated at once; contacts have their wall particles held, as in the papers."""
     network = network_of(kind, number)
-    pinned = np.ones(len(network.volumes), dtype=bool) if kind == "calibrated" else None
-    return semi_discrete(network, JUMP, capacities(network, JUMP), pinned=pinned)
+    held_centers = np.ones(len(network.volumes), dtype=bool) if kind == "calibrated" else None
+    return semi_discrete(network, JUMP, capacities(network, JUMP), held_centers=held_centers)
 
 
 def dense(system):

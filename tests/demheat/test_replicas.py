@@ -1,4 +1,4 @@
-"""Packings of tiles, which stand in for relaxed ones where there are millions of particles."""
+"""Packings of replicas, which stand in for relaxed ones where there are millions of particles."""
 
 import numpy as np
 import pytest
@@ -7,28 +7,28 @@ from numpy.testing import assert_allclose, assert_array_equal
 import demheat
 from demheat import Flux, Material, Scene, Sphere
 from demheat.packing import domain
-from demheat.packing.cache import tiled
-from demheat.packing.domain import tile_counts, walled
+from demheat.packing.cache import replicated
+from demheat.packing.domain import replica_counts, walled
 from references import exact
 
 LOADS = {"periodic": {"gradient": (1.0, 2.0, -0.5)}, "walls": {"walls": {"y-": 3.0, "y+": Flux(10.0)}}}
 
 
 def test_counts():
-    assert_array_equal(tile_counts(2_000_000, (1, 1, 1)), [1, 1, 1])
-    assert_array_equal(tile_counts(8_000_000, (0.1, 0.1, 0.1)), [4, 4, 4])
-    assert_array_equal(tile_counts(16_000, (1, 2, 1), 2), [2, 4, 2])
+    assert_array_equal(replica_counts(2_000_000, (1, 1, 1)), [1, 1, 1])
+    assert_array_equal(replica_counts(8_000_000, (0.1, 0.1, 0.1)), [4, 4, 4])
+    assert_array_equal(replica_counts(16_000, (1, 2, 1), 2), [2, 4, 2])
     for number, size in ((2_000_001, (1, 1, 1)), (9_000_000, (10, 1, 1)), (3_000_000, (1, 5, 0.01))):
-        counts = tile_counts(number, size)
-        assert number / counts.prod() <= domain.TILE
-        assert np.all(np.array(size) / counts <= 1.0001 * np.cbrt(np.prod(size) * domain.TILE / number))
+        counts = replica_counts(number, size)
+        assert number / counts.prod() <= domain.REPLICA
+        assert np.all(np.array(size) / counts <= 1.0001 * np.cbrt(np.prod(size) * domain.REPLICA / number))
 
 
-@pytest.mark.parametrize("tiles", [0, 1.5, True, "two", 3])
-def test_bad_tiles(tiles):
+@pytest.mark.parametrize("replicas", [0, 1.5, True, "two", 3])
+def test_bad_tiles(replicas):
     scene = Scene(size=(1, 1, 1), matrix=Material(1.0), **LOADS["periodic"])
-    with pytest.raises(ValueError, match="tiles = "):
-        demheat.solve(scene, particles=10_000, tiles=tiles)
+    with pytest.raises(ValueError, match="replicas = "):
+        demheat.solve(scene, particles=10_000, replicas=replicas)
 
 
 @pytest.mark.parametrize(
@@ -43,35 +43,35 @@ def test_bad_tiles(tiles):
         (5000, (1, 1, np.nan), "size = .*must be three"),
     ],
 )
-@pytest.mark.parametrize("tiles", [None, 1])
-def test_bad_counts(number, size, tiles, match):
+@pytest.mark.parametrize("replicas", [None, 1])
+def test_bad_counts(number, size, replicas, match):
     with pytest.raises(ValueError, match=match):
-        tile_counts(number, size, tiles)
+        replica_counts(number, size, replicas)
 
 
 def test_too_many_tiles_are_named():
-    with pytest.raises(ValueError, match="tiles = 2: makes 2 x 4 x 2 tiles .* need 16000 .* fewer for 10000"):
-        tile_counts(10_000, (1, 2, 1), 2)
-    with pytest.raises(ValueError, match="tiles = 1000000000000: makes"):
-        tile_counts(10_000, (1, 2, 1), 10**12)
+    with pytest.raises(ValueError, match="replicas = 2: makes 2 x 4 x 2 replicas .* need 16000 .* fewer for 10000"):
+        replica_counts(10_000, (1, 2, 1), 2)
+    with pytest.raises(ValueError, match="replicas = 1000000000000: makes"):
+        replica_counts(10_000, (1, 2, 1), 10**12)
 
 
 def test_what_tiles_are_not_for():
     walls = Scene(size=(1, 1, 1), matrix=Material(1.0), walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
     with pytest.raises(NotImplementedError, match="only in boxes by 'laguerre'"):
-        demheat.solve(walls, particles=10_000, tiles=2, law="calibrated")
+        demheat.solve(walls, particles=10_000, replicas=2, law="calibrated")
     with pytest.raises(ValueError, match="of a packing that is given"):
-        demheat.solve(walls, packing=tiled(1000, (1, 1, 1), periodic=False), tiles=2)
+        demheat.solve(walls, packing=replicated(1000, (1, 1, 1), periodic=False), replicas=2)
     with pytest.raises(NotImplementedError, match="only in boxes"):
         demheat.evolve(
             Scene(size=(1, 1, 1), matrix=Material(1.0, 1.0, 1.0), initial=0.0, domain="sphere", walls={"round": 1.0}),
             [1.0],
-            tiles=2,
+            replicas=2,
         )
 
 
 def test_walls_keep_their_distance_and_order():
-    packing = tiled(8000, (2, 2, 2), periodic=True)
+    packing = replicated(8000, (2, 2, 2), periodic=True)
     between = walled(packing)
     mean = packing.radii.mean()
     off = np.minimum(between.centers, 1.0 - between.centers)
@@ -89,7 +89,7 @@ def test_walls_keep_their_distance_and_order():
 def test_linear_fields_are_exact_on_tiles(load):
     same = [Sphere((0.5,) * 3, 0.3, Material(5.0))]
     scene = Scene(size=(1, 2, 1), matrix=Material(5.0), inclusions=same, **LOADS[load])
-    field = demheat.solve(scene, particles=16_000, tiles=2, tolerance=1e-13)
+    field = demheat.solve(scene, particles=16_000, replicas=2, tolerance=1e-13)
     gradient = np.array((1.0, 2.0, -0.5) if load == "periodic" else (0.0, 2.0, 0.0))
     samples = field.samples
     # tolerance 1e-13 of the heat passing, times n^(2/3) for the condition
@@ -106,6 +106,6 @@ def test_a_sphere_in_tiles_between_walls():
         size=(1, 1, 1), matrix=Material(1.0), inclusions=[Sphere((0.5,) * 3, 1 / 3, Material(10.0))],
         walls={"y-": 0.0, "y+": 1.0},
     )  # fmt: skip
-    field = demheat.solve(scene, particles=8000, tiles=2)
+    field = demheat.solve(scene, particles=8000, replicas=2)
     # Measured -.015 %, relaxed between walls -.034 %: twice as much is a fault.
     assert abs(field.conductivity / exact.solve(scene).conductivity - 1) < 3e-4
