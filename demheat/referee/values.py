@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+Values = float | np.ndarray  # or a column of a data frame
+
 
 class CurveError(NamedTuple):
     """How far a curve is off another one.
@@ -32,7 +34,7 @@ class CurveError(NamedTuple):
     last: float
 
 
-def value_error(found, exact, *, scale=None):
+def value_error(found: Values, exact: Values, *, scale: Values | None = None) -> Values:
     """Signed error of values: found / exact - 1, or (found - exact) / scale.
 
     Parameters
