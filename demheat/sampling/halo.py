@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.network.laguerre_kernels import bin_points
+from demheat.network.bins_kernels import bin_points
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 
