@@ -283,12 +283,13 @@ def _walls(network, scene, system, state):
 
 def _given_on(network, system, state):
     """Heat that each held particle passes on to its neighbours, (n,) float array, W."""
-    flow = system.tie_conductance * (_tied(system, state) - state.temperature[system.tie_row])
-    return np.bincount(system.tie_node, flow, minlength=len(network.volumes))
+    ties = system.ties
+    flow = ties.conductance * (_tied(system, state) - state.temperature[ties.row])
+    return np.bincount(ties.node, flow, minlength=len(network.volumes))
 
 
 def _tied(system, state):
     """Temperature of the held node of each tie."""
     x = np.zeros(len(system.capacity))
     system.hold(x, state.time)
-    return x[system.tie_node] + system.level
+    return x[system.ties.node] + system.level

@@ -51,8 +51,8 @@ def places_of(network):
 
 
 @njit(cache=True)
-def branch_vector(i, e, links, places, branch):
-    """Write the vector from a particle to its neighbour (image) along a link.
+def rise_along(i, e, links, places, gradient, x, branch):
+    """Rise of the temperature from a particle to its neighbour (image) along a link, and the way there.
 
     Parameters
     ----------
@@ -60,16 +60,24 @@ def branch_vector(i, e, links, places, branch):
         The particle and one of its links.
     links : Links
     places : Places
+    gradient : (3,) float array, K/m
+    x : (n,) float array, K
+        Temperatures less the linear field of the gradient.
     branch : (3,) float array, m, out
+        Vector from the particle to its neighbour.
 
     Returns
     -------
-    float, m2
-        Its squared length.
+    rise : float, K
+    square : float, m2
+        Squared length of the branch vector.
     """
     code = np.int64(places.image[e])
     j, centers, size = links.indices[e], places.centers, places.size
     branch[0] = centers[j, 0] - centers[i, 0] + (code // 9 - 1) * size[0]
     branch[1] = centers[j, 1] - centers[i, 1] + (code // 3 % 3 - 1) * size[1]
     branch[2] = centers[j, 2] - centers[i, 2] + (code % 3 - 1) * size[2]
-    return branch[0] ** 2 + branch[1] ** 2 + branch[2] ** 2
+    rise = x[j] - x[i]
+    for k in range(3):
+        rise += gradient[k] * branch[k]
+    return rise, branch[0] ** 2 + branch[1] ** 2 + branch[2] ** 2

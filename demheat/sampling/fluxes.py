@@ -4,6 +4,7 @@ import numpy as np
 
 from demheat.conduction import steady_kernels as kernels
 from demheat.network.base import wall_normals
+from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling.particle_flux import particle_flux
 
 
@@ -25,7 +26,7 @@ def mean_flux(network, scene, solution):
     (3,) float array, W/m2
     """
     first = np.empty((len(network.volumes), 3))
-    kernels.moments(*_links(network), network.conductance, solution.gradient, filled(solution), first)
+    kernels.moments(links_of(network), places_of(network), solution.gradient, filled(solution), first)
     towards = wall_normals(network) * network.wall_distance[:, None]
     return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
 
@@ -50,8 +51,8 @@ def cell_fluxes(network, solution):
         return particle_flux(network, solution, split="half")
     n = len(network.volumes)
     shape, flow = np.empty((n, 3, 3)), np.empty((n, 3))
-    conducting = network.area, network.conductance
-    kernels.reconstruct(*_links(network), *conducting, solution.gradient, filled(solution), shape, flow)
+    where = links_of(network), places_of(network)
+    kernels.reconstruct(*where, network.area, solution.gradient, filled(solution), shape, flow)
     normal = wall_normals(network)
     outer = normal[:, :, None] * normal[:, None, :]
     np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
@@ -62,7 +63,3 @@ def cell_fluxes(network, solution):
 def filled(solution):
     """Fluctuations with islands, which exchange no heat, set to zero, (n,) float array, K."""
     return np.nan_to_num(solution.fluctuation)
-
-
-def _links(network):
-    return network.centers, network.size, network.indptr, network.indices, network.image

@@ -9,6 +9,7 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.base import wall_normals
+from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling import particle_flux_kernels as kernels
 
 SPLITS = {"half": kernels.HALF, "radii": kernels.RADII, "cell": kernels.CELL}
@@ -49,10 +50,8 @@ def particle_flux(network, solution, *, split="half"):
     if len(set(sizes.values())) > 1:
         raise ValueError(f"network, solution: must be of the same particles, not {sizes}")
     flow = np.empty((len(network.volumes), 3))
-    kernels.shared_moments(
-        network.centers, network.size, network.indptr, network.indices, network.image, network.conductance,
-        solution.gradient, np.nan_to_num(solution.fluctuation), network.radii, network.distance, SPLITS[split], flow,
-    )  # fmt: skip
+    state = links_of(network), places_of(network), solution.gradient, np.nan_to_num(solution.fluctuation)
+    kernels.shared_moments(*state, network.radii, network.distance, SPLITS[split], flow)
     if split == "cell":
         depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)
         np.add.at(flow, network.wall_particle, depth)

@@ -93,7 +93,7 @@ def _kernel_speed(system, start, limit):
         best = min(best, (time.perf_counter() - begin) / steps)
         triad = max(triad, triad_gbs(threads=threads(), repeats=2))
     # Each link: conductance and index; each node: row pointer, temperature old and new, inverse capacity, heat.
-    moved = 12 * len(system.indices) + 40 * len(x)
+    moved = 12 * len(system.links.indices) + 40 * len(x)
     return {
         "million_particle_steps": 1e-6 * system.particles / best,
         "bandwidth_gbs": 1e-9 * moved / best,

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 
 ORDER = 1
@@ -15,7 +15,7 @@ def stepper(system, spectrum):
     def advance(x, time, step, memory, estimate):
         heat, totals = system.heat_at(time)
         new = np.empty_like(x) if memory is None else memory
-        kernels.forward(*system.links, heat, step, x, new)
+        kernels.forward(system.links, system.inverse, heat, step, x, new)
         inflow = step * system.inflow(x, totals)
         system.hold(new, time + step)
         # Two arrays take turns: the old state is free once this one is accepted.

@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 
 ORDER = 2
@@ -44,7 +44,7 @@ def _stages(system, x, time, step, s, marks):
     """Last stage, heat that came in, and copies of the marked stages."""
     heat, totals = system.heat_at(time)
     first, before, last = np.empty_like(x), x.copy(), None
-    kernels.rates(*system.links, heat, x, first)
+    kernels.rates(system.links, system.inverse, heat, x, first)
     flow = system.inflow(x, totals)
     a = step * _b(1) * _w(s)
     last = x + a * first
@@ -58,7 +58,7 @@ def _stages(system, x, time, step, s, marks):
         heat, totals = system.heat_at(now)
         mu, nu, a, b = _weights(j + 1, s, step)
         came = mu * heat_last + nu * heat_before + a * system.inflow(last, totals) + b * flow
-        kernels.stage(*system.links, heat, (mu, nu, a, b), x, first, last, before)
+        kernels.stage(system.links, system.inverse, heat, (mu, nu, a, b), x, first, last, before)
         before, last = last, before
         heat_before, heat_last = heat_last, came
     system.hold(last, time + step)

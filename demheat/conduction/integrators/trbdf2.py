@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 from demheat.conduction.integrators.linear import solver
 
@@ -67,7 +67,7 @@ def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
 
 def _rate(system, heat, x):
     rate = np.empty_like(x)
-    kernels.rates(*system.links, heat, x, rate)
+    kernels.rates(system.links, system.inverse, heat, x, rate)
     return rate
 
 

@@ -45,7 +45,7 @@ def dense(system):
     """Conductance matrix of all nodes, (N, N) float array, from the rows one by one."""
     a = np.zeros((len(system.capacity),) * 2)
     for i in range(len(a)):
-        for e in range(system.indptr[i], system.indptr[i + 1]):
-            a[i, system.indices[e]] -= system.conductance[e]
-            a[i, i] += system.conductance[e]
+        for e in range(system.links.indptr[i], system.links.indptr[i + 1]):
+            a[i, system.links.indices[e]] -= system.links.conductance[e]
+            a[i, i] += system.links.conductance[e]
     return a
