@@ -67,7 +67,17 @@ def source_power(scene, centers, volumes):
 
 
 def total_power(scene, time):
-    """Power that all sources of a scene give to the body at a time in seconds, W."""
+    """Power that all sources of a scene give to the body.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float, s
+
+    Returns
+    -------
+    float, W
+    """
     total = 0.0
     for number, source in enumerate(scene.sources):
         if isinstance(source, Heating):
@@ -79,7 +89,17 @@ def total_power(scene, time):
 
 
 def lost_power(scene, time):
-    """Power of clipped sources that falls outside of the body at a time in seconds, W."""
+    """Power of clipped sources that falls outside of the body.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float, s
+
+    Returns
+    -------
+    float, W
+    """
     lost = 0.0
     for number, source in enumerate(scene.sources):
         if not isinstance(source, Heating):

@@ -87,7 +87,17 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
 
 
 def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
-    """The same as `solve_steady` of arguments that were checked before."""
+    """The same as `solve_steady` of arguments that were checked before.
+
+    Parameters
+    ----------
+    network, scene, solver, tolerance, max_iterations
+        As in `solve_steady`.
+
+    Returns
+    -------
+    Solution
+    """
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"

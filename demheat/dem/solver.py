@@ -8,10 +8,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from demheat.build import network_of
+from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, passes, source_power
 from demheat.conduction.steady import check_solver, solve_checked
-from demheat.conduction.transient import check_request, try_functions
 from demheat.conduction.transient import evolve as evolve_network
+from demheat.conduction.transient import try_functions
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
@@ -143,8 +144,9 @@ def evolve(
     Returns
     -------
     iterator of Field
-        One at each time. Their stats are those of `demheat.conduction.transient.integrate`, with law, calibration and,
-        for clipped sources, lost_power (W). Their mean flux is the volume average of what flows, not what enters.
+        One at each time. Their stats are those of `demheat.conduction.integrators.march.integrate`, with law,
+        calibration and, for clipped sources, lost_power (W). Their mean flux is the volume average of what flows, not
+        what enters.
 
     Raises
     ------

@@ -12,7 +12,7 @@ import numpy as np
 
 from demheat.build import network_of
 from demheat.conduction import transient
-from demheat.conduction.integrators import control, euler
+from demheat.conduction.integrators import control, euler, march
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.laws import Laguerre
@@ -52,7 +52,7 @@ def marched(body, particles, integrator, accuracy):
 
 
 def _integrated(system, start, end, integrator, accuracy):
-    return list(transient.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
+    return list(march.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
 
 
 def _described(system, start, end, state, accuracy):

@@ -44,7 +44,16 @@ class Pace(NamedTuple):
         return float(np.min(np.maximum(self.start - now, self.longest)[ahead], initial=math.inf))
 
     def least(self, now, end):
-        """Longest step that suits all windows that begin before a time and end after another, s."""
+        """Longest step that suits all windows between two times.
+
+        Parameters
+        ----------
+        now, end : float, s
+
+        Returns
+        -------
+        float, s
+        """
         met = (self.stop > now) & (self.start < end)
         return float(np.min(self.longest[met], initial=math.inf))
 

@@ -36,13 +36,21 @@ def largest_step(spectrum):
 
 
 def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
-    """A function (x, time, step, memory, estimate) -> Step.
+    """Implicit steps on a system.
 
     Parameters
     ----------
+    system : System
+    spectrum : Spectrum
+        Not needed: no step is too large.
     limit : callable () -> float, K
         Error that each implicit solve may leave.
     preconditioner : {"jacobi", "multigrid"}
+
+    Returns
+    -------
+    callable (x, time, step, memory, estimate) -> Step
+        As that of `euler.stepper`.
     """
     solve = solver(system, preconditioner)
 

@@ -91,10 +91,10 @@ def test_only_the_same_phase():
     phase = (points[:, 0] > 0.5).astype(int) + 3
     at = np.random.default_rng(1).random((50, 3)) * SIZE
     for where, at_phase in ((None, None), (at, np.arange(50) % 3 + 2)):
-        means = halo_average(
-            points, values, volumes, radius=0.3, size=SIZE, periodic=False, at=where, phase=phase, at_phase=at_phase
-        )
         here, wanted = (points, phase) if where is None else (at, at_phase)
+        means = halo_average(
+            points, values, volumes, radius=0.3, size=SIZE, periodic=False, at=where, phases=(phase, wanted)
+        )
         right = twin(points, values, volumes, 0.3, SIZE, False, here, phase, wanted)
         assert_allclose(means, right, atol=1e-13)  # rounding, as above
     assert np.isnan(means[at_phase == 2]).all() and np.isfinite(means[at_phase == 3]).any()
@@ -135,10 +135,12 @@ def test_same_bits_for_one_and_two_threads():
         ({"volumes": [1.0, -1.0]}, "volumes of shape"),
         ({"volumes": [1.0]}, "volumes of shape"),
         ({"at": [[0.0, np.nan, 0.0]]}, "at of shape"),
-        ({"phase": [0]}, "phase = "),
-        ({"phase": [0.5, 1.5]}, "phase = "),
-        ({"phase": [0, 1], "at": [[0.0, 0.0, 0.0]]}, "at_phase = None"),
-        ({"at_phase": [0, 1]}, "phase = None"),
+        ({"phases": [0, 1, 2]}, "phases = .* a pair"),
+        ({"phases": ([0], [0, 1])}, r"phases\[0\] = "),
+        ({"phases": ([0.5, 1.5], [0, 1])}, r"phases\[0\] = "),
+        ({"phases": ([0, 1], [0, 1]), "at": [[0.0, 0.0, 0.0]]}, r"phases\[1\] = .* 1 whole"),
+        ({"phases": ([0, 1], None)}, r"phases\[1\] = None"),
+        ({"phases": (None, [0, 1])}, r"phases\[0\] = None"),
     ],
 )
 def test_bad_input(change, words):

@@ -10,10 +10,11 @@ from scipy.integrate import solve_ivp
 from small_networks import JUMP, KINDS, SWINGING, dense, network_of, system_of
 
 from demheat.conduction.integrators import control, euler, linear, rkl2, trbdf2
+from demheat.conduction.integrators.march import linear_tolerance
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.conduction.integrators.transient_kernels import Ties
-from demheat.conduction.transient import capacities, initial_temperature, linear_tolerance
+from demheat.conduction.transient import capacities, initial_temperature
 from demheat.network.links_kernels import Links
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
