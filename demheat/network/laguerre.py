@@ -59,9 +59,10 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     sites = kernels.Sites(centers, weights, weights.max(), size, periodic, *grid)
     volumes, number, *columns = _joined(_cut_block(start, sites, wall, spacing) for start in range(0, n, BLOCK))
     _check_filled(volumes, domain_volume(domain, size), domain)
-    links, side = _matched(number, columns[:4], spacing), columns[5]
-    walls = (columns[4], np.minimum(side, ROUND_SIDE), *columns[6:])
-    return _with_normals(Facets(*links, *walls, volumes), side, centers, wall)
+    indices, image, area, distance, row, side, wall_area, wall_distance = columns
+    links = _matched(number, indices, image, area, distance, spacing)
+    facets = Facets(*links, row, np.minimum(side, ROUND_SIDE), wall_area, wall_distance, volumes)
+    return _with_normals(facets, side, centers, wall)
 
 
 def without_hidden(packing, facets):
@@ -209,12 +210,12 @@ def _columns(out, good):
 def _in_order(done):
     """Merge the passes over one block of rows back into row order."""
     rows = np.concatenate([r for r, _ in done])
-    columns = [np.concatenate(c) for c in zip(*(c for _, c in done), strict=True)]
+    volume, number, *facets = (np.concatenate(c) for c in zip(*(c for _, c in done), strict=True))
     if len(done) == 1:
-        return columns
+        return volume, number, *facets
     order = np.argsort(rows, kind="stable")
-    facet_order = np.argsort(np.repeat(rows, columns[1]), kind="stable")
-    return [c[order] for c in columns[:2]] + [c[facet_order] for c in columns[2:]]
+    facet_order = np.argsort(np.repeat(rows, number), kind="stable")
+    return volume[order], number[order], *(column[facet_order] for column in facets)
 
 
 def _check_filled(volumes, volume, domain):
@@ -223,9 +224,8 @@ def _check_filled(volumes, volume, domain):
         raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _matched(number, columns, spacing):
+def _matched(number, indices, image, area, distance, spacing):
     """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
-    indices, image, area, distance = columns
     indptr = np.concatenate([[0], np.cumsum(number)])
     matched = np.empty(len(area))
     kernels.match_links(indptr, indices, image, area, matched)

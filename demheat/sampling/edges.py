@@ -53,11 +53,12 @@ def edges_of(scene, network, solution):
     Edges
     """
     parts = _interfaces(scene, network, solution), _walls(scene, network, solution)
-    owner, *columns = (np.concatenate(column) for column in zip(*parts, strict=True))
-    kept = np.isfinite(columns[2]) & np.isfinite(columns[3])
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    owner, _, _, values, slopes, _ = columns
+    kept = np.isfinite(values) & np.isfinite(slopes)
     order = np.flatnonzero(kept)[np.argsort(owner[kept], kind="stable")]
     count = np.bincount(owner[order], minlength=len(network.volumes))
-    return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns))
+    return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns[1:]))
 
 
 def _interfaces(scene, network, solution):
