@@ -316,7 +316,7 @@ def restrict(aggregates, d, coarse):
     for c in prange(len(coarse)):
         total = 0.0
         for s in range(start[c], start[c + 1]):
-            total += d[rows[s]]
+            total += np.float64(d[rows[s]])
         coarse[c] = total
 
 

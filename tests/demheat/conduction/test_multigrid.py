@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 from scipy import sparse
 
 from demheat.conduction import multigrid_kernels as kernels
-from demheat.conduction.multigrid import preconditioner
+from demheat.conduction.multigrid import MOST, preconditioner
 from demheat.network.links_kernels import Links
 
 
@@ -26,6 +26,18 @@ def dense(links, diagonal):
 
 def row_sums(links):
     return np.add.reduceat(links.conductance, links.indptr[:-1])
+
+
+def test_aggregates_hold_every_linked_particle():
+    links = lattice(9)
+    links.conductance[links.indptr[5] : links.indptr[6]] = 0.0
+    links.conductance[links.indices == 5] = 0.0  # particle 5 has no links: none to it either
+    top, owner = np.empty(9**3), np.empty(9**3, np.int32)
+    kernels.strongest(links, top)
+    count = kernels.aggregate(links, top, MOST, owner)
+    sizes = np.bincount(owner[owner >= 0], minlength=count)
+    assert owner[5] == -1 and np.all(np.delete(owner, 5) >= 0)
+    assert sizes.min() >= 1 and 3 < sizes.mean() < MOST
 
 
 def test_preconditioner_is_symmetric_positive_and_near_the_inverse():
