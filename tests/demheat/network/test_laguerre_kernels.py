@@ -107,16 +107,17 @@ def test_cells_that_need_more_say_so():
     flat = round_wall("box", size, 0.5)
     counts, none = np.array([3, 2, 2]), np.zeros(30)
     sites = kernels.Sites(points, none, 0.0, size, np.zeros(3, bool), counts, *bin_points(points, size, counts))
-    for limits, state in (
-        (kernels.Limits(0.1, 300, 60, 1e-12), kernels.UNSECURED),
-        (kernels.Limits(2.0, 5, 60, 1e-12), kernels.OVERFLOW),
-        (kernels.Limits(2.0, 300, 8, 1e-12), kernels.OVERFLOW),
+    for limits, facets, state in (
+        (kernels.Limits(0.1, 300, 60, 1e-12), 60, kernels.UNSECURED),
+        (kernels.Limits(2.0, 5, 60, 1e-12), 60, kernels.OVERFLOW),  # sites within reach
+        (kernels.Limits(2.0, 300, 8, 1e-12), 60, kernels.OVERFLOW),  # planes
+        (kernels.Limits(2.0, 300, 60, 1e-12), 3, kernels.OVERFLOW),
     ):
         out = kernels.Cut(
             np.zeros(30, np.int8),
             np.zeros(30),
             np.zeros(30, np.int64),
-            *(np.zeros((30, limits.most), kind) for kind in (np.int64, np.uint8, float, float)),
+            *(np.zeros((30, facets), kind) for kind in (np.int64, np.uint8, float, float)),
         )
         near = tangents_within(flat, points, limits.reach)
         kernels.cut_cells(np.arange(30), sites, flat, near, limits, out)
