@@ -9,6 +9,7 @@ import os
 import tempfile
 import warnings
 import zipfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -35,7 +36,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "demheat" / "packings"
 
 
-def code_hash(*modules) -> str:
+def code_hash(*modules: str) -> str:
     """Digest of the source of modules, given by dotted name: as part of a key, it retires what older code has made."""
     digest = hashlib.sha256()
     for module in modules:
@@ -43,7 +44,7 @@ def code_hash(*modules) -> str:
     return digest.hexdigest()
 
 
-def cached(make, key, *, folder=None) -> Packing:
+def cached(make: Callable[[], Packing], key: dict, *, folder=None) -> Packing:
     """Return the packing stored under `key`, or make and store it.
 
     Parameters
@@ -74,7 +75,15 @@ def cached(make, key, *, folder=None) -> Packing:
 
 
 def relaxed(
-    number, *, size=(1.0, 1.0, 1.0), phi=0.64, radii=None, periodic=True, seed=0, folder=None, **knobs
+    number: int,
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    phi: float = 0.64,
+    radii=None,
+    periodic: bool | Sequence[bool] = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+    **knobs,
 ) -> Packing:
     """`relax` with a memory: boxes of one shape share one packing, scaled.
 
@@ -89,7 +98,16 @@ def relaxed(
     return _of_shape(relax, RELAX, request, size, radii, periodic, folder)
 
 
-def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, folder=None, **knobs) -> Packing:
+def grown(
+    number: int,
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    radii=None,
+    periodic: bool | Sequence[bool] = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+    **knobs,
+) -> Packing:
     """`lsa` with a memory: boxes of one shape share one packing, scaled.
 
     Parameters
@@ -105,7 +123,15 @@ def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, fo
     return _of_shape(lsa, LSA, request, size, radii, periodic, folder)
 
 
-def replicated(number, counts, *, size=(1.0, 1.0, 1.0), periodic=True, seed=0, folder=None) -> Packing:
+def replicated(
+    number: int,
+    counts: Sequence[int],
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    periodic: bool = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+) -> Packing:
     """Replicas of one relaxed packing, which is made once; between walls for tessellations only.
 
     Parameters
