@@ -140,6 +140,15 @@ def test_reversing_the_walls_and_saying_that_sides_are_insulated():
     assert_allclose(same.temperature_at(points), 25.0, rtol=1e-14)
 
 
+def test_a_sphere_that_touches_a_wall_is_one_material_with_its_image():
+    field = multipole.solve(box(spheres=[Sphere((0.3, 0.2, 0.45), 0.2, Material(7.0)), SPHERES[1]]), order=4)
+    # Points taken for points of the wall may lie beyond it by rounding, here in the image.
+    inside, beyond = field.flux_at([(0.3, 5e-10, 0.45), (0.3, -5e-10, 0.45)])
+    # The temperature is odd in the wall: tangential fluxes, small by the degrees left out, turn over there; 1e-9 apart.
+    assert_allclose(beyond, inside * [-1, 1, -1], rtol=1e-6, atol=1e-6)
+    assert field.stats["smallest_gap"] == pytest.approx(0.0, abs=1e-15)
+
+
 def test_without_spheres_the_temperature_is_linear():
     field = multipole.solve(box(spheres=[]))
     assert_allclose(field.temperature_at([(0.2, 0.275, 0.3)]), 27.5, rtol=1e-14)
