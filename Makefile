@@ -2,25 +2,42 @@
 PYTHON ?= python3
 OUT ?= out
 PY := .venv/bin/python
+OLD := .venv-oldest
+PIP := install --quiet --disable-pip-version-check
 
-.PHONY: run test lint full clean
+.PHONY: run test test-all test-twins test-oldest full clean
 
 run: .venv/ready
 	$(PY) -m studies run fig14_single_inclusion --quick --out $(OUT)
 
 full: .venv/ready
-	.venv/bin/pip install --quiet --disable-pip-version-check -e '.[test,peers]'
+	.venv/bin/pip $(PIP) -e '.[test,peers]'
 	$(PY) -m studies run --out results
 
+# Warnings are errors (pyproject.toml).
 test: .venv/ready
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
 	$(PY) -m pytest -n 2 --dist worksteal
 
+test-all: test test-twins test-oldest
+
+# Kernels beside their slow twins, both as plain Python.
+test-twins: .venv/ready
+	NUMBA_DISABLE_JIT=1 $(PY) -m pytest -m twin
+
+test-oldest: $(OLD)/ready
+	$(OLD)/bin/python -m pytest -n 2 --dist worksteal
+
 .venv/ready: pyproject.toml
 	$(PYTHON) -m venv .venv
-	.venv/bin/pip install --quiet --disable-pip-version-check -e '.[test]'
+	.venv/bin/pip $(PIP) -e '.[test]'
+	touch $@
+
+$(OLD)/ready: pyproject.toml tests/oldest.txt
+	$(PYTHON) -m venv $(OLD)
+	$(OLD)/bin/pip $(PIP) -c tests/oldest.txt -e '.[test]'
 	touch $@
 
 clean:
-	rm -rf .venv out
+	rm -rf .venv $(OLD) out

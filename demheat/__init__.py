@@ -4,23 +4,30 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 `evolve`.
 """
 
+import warnings
+
 from demheat.field import Field, Samples
-from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 
 __all__ = [
+    "Calibrated",
     "Field",
     "Flux",
-    "Heating",
+    "Laguerre",
     "Layer",
     "Material",
     "MovingCylinder",
+    "Platonic",
     "Samples",
     "Scene",
     "Sphere",
+    "UniformSource",
     "evolve",
     "solve",
 ]
 __version__ = "0.1.0"
+RENAMED = {"Heating": "UniformSource"}
 
 
 def __getattr__(name):
@@ -28,4 +35,7 @@ def __getattr__(name):
         from demheat import dem
 
         return getattr(dem, name)
+    if name in RENAMED:
+        warnings.warn(f"demheat.{name} is now demheat.{RENAMED[name]}", DeprecationWarning, stacklevel=2)
+        return globals()[RENAMED[name]]
     raise AttributeError(f"module 'demheat' has no attribute {name!r}")

@@ -6,26 +6,24 @@ Source: Haddad et al. 2021, eqs. 7-9.
 import numpy as np
 
 from demheat.conduction.steady import solve_steady
-from demheat.network.interface import connect
 from demheat.packing.cache import relaxed
 from demheat.packing.relax import FEWEST
-from demheat.sampling.field_of import field_of
+from demheat.sampling.fluxes import mean_flux
 from demheat.scene import WALLS, Flux, Material, Scene
 
 LOADINGS = ("isothermal", "flux")
 
 
-def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", tolerance=1e-8):
+def calibration(network, scene, *, loading="isothermal", solver="auto", tolerance=1e-8) -> float:
     """C_t of a contact network: conductivity over that of the homogeneous lattice with C_t = 1, under a like load.
 
     Source: Haddad et al. 2021, eqs. 7-9.
 
     Parameters
     ----------
-    facets : Facets
-        With S = pi R_m^2.
-    packing : Packing
-        In any domain; axes without a load may be periodic or not, round walls are insulated.
+    network : Network
+        Of a material of conductivity 1 with C_t = 1, as `demheat.build.network_of` makes it for
+        `Calibrated(factor=1.0)`. In any domain; axes without a load may be periodic or not, round walls are insulated.
     scene : Scene
         Its box and load; a wall load calibrates between the two walls along its axis.
     loading : {"isothermal", "flux"}
@@ -50,11 +48,10 @@ def calibration(facets, packing, scene, *, loading="isothermal", solver="auto", 
         letter = next(iter(scene.walls))[0]
         walls = {letter + "-": 0.0, letter + "+": 1.0 if loading == "isothermal" else Flux(1.0)}
     unit = Scene(size=scene.size, matrix=Material(1.0), gradient=scene.gradient, walls=walls)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, unit.conductivities)
     solution = solve_steady(network, unit, solver=solver, tolerance=tolerance)
     if scene.periodic:
-        return 1.0 / field_of(unit, packing, facets, network, solution, law="calibrated", stats={}).conductivity
+        gradient = np.array(scene.gradient)
+        return 1.0 / float(-mean_flux(network, unit, solution) @ gradient / (gradient @ gradient))
     return 1.0 / _between_walls(network, solution, "xyz".index(letter))
 
 
@@ -62,6 +59,15 @@ def cube_like(packing, *, seed=0):
     """A packing with the radii and the packing fraction of another in a cube of the same volume, between walls.
 
     A sphere has no two opposite walls to calibrate between.
+
+    Parameters
+    ----------
+    packing : Packing
+    seed : int
+
+    Returns
+    -------
+    Packing
     """
     size = (packing.volume ** (1 / 3),) * 3
     few = packing.number < FEWEST
@@ -70,8 +76,22 @@ def cube_like(packing, *, seed=0):
     )
 
 
-def loaded_flat(scene):
-    """A scene of the same size with a load along the first flat wall of this one, or its axis, or its longest side."""
+def calibration_scene(scene):
+    """A scene of the same size and conductivity 1 whose load is like that of another.
+
+    The mean gradient of a periodic cell; else temperatures along the first flat wall of the other scene, or its axis,
+    or its longest side.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Returns
+    -------
+    Scene
+    """
+    if scene.periodic:
+        return Scene(size=scene.size, matrix=Material(1.0), gradient=scene.gradient)
     flat = [name for name in (scene.walls or {}) if name in WALLS]
     longest = "xyz"[int(np.argmax(scene.size))]
     letter = flat[0][0] if flat else scene.domain[-1] if scene.domain.startswith("cylinder") else longest

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.addition import MOST_FILLED, add_spheres
 from demheat.scene import Layer, Material, Scene, Sphere
 
 # The cube of Haddad et al. 2021, section 4: a steel-like matrix, 0.1 m, 25 and 35 degrees C. (Their Table 1 prints a
@@ -17,11 +18,6 @@ TEMPERATURES = (25.0, 35.0)
 AXIS = 1
 # Silica spheres in epoxy, Haddad et al. 2021, section 4.3.
 EPOXY, SILICA = Material(conductivity=0.195), Material(conductivity=1.5)
-
-# Spheres added one by one jam near 0.38; well before that nearly every trial is refused.
-HIGHEST_RANDOM_FRACTION = 0.35
-TRIALS_PER_SPHERE = 200_000
-BATCH = 256
 
 
 def slab(*, size: Sequence[float] = (EDGE, EDGE, EDGE), material: Material = HADDAD, **load) -> Scene:
@@ -234,16 +230,17 @@ def random_dispersion(
     if not (math.isfinite(gap) and gap >= 0):
         raise ValueError(f"gap = {gap!r}: must be a finite number >= 0, in diameters")
     filled = count * math.pi / 6 * (diameter * (1 + gap)) ** 3
-    if filled > HIGHEST_RANDOM_FRACTION:
+    if filled > MOST_FILLED:
         raise ValueError(
             f"count = {count}, diameter = {diameter:.4g}, gap = {gap}: spheres and gaps fill {filled:.3f} of the box; "
-            f"adding one by one reaches at most {HIGHEST_RANDOM_FRACTION}"
+            f"adding one by one reaches at most {MOST_FILLED}"
         )
     load = {"periodic": True} | load
     margin = 0.0 if load["periodic"] else diameter * (0.5 + gap)
     if 2 * margin >= 1:
         raise ValueError(f"diameter = {diameter!r}: spheres and gaps must fit between the walls")
-    centers = _added(count, diameter * (1 + gap), margin, load["periodic"], np.random.default_rng(seed))
+    wide, rng = np.full(count, diameter * (1 + gap) / 2), np.random.default_rng(seed)
+    centers = add_spheres(wide, np.ones(3), rng, periodic=load["periodic"], margin=margin, reuse=True)
     size = (edge,) * 3
     spheres = [Sphere(center, diameter * edge / 2, inclusion) for center in centers * edge]
     return Scene(size, matrix, spheres, **loaded(size, **load))
@@ -314,35 +311,3 @@ def _dispersion(count, fraction, diameter):
     if count is None:
         return max(1, round((0.2 if fraction is None else fraction) * 6 / (math.pi * diameter**3))), diameter
     return count, diameter if fraction is None else (6 * fraction / (math.pi * count)) ** (1 / 3)
-
-
-def _added(count, distance, margin, periodic, random):
-    """Centres at least `distance` apart in a unit box, (count, 3) float array.
-
-    Trials are drawn in batches and looked up in a grid so fine that a cell holds one centre at most; those that clear
-    all centres of earlier batches are then taken in the order drawn.
-    """
-    cells = math.ceil(math.sqrt(3) / distance)
-    grid = np.full((cells,) * 3, -1)
-    around = np.stack(np.meshgrid(*[np.arange(-2, 3)] * 3, indexing="ij"), axis=-1).reshape(1, -1, 3)
-    centers, placed, failures = np.zeros((count, 3)), 0, 0
-
-    def clear(trials, others):
-        offsets = trials - others
-        if periodic:
-            offsets -= np.round(offsets)
-        return np.einsum("...i,...i->...", offsets, offsets) >= distance**2
-
-    while placed < count:
-        if failures > TRIALS_PER_SPHERE:
-            raise RuntimeError(f"no room for sphere {placed + 1} of {count} in {failures} trials: ask for fewer")
-        trials = margin + (1 - 2 * margin) * random.random((BATCH, 3))
-        near = grid[tuple(np.moveaxis((np.floor(trials * cells).astype(int)[:, None] + around) % cells, -1, 0))]
-        free = np.all((near < 0) | clear(trials[:, None], centers[near]), axis=1)
-        begin = placed
-        for trial in trials[free]:
-            if placed < count and np.all(clear(trial, centers[begin:placed])):
-                centers[placed], grid[tuple(np.floor(trial * cells).astype(int) % cells)] = trial, placed
-                placed += 1
-        failures = failures + BATCH if placed == begin else 0
-    return centers

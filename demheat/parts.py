@@ -14,7 +14,7 @@ from demheat.shapes import Layer, Sphere
 
 __all__ = [
     "Flux",
-    "Heating",
+    "UniformSource",
     "Layer",
     "Material",
     "MovingCylinder",
@@ -45,7 +45,7 @@ class Flux:
 
 
 @dataclass(frozen=True)
-class Heating:
+class UniformSource:
     """Heat source spread over the whole body.
 
     Parameters

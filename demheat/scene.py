@@ -13,7 +13,7 @@ import numpy as np
 from demheat.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.inputs import finite, vector
 from demheat.material import Material, check_material
-from demheat.parts import Flux, Heating, MovingCylinder
+from demheat.parts import Flux, MovingCylinder, UniformSource
 from demheat.scene_checks import (
     check_domain,
     check_geometry,
@@ -30,7 +30,7 @@ __all__ = [
     "ROUND_AXES",
     "WALLS",
     "Flux",
-    "Heating",
+    "UniformSource",
     "Layer",
     "Material",
     "MovingCylinder",
@@ -67,7 +67,7 @@ class Scene:
         scale (K or degrees Celsius), a function one that changes in time, a `Flux` an imposed heat flux density.
     initial : float or callable (points) -> temperatures, optional
         Temperature at time 0; a function takes (n, 3) points in metres and returns (n,) temperatures.
-    sources : sequence of Heating or MovingCylinder
+    sources : sequence of UniformSource or MovingCylinder
         Heat sources, for transients.
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
         The body inscribed in the box; a cylinder is named by its axis. Round ones are for transients.
@@ -84,7 +84,7 @@ class Scene:
     gradient: tuple[float, float, float] | None = None
     walls: Mapping[str, float | Callable[[float], float] | Flux] | None = None
     initial: float | Callable | None = None
-    sources: tuple[Heating | MovingCylinder, ...] = ()
+    sources: tuple[UniformSource | MovingCylinder, ...] = ()
     domain: str = "box"
 
     def __post_init__(self):

@@ -8,7 +8,7 @@ import numpy as np
 
 from demheat.bodies import ROUND_AXES, check_name, wall_names
 from demheat.inputs import finite, vector
-from demheat.parts import Flux, Heating, MovingCylinder
+from demheat.parts import Flux, MovingCylinder, UniformSource
 from demheat.shapes import Shape
 from demheat.shapes.base import TOUCH
 from demheat.shapes.pairs import check_pairs
@@ -71,10 +71,10 @@ def check_initial(initial) -> None:
         finite("Scene.initial", initial, "a finite temperature or a function of points")
 
 
-def checked_sources(sources) -> tuple[Heating | MovingCylinder, ...]:
+def checked_sources(sources) -> tuple[UniformSource | MovingCylinder, ...]:
     """A sequence of heat sources as a tuple, or a ValueError."""
-    if not isinstance(sources, Sequence) or not all(isinstance(s, Heating | MovingCylinder) for s in sources):
-        raise ValueError(f"Scene.sources = {sources!r}: must be a sequence of Heating or MovingCylinder")
+    if not isinstance(sources, Sequence) or not all(isinstance(s, UniformSource | MovingCylinder) for s in sources):
+        raise ValueError(f"Scene.sources = {sources!r}: must be a sequence of UniformSource or MovingCylinder")
     return tuple(sources)
 
 

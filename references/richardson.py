@@ -6,6 +6,8 @@ Richardson, Phil. Trans. R. Soc. A 210 (1911) 307; the order from three sizes as
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.optimize import brentq
 
@@ -13,7 +15,7 @@ from scipy.optimize import brentq
 LOWEST, HIGHEST = 0.1, 8.0
 
 
-def extrapolate(values, sizes, order=None) -> float:
+def extrapolate(values: Sequence[float], sizes: Sequence[float], order: float | Sequence[float] | None = None) -> float:
     """Limit L of values = L + sum of c_k size^order_k for elements of no size.
 
     Parameters
@@ -45,13 +47,23 @@ def extrapolate(values, sizes, order=None) -> float:
     return float(np.linalg.lstsq(columns, values, rcond=None)[0][0])
 
 
-def observed_order(values, sizes) -> float:
-    """Order p of values = L + c size^p from exactly three values; see `extrapolate`.
+def observed_order(values: Sequence[float], sizes: Sequence[float]) -> float:
+    """Order p of values = L + c size^p from exactly three values.
+
+    Parameters
+    ----------
+    values : (3,) sequence of float
+    sizes : (3,) sequence of float
+        As for `extrapolate`.
+
+    Returns
+    -------
+    float
 
     Raises
     ------
     ValueError
-        Also if p is not between 0.1 and 8.
+        As for `extrapolate`, and if p is not between 0.1 and 8.
     """
     values, sizes = _checked(values, sizes)
     if len(values) != 3:

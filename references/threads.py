@@ -2,7 +2,24 @@
 
 from __future__ import annotations
 
+import os
 from concurrent.futures import ThreadPoolExecutor
+from numbers import Integral
+
+
+def thread_count(threads: int | None) -> int:
+    """Number of threads, one per processor for None.
+
+    Raises
+    ------
+    ValueError
+        If it is neither None nor a whole number >= 1.
+    """
+    if threads is None:
+        return os.cpu_count() or 1
+    if not isinstance(threads, Integral) or isinstance(threads, bool) or threads < 1:
+        raise ValueError(f"threads = {threads!r}: must be a whole number >= 1, or None for one per processor")
+    return int(threads)
 
 
 class Team:
@@ -25,7 +42,16 @@ class Team:
             self._pool.shutdown()
 
     def run(self, kernel, planes, *arguments):
-        """Call kernel(*arguments, low, high) on chunks that make up range(planes)."""
+        """Call kernel(*arguments, low, high) on chunks that make up range(planes).
+
+        Parameters
+        ----------
+        kernel : callable
+            Releases the interpreter's lock where more than one thread is to gain.
+        planes : int
+        *arguments
+            Handed on.
+        """
         parts = min(self.threads, planes)
         bounds = [planes * part // parts for part in range(parts + 1)]
         waiting = [

@@ -1,5 +1,5 @@
-"""The third-order parameter by voxels, see `references.fft.zeta2`."""
+"""The third-order parameter by voxels, see `references.fft.zeta`."""
 
-from references.fft.zeta2 import zeta2
+from references.fft.zeta import zeta2
 
 __all__ = ["zeta2"]

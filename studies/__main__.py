@@ -10,8 +10,9 @@ from pathlib import Path
 import studies
 from studies.harness import runner
 from studies.harness.provenance import row_environment
+from studies.harness.store import read_rows
 
-DEFAULT_OUT = "out"
+DEFAULT_OUT, STORED = Path("out"), Path("results")
 
 
 def main(words=None):
@@ -27,7 +28,8 @@ def main(words=None):
 def _parser():
     parser = argparse.ArgumentParser(prog="python -m studies", description=__doc__)
     actions = parser.add_subparsers(required=True, metavar="list | run | render | row | report")
-    actions.add_parser("list", help="name the studies").set_defaults(action=_list)
+    names = actions.add_parser("list", help="name the studies, and say whether stored rows are those of this code")
+    names.set_defaults(action=_list)
     run = actions.add_parser("run", help="bring studies up to date (all, if none is named) and judge their claims")
     run.add_argument("names", nargs="*", metavar="NAME")
     run.add_argument("--quick", action="store_true", help="only the quick rows")
@@ -45,8 +47,9 @@ def _parser():
     report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
     report.add_argument("--page", metavar="FILE", type=Path, help="also write the tables marked in this page anew")
     report.set_defaults(action=_report)
-    for each in (run, render, report):
-        each.add_argument("--out", default=DEFAULT_OUT, metavar="DIR", type=Path)
+    for each in (names, run, render, report):
+        where = STORED if each is names and STORED.is_dir() else DEFAULT_OUT
+        each.add_argument("--out", default=where, metavar="DIR", type=Path, help=f"default {where}")
     return parser
 
 
@@ -62,8 +65,10 @@ def _list(arguments):
     for name in study_names():
         study = runner.load(name)
         quick = sum(bool(study.QUICK(case)) for case in study.CASES)
-        title = study.__doc__.splitlines()[0]
-        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick   {title}")
+        rows = runner.state(study, read_rows(arguments.out / f"{name}.csv"))
+        stored = ", ".join(f"{count:3} {word}" for word, count in rows.items())
+        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick; {stored}   {study.__doc__.splitlines()[0]}")
+    print(f"Rows stored in {arguments.out}: held, made by this code; stale, by other code; missing, not made.")
     return 0
 
 

@@ -8,8 +8,13 @@ the wall), regular polyhedra ("platonic"). Errors are over all particles, in uni
 measure, as it seems, is |dT|/T with T in degrees Celsius. Temporal accuracy is 1e-5 of the span.
 """
 
-from studies.common.slab import COLD, HOT, TIMES
-from studies.harness.pick import pick, present
+import numpy as np
+
+from demheat import referee
+from studies.common.slab import LENGTH, TIMES, packing_of, slab
+from studies.common.slices import slice_means
+from studies.harness.cells import cell, numbers
+from studies.harness.pick import order, pick, present
 from studies.harness.store import printed
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000)
@@ -46,7 +51,6 @@ def run(law, wall, particles, seed, method):
     """Errors at the three times, and the profile."""
     from demheat.dem import evolve
     from references import series
-    from studies.common.slab import packing_of, slab
 
     scene = slab()
     knobs = {} if wall is None else {"wall": wall}
@@ -59,40 +63,34 @@ def run(law, wall, particles, seed, method):
 
 
 def _errors(field, exact):
-    import numpy as np
-
-    from studies.common.slab import binned
-
-    points, volumes, temperature, _, _ = field.samples
-    right, y = exact.temperature_at(points), points[:, 1]
-    error, t = temperature - right, f"{field.time:g}"
-    middle, mean = binned(y, temperature)
-    _, off = binned(y, error)
+    off, span = referee.temperature_error(field, exact, unit="K"), referee.span(field.scene, exact)
+    y, temperature, t = off.points[:, 1] / LENGTH, field.samples.temperature, f"{field.time:g}"
+    right = exact.temperature_at(off.points)
+    local = referee.value_error(temperature, right, scale=right)
+    middle, mean = slice_means(y, temperature)
     return {
-        f"worst_{t}": 100 * np.abs(error).max() / (HOT - COLD),
-        f"rms_{t}": 100 * np.sqrt(volumes @ error**2 / volumes.sum()) / (HOT - COLD),
-        f"relative_{t}": 100 * np.max(np.abs(error) / right),
-        "profile_y": _text(middle),
-        f"profile_{t}": _text(mean),
-        f"profile_error_{t}": _text(100 * off / (HOT - COLD)),
+        f"worst_{t}": 100 * off.max / span,
+        f"rms_{t}": 100 * off.rms / span,
+        f"relative_{t}": 100 * np.abs(local).max(),
+        "profile_y": cell(middle),
+        f"profile_{t}": cell(mean),
+        f"profile_error_{t}": cell(100 * slice_means(y, off.values)[1] / span),
     }
-
-
-def _text(values):
-    return " ".join(f"{value:.6g}" for value in values)
 
 
 def warm_up(law, wall, particles, seed, method):
     """Load and compile; the packing, kept or made anew, is not part of what is compared."""
-    from studies.common.slab import packing_of
-
     packing_of(particles, seed)
     # Wall temperatures at the wall need a bulk between the layers at the walls.
     run(law, wall, 3_000 if wall == "surface" else 500, 99, method)
 
 
 def claims(df):
-    """What issue 4 asks for."""
+    """Laguerre's errors, order and heat, and the laws of contacts beside it.
+
+    Limits at 1e5 particles lie 7 to 20 % above what was found; that of |dT|/T is a fourteenth of the paper's 0.7 %. The
+    order expected is two; heat is kept to rounding.
+    """
     yield from present([*_accuracy(df), *_order(df), *_balance(df)])
 
 
@@ -118,10 +116,8 @@ def _smallest(df):
 
 
 def _order(df):
-    import numpy as np
-
     means = pick(df, law="laguerre").groupby("particles")["rms_0.2"].mean()
-    slope = -3 * np.polyfit(np.log(means.index), np.log(means), 1)[0]
+    slope = -3 * order(means.index, means)
     yield "Laguerre: order of the error rms at 0.2 s in the particle spacing", slope, ">= 1.5"
 
 
@@ -163,10 +159,7 @@ def plot(df):
 
 
 def _profiles(left, middle, df, looks):
-    import numpy as np
-
     from references import series
-    from studies.common.slab import LENGTH, slab
     from studies.harness.figures import BLACK
 
     y = np.linspace(0.0, 1.0, 201)
@@ -178,11 +171,11 @@ def _profiles(left, middle, df, looks):
     for law, wall in (("laguerre", None), ("calibrated", "center"), ("platonic", "center")):
         rows = pick(df, law=law, wall=wall)
         row = rows.loc[rows["particles"].idxmax()]
-        at = [float(word) for word in row["profile_y"].split()]
+        at = numbers(row["profile_y"])
         for t, style in zip(TIMES, ("-", "--", ":"), strict=True):
             colour, marker = looks[law]
             label = f"{law}, {row['particles']:.0f}" if t == TIMES[0] else None
-            values, errors = ([float(w) for w in row[f"{kind}_{t:g}"].split()] for kind in ("profile", "profile_error"))
+            values, errors = (numbers(row[f"{kind}_{t:g}"]) for kind in ("profile", "profile_error"))
             left.plot(at, values, marker, color=colour, markersize=3, label=label)
             middle.plot(at, errors, style, color=colour, label=label)
     left.set(xlabel="y / L", ylabel="temperature, C", title="Lines: exact; points: means over slices")

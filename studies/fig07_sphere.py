@@ -10,8 +10,12 @@ are straight linear (P1) and curved quadratic (P2) tetrahedra. Costs leave out t
 and include the mesh.
 """
 
+import numpy as np
+
+from demheat import referee
 from studies.common import sphere_in_time
 from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
+from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
@@ -24,22 +28,20 @@ TIMEOUT = 3600.0
 
 def run(method, **knobs):
     """Errors of the centre in time."""
-    import numpy as np
-
     row = sphere_in_time.marched(TIMES, _look, method=method, **knobs)
-    error = np.array([row.pop(f"error_{t:g}") for t in TIMES])
-    largest = int(np.argmax(np.abs(error)))
+    errors = np.array([row.pop(f"error_{t:g}") for t in TIMES])
+    at, largest = referee.worst(errors)
     return row | {
-        "error_10s": error[TIMES.index(10.0)],
-        "worst": abs(error[largest]),
-        "worst_at_s": TIMES[largest],
-        "errors": sphere_in_time.text(error),
+        "error_10s": errors[TIMES.index(10.0)],
+        "worst": abs(largest),
+        "worst_at_s": TIMES[at],
+        "errors": cell(errors),
     }
 
 
 def _look(field, exact):
-    found, right = (each.temperature_at(sphere_in_time.CENTER)[0] for each in (field, exact))
-    return {f"error_{field.time:g}": float(found - right)}
+    off = referee.temperature_error(field, exact, sphere_in_time.CENTER, unit="K")
+    return {f"error_{field.time:g}": float(off.values[0])}
 
 
 def warm_up(method, **knobs):
@@ -48,7 +50,11 @@ def warm_up(method, **knobs):
 
 
 def claims(df):
-    """What issue 4 asks for."""
+    """The centre by Laguerre, by the laws of contacts and by finite elements; orders; heat.
+
+    The limits with 1e5 and 1e6 particles, 0.3 and 0.1 K, are a sixth and a twentieth of what the paper's network of 1e5
+    is off at 10 s, 1.93 K; our network of that kind must be off by half to twice as much. The order expected is two.
+    """
     df = sphere_in_time.solved(df)
     yield from present([*_accuracy(df), *_rest(df)])
 
@@ -103,24 +109,22 @@ def table(df):
 
 def plot(df):
     """The centre in time, its error in time, and errors against unknowns."""
-    import numpy as np
     from matplotlib import pyplot
 
     from references import series
-    from studies.harness.figures import BLACK, BLUE, GREY, PINK, RED, SKY
+    from studies.common.sphere_looks import LOOKS
+    from studies.harness.figures import BLACK
 
     df = sphere_in_time.solved(df)
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(15, 4.6))
-    looks = {"DEM, laguerre": (RED, "o"), "DEM, calibrated": (PINK, "s"), "DEM, platonic": (GREY, "s")}
-    looks |= {"FEM, P1": (SKY, "^"), "FEM, P2": (BLUE, "^")}
     times = np.array(TIMES)
     curve = np.linspace(0.0, 30.0, 121)
     exact = [f.temperature_at(sphere_in_time.CENTER)[0] for f in series.evolve(sphere_in_time.sphere(), curve)]
     left.plot(curve, exact, color=BLACK, linewidth=0.8, label="exact")
     for name, rows in df.groupby("name"):
-        colour, marker = looks[name]
+        colour, marker = LOOKS[name]
         row = rows.loc[rows["unknowns"].idxmax()]
-        there = np.interp(times, curve, exact) + sphere_in_time.numbers(row["errors"])
+        there = np.interp(times, curve, exact) + numbers(row["errors"])
         label = f"{name}, {row['unknowns']:.0f} unknowns"
         left.plot(times, there, marker, color=colour, markersize=4, fillstyle="none", label=label)
         _errors(middle, right, name, rows, (colour, marker))
@@ -136,14 +140,12 @@ def plot(df):
 
 
 def _errors(middle, right, name, rows, look):
-    import numpy as np
-
     colour, marker = look
     first = rows[rows["seed"].fillna(0) == 0].sort_values("unknowns")
     # The laws of contacts differ little from one size to the next.
     first = first[-1:] if name in ("DEM, calibrated", "DEM, platonic") else first
     for place, (_, row) in enumerate(first.iterrows(), start=1):
-        size = np.abs(sphere_in_time.numbers(row["errors"]))
+        size = np.abs(numbers(row["errors"]))
         middle.plot(TIMES, size, color=colour, alpha=place / len(first), linewidth=1.2)
     means = rows.assign(at_10s=rows["error_10s"].abs()).groupby(["particles", "size"], dropna=False)
     means = means[["unknowns", "worst", "at_10s"]].mean().sort_values("unknowns")

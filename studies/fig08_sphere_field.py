@@ -6,8 +6,12 @@ finite elements; root mean squares are weighted by volume. Fields at 2 and 5 s s
 while the heat has not reached the centre. The slice is the plane z = R, on a grid of points that are no particles.
 """
 
+import numpy as np
+
+from demheat import referee
 from studies.common import sphere_in_time
 from studies.common.sphere_in_time import NUMBERS, SIZES
+from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
@@ -26,26 +30,18 @@ def run(method, **knobs):
 
 
 def _look(field, exact):
-    import numpy as np
-
-    points, volumes, temperature, _, _ = field.samples
-    error, t = temperature - exact.temperature_at(points), f"{field.time:g}"
-    r, largest = sphere_in_time.radii(points), int(np.argmax(np.abs(error)))
-    row = {
-        f"worst_{t}": abs(error[largest]),
-        f"rms_{t}": np.sqrt(volumes @ error**2 / volumes.sum()),
-        f"worst_r_{t}": r[largest],
-    }
+    off, t = referee.temperature_error(field, exact, unit="K"), f"{field.time:g}"
+    r, (at, largest) = sphere_in_time.radii(off.points), referee.worst(off.values)
+    row = {f"worst_{t}": abs(largest), f"rms_{t}": off.rms, f"worst_r_{t}": r[at]}
     if field.time < TIMES[-1]:
         return row
-    middle, mean, size = sphere_in_time.in_shells(r, error, volumes)
+    middle, mean, size = sphere_in_time.in_shells(r, off.values, off.weights)
     grid, _ = sphere_in_time.slice_grid()
-    sliced = field.temperature_at(grid) - exact.temperature_at(grid)
-    volume = abs(volumes.sum() / field.scene.volume - 1)
+    sliced = referee.temperature_error(field, exact, grid, unit="K")
+    volume = abs(referee.value_error(off.weights.sum(), field.scene.volume))
     cells = {"profile_r": middle, "profile_error": mean, "profile_worst": size}
-    cells = {name: sphere_in_time.text(values) for name, values in cells.items()}
-    row |= {"volume_error": volume, "slice_worst": np.abs(sliced).max()}
-    return row | cells | {"slice_error": " ".join(f"{value:.3g}" for value in sliced)}
+    row |= {"volume_error": volume, "slice_worst": sliced.max}
+    return row | {name: cell(values) for name, values in cells.items()} | {"slice_error": cell(sliced.values, ".3g")}
 
 
 def warm_up(method, **knobs):
@@ -54,7 +50,11 @@ def warm_up(method, **knobs):
 
 
 def claims(df):
-    """What issue 4 asks for."""
+    """The whole field by Laguerre and by finite elements; orders; volume and heat.
+
+    The limits of `fig07_sphere`, a sixth and a twentieth of the 1.93 K that the paper's centre is off, hold here for
+    every particle. The order expected is two.
+    """
     df = sphere_in_time.solved(df)
     yield from present([*_accuracy(df), *_rest(df)])
 
@@ -98,18 +98,16 @@ def plot(df):
     """Temperature and error over the radius, errors against unknowns; the slice."""
     from matplotlib import pyplot
 
-    from studies.harness.figures import BLUE, GREY, PINK, RED, SKY
+    from studies.common.sphere_looks import LOOKS
 
     df = sphere_in_time.solved(df)
     figure, ((left, middle, right), slices) = pyplot.subplots(2, 3, figsize=(14, 8.6))
-    looks = {"DEM, laguerre": (RED, "o"), "DEM, calibrated": (PINK, "s"), "DEM, platonic": (GREY, "s")}
-    looks |= {"FEM, P1": (SKY, "^"), "FEM, P2": (BLUE, "v")}
     exact = _exact()
     for name, rows in df.groupby("name"):
-        colour, marker = looks[name]
+        colour, marker = LOOKS[name]
         row = rows.loc[rows["unknowns"].idxmax()]
         label = f"{name}, {row['unknowns']:.0f} unknowns"
-        r, error, size = (sphere_in_time.numbers(row[f"profile_{kind}"]) for kind in ("r", "error", "worst"))
+        r, error, size = (numbers(row[f"profile_{kind}"]) for kind in ("r", "error", "worst"))
         left.plot(r, exact(r) + error, marker, color=colour, fillstyle="none", markersize=4, label=label)
         middle.plot(r, size, marker=marker, color=colour, markersize=4)
         middle.plot(r, abs(error), ":", color=colour)
@@ -124,8 +122,6 @@ def plot(df):
 
 def _exact():
     """Exact temperature at 10 s of the radius, in radii."""
-    import numpy as np
-
     from references import series
 
     (field,) = series.evolve(sphere_in_time.sphere(), [TIMES[-1]])
@@ -134,8 +130,6 @@ def _exact():
 
 
 def _radial(left, middle, right, exact):
-    import numpy as np
-
     from studies.harness.figures import BLACK
 
     r = np.linspace(0.0, 1.0, 101)
@@ -150,13 +144,11 @@ def _radial(left, middle, right, exact):
 
 def _slices(figure, slices, df, exact):
     """The slice of the finest DEM, its error, and that of the finest FEM."""
-    import numpy as np
-
     points, inside = sphere_in_time.slice_grid()
     pictured = df.dropna(subset=["slice_error"])
     dem, fem = (pick(pictured, method=method) for method in ("dem", "fem"))
     dem, fem = (rows.loc[rows["unknowns"].idxmax()] for rows in (dem, fem))
-    errors = [sphere_in_time.numbers(row["slice_error"]) for row in (dem, fem)]
+    errors = [numbers(row["slice_error"]) for row in (dem, fem)]
     pictures = [
         (exact(sphere_in_time.radii(points)) + errors[0], dem, "C"),
         (errors[0], dem, "K"),

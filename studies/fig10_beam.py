@@ -12,7 +12,12 @@ conductivity between its two ends, and its heat capacity, both over the material
 span. Packings are relaxed ones, at a packing fraction of 0.64; the paper names neither an algorithm nor a fraction.
 """
 
+import numpy as np
+
+from demheat import referee
 from studies.common.cases import laws_by_size
+from studies.common.slices import slice_means
+from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
@@ -78,24 +83,17 @@ def _elements(size):
 
 def _compared(fields, row):
     """The fields, with their errors put into the row one by one."""
-    import numpy as np
-
     from references import series
-    from studies.common.terreros import COLD, HOT, beam, binned
+    from studies.common.terreros import LENGTH, beam
 
     for field, exact in zip(fields, series.evolve(beam(), TIMES, points_per_axis=1), strict=True):
-        points, volumes, temperature, _, _ = field.samples
-        off, t = 100 * (temperature - exact.temperature_at(points)) / (HOT - COLD), f"{field.time:g}"
-        row[f"worst_{t}"] = np.abs(off).max()
-        row[f"rms_{t}"] = np.sqrt(volumes @ off**2 / volumes.sum())
-        middle, mean = binned(points[:, 0], temperature)
-        row["profile_x"], row[f"profile_{t}"] = _text(middle), _text(mean)
-        row[f"profile_error_{t}"] = _text(binned(points[:, 0], off)[1])
+        off, t = referee.temperature_error(field, exact, unit="%"), f"{field.time:g}"
+        x = off.points[:, 0] / LENGTH
+        row |= {f"worst_{t}": off.max, f"rms_{t}": off.rms}
+        middle, mean = slice_means(x, field.samples.temperature)
+        row |= {"profile_x": cell(middle), f"profile_{t}": cell(mean)}
+        row[f"profile_error_{t}"] = cell(slice_means(x, off.values)[1])
         yield field
-
-
-def _text(values):
-    return " ".join(f"{value:.6g}" for value in values)
 
 
 def warm_up(law, method, **case):
@@ -109,7 +107,11 @@ def warm_up(law, method, **case):
 
 
 def claims(df):
-    """What issue 4 asks for."""
+    """Laguerre at the paper's size; finite elements; what a transient hides of the Platonic law; heat.
+
+    At the paper's 19465 elements 0.1 % of the span, half a kelvin, is asked for; quick rows have twice to four times
+    what was found. What the Platonic law hides must be at least a third of what was found.
+    """
     return present([*_accuracy(df), *_referee(df), *_hidden(df), *_balance(df)])
 
 
@@ -119,7 +121,7 @@ def _accuracy(df):
         value = full[f"worst_{t:g}"].max(skipna=False) if len(full) else None
         yield f"Laguerre, the paper's 19465 particles, {1e3 * t:g} ms: largest error, % of the span", value, 0.1
     if len(full):
-        off = (full["mean_radius"] / PAPER["mean_radius"] - 1).abs().max(skipna=False)
+        off = referee.value_error(full["mean_radius"], PAPER["mean_radius"]).abs().max(skipna=False)
         # 0.5 %: a packing fraction of 0.64 for the paper's 0.647 is 0.4 % in the radius.
         yield "Mean radius of 19465 particles off the paper's, relative", off, 0.005
     small = pick(df, law="laguerre", particles=NUMBERS[0])
@@ -151,18 +153,16 @@ def _hidden(df):
     for contacts, steady in ((7.2, 0.05), (6.2, 0.1)):
         rows = pick(df, law="platonic", coordination=contacts)
         text = f"Platonic law, {contacts} contacts:"
-        yield (
-            f"{text} least excess of the steady conductivity",
-            rows["conductivity"].min(skipna=False) - 1,
-            (f">= {steady:g}"),
-        )
-        yield f"{text} least excess of the heat capacity", rows["capacity"].min(skipna=False) - 1, f">= {steady:g}"
+        for column, what in (("conductivity", "steady conductivity"), ("capacity", "heat capacity")):
+            least = referee.value_error(rows[column], 1.0).min(skipna=False)
+            yield f"{text} least excess of the {what}", least, f">= {steady:g}"
     full = pick(df, law="platonic", coordination=7.2, particles=NUMBERS[-1])
     if len(full):
-        share = full[["worst_0.05", "worst_0.1"]].max(axis=1, skipna=False) / (100 * (full["conductivity"] - 1))
+        hidden = 100 * referee.value_error(full["conductivity"], 1.0)
+        share = full[["worst_0.05", "worst_0.1"]].max(axis=1, skipna=False) / hidden
         text = "Platonic law, 7.2 contacts, 19465 particles: largest error at 50 and 100 ms over that of the steady"
         yield f"{text} conductivity", share.max(skipna=False), 0.1
-    off = (pick(df, law="laguerre")["conductivity"] - 1).abs().max(skipna=False)
+    off = referee.value_error(pick(df, law="laguerre")["conductivity"], 1.0).abs().max(skipna=False)
     # Ten times the tolerance of the steady solve.
     yield "Laguerre: steady conductivity off the material's, relative", off, 1e-7
 
@@ -205,8 +205,6 @@ def plot(df):
 
 
 def _profiles(left, middle, df, looks):
-    import numpy as np
-
     from references import series
     from studies.common.terreros import LENGTH, RADIUS, beam
     from studies.harness.figures import BLACK
@@ -221,10 +219,8 @@ def _profiles(left, middle, df, looks):
         row = rows.loc[rows["particles"].idxmax()]
         label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
         for t, style in zip(TIMES, ("-", "--", "-.", ":"), strict=True):
-            at, values, errors = (
-                np.array([float(word) for word in row[name].split()])
-                for name in ("profile_x", f"profile_{t:g}", f"profile_error_{t:g}")
-            )
+            columns = ("profile_x", f"profile_{t:g}", f"profile_error_{t:g}")
+            at, values, errors = (numbers(row[name]) for name in columns)
             first = label if t == TIMES[0] else None
             left.plot(at, values, marker, color=colour, markersize=3, label=first)
             middle.plot(at, np.maximum(np.abs(errors), 1e-5), style, color=colour, linewidth=1, label=first)
@@ -235,15 +231,12 @@ def _profiles(left, middle, df, looks):
 
 
 def _shown_and_hidden(axes, df, looks):
-    import numpy as np
-
     names = ("worst_0.05", "worst_0.1", "conductivity", "capacity", "diffusivity")
     for number, ((law, contacts), (colour, _)) in enumerate(looks.items()):
         rows = pick(df, law=law, coordination=contacts)
         rows = rows[rows["particles"] == rows["particles"].max()]
-        heights = [
-            rows[name].mean() if name.startswith("worst") else 100 * abs(rows[name].mean() - 1) for name in names
-        ]
+        means = [rows[name].mean() for name in names]
+        heights = [*means[:2], *(100 * abs(referee.value_error(mean, 1.0)) for mean in means[2:])]
         label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
         axes.bar(np.arange(5) + 0.2 * (number - 1.5), np.maximum(heights, 1e-4), 0.18, color=colour, label=label)
     axes.set_xticks(

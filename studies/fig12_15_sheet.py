@@ -15,7 +15,11 @@ thickness: there is no bulk, where contacts could be counted. Contacts are there
 All laws get the same power, whatever heat capacity they make of the sheet.
 """
 
+import numpy as np
+
+from demheat import referee
 from studies.common.cases import laws_by_size
+from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
@@ -50,8 +54,6 @@ def QUICK(case):
 
 def run(law, method, **case):
     """Temperatures at the checkpoints in time, heat capacity and heat of the sheet."""
-    import numpy as np
-
     from studies.common.terreros import POINTS, sheet
 
     scene, curves = sheet(), []
@@ -59,10 +61,7 @@ def run(law, method, **case):
     for field in _fields(scene, law, method, **case):
         curves.append(field.temperature_at(points))
         last = field
-    row = {
-        name: " ".join(f"{value:.6g}" for value in curve)
-        for name, curve in zip(NAMES, np.transpose(curves), strict=True)
-    }
+    row = {name: cell(curve) for name, curve in zip(NAMES, np.transpose(curves), strict=True)}
     volumes, temperature = last.samples.volumes, last.samples.temperature
     row |= {"capacity": float(volumes.sum() / scene.volume), "mean": float(volumes @ temperature / volumes.sum())}
     stats = last.stats
@@ -96,10 +95,14 @@ def warm_up(law, method, **case):
 
 
 def curves_of(rows, name):
-    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius."""
-    import numpy as np
+    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius.
 
-    return np.array([[float(word) for word in text.split()] for text in rows[name]])
+    Parameters
+    ----------
+    rows : data frame
+    name : {"A", "B", "C"}
+    """
+    return np.array([numbers(text) for text in rows[name]])
 
 
 def reference(df):
@@ -112,23 +115,31 @@ def reference(df):
 def compared(df, law, particles, name):
     """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time.
 
+    Parameters
+    ----------
+    df : data frame
+    law : str
+    particles : int
+    name : {"A", "B", "C"}
+
     Returns
     -------
     dict
         dispersion (%), off (% of the mean of the packings there), at (s), span (the same as off, but % of the highest
         mean), end (% at the last time).
     """
-    from studies.common.terreros import dispersion, largest_difference
-
     curves = curves_of(pick(df, law=law, particles=particles), name)
-    bricks, mean = curves_of(reference(df), name)[0], curves.mean(axis=0)
-    at, off = largest_difference(bricks, mean)
-    end, span = 100 * (bricks[-1] - mean[-1]) / mean[-1], abs(off) * mean[at] / mean.max()
-    return {"dispersion": dispersion(curves), "off": off, "at": TIMES[at], "span": span, "end": end}
+    off = referee.curve_error(curves_of(reference(df), name)[0], curves.mean(axis=0))
+    found = {"off": 100 * off.local, "at": TIMES[off.at], "span": 100 * off.highest, "end": 100 * off.last}
+    return {"dispersion": 100 * referee.dispersion(curves)} | found
 
 
 def claims(df):
-    """What issue 4 asks for."""
+    """Scatter over packings; packings beside bricks, bricks beside finer ones; heat.
+
+    The paper's dispersion, below 4 % with 20000 elements, is the yardstick: Laguerre is held to 1.5 % from 1000 on and
+    to 0.5 % with 20000, and to within 1 % of the bricks there.
+    """
     return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
 
 
@@ -162,40 +173,33 @@ def _against_bricks(df):
 
 
 def _bricks(df):
-    from studies.common.terreros import largest_difference
-
     fine, paper = (pick(df, law="hexahedra", size=size) for size in (FINE, ELEMENT))
     if len(fine) and len(paper):
         for name in NAMES:
             ours, finer = (curves_of(rows, name)[0] for rows in (paper, fine))
-            at, off = largest_difference(ours, finer)
             # Half of what 0.5 mm are off: far below what packings are compared by. Where A is barely warm, at 0.26 s,
             # the same difference is 0.4 % of the temperature then.
             text = f"Bricks of 0.5 mm against a third of a mm, {name}: largest difference, % of the highest temperature"
-            yield text, abs(off) * finer[at] / finer.max(), 0.05
+            yield text, 100 * referee.curve_error(ours, finer).highest, 0.05
 
 
 def _balance(df):
     import math
 
-    from studies.common.terreros import DIAMETER, METAL, POWER, SHEET
+    from studies.common.terreros import AMBIENT, DIAMETER, METAL, POWER, SHEET
 
     given = POWER * math.pi / 4 * DIAMETER**2 * SHEET[2] * STOP
-    off = (df["heat"] / given - 1).abs().max(skipna=False)
+    off = referee.value_error(df["heat"], given).abs().max(skipna=False)
     # Rounding of sums over steps; the power does not change.
     yield "Heat received off power times time, relative, all methods", off, 1e-10
     yield "Heat lost over heat moved, all methods", df["energy_error"].max(skipna=False), 1e-10
     warmer = given / (METAL.density * METAL.heat_capacity * math.prod(SHEET))
     laguerre = pick(df, law="laguerre")
-    off = ((laguerre["mean"] - 25.0) / warmer - 1).abs().max(skipna=False)
+    off = referee.value_error(laguerre["mean"] - AMBIENT, warmer).abs().max(skipna=False)
     # The same balance, read from the temperatures.
     yield "Laguerre: mean warming at the end off heat over capacity, relative", off, 1e-9
-    platonic = pick(df, law="platonic")
-    yield (
-        "Platonic law: least excess of the sheet's heat capacity",
-        platonic["capacity"].min(skipna=False) - 1,
-        ">= 0.01",
-    )
+    excess = referee.value_error(pick(df, law="platonic")["capacity"], 1.0).min(skipna=False)
+    yield "Platonic law: least excess of the sheet's heat capacity", excess, ">= 0.01"
 
 
 def table(df):

@@ -10,9 +10,13 @@ import math
 import warnings
 from functools import cache
 
-from demheat.gallery import EDGE, sphere_in_cube
+import numpy as np
+
+from demheat import referee
+from demheat.gallery import sphere_in_cube
 from studies.harness import methods
-from studies.harness.figures import GREY, look, resolution
+from studies.harness.figures import GREY, look
+from studies.harness.methods import resolution
 from studies.harness.pick import finest, pick
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
@@ -21,23 +25,19 @@ CLOSE = (0.0, 0.01, 10.0, 1e6)
 SINGLE = ((methods.THIRD, 0.01), (methods.THIRD, 10.0), *((methods.THIRD, c) for c in EXTREMES[:3]), (0.5, 10.0))
 SLOW = (1e-6, 1e6)  # for Eyre and Milton's scheme, whose iterations grow with the square root of the contrast
 APPROACH = (1e2, 1e4, 1e6, 1e8, math.inf)
-# Quick and full resolution.
-RESOLUTIONS = {
-    "dem": ({"particles": 10_000, "seed": 0}, {"particles": 100_000, "seed": 0}),
-    "fem": ({"size": 0.1 * EDGE}, {"size": 0.05 * EDGE}),
-    "fft": ({"voxels": 64}, {"voxels": 128}),
-    "fft-em": ({"voxels": 64}, {"voxels": 128}),
-}
-NAMES = {"dem": "DEM", "fem": "FEM", "fft": "FFT, scalar CG", "fft-em": "FFT, Eyre-Milton"}
+# Quick and full resolution; sizes in edges of the cube.
+RESOLUTIONS = {"particles": (10_000, 100_000), "size": (0.1, 0.05), "voxels": (64, 128)}
+# As each method comes: what its module fixes by itself or chooses by the contrast.
+LEFT_OPEN = ("law", "conforming", "interface", "order", "curved", "rule")
 # Per cent: a number farther off is wrong. Quick rows have an eighth of the unknowns or fewer.
 LIMIT, QUICK_LIMIT = 1.0, 5.0
 
 
 def _cases():
-    for name, resolutions in RESOLUTIONS.items():
-        # As each method comes: the FFT chooses its rule by the contrast.
-        fixed = {key: value for key, value in methods.METHODS[name].items() if key in ("method", "scheme")}
-        for knobs in resolutions:
+    for method in methods.compared():
+        name, fixed = method.name, {"method": method.module}
+        fixed |= {key: value for key, value in method.knobs.items() if key not in LEFT_OPEN}
+        for knobs in _resolutions(method):
             scenes = [(methods.THIRD, c) for c in EXTREMES] + [(f, c) for f in FRACTIONS for c in CLOSE]
             if name == "fft-em":
                 # Thousands of iterations before it gives up: its tests show that it raises.
@@ -52,13 +52,21 @@ def _cases():
             yield {"name": "lattice", "fraction": fraction, "contrast": contrast, "method": "lattice"}
 
 
+def _resolutions(method):
+    """Quick and full resolution of a method, as knobs."""
+    return [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
+
+
 CASES = list(_cases())
+MODULES = {"lattice": "references.exact.lattice"}
 PAPER = {}
+MODULES = {"lattice": "references.exact.lattice"}
 
 
 def QUICK(case):
     """Coarse rows; not the costly ones: elements in narrow gaps, Eyre and Milton's scheme at a contrast of 1e6."""
-    name, contrast, coarse = case["name"], case["contrast"], RESOLUTIONS.get(case["name"], ({"contrast": 1e8},))[0]
+    name, contrast, method = case["name"], case["contrast"], methods.found().get(case["name"])
+    coarse = _resolutions(method)[0] if method else {"contrast": 1e8}
     fractions = (methods.THIRD,) if name == "fem" else (methods.THIRD, 0.52)
     slow = name == "fft-em" and contrast in SLOW
     return coarse.items() <= case.items() and case["fraction"] in fractions and not slow
@@ -68,7 +76,7 @@ def run(name, fraction, contrast, method, **knobs):
     """Solve and compare with the exact value; a refusal is a result, and so is a warning."""
     exact = _exact(fraction, contrast)
     if name == "lattice":
-        return {"k_ratio": exact, "error_percent": 100 * (exact / _exact(fraction, math.inf) - 1)}
+        return {"k_ratio": exact, "error_percent": 100 * referee.value_error(exact, _exact(fraction, math.inf))}
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
@@ -101,10 +109,11 @@ def claims(df):
     yield "Refusals without a reason", len(mute), "= 0"
     taken = solves[(solves["contrast"] == math.inf) & (solves["status"] != "unsupported")]
     yield "Infinite conductivities taken by a method", len(taken), "= 0"
-    for name in RESOLUTIONS:
+    for method in methods.compared():
         # Eyre and Milton's scheme does not converge at the contrasts of this study that are not 0.01 or 10.
-        share, limit = _right(finite[finite["name"] == name]).mean(), ">= 0.3" if name == "fft-em" else ">= 0.85"
-        yield f"{NAMES[name]}: share of rows at finite contrast that are right", share, limit
+        limit = ">= 0.3" if method.name == "fft-em" else ">= 0.85"
+        share = _right(finite[finite["name"] == method.name]).mean()
+        yield f"{method.title}: share of rows at finite contrast that are right", share, limit
     yield "FFT in single precision: worst relative difference from double precision", _single(df), 1e-4
     far = pick(df, name="lattice", contrast=1e8)
     if len(far):
@@ -114,16 +123,20 @@ def claims(df):
 
 def _right(rows):
     """Which rows are computed and within their limit."""
-    coarse = rows["particles"].lt(100_000) | rows["size"].gt(0.06 * EDGE) | rows["voxels"].lt(128)
-    limit = coarse.map({True: QUICK_LIMIT, False: LIMIT})
+    limit = np.array([QUICK_LIMIT if _is_coarse(row) else LIMIT for row in rows.to_dict("records")])
     return (rows["status"] == "ok") & (rows["error_percent"].abs() <= limit)
+
+
+def _is_coarse(row):
+    coarse, *fine = _resolutions(methods.found()[row["name"]])
+    return bool(fine) and coarse.items() <= row.items()
 
 
 def _single(df):
     keys = ["name", "fraction", "contrast", "voxels"]
     pair = pick(df, precision="float32").merge(pick(df, precision=None), on=keys, suffixes=("", "_double"))
     pair = pair[(pair["status"] == "ok") & (pair["status_double"] == "ok")]
-    return abs(pair["k_ratio"] / pair["k_ratio_double"] - 1).max(skipna=False)
+    return abs(referee.value_error(pair["k_ratio"], pair["k_ratio_double"])).max(skipna=False)
 
 
 def table(df):
@@ -141,7 +154,8 @@ def _scenes(rows):
 
 def _method(row):
     single = ", single precision" if row["precision"] == "float32" else ""
-    return f"{NAMES[row['name']]}, {resolution(row['particles'], row['size'], row['voxels'])}{single}"
+    words = (methods.found()[row["name"]].title, resolution(row))
+    return ", ".join(filter(None, words)) + single
 
 
 def _scene(row):
@@ -163,10 +177,12 @@ def plot(df):
     scenes = _scenes(shown)
     figure, axes = pyplot.subplots(figsize=(11, 5))
     top = 30 * max(LIMIT, shown["error_percent"].abs().max())
-    for number, name in enumerate(RESOLUTIONS):
-        rows = pick(shown, name=name)
-        place = rows.apply(_scene, axis=1).map(scenes.index) + 0.16 * (number - 1.5)
-        axes.plot(place, rows["error_percent"].abs().fillna(top), **look(name, linestyle="", label=NAMES[name]))
+    compared = methods.compared()
+    for number, method in enumerate(compared):
+        rows = pick(shown, name=method.name)
+        place = rows.apply(_scene, axis=1).map(scenes.index) + 0.64 * ((number + 0.5) / len(compared) - 0.5)
+        height = rows["error_percent"].abs().fillna(top)
+        axes.plot(place, height, **look(method.name, linestyle="", label=method.title))
     for border in range(len(scenes) - 1):
         axes.axvline(border + 0.5, color="#DDDDDD", linewidth=0.8)
     axes.axhline(LIMIT, color=GREY, linewidth=1)

@@ -1,6 +1,7 @@
 """Who may import whom: read off the source, imports inside functions included."""
 
 import ast
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -10,11 +11,12 @@ import pytest
 ROOT = Path(__file__).parents[1]
 OURS = ("demheat", "references", "studies", "tests")
 
-# What a module may import of ours; the longest prefix that fits decides. A prefix stands for itself and all below it.
+# The rooms of the house from the ground up, and what each may import of ours: itself and rooms that stand before it.
+# The longest prefix that fits a module is its room; a prefix stands for itself and all below it. A module adds a line.
 LAYERS = {
-    "demheat": ("demheat.scene", "demheat.field", "demheat.dem"),
     "demheat.inputs": (),
     "demheat.bodies": (),
+    "demheat.addition": (),
     "demheat.material": ("demheat.inputs",),
     "demheat.shapes": ("demheat.inputs", "demheat.material", "demheat.shapes"),
     "demheat.parts": ("demheat.inputs", "demheat.material", "demheat.shapes"),
@@ -29,14 +31,29 @@ LAYERS = {
         "demheat.scene_checks",
         "demheat.scene_needs",
     ),
-    "demheat.field": ("demheat.scene", "demheat.inputs", "demheat.bodies"),
+    "demheat.field": ("demheat.bodies", "demheat.scene", "demheat.inputs"),
+    "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
-    "demheat.referee": (),
-    "demheat.gallery": ("demheat.scene",),
-    "demheat.slices": ("demheat.field", "demheat.inputs", "demheat.bodies"),
-    "demheat.halo": ("demheat.sampling.halo",),
-    "demheat.packing": ("demheat.parts", "demheat.scene", "demheat.threads", "demheat.packing"),
-    "demheat.network": ("demheat.scene", "demheat.threads", "demheat.packing", "demheat.network"),
+    "demheat.method": (),
+    "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
+    "demheat.gallery": ("demheat.addition", "demheat.scene"),
+    "demheat.slices": ("demheat.bodies", "demheat.scene", "demheat.field", "demheat.inputs"),
+    "demheat.packing": (
+        "demheat.addition",
+        "demheat.bodies",
+        "demheat.parts",
+        "demheat.scene",
+        "demheat.threads",
+        "demheat.packing",
+    ),
+    "demheat.network": (
+        "demheat.bodies",
+        "demheat.scene",
+        "demheat.laws",
+        "demheat.threads",
+        "demheat.packing",
+        "demheat.network",
+    ),
     "demheat.conduction": (
         "demheat.scene",
         "demheat.parts",
@@ -45,6 +62,7 @@ LAYERS = {
         "demheat.conduction",
     ),
     "demheat.sampling": (
+        "demheat.bodies",
         "demheat.scene",
         "demheat.field",
         "demheat.threads",
@@ -58,22 +76,84 @@ LAYERS = {
         "demheat.packing",
         "demheat.network",
         "demheat.conduction.steady",
-        "demheat.sampling.field_of",
+        "demheat.sampling.fluxes",
+    ),
+    # Above what it calibrates with: a steady solve.
+    "demheat.build": (
+        "demheat.scene",
+        "demheat.laws",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.calibration",
     ),
     "demheat.dem": (
         "demheat.scene",
         "demheat.field",
-        "demheat.threads",
+        "demheat.laws",
         "demheat.packing",
-        "demheat.network",
         "demheat.conduction",
         "demheat.sampling",
-        "demheat.calibration",
+        "demheat.build",
+        "demheat.method",
         "demheat.dem",
     ),
-    "references": ("demheat.scene", "demheat.field", "references"),
-    "studies": ("demheat", "references", "studies"),
+    # The old place of what lies in a folder now.
+    "demheat.halo": ("demheat.sampling.halo",),
+    # The front of the package and nothing else.
+    "demheat": ("demheat.scene", "demheat.field", "demheat.laws", "demheat.dem"),
+    # Witnesses know the engine's nouns and not the engine.
+    "references.threads": (),
+    "references.times": (),
+    "references.midpoints": ("demheat.field",),
+    "references.richardson": (),
+    "references.voxels": ("demheat.scene", "references.voxels"),
+    "references.mesh": ("demheat.scene", "references.mesh"),
+    "references.exact": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.method",
+        "references.times",
+        "references.midpoints",
+        "references.exact",
+    ),
+    "references.bounds": ("demheat.scene", "demheat.method", "references.exact", "references.bounds"),
+    "references.multipole": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.method",
+        "references.threads",
+        "references.midpoints",
+        "references.exact",
+        "references.multipole",
+    ),
+    "references.fem": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.method",
+        "references.times",
+        "references.mesh",
+        "references.fem",
+    ),
+    "references.fft": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.method",
+        "references.threads",
+        "references.voxels",
+        "references.fft",
+    ),
+    # Old names of what lies in folders now.
+    "references.series": ("references.exact.series",),
+    "references.zeta": ("references.fft.zeta",),
+    "references": (),
+    "studies.harness": ("demheat", "references", "studies.harness"),
+    "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
+    # And every study itself, if it is a folder.
+    "studies": ("demheat", "references", "studies.harness", "studies.common"),
+    "studies.__main__": ("studies",),
 }
+# Packages whose own room is for their front alone.
+FRONTS = ("demheat", "references")
 
 # The one home of each library: module prefixes, or the ending of a module's name.
 HOMES = {
@@ -123,16 +203,21 @@ def imports(name, source, modules=MODULES, is_package=False):
     return found
 
 
+def room_of(name):
+    """The room of a module, its longest prefix among them."""
+    return max((key for key in LAYERS if below(name, key)), key=len)
+
+
 def refused(name, source, modules=MODULES, is_package=False):
     """What a module imports and may not, as sentences."""
-    prefix = max((key for key in LAYERS if below(name, key)), key=len)
-    allowed = () if name.endswith("kernels") else LAYERS[prefix]
+    own = (".".join(name.split(".")[:2]),) if room_of(name) == "studies" and name != "studies" else ()
+    allowed = () if name.endswith("kernels") else (*LAYERS[room_of(name)], *own)
     wrong = []
     for target in sorted(imports(name, source, modules, is_package)):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
-            beside = name.endswith("_kernels") and target.endswith("kernels")
+            beside = name.endswith("kernels") and target.endswith("kernels")
             # Kernels share helpers among themselves and know nothing else.
             if not (fits or beside):
                 wrong.append(f"{name} imports {target}")
@@ -149,6 +234,65 @@ def test_layers(name):
     assert refused(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py") == []
 
 
+def test_rooms_stand_on_rooms_before_them():
+    rooms = list(LAYERS)
+    for number, room in enumerate(rooms):
+        upward = [other for other in LAYERS[room] if room_of(other) not in rooms[: number + 1]]
+        assert upward == [], f"{room} stands on rooms after it"
+
+
+def test_every_module_has_a_room_of_its_own():
+    assert [name for name in MODULES if room_of(name) in FRONTS and name not in FRONTS] == []
+    assert [room for room in LAYERS if not any(below(name, room) for name in MODULES)] == []
+
+
+def edges(modules=MODULES):
+    """Pairs (module, module of ours that it imports)."""
+    return [
+        (name, target)
+        for name, path in modules.items()
+        for target in imports(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
+        if target in modules and target != name
+    ]
+
+
+def circle(pairs):
+    """Names on some circle of a directed graph, and what leads into or out of it; empty without one."""
+    pairs = set(pairs)
+    while True:
+        between = {a for a, _ in pairs} & {b for _, b in pairs}
+        kept = {(a, b) for a, b in pairs if a in between and b in between}
+        if kept == pairs:
+            return sorted(between)
+        pairs = kept
+
+
+def side_by_side(pairs):
+    """For every folder the arrows between its members, modules and folders: those of all that lies in them."""
+    found = {}
+    for name, target in pairs:
+        a, b = name.split("."), target.split(".")
+        same = next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), None)
+        # A front imports what it shows: that is no arrow between members.
+        if same is not None:
+            members = ".".join(a[: same + 1]), ".".join(b[: same + 1])
+            found.setdefault(".".join(a[:same]), set()).add(members)
+    return found
+
+
+def test_no_circle_of_modules_or_folders():
+    assert circle(edges()) == []
+    assert {folder: circle(pairs) for folder, pairs in side_by_side(edges()).items() if circle(pairs)} == {}
+
+
+def test_a_circle_is_seen():
+    assert circle([("a", "b"), ("b", "c"), ("c", "d")]) == []
+    assert circle([("a", "b"), ("b", "c"), ("c", "b"), ("c", "d")]) == ["b", "c"]
+    # No circle of modules, but one of folders.
+    pairs = [("p.a.one", "p.b.one"), ("p.b.two", "p.a.two"), ("p", "p.a.one"), ("p.a.one", "p.a.three")]
+    assert circle(pairs) == [] and circle(side_by_side(pairs)["p"]) == ["p.a", "p.b"]
+
+
 @pytest.mark.parametrize(
     ("name", "source"),
     [
@@ -160,6 +304,8 @@ def test_layers(name):
         ("demheat.packing.relax", "from ..network.base import Network"),
         ("demheat.network.base", "from demheat import solve"),
         ("demheat.dem", "from demheat import referee"),
+        ("demheat.dem.solver", "from demheat.network.laguerre import laguerre"),
+        ("demheat.laws", "from demheat.network.calibrated import contact_facets"),
         ("references.exact", "from demheat import gallery"),
         ("references.fem", "import demheat"),
         ("references.bounds", "from studies.harness.store import printed"),
@@ -170,6 +316,12 @@ def test_layers(name):
         ("demheat.dem", "import pandas as pd"),
         ("references.exact", "from matplotlib import pyplot"),
         ("demheat.network.laguerre", "import multivoro"),
+        ("demheat.conduction.steady", "from demheat.sampling import edges"),
+        ("references.voxels.kernels", "from references.voxels.paint import parents"),
+        ("references.exact.forms", "from references.fem import solve"),
+        ("studies.harness.pick", "from studies.common import slab"),
+        ("studies.common.slab", "from studies import fig05_slab"),
+        ("studies.fig05_slab", "from studies import fig07_sphere"),
     ],
 )
 def test_a_breach_is_seen(name, source):
@@ -185,15 +337,33 @@ def test_a_breach_is_seen(name, source):
         ("references.mesh.shapes", "import gmsh"),
         ("references.voxels.kernels", "from numba import njit"),
         ("studies.fig14_single_inclusion", "import pandas\nfrom references import bounds"),
+        ("studies.zeta2.rows", "from studies.zeta2 import pool"),
+        ("references.multipole.field_kernels", "from references.multipole.translation_kernels import bases"),
     ],
 )
 def test_what_is_allowed_is_not_refused(name, source):
     assert refused(name, source) == []
 
 
-@pytest.mark.parametrize("statement", ["import demheat", "from demheat import gallery, referee"])
+HEAVY = ("numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy")
+# Modules that declare methods: whoever looks for methods imports them all.
+DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(\n    Method", path.read_text(), re.M)]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "import demheat",
+        "from demheat import gallery, referee",
+        "from demheat import Calibrated, Laguerre, Platonic",
+        *(f"import {name}" for name in DECLARING),
+    ],
+)
 def test_the_package_loads_numpy_only(statement):
-    heavy = ["numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy"]
-    code = f"import sys; {statement}; print([name for name in {heavy} if name in sys.modules])"
+    code = f"import sys; {statement}; print([name for name in {HEAVY} if name in sys.modules])"
     done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"
+
+
+def test_declaring_modules_are_found():
+    assert {"demheat.dem", "references.fem", "references.fft", "references.bounds"} <= set(DECLARING)

@@ -3,6 +3,8 @@
 Sweeps run within fixed blocks of rows and take the rest as it was, so that bits do not depend on the number of threads.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit, prange
 
@@ -12,9 +14,59 @@ ROWS = 65536
 STRONG = 0.1
 
 
+class Aggregates(NamedTuple):
+    """Particles joined to aggregates.
+
+    Attributes
+    ----------
+    owner : (n,) int32 array
+        Aggregate of each particle, -1 for those without links.
+    start : (aggregates + 1,) int64 array
+        Where each aggregate begins among the rows.
+    rows : (particles with links,) uint32 array
+        The particles of each aggregate, ascending.
+    """
+
+    owner: np.ndarray
+    start: np.ndarray
+    rows: np.ndarray
+
+
+class Level(NamedTuple):
+    """Matrix of the finest level in single precision, without units, arranged for sweeps.
+
+    Links of a row to lower rows of its own block come first, those to higher ones of it last, to other blocks between.
+
+    Attributes
+    ----------
+    indptr : (n + 1,) int64 array
+    ends : (n, 2) int64 array
+        Where the lower ones of each row stop, and where the higher ones begin.
+    columns : (m,) uint32 array
+    values : (m,) float32 array
+        Minus the entries off the diagonal.
+    inverse : (n,) float32 array
+        1 / diagonal, 0 where a row has no equation.
+    """
+
+    indptr: np.ndarray
+    ends: np.ndarray
+    columns: np.ndarray
+    values: np.ndarray
+    inverse: np.ndarray
+
+
 @njit(cache=True, parallel=True)
-def strongest(indptr, conductance, top):
-    """Write the largest conductance of each row to top."""
+def strongest(links, top):
+    """Find the largest conductance of each row.
+
+    Parameters
+    ----------
+    links : Links
+    top : (n,) float array, W/K, out
+        Zero for rows without links.
+    """
+    indptr, _, conductance = links
     for i in prange(len(top)):
         most = 0.0
         for e in range(indptr[i], indptr[i + 1]):
@@ -23,8 +75,9 @@ def strongest(indptr, conductance, top):
 
 
 @njit(cache=True)
-def _pick(i, indptr, indices, conductance, top, owner, found, key):
+def _pick(i, links, top, owner, found, key):
     """The strongest free neighbours of i, strongest first, into found; their number."""
+    indptr, indices, conductance = links
     number, room = 0, len(found)
     for e in range(indptr[i], indptr[i + 1]):
         j, c = indices[e], conductance[e]
@@ -45,19 +98,35 @@ def _pick(i, indptr, indices, conductance, top, owner, found, key):
 
 
 @njit(cache=True)
-def aggregate(indptr, indices, conductance, top, most, owner):
-    """Write the aggregate of each row to owner, -1 for rows without links; returns the number of aggregates.
+def aggregate(links, top, most, owner):
+    """Join particles that are strongly linked.
 
     In order of the rows each free one takes its strongest free neighbours, if they are a third of `most` or more;
     what is left over joins the aggregate of its strongest neighbour.
+
+    Parameters
+    ----------
+    links : Links
+    top : (n,) float array, W/K
+        Of `strongest`.
+    most : int
+        Particles that are joined at once, at most.
+    owner : (n,) int32 array, out
+        Aggregate of each particle, -1 for those without links.
+
+    Returns
+    -------
+    int
+        Number of aggregates.
     """
+    indptr, indices, conductance = links
     found, key = np.empty(most - 1, np.int64), np.empty(most - 1)
     owner[:] = -1
     count = 0
     for i in range(len(owner)):
         if owner[i] >= 0 or top[i] <= 0.0:
             continue
-        number = _pick(i, indptr, indices, conductance, top, owner, found, key)
+        number = _pick(i, links, top, owner, found, key)
         if 3 * number >= most - 1:
             owner[i] = count
             for a in range(number):
@@ -80,7 +149,19 @@ def aggregate(indptr, indices, conductance, top, most, owner):
 
 @njit(cache=True)
 def members(owner, count):
-    """Rows of each aggregate: (start of each, row numbers)."""
+    """List the particles of each aggregate.
+
+    Parameters
+    ----------
+    owner : (n,) int32 array
+        Of `aggregate`.
+    count : int
+        Number of aggregates.
+
+    Returns
+    -------
+    Aggregates
+    """
     start = np.zeros(count + 1, np.int64)
     for i in range(len(owner)):
         if owner[i] >= 0:
@@ -91,12 +172,30 @@ def members(owner, count):
         if owner[i] >= 0:
             rows[fill[owner[i]]] = i
             fill[owner[i]] += 1
-    return start, rows
+    return Aggregates(owner, start, rows)
 
 
 @njit(cache=True)
-def galerkin(indptr, indices, conductance, diagonal, scale, owner, start, rows):
-    """Sums over pairs of aggregates of scale (diag(diagonal) - conductance), as compressed rows."""
+def galerkin(links, diagonal, scale, aggregates):
+    """Matrix of the aggregates: sums over each pair of them of scale (diag(diagonal) - conductance).
+
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+    scale : float, K/W
+    aggregates : Aggregates
+
+    Returns
+    -------
+    pointers : (aggregates + 1,) int32 array
+        Of compressed rows.
+    columns : int32 array
+        The diagonal comes first in each row.
+    values : float array
+    """
+    indptr, indices, conductance = links
+    owner, start, rows = aggregates
     count = len(start) - 1
     seen = np.full(count, -1, np.int64)
     pointers = np.zeros(count + 1, np.int32)
@@ -129,11 +228,19 @@ def galerkin(indptr, indices, conductance, diagonal, scale, owner, start, rows):
 
 
 @njit(cache=True, parallel=True)
-def arranged(indptr, indices, conductance, scale, columns, values, ends):
-    """Copy the links, those of each row to lower rows of its block first, those to higher ones of its block last.
+def arrange(links, scale, level):
+    """Copy links into the order of a Level.
 
-    Their ends go to ends (n, 2): where the lower ones stop and where the higher ones begin.
+    Parameters
+    ----------
+    links : Links
+    scale : float, K/W
+        Values are scale times conductance.
+    level : Level, out
+        All but its inverse diagonal; its pointers are those of the links.
     """
+    indptr, indices, conductance = links
+    ends, columns, values = level.ends, level.columns, level.values
     n = len(ends)
     for block in prange((n + ROWS - 1) // ROWS):
         first, last = block * ROWS, min(n, (block + 1) * ROWS)
@@ -156,8 +263,17 @@ def arranged(indptr, indices, conductance, scale, columns, values, ends):
 
 
 @njit(cache=True, parallel=True)
-def forward(indptr, ends, columns, values, inverse, r, x):
-    """Write one forward sweep from zero to x."""
+def forward(level, r, x):
+    """One forward Gauss-Seidel sweep from zero, within blocks.
+
+    Parameters
+    ----------
+    level : Level
+    r : (n,) float32 array
+        Right-hand side.
+    x : (n,) float32 array, out
+    """
+    indptr, ends, columns, values, inverse = level
     n = len(x)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(block * ROWS, min(n, (block + 1) * ROWS)):
@@ -168,8 +284,17 @@ def forward(indptr, ends, columns, values, inverse, r, x):
 
 
 @njit(cache=True, parallel=True)
-def defect(indptr, ends, columns, values, x, d):
-    """Write r - A x after the forward sweep to d: what the links that it left out bring."""
+def defect(level, x, d):
+    """What is left of the equation after a forward sweep: r - A x, which is what the links that it left out bring.
+
+    Parameters
+    ----------
+    level : Level
+    x : (n,) float32 array
+        Of `forward`.
+    d : (n,) float32 array, out
+    """
+    indptr, ends, columns, values, _ = level
     for i in prange(len(x)):
         flow = np.float32(0.0)
         for e in range(ends[i, 0], indptr[i + 1]):
@@ -178,26 +303,54 @@ def defect(indptr, ends, columns, values, x, d):
 
 
 @njit(cache=True, parallel=True)
-def restrict(start, rows, d, coarse):
-    """Write the sums of d over the aggregates to coarse."""
+def restrict(aggregates, d, coarse):
+    """Add up values over each aggregate.
+
+    Parameters
+    ----------
+    aggregates : Aggregates
+    d : (n,) float32 array
+    coarse : (aggregates,) float array, out
+    """
+    _, start, rows = aggregates
     for c in prange(len(coarse)):
         total = 0.0
         for s in range(start[c], start[c + 1]):
-            total += d[rows[s]]
+            total += np.float64(d[rows[s]])
         coarse[c] = total
 
 
 @njit(cache=True, parallel=True)
-def correct(owner, coarse, weight, x):
-    """Add the aggregates' values times a weight to x."""
+def correct(aggregates, coarse, weight, x):
+    """Add the value of its aggregate, times a weight, to each particle's.
+
+    Parameters
+    ----------
+    aggregates : Aggregates
+    coarse : (aggregates,) float array
+    weight : float
+    x : (n,) float32 array, in and out
+    """
+    owner, _, _ = aggregates
     for i in prange(len(x)):
         if owner[i] >= 0:
             x[i] += np.float32(weight * coarse[owner[i]])
 
 
 @njit(cache=True, parallel=True)
-def backward(indptr, ends, columns, values, inverse, r, x, y):
-    """Write one backward sweep from x to y."""
+def backward(level, r, x, y):
+    """One backward Gauss-Seidel sweep, within blocks.
+
+    Parameters
+    ----------
+    level : Level
+    r : (n,) float32 array
+        Right-hand side.
+    x : (n,) float32 array
+        Where it starts from.
+    y : (n,) float32 array, out
+    """
+    indptr, ends, columns, values, inverse = level
     n = len(x)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(min(n, (block + 1) * ROWS) - 1, block * ROWS - 1, -1):
@@ -211,6 +364,13 @@ def backward(indptr, ends, columns, values, inverse, r, x, y):
 
 @njit(cache=True, parallel=True)
 def scaled(r, scale, out):
-    """Write scale r to out, of another type."""
+    """Scale and cast.
+
+    Parameters
+    ----------
+    r : (n,) float array
+    scale : float
+    out : (n,) float array of another precision, out
+    """
     for i in prange(len(r)):
         out[i] = scale * r[i]

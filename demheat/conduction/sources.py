@@ -9,10 +9,10 @@ import math
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import ROUND_AXES, Heating, MovingCylinder
+from demheat.scene import ROUND_AXES, MovingCylinder, UniformSource
 
 # A rim may stick out by so much of the body: rounding of the time at which it arrives at the edge.
-TOUCH = 1e-9
+EDGE_SLACK = 1e-9
 # Slices of a sphere by Gauss-Legendre nodes in the latitude: they find the part of it in a cylinder to 1e-3, or to 6e-3
 # where the cylinder is thinner than the sphere.
 LATITUDES, SLICES = np.polynomial.legendre.leggauss(8)
@@ -34,7 +34,7 @@ def source_power(scene, centers, volumes):
         All together give `total_power` at every time to rounding, wherever the cells are. Continuous in time,
         with its slope: cells gain and lose over the time in which the rim crosses them. An integrator sees it at the
         times of its stages: the heat that it brings in is the steps' own quadrature of `total_power`, which is exact
-        for a power that stays the same and else as good as the steps are short; see `passes`. Steps longer than the
+        for a power that stays the same and else as good as the steps are short; see `transits`. Steps longer than the
         time of crossing displace heat. The function raises ValueError at a time when a source that is not to be clipped
         has left the body.
 
@@ -46,7 +46,7 @@ def source_power(scene, centers, volumes):
     centers, volumes = np.asarray(centers, dtype=float), np.asarray(volumes, dtype=float)
     steady, moving = np.zeros(len(volumes)), []
     for number, source in enumerate(scene.sources):
-        if isinstance(source, Heating):
+        if isinstance(source, UniformSource):
             # Volumes that carry the capacity need not fill the body: the Platonic law's do not.
             steady += source.power_density * scene.volume / volumes.sum() * volumes
         else:
@@ -67,10 +67,20 @@ def source_power(scene, centers, volumes):
 
 
 def total_power(scene, time):
-    """Power that all sources of a scene give to the body at a time in seconds, W."""
+    """Power that all sources of a scene give to the body.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float, s
+
+    Returns
+    -------
+    float, W
+    """
     total = 0.0
     for number, source in enumerate(scene.sources):
-        if isinstance(source, Heating):
+        if isinstance(source, UniformSource):
             total += source.power_density * scene.volume
         else:
             _check_through(scene, source)
@@ -79,10 +89,20 @@ def total_power(scene, time):
 
 
 def lost_power(scene, time):
-    """Power of clipped sources that falls outside of the body at a time in seconds, W."""
+    """Power of clipped sources that falls outside of the body.
+
+    Parameters
+    ----------
+    scene : Scene
+    time : float, s
+
+    Returns
+    -------
+    float, W
+    """
     lost = 0.0
     for number, source in enumerate(scene.sources):
-        if not isinstance(source, Heating):
+        if not isinstance(source, UniformSource):
             _check_through(scene, source)
             lost += _full_power(scene, source) - _common_power(scene, number, source, time)
     return lost
@@ -98,7 +118,7 @@ def check_sources(scene, stop):
         From time 0 on.
     """
     for number, source in enumerate(scene.sources):
-        if isinstance(source, Heating):
+        if isinstance(source, UniformSource):
             continue
         _check_through(scene, source)
         if source.clip:
@@ -108,7 +128,7 @@ def check_sources(scene, stop):
             _refuse(scene, number, source, _leaving(scene, source, stop))
 
 
-def passes(scene):
+def transits(scene):
     """When the moving cylinders of a scene meet and leave its body, and how fast they are.
 
     Parameters
@@ -188,7 +208,7 @@ def _across(source):
 def _clearance(scene, source, time):
     """Distance from the rim to the nearest wall, negative outside, m; with a hair of room."""
     place, sides = source.position(time), np.array(scene.size)[_across(source)]
-    room = TOUCH * sides.max() - source.diameter / 2
+    room = EDGE_SLACK * sides.max() - source.diameter / 2
     if ROUND_AXES[scene.domain]:
         return sides[0] / 2 - math.hypot(*(place - sides / 2)) + room
     return min(place.min(), (sides - place).min()) + room

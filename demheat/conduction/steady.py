@@ -8,6 +8,7 @@ from scipy import sparse
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network
+from demheat.network.links_kernels import links_of, places_of
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
@@ -21,11 +22,10 @@ class Solution(NamedTuple):
 
     Attributes
     ----------
-    fluctuation : (n,) float array, K
-        Temperature minus the linear field of the mean gradient (periodic cell), or the temperature itself (walls);
-        NaN on islands that no wall temperature reaches.
-    gradient : (3,) float array, K/m
-        Mean gradient; zero with walls.
+    temperature : (n,) float array, K
+        Of each particle, less the linear field of the mean gradient; NaN on islands that no wall temperature reaches.
+    mean_gradient : (3,) float array, K/m
+        Of a periodic cell; zero with walls.
     wall_temperature : (w,) float array, K
         At each wall facet of the network.
     wall_heat : (w,) float array, W
@@ -34,8 +34,8 @@ class Solution(NamedTuple):
         unknowns, iterations, residual, solver, islands.
     """
 
-    fluctuation: np.ndarray
-    gradient: np.ndarray
+    temperature: np.ndarray
+    mean_gradient: np.ndarray
     wall_temperature: np.ndarray
     wall_heat: np.ndarray
     stats: dict
@@ -67,6 +67,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     tolerance : float
         On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
+        Until the tolerance is met, at most.
 
     Returns
     -------
@@ -81,6 +82,21 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     """
     check_solver(solver, tolerance)
     scene.require(steady=True)
+    return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
+
+
+def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
+    """The same as `solve_steady` of arguments that were checked before.
+
+    Parameters
+    ----------
+    network, scene, solver, tolerance, max_iterations
+        As in `solve_steady`.
+
+    Returns
+    -------
+    Solution
+    """
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
@@ -105,7 +121,14 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
 
 
 def check_solver(solver, tolerance):
-    """Raise ValueError unless the solver is known and its tolerance sensible."""
+    """Raise ValueError unless the solver is known and its tolerance sensible.
+
+    Parameters
+    ----------
+    solver : {"auto", "cg", "amg"}
+    tolerance : float
+        Relative residual, between 1e-15 and 1e-2.
+    """
     if solver not in SOLVERS:
         raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
     if not (isinstance(tolerance, int | float) and 1e-15 < tolerance < 1e-2):
@@ -119,14 +142,14 @@ def _reached(network, scene):
     held = [SIDES.index(name) for name in scene.wall_temperatures]
     reached = np.zeros(len(network.volumes), dtype=bool)
     reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
-    kernels.spread(network.indptr, network.indices, network.conductance, reached)
+    kernels.spread(links_of(network), reached)
     return reached
 
 
 def _conducted(network):
     """Sum of the conductances of each particle's links, (n,) float array, W/K."""
     total = np.empty(len(network.volumes))
-    kernels.row_sums(network.indptr, network.conductance, total)
+    kernels.row_sums(links_of(network), total)
     return total
 
 
@@ -136,7 +159,7 @@ def _system(network, scene, reached):
     diagonal = _conducted(network)
     if scene.periodic:
         received = np.empty(n)
-        kernels.flows(*_links(network), gradient, np.zeros(n), received, np.empty(n))
+        kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
         return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
     held = np.array([scene.wall_temperatures.get(name, np.nan) for name in SIDES])[network.wall_side]
     ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
@@ -152,10 +175,6 @@ def _system(network, scene, reached):
         )
     diagonal[~reached] = 0.0
     return _System(network, diagonal, heat, gradient, ties, held, level)
-
-
-def _links(network):
-    return network.centers, network.size, network.indptr, network.indices, network.image, network.conductance
 
 
 def _imposed(network, scene):
@@ -192,35 +211,44 @@ def _iterate(system, x, solver, tolerance, most):
 
 def _residual(system, x):
     """Heat that each particle receives in excess; islands, which have no equation, left out."""
-    net, r = system.network, np.empty_like(x)
-    kernels.residual(net.indptr, net.indices, net.conductance, system.diagonal, system.heat, x, r)
+    r = np.empty_like(x)
+    kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
     r[system.diagonal == 0.0] = 0.0
     return r
 
 
 def _passing(system, x):
     """Norm of the heat that passes through the particles."""
-    received, throughput = np.empty_like(x), np.empty_like(x)
-    kernels.flows(*_links(system.network), system.gradient, x, received, throughput)
+    network, received, throughput = system.network, np.empty_like(x), np.empty_like(x)
+    kernels.flows(links_of(network), places_of(network), system.gradient, x, received, throughput)
     if len(system.ties):
-        particle = system.network.wall_particle
+        particle = network.wall_particle
         throughput += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
     return float(np.linalg.norm(throughput))
 
 
 def _jacobi(system):
-    net = system.network
+    links = links_of(system.network)
 
     def solve(r, x, limit, most):
-        arrays = (net.indptr, net.indices, net.conductance, system.diagonal)
-        done = kernels.conjugate_gradients(*arrays, r, x, limit, most)
-        return abs(done), x
+        return abs(kernels.conjugate_gradients(links, system.diagonal, r, x, limit, most)), x
 
     return solve
 
 
 def matrix(network, diagonal):
-    """The network's heat balance as a SciPy matrix: diagonal minus conductances; empty rows get a one."""
+    """The network's heat balance as a SciPy matrix: diagonal minus conductances.
+
+    Parameters
+    ----------
+    network : Network
+    diagonal : (n,) float array, W/K
+        Rows with zero have no equation; they get a one.
+
+    Returns
+    -------
+    (n, n) csr_matrix, W/K
+    """
     n = len(diagonal)
     off = sparse.csr_matrix(
         (-network.conductance, network.indices.astype(np.int32), network.indptr.astype(np.int32)), shape=(n, n)
@@ -231,20 +259,19 @@ def matrix(network, diagonal):
 def _multigrid(system):
     from threadpoolctl import threadpool_limits
 
-    net = system.network
-    links = net.indptr, net.indices, net.conductance, system.diagonal
+    links, diagonal = links_of(system.network), system.diagonal
     # BLAS threads only spin here: its share is short dot products between compiled sweeps.
     with threadpool_limits(1, "blas"):
-        precondition = preconditioner(*links)
+        precondition = preconditioner(links, diagonal)
 
     def solve(r, x, limit, most):
         with threadpool_limits(1, "blas"):
-            return _preconditioned(links, precondition, r, x, limit, most), x
+            return _preconditioned(links, diagonal, precondition, r, x, limit, most), x
 
     return solve
 
 
-def _preconditioned(links, precondition, r, x, limit, most):
+def _preconditioned(links, diagonal, precondition, r, x, limit, most):
     """Conjugate gradients that add to x until |r| <= limit; returns the iterations done.
 
     Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
@@ -260,7 +287,7 @@ def _preconditioned(links, precondition, r, x, limit, most):
         beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
         rz = kernels.dot(r, z)
         kernels.direct(beta, z, p)
-        alpha = rz / kernels.apply(*links, p, q)
+        alpha = rz / kernels.apply(links, diagonal, p, q)
         norm = np.sqrt(kernels.advance(alpha, p, q, x, r))
     return most
 

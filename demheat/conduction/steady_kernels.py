@@ -1,17 +1,28 @@
 """Compiled conjugate gradients on a network, and its heat flows.
 
-Sums are taken over fixed blocks of rows and added in order, so that bits do not depend on the number of threads.
+The matrix of a network is A = diag(diagonal) - conductance. Sums are taken over fixed blocks of rows and added in
+order, so that bits do not depend on the number of threads.
 """
 
 import numpy as np
 from numba import njit, prange
+
+from demheat.network.links_kernels import rise_along
 
 BLOCK = 2048
 
 
 @njit(cache=True, parallel=True)
 def direct(beta, z, p):
-    """p = z + beta p."""
+    """Turn a direction of descent: p becomes z + beta p.
+
+    Parameters
+    ----------
+    beta : float
+    z : (n,) float array, K
+        Preconditioned residual.
+    p : (n,) float array, K, in and out
+    """
     for i in prange(len(p)):
         p[i] = z[i] + beta * p[i]
 
@@ -27,15 +38,25 @@ def _dots(a, b, partial):
 
 @njit(cache=True)
 def dot(a, b):
-    """Sum of a b."""
+    """Sum of a b.
+
+    Parameters
+    ----------
+    a, b : (n,) float arrays
+
+    Returns
+    -------
+    float
+    """
     partial = np.empty((len(a) + BLOCK - 1) // BLOCK)
     _dots(a, b, partial)
     return partial.sum()
 
 
 @njit(cache=True, parallel=True)
-def _apply(indptr, indices, conductance, diagonal, p, q, partial):
+def _apply(links, diagonal, p, q, partial):
     """q = A p and the block sums of p.q."""
+    indptr, indices, conductance = links
     n = len(p)
     for block in prange(len(partial)):
         total = 0.0
@@ -49,10 +70,23 @@ def _apply(indptr, indices, conductance, diagonal, p, q, partial):
 
 
 @njit(cache=True)
-def apply(indptr, indices, conductance, diagonal, p, q):
-    """q = A p with A = diag(diagonal) - conductance; returns p.q."""
+def apply(links, diagonal, p, q):
+    """Multiply by the matrix: q becomes A p.
+
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+    p : (n,) float array, K
+    q : (n,) float array, W, out
+
+    Returns
+    -------
+    float, W K
+        p.q.
+    """
     partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
-    _apply(indptr, indices, conductance, diagonal, p, q, partial)
+    _apply(links, diagonal, p, q, partial)
     return partial.sum()
 
 
@@ -69,17 +103,33 @@ def _steps(alpha, p, q, x, r, partial):
 
 @njit(cache=True)
 def advance(alpha, p, q, x, r):
-    """x += alpha p and r -= alpha q; returns r.r."""
+    """Go along a direction: x grows by alpha p, r falls by alpha q.
+
+    Parameters
+    ----------
+    alpha : float
+    p : (n,) float array, K
+    q : (n,) float array, W
+        A p.
+    x : (n,) float array, K, in and out
+    r : (n,) float array, W, in and out
+        Residual.
+
+    Returns
+    -------
+    float, W2
+        r.r after the step.
+    """
     partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
     _steps(alpha, p, q, x, r, partial)
     return partial.sum()
 
 
 @njit(cache=True, parallel=True)
-def _advance(alpha, p, q, inverse, x, r, z, partial_rz, partial_rr):
-    """Step of length alpha, and the block sums of r.z and r.r."""
+def _advance(alpha, p, q, inverse, x, r, z, sums):
+    """Step of length alpha, and the block sums of r.z and r.r as the rows of `sums`."""
     n = len(p)
-    for block in prange(len(partial_rz)):
+    for block in prange(sums.shape[1]):
         rz, rr = 0.0, 0.0
         for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
             x[i] += alpha * p[i]
@@ -87,19 +137,35 @@ def _advance(alpha, p, q, inverse, x, r, z, partial_rz, partial_rr):
             z[i] = inverse[i] * r[i]
             rz += r[i] * z[i]
             rr += r[i] * r[i]
-        partial_rz[block] = rz
-        partial_rr[block] = rr
+        sums[0, block] = rz
+        sums[1, block] = rr
 
 
 @njit(cache=True)
-def conjugate_gradients(indptr, indices, conductance, diagonal, r, x, limit, most):
+def conjugate_gradients(links, diagonal, r, x, limit, most):
     """Solve A dx = r by Jacobi-preconditioned conjugate gradients, adding dx to x in place.
 
-    A = diag(diagonal) - conductance; r is overwritten. Stops when |r| <= limit; returns the iterations done.
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+        Rows with zero have no equation: r must be zero there.
+    r : (n,) float array, W
+        Overwritten.
+    x : (n,) float array, K, in and out
+    limit : float, W
+        Stop when |r| is at most this.
+    most : int
+        Iterations at most.
+
+    Returns
+    -------
+    int
+        Iterations done; negative if r is still larger than the limit.
     """
     n = len(x)
     blocks = (n + BLOCK - 1) // BLOCK
-    partial, partial_rr = np.empty(blocks), np.empty(blocks)
+    partial, sums = np.empty(blocks), np.empty((2, blocks))
     inverse = np.empty(n)
     for i in range(n):
         inverse[i] = 1.0 / diagonal[i] if diagonal[i] > 0.0 else 0.0
@@ -110,21 +176,28 @@ def conjugate_gradients(indptr, indices, conductance, diagonal, r, x, limit, mos
     if np.sqrt(np.sum(r * r)) <= limit:
         return 0
     for iteration in range(1, most + 1):
-        _apply(indptr, indices, conductance, diagonal, p, q, partial)
+        _apply(links, diagonal, p, q, partial)
         pq = partial.sum()
         if pq <= 0.0:
             return -iteration
-        _advance(rz / pq, p, q, inverse, x, r, z, partial, partial_rr)
-        if np.sqrt(partial_rr.sum()) <= limit:
+        _advance(rz / pq, p, q, inverse, x, r, z, sums)
+        if np.sqrt(sums[1].sum()) <= limit:
             return iteration
-        before, rz = rz, partial.sum()
+        before, rz = rz, sums[0].sum()
         direct(rz / before, z, p)
     return -most
 
 
 @njit(cache=True, parallel=True)
-def row_sums(indptr, conductance, total):
-    """Write the sum of each row's conductances to total."""
+def row_sums(links, total):
+    """Add up the conductances of each row.
+
+    Parameters
+    ----------
+    links : Links
+    total : (n,) float array, W/K, out
+    """
+    indptr, _, conductance = links
     for i in prange(len(total)):
         here = 0.0
         for e in range(indptr[i], indptr[i + 1]):
@@ -133,8 +206,15 @@ def row_sums(indptr, conductance, total):
 
 
 @njit(cache=True)
-def spread(indptr, indices, conductance, reached):
-    """Mark, in place, all particles that conducting links join to those already marked."""
+def spread(links, reached):
+    """Mark all particles that conducting links join, over any number of others, to those already marked.
+
+    Parameters
+    ----------
+    links : Links
+    reached : (n,) bool array, in and out
+    """
+    indptr, indices, conductance = links
     front = np.flatnonzero(reached).astype(np.uint32)
     while len(front):
         following = np.empty(len(front) + 1024, np.uint32)
@@ -153,8 +233,18 @@ def spread(indptr, indices, conductance, reached):
 
 
 @njit(cache=True, parallel=True)
-def residual(indptr, indices, conductance, diagonal, b, x, r):
-    """Write b - A x to r."""
+def residual(links, diagonal, b, x, r):
+    """Find what is left of an equation: r becomes b - A x.
+
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+    b : (n,) float array, W
+    x : (n,) float array, K
+    r : (n,) float array, W, out
+    """
+    indptr, indices, conductance = links
     for i in prange(len(x)):
         flow = b[i] - diagonal[i] * x[i]
         for e in range(indptr[i], indptr[i + 1]):
@@ -162,31 +252,27 @@ def residual(indptr, indices, conductance, diagonal, b, x, r):
         r[i] = flow
 
 
-@njit(cache=True)
-def _step(i, e, centers, size, indices, image, branch):
-    """Vector from particle i to its neighbour (image) along link e, into branch; its squared length."""
-    code = np.int64(image[e])
-    j = indices[e]
-    branch[0] = centers[j, 0] - centers[i, 0] + (code // 9 - 1) * size[0]
-    branch[1] = centers[j, 1] - centers[i, 1] + (code // 3 % 3 - 1) * size[1]
-    branch[2] = centers[j, 2] - centers[i, 2] + (code % 3 - 1) * size[2]
-    return branch[0] ** 2 + branch[1] ** 2 + branch[2] ** 2
-
-
 @njit(cache=True, parallel=True)
-def flows(centers, size, indptr, indices, image, conductance, gradient, x, received, throughput):
-    """Heat received by each particle over its links, and the sum of the sizes of those flows.
+def flows(links, places, gradient, x, received, throughput):
+    """Heat that each particle receives over its links, and how much passes.
 
-    Temperatures are x plus the linear field of the gradient.
+    Parameters
+    ----------
+    links : Links
+    places : Places
+    gradient : (3,) float array, K/m
+    x : (n,) float array, K
+        Temperatures less the linear field of the gradient.
+    received : (n,) float array, W, out
+    throughput : (n,) float array, W, out
+        Sum of the sizes of those flows.
     """
+    indptr, conductance = links.indptr, links.conductance
     for i in prange(len(x)):
         branch = np.empty(3)
         heat, passing = 0.0, 0.0
         for e in range(indptr[i], indptr[i + 1]):
-            _step(i, e, centers, size, indices, image, branch)
-            rise = x[indices[e]] - x[i]
-            for k in range(3):
-                rise += gradient[k] * branch[k]
+            rise, _ = rise_along(i, e, links, places, gradient, x, branch)
             heat += conductance[e] * rise
             passing += abs(conductance[e] * rise)
         received[i] = heat
@@ -194,27 +280,46 @@ def flows(centers, size, indptr, indices, image, conductance, gradient, x, recei
 
 
 @njit(cache=True, parallel=True)
-def moments(centers, size, indptr, indices, image, conductance, gradient, x, first):
-    """Write sum over links of W b / 2 to first (n, 3): W heat received by the row, b the branch vector.
+def moments(links, places, gradient, x, first):
+    """Sum over the links of each particle of W b / 2: W the heat it receives, b the branch vector.
 
-    Temperatures are x plus the linear field of the gradient.
+    Parameters
+    ----------
+    links : Links
+    places : Places
+    gradient : (3,) float array, K/m
+    x : (n,) float array, K
+        Temperatures less the linear field of the gradient.
+    first : (n, 3) float array, W m, out
     """
+    indptr, conductance = links.indptr, links.conductance
     for i in prange(len(x)):
         branch = np.empty(3)
         for k in range(3):
             first[i, k] = 0.0
         for e in range(indptr[i], indptr[i + 1]):
-            _step(i, e, centers, size, indices, image, branch)
-            rise = x[indices[e]] - x[i]
-            for k in range(3):
-                rise += gradient[k] * branch[k]
+            rise, _ = rise_along(i, e, links, places, gradient, x, branch)
             for k in range(3):
                 first[i, k] += 0.5 * conductance[e] * rise * branch[k]
 
 
 @njit(cache=True, parallel=True)
-def reconstruct(centers, size, indptr, indices, image, area, conductance, gradient, x, shape, flow):
-    """Write sum S e e to shape (n, 3, 3) and sum e W to flow (n, 3), e the unit vector and W the heat received."""
+def reconstruct(links, places, area, gradient, x, shape, flow):
+    """Sums over the links of each particle of S e e and of e W: e the unit vector, W the heat it receives.
+
+    Parameters
+    ----------
+    links : Links
+    places : Places
+    area : (m,) float array, m2
+        S of each link.
+    gradient : (3,) float array, K/m
+    x : (n,) float array, K
+        Temperatures less the linear field of the gradient.
+    shape : (n, 3, 3) float array, m2, out
+    flow : (n, 3) float array, W, out
+    """
+    indptr, conductance = links.indptr, links.conductance
     for i in prange(len(x)):
         branch = np.empty(3)
         for k in range(3):
@@ -222,10 +327,8 @@ def reconstruct(centers, size, indptr, indices, image, area, conductance, gradie
             for m in range(3):
                 shape[i, k, m] = 0.0
         for e in range(indptr[i], indptr[i + 1]):
-            length = np.sqrt(_step(i, e, centers, size, indices, image, branch))
-            rise = x[indices[e]] - x[i]
-            for k in range(3):
-                rise += gradient[k] * branch[k]
+            rise, square = rise_along(i, e, links, places, gradient, x, branch)
+            length = np.sqrt(square)
             for k in range(3):
                 flow[i, k] += conductance[e] * rise * branch[k] / length
                 for m in range(3):

@@ -1,119 +1,131 @@
-"""What is asked of `solve` and `evolve`, refused before any heavy work where it makes no sense."""
+"""What is asked of `solve` and `evolve`: read and checked once, before any heavy work."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from demheat.conduction.sources import check_sources
-from demheat.network.calibrated import POLICIES, WALL_RULES
-from demheat.network.interface import check_rule
+from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.packing.base import Packing
+from demheat.packing.cache import relaxed, replicated
+from demheat.packing.domain import replica_counts
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
+from demheat.scene import Scene
 
-LAWS = ("laguerre", "calibrated", "platonic")
-# Choices that only the laws of contacts have, and their defaults.
-CONTACT = {"poor": "nearest", "wall": "center", "coordination": None, "gap": None}
-
-
-def check_steady(scene, *, law, conforming, interface, contact, packing, particles, allow_few):
-    """Raise unless `solve` can do what is asked; whether twins are wanted at interfaces.
-
-    Raises
-    ------
-    ValueError, NotImplementedError
-    """
-    wanted = _check_law(law, _wanted(conforming, law == "laguerre"), interface, contact)
-    scene.require(steady=True)
-    if wanted:
-        # Refuses inclusions of shapes that are not known.
-        surfaces_of(scene)
-    _check_walls(scene, law, contact["wall"])
-    _check_packing(scene, packing, particles, allow_few)
-    return wanted
+# Old keywords of `solve` and `evolve`.
+RENAMED = {"poor": "sparse", "tiles": "replicas"}
 
 
-def check_transient(scene, stop, *, law, conforming, interface, contact, packing, particles, allow_few):
-    """Raise unless `evolve` can do what is asked until a time in seconds; whether twins are wanted at interfaces.
+@dataclass(frozen=True, kw_only=True)
+class Particles:
+    """The packing that is asked for: given, or so many particles to be relaxed in the scene's body.
+
+    Parameters
+    ----------
+    particles : int
+    seed : int
+    packing : Packing, optional
+    replicas : int, optional
+        Along the shortest side of the box.
+    allow_few : bool
 
     Raises
     ------
-    ValueError, NotImplementedError
+    ValueError
+        If an argument makes no sense, whatever the scene.
     """
-    by_default = law == "laguerre" and bool(scene.inclusions)
-    wanted = _check_law(law, _wanted(conforming, by_default), interface, contact)
-    scene.require(steady=False)
-    if wanted:
-        scene.require("no conforming packing is known there; pass conforming=False", domain="box")
-        surfaces_of(scene)
-    if contact["wall"] == "surface":
-        scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
-    _check_walls(scene, law, contact["wall"])
-    _check_packing(scene, packing, particles, allow_few)
-    check_sources(scene, stop)
-    return wanted
+
+    particles: int
+    seed: int
+    packing: Packing | None = None
+    replicas: int | None = None
+    allow_few: bool = False
+
+    def __post_init__(self):
+        if not isinstance(self.allow_few, bool | np.bool_):
+            raise ValueError(f"allow_few = {self.allow_few!r}: must be True or False")
+        number = self.particles
+        if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
+            raise ValueError(f"particles = {number!r}: must be an integer >= 1")
+        if self.packing is None and number < FEWEST and not self.allow_few:
+            raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
+        if self.packing is not None and self.replicas is not None:
+            raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
+
+    def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
+        """How many replicas the packing has along each axis, (3,) int array.
+
+        Raises
+        ------
+        ValueError
+            If the packing that is given is not of the scene's body, or there are too few particles for the replicas.
+        NotImplementedError
+            For replicas in round bodies, and between walls where facets do not bound cells; for inclusions that have no
+            conforming packing.
+        """
+        if law.conforming:
+            surfaces_of(scene)  # refuses shapes that twins do not know
+        if self.packing is not None:
+            _check_body(self.packing, scene)
+            return np.ones(3, dtype=int)
+        if scene.domain == "box" and (scene.periodic or law.cells):
+            return replica_counts(self.particles, scene.size, self.replicas)
+        if self.replicas is not None and self.replicas != 1:
+            raise NotImplementedError(
+                f"replicas in a {scene.domain} with walls and law {law.name!r}: only in boxes by 'laguerre'"
+            )
+        return np.ones(3, dtype=int)
+
+    def packed(self, scene: Scene, counts) -> Packing:
+        """The packing that was given, or a relaxed one in the scene's body, or (3,) replicas of one."""
+        if self.packing is not None:
+            return self.packing
+        body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
+        if counts.prod() > 1:
+            return replicated(self.particles, counts, **body)
+        domain = {} if scene.domain == "box" else {"domain": scene.domain}
+        return relaxed(self.particles, allow_few=self.allow_few, **body, **domain)
 
 
-def _wanted(conforming, by_default):
-    if conforming is None:
-        return by_default
-    _check_flag("conforming", conforming, "True, False or None")
-    return bool(conforming)
+def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic, Particles]:
+    """The law and the packing that are asked for.
+
+    Parameters
+    ----------
+    law : Laguerre, Calibrated, Platonic or the name of one
+    particles, seed : int
+    knobs : dict
+        Those of `Particles`; the others belong to a law that is given by its name.
+
+    Raises
+    ------
+    ValueError
+        If an argument makes no sense, whatever the scene.
+    TypeError
+        If nobody knows a knob.
+    """
+    for old in RENAMED.keys() & knobs.keys():
+        warnings.warn(f"{old}= is now {RENAMED[old]}=", DeprecationWarning, stacklevel=3)
+    knobs = {RENAMED.get(name, name): value for name, value in knobs.items()}
+    own = {field.name for field in fields(Particles)}
+    wanted = Particles(particles=particles, seed=seed, **{name: knobs[name] for name in own & knobs.keys()})
+    return _law(law, {name: value for name, value in knobs.items() if name not in own}), wanted
 
 
-def _check_flag(name, value, valid):
-    if not isinstance(value, bool | np.bool_):
-        raise ValueError(f"{name} = {value!r}: must be {valid}")
+def _law(law, knobs):
+    if isinstance(law, tuple(LAWS.values())):
+        if knobs:
+            raise ValueError(f"{', '.join(knobs)} beside law = {law!r}: must be given to the law itself")
+        return law
+    if not isinstance(law, str) or law not in LAWS:
+        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}, or a law such as Laguerre()")
+    return LAWS[law].short(**knobs)
 
 
-def _check_law(law, conforming, interface, contact):
-    if law not in LAWS:
-        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}")
-    check_rule(interface)
-    _check_contact(law, **contact)
-    if conforming and law != "laguerre":
-        raise ValueError(
-            f"conforming = True with law = {law!r}: twins need not touch; must be False, or law 'laguerre'"
-        )
-    return conforming
-
-
-def _check_contact(law, *, poor, wall, coordination, gap):
-    if coordination is not None and not _finite_number(coordination, 0.0):
-        raise ValueError(f"coordination = {coordination!r}: must be a finite number > 0")
-    if gap is not None and not _finite_number(gap, -1.0):
-        raise ValueError(f"gap = {gap!r}: must be a finite part of r_i + r_j > -1")
-    if gap is not None and coordination is not None:
-        raise ValueError(f"gap = {gap!r}, coordination = {coordination!r}: one gives the other; pass one of them")
-    for name, value, valid in (("poor", poor, POLICIES), ("wall", wall, WALL_RULES)):
-        if value not in valid:
-            raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
-    given = {"poor": poor, "wall": wall, "coordination": coordination, "gap": gap}
-    odd = [f"{name} = {value!r}" for name, value in given.items() if value != CONTACT[name]]
-    if law == "laguerre" and odd:
-        raise ValueError(
-            f"{', '.join(odd)} with law = 'laguerre': only the laws 'calibrated' and 'platonic' have these choices"
-        )
-
-
-def _finite_number(value, low):
-    return isinstance(value, int | float) and not isinstance(value, bool) and low < value < float("inf")
-
-
-def _check_walls(scene, law, wall):
-    if law != "laguerre" and wall == "center":
-        scene.require(
-            f"law {law!r} with wall 'center' holds the centres of the particles at a wall at its temperature: where "
-            "two held walls meet, one particle would join them; use wall 'surface'",
-            walls="isothermal ones apart",
-        )
-
-
-def _check_packing(scene, packing, particles, allow_few):
-    _check_flag("allow_few", allow_few, "True or False")
-    if packing is None:
-        if not isinstance(particles, int | np.integer) or isinstance(particles, bool) or particles < 1:
-            raise ValueError(f"particles = {particles!r}: must be an integer >= 1")
-        if particles < FEWEST and not allow_few:
-            raise ValueError(f"particles = {particles!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
-        return
+def _check_body(packing, scene):
     like = packing.domain == scene.domain and set(packing.periodic.tolist()) == {scene.periodic}
     if not (like and np.allclose(packing.size, scene.size, rtol=1e-9)):
         kind = "periodic" if scene.periodic else "walled"

@@ -49,7 +49,7 @@ class Facets(NamedTuple):
 
 
 class Network(NamedTuple):
-    """Conductances between particles and towards walls.
+    """Conductances between particles and towards walls, and what is needed to read a field off their temperatures.
 
     Attributes
     ----------
@@ -65,6 +65,17 @@ class Network(NamedTuple):
     volumes : (n,) float array, m3
     phase : (n,) int array
     wall_normal : (w, 3) float array, optional
+        As in `Facets`.
+    radii : (n,) float array, m, optional
+        From here on what only evaluation needs: a network that is solved but not sampled may lack it.
+    periodic : (3,) bool array, optional
+        Axis by axis.
+    area, distance : (m,) float arrays, m2 and m, optional
+        Of each link's facet, as in `Facets`; areas are those that conduct, C_t included.
+    cells : bool
+        Facets bound cells that fill the body, as those of the radical tessellation do: what is linear is exact.
+    stats : dict, optional
+        What a Field says of it: law, calibration (C_t), tessellation_s, network_s and packing, how that was made.
     """
 
     centers: np.ndarray
@@ -81,6 +92,12 @@ class Network(NamedTuple):
     volumes: np.ndarray
     phase: np.ndarray
     wall_normal: np.ndarray | None = None
+    radii: np.ndarray | None = None
+    periodic: np.ndarray | None = None
+    area: np.ndarray | None = None
+    distance: np.ndarray | None = None
+    cells: bool = True
+    stats: dict | None = None
 
 
 def wall_normals(walls):

@@ -7,8 +7,10 @@ import numpy as np
 from scipy.sparse import csgraph
 from scipy.spatial import cKDTree
 
+from demheat.laws import Calibrated
 from demheat.network.base import SIDES, Facets, row_numbers, wall_normals
 from demheat.packing.neighbours import as_graph, contacts
+from demheat.packing.walls import wall_distance
 from demheat.scene import ROUND_AXES
 
 MEANS = {
@@ -16,74 +18,94 @@ MEANS = {
     "harmonic": lambda a, b: 2.0 * a * b / (a + b),
     "geometric": lambda a, b: np.sqrt(a * b),
 }
-POLICIES = ("nearest", "keep", "drop")
-WALL_RULES = ("center", "surface")
 # The papers impose wall temperatures at the centres of the particles that touch the wall. A wall link this short, in
 # radii, holds the centre at the wall's temperature to 1e-4 of the drop over one link.
 ISOTHERMAL = 1e-4
 # A particle overlapping or touching a wall within this part of its radius is always in contact with it.
-TOUCH = 1e-3
+LEAST_GAP = 1e-3
 # Packings are layered near a wall. Under a linear field their links were found to carry 4 % less than in the bulk at 3
 # mean radii from it, 1.5 % less at 5, and as much within the scatter of 0.5 % from 6 on.
 LAYER = 6.0
 
 
-def contact_facets(packing, *, links=None, mean="arithmetic", poor="nearest", wall="center"):
+def contact_facets(packing, law: Calibrated) -> Facets:
     """Contact network of a packing with S = pi R_m^2, R_m the mean of two radii (C_t = 1).
 
     Parameters
     ----------
     packing : Packing
-    links : (indptr, indices, gap), optional
-        As `demheat.packing.neighbours.contacts` returns them, which is the default with 7.5 contacts in the bulk: hard
-        spheres touch six others on average at most, so a gap is needed. A wall is met within the same gap.
-    mean : {"arithmetic", "harmonic", "geometric"}
-        R_m of the two radii; the papers' is the arithmetic one.
-    poor : {"nearest", "keep", "drop"}
-        Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
-        that touch nobody become islands without heat); or take out, again and again until none is left, particles with
-        fewer than 2 links (walls count as one) and all clusters but the largest. What is taken out has neither
-        links nor volume here (see `demheat.network.laguerre.without_hidden`).
-    wall : {"center", "surface"}
-        Where a wall temperature acts: in the centres of the particles that touch the wall, a radius inside the body, as
-        in the papers; or at the wall, see `surface_distances`.
+    law : Calibrated
+        Its contacts, mean of the radii, and what happens to particles with few links and at walls; hard spheres touch
+        six others on average at most, so that contacts need a gap. A wall is met within the same gap.
 
     Returns
     -------
     Facets
         Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
         areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls;
-        links to a round one then are as long as centres are away from it.
+        links to a round one then are as long as centres are away from it. What `sparse = "drop"` takes out has neither
+        links nor volume (see `demheat.network.laguerre.drop_empty_cells`).
 
     Raises
     ------
     ValueError
-        If an argument is none of these, or with `wall = "surface"` for a packing without bulk or without wall contacts.
+        With `wall = "surface"` for a packing without bulk or without wall contacts; as
+        `demheat.packing.neighbours.contacts`.
     """
-    for name, value, valid in (("mean", mean, MEANS), ("poor", poor, POLICIES), ("wall", wall, WALL_RULES)):
-        if value not in valid:
-            raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
-    indptr, indices, gap = contacts(packing) if links is None else links
-    walls = _wall_contacts(packing, max(gap, TOUCH))
+    links = contacts(packing, coordination=law.coordination, gap=law.gap, additive=law.additive)
+    facets = joined_facets(packing, links, sparse=law.sparse)
+    here, there = np.repeat(packing.radii, np.diff(facets.indptr)), packing.radii[facets.indices]
+    facets = facets._replace(area=np.pi * MEANS[law.mean](here, there) ** 2)
+    return at_walls(packing, facets, law.wall)
+
+
+def joined_facets(packing, links, *, sparse) -> Facets:
+    """Links and wall links of particles in contact, before their law gives them surfaces.
+
+    Parameters
+    ----------
+    packing : Packing
+    links : (indptr, indices, gap)
+        As `demheat.packing.neighbours.contacts` returns them.
+    sparse : {"nearest", "keep", "drop"}
+        As in `demheat.laws.Calibrated`.
+
+    Returns
+    -------
+    Facets
+        With areas still to be set, None, and wall links that hold the centres at the temperature of the wall.
+    """
+    indptr, indices, gap = links
+    walls = _wall_contacts(packing, max(gap, LEAST_GAP))
     alive = np.ones(packing.number, dtype=bool)
-    if poor == "nearest":
+    if sparse == "nearest":
         indptr, indices = _joined(packing, indptr, indices, 2)
-    elif poor == "drop":
+    elif sparse == "drop":
         alive = _well_linked(indptr, indices, walls[0])
         indptr, indices = _without(indptr, indices, ~alive)
         walls = [column[alive[walls[0]]] for column in walls]
     particle, side = walls
     length, image = _lengths(packing, indptr, indices)
     here, there = np.repeat(packing.radii, np.diff(indptr)), packing.radii[indices]
-    area = np.pi * MEANS[mean](here, there) ** 2
     length *= here / (here + there)
     volumes = np.where(alive, packing.radii, 0.0) ** 3
     volumes *= packing.volume / volumes.sum()
     shares = _wall_shares(packing, particle, side)
     height = ISOTHERMAL * packing.radii[particle]
-    facets = Facets(indptr, indices, image, area, length, particle, side, shares, height, volumes)
-    if ROUND_AXES[packing.domain]:
-        facets = facets._replace(wall_normal=_normals(packing, facets))
+    facets = Facets(indptr, indices, image, None, length, particle, side, shares, height, volumes)
+    return facets._replace(wall_normal=_normals(packing, facets)) if ROUND_AXES[packing.domain] else facets
+
+
+def at_walls(packing, facets, wall) -> Facets:
+    """Facets whose wall links act in the centres of their particles, "center", or at the wall, "surface".
+
+    Parameters
+    ----------
+    packing : Packing
+    facets : Facets
+        Whose wall links hold the centres.
+    wall : {"center", "surface"}
+    """
     return facets._replace(wall_distance=surface_distances(facets, packing)) if wall == "surface" else facets
 
 
@@ -123,11 +145,7 @@ def surface_distances(facets, packing):
 
 def heights(packing, side):
     """Distance of every centre from a wall, (n,) float array, m; the wall by its number in `SIDES`."""
-    axes = list(ROUND_AXES[packing.domain])
-    if SIDES[side] == "round":
-        return packing.size[axes[0]] / 2 - np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
-    x = packing.centers[:, side // 2]
-    return packing.size[side // 2] - x if side % 2 else x
+    return wall_distance(packing, SIDES[side])
 
 
 def _wall_factor(facets, packing, axis):
@@ -171,17 +189,17 @@ def _side_depth(packing, axis):
 
 def _joined(packing, indptr, indices, least):
     """Rows with links added, both ways, from each particle with fewer than `least` to its nearest."""
-    poor = np.flatnonzero(np.diff(indptr) < least)
-    if len(poor) == 0:
+    sparse = np.flatnonzero(np.diff(indptr) < least)
+    if len(sparse) == 0:
         return indptr, indices
     box, n = np.where(packing.periodic, packing.size, 0.0), packing.number
-    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[poor], k=min(n, 33))
-    offsets = packing.centers[near] - packing.centers[poor][:, None]
+    _, near = cKDTree(packing.centers, boxsize=box).query(packing.centers[sparse], k=min(n, 33))
+    offsets = packing.centers[near] - packing.centers[sparse][:, None]
     offsets -= box * np.round(offsets / packing.size)
     surface = np.linalg.norm(offsets, axis=2) - packing.radii[near]
-    surface[near == poor[:, None]] = np.inf
+    surface[near == sparse[:, None]] = np.inf
     chosen = np.take_along_axis(near, np.argsort(surface, axis=1, kind="stable")[:, :least], axis=1).ravel()
-    ends = np.repeat(poor, len(chosen) // len(poor))
+    ends = np.repeat(sparse, len(chosen) // len(sparse))
     # One number per link, ascending as the rows are.
     present = row_numbers(indptr) * n + indices.astype(np.int64)
     added = np.setdiff1d(np.concatenate((ends * n + chosen, chosen * n + ends)), present)
@@ -195,11 +213,11 @@ def _well_linked(indptr, indices, touching):
     held[touching] = 1
     alive = np.ones(len(held), dtype=bool)
     while True:
-        poor = alive & (np.diff(indptr) + held < 2)
-        if not poor.any():
+        sparse = alive & (np.diff(indptr) + held < 2)
+        if not sparse.any():
             break
-        alive &= ~poor
-        indptr, indices = _without(indptr, indices, poor)
+        alive &= ~sparse
+        indptr, indices = _without(indptr, indices, sparse)
     _, cluster = csgraph.connected_components(as_graph(indptr, indices), directed=False)
     return alive & (cluster == np.argmax(np.bincount(cluster)))
 

@@ -45,6 +45,21 @@ class RoundWall(NamedTuple):
     across: np.ndarray
 
 
+class Tangents(NamedTuple):
+    """Planes of a round wall that lie near each of some points, as compressed rows.
+
+    Attributes
+    ----------
+    pointers : (n + 1,) int64 array
+        Where the planes of each point begin.
+    planes : (m,) int64 array
+        Numbers of planes.
+    """
+
+    pointers: np.ndarray
+    planes: np.ndarray
+
+
 def round_wall(domain, size, spacing, *, width=WIDTH):
     """Tangent planes of a domain that enclose exactly its volume.
 
@@ -89,7 +104,7 @@ def round_wall(domain, size, spacing, *, width=WIDTH):
 
 
 def fibonacci(number):
-    """Nearly even directions, (number, 3) float array of unit vectors."""
+    """Nearly even directions, (number, 3) float array of unit vectors (spherical Fibonacci lattice)."""
     index = np.arange(number) + 0.5
     height = 1.0 - 2.0 * index / number
     turn = np.pi * (1.0 + np.sqrt(5.0)) * index
@@ -125,7 +140,17 @@ def circumscribed_volume(normals):
 
 
 def round_distances(wall, points, normals):
-    """Distance from points inside a round body to its wall along outward normals of planes, (n,) float array, m."""
+    """Distance from points inside a round body to its wall along outward normals of planes.
+
+    Parameters
+    ----------
+    wall : RoundWall
+    points, normals : (n, 3) float arrays, m and unit vectors
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     radius = (wall.middle * wall.across).max()
     offsets = (points - wall.middle) * wall.across
     along = np.einsum("ij,ij->i", offsets, normals)
@@ -136,10 +161,15 @@ def round_distances(wall, points, normals):
 def tangents_within(wall, points, reach):
     """The planes that touch the body within reach of each point (across the axis, for a cylinder).
 
+    Parameters
+    ----------
+    wall : RoundWall
+    points : (n, 3) float array, m
+    reach : float, m
+
     Returns
     -------
-    pointers : (n + 1,) int64 array
-    planes : int64 array
+    Tangents
     """
     counts, planes = np.zeros(len(points), dtype=np.int64), np.empty(0, dtype=np.int64)
     if len(wall.normals):
@@ -151,4 +181,4 @@ def tangents_within(wall, points, reach):
         counts[near] = [len(found) for found in lists]
         if counts.any():
             planes = np.concatenate([np.asarray(found, dtype=np.int64) for found in lists])
-    return np.concatenate([[0], np.cumsum(counts)]), planes
+    return Tangents(np.concatenate([[0], np.cumsum(counts)]), planes)

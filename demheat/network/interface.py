@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from demheat.laws import RULES
 from demheat.network.base import Network
 
-RULES = ("harmonic", "arithmetic")
 # Rows connected at once: bounds the scratch memory (some 1.5 kB a row).
 BLOCK = 65536
 
@@ -25,8 +25,18 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     Returns
     -------
     (m,) float array, W/(m K)
+
+    Raises
+    ------
+    ValueError
+        If `rule` is none of these.
     """
-    check_rule(rule)
+    if rule not in RULES:
+        raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
+    return _conductivity(k_here, k_there, share, rule)
+
+
+def _conductivity(k_here, k_there, share, rule):
     share = np.clip(share, 0.0, 1.0)
     if rule == "arithmetic":
         return share * k_here + (1.0 - share) * k_there
@@ -35,23 +45,19 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
 
 
-def check_rule(rule):
-    """Raise ValueError unless `rule` names an interface rule."""
-    if rule not in RULES:
-        raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
-
-
-def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
+def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True) -> Network:
     """Conductances H = k S / d of facets between particles of given phases.
 
     Parameters
     ----------
+    packing : Packing
     facets : Facets
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
+        Of its particles.
     phase : (n,) int array
     conductivities : (number of phases,) float array, W/(m K)
     rule : {"harmonic", "arithmetic"}
+    cells : bool
+        Facets bound cells that fill the body.
 
     Returns
     -------
@@ -59,33 +65,42 @@ def connect(facets, centers, size, phase, conductivities, *, rule="harmonic"):
         Wall facets conduct k S / h with h the distance from the centre to the wall, exact for linear fields.
     """
     conductivity = conductivities[phase]
-    conductance = np.empty(len(facets.indices))
-    for start in range(0, len(centers), BLOCK):
-        rows = np.arange(start, min(len(centers), start + BLOCK))
-        links = slice(facets.indptr[rows[0]], facets.indptr[rows[-1] + 1])
-        row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
-        length = _lengths(centers, size, row, facets.indices[links], facets.image[links])
-        k = link_conductivity(
-            conductivity[row], conductivity[facets.indices[links]], facets.distance[links] / length, rule=rule
-        )
-        conductance[links] = k * facets.area[links] / length
     wall = conductivity[facets.wall_particle] * facets.wall_area / facets.wall_distance
     return Network(
-        centers,
-        np.asarray(size, dtype=float),
-        facets.indptr,
-        facets.indices,
-        facets.image,
-        conductance,
-        facets.wall_particle,
-        facets.wall_side,
-        wall,
-        facets.wall_area,
-        facets.wall_distance,
-        facets.volumes,
-        phase,
-        facets.wall_normal,
+        centers=packing.centers,
+        size=packing.size,
+        indptr=facets.indptr,
+        indices=facets.indices,
+        image=facets.image,
+        conductance=_conductances(packing, facets, conductivity, rule),
+        wall_particle=facets.wall_particle,
+        wall_side=facets.wall_side,
+        wall_conductance=wall,
+        wall_area=facets.wall_area,
+        wall_distance=facets.wall_distance,
+        volumes=facets.volumes,
+        phase=phase,
+        wall_normal=facets.wall_normal,
+        radii=packing.radii,
+        periodic=packing.periodic,
+        area=facets.area,
+        distance=facets.distance,
+        cells=cells,
     )
+
+
+def _conductances(packing, facets, conductivity, rule):
+    """Conductance of each link, (m,) float array, W/K; block by block."""
+    conductance = np.empty(len(facets.indices))
+    for start in range(0, packing.number, BLOCK):
+        rows = np.arange(start, min(packing.number, start + BLOCK))
+        links = slice(facets.indptr[rows[0]], facets.indptr[rows[-1] + 1])
+        row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
+        there = facets.indices[links]
+        length = _lengths(packing.centers, packing.size, row, there, facets.image[links])
+        k = _conductivity(conductivity[row], conductivity[there], facets.distance[links] / length, rule)
+        conductance[links] = k * facets.area[links] / length
+    return conductance
 
 
 def _lengths(centers, size, row, indices, image):

@@ -4,6 +4,7 @@ import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets
+from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
 from demheat.packing.base import check_domain
 from demheat.scene import domain_volume
@@ -12,8 +13,8 @@ from demheat.scene import domain_volume
 BLOCK = 65536
 # Planes that may cut a cell: enough for any packing; cells that need more (a large one beside small ones) are redone.
 MOST_PLANES = 80
-# Candidates that a cell may meet at last: bounds the scratch memory of a thread (about 10 MB).
-MOST_ROOM = 1 << 18
+# Candidates that a cell may meet at first, and at last: bounds the scratch memory of a thread (about 10 MB).
+ROOM, MOST_ROOM = 256, 1 << 18
 # Facets below this fraction of the squared mean spacing are rounding where more than four cells meet in one point.
 SLIVER = 1e-11
 
@@ -54,17 +55,30 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     wall = round_wall(domain, size, spacing)
     _check_round(centers, wall, domain)
     counts = np.maximum(1, (size / (1.35 * spacing)).astype(np.int64))
-    start, items = kernels.bin_points(centers, size, counts)
-    grid = (centers, weights, size, periodic, counts, start, items, wall)
-    volumes, number, *columns = _joined(_cut_block(start, grid, spacing) for start in range(0, n, BLOCK))
+    grid = counts, *bin_points(centers, size, counts)
+    sites = kernels.Sites(centers, weights, weights.max(), size, periodic, *grid)
+    volumes, number, *columns = _joined(_cut_block(start, sites, wall, spacing) for start in range(0, n, BLOCK))
     _check_filled(volumes, domain_volume(domain, size), domain)
-    links, side = _matched(number, columns[:4], spacing), columns[5]
-    walls = (columns[4], np.minimum(side, ROUND_SIDE), *columns[6:])
-    return _with_normals(Facets(*links, *walls, volumes), side, centers, wall)
+    indices, image, area, distance, row, side, wall_area, wall_distance = columns
+    links = _matched(number, indices, image, area, distance, spacing)
+    facets = Facets(*links, row, np.minimum(side, ROUND_SIDE), wall_area, wall_distance, volumes)
+    return _with_normals(facets, side, centers, wall)
 
 
-def without_hidden(packing, facets):
-    """The packing and its facets without the points that have no cell."""
+def drop_empty_cells(packing, facets):
+    """Leave out the points that have no cell.
+
+    Parameters
+    ----------
+    packing : Packing
+    facets : Facets
+        Of this packing.
+
+    Returns
+    -------
+    packing : Packing
+    facets : Facets
+    """
     seen = facets.volumes > 0
     if seen.all():
         return packing, facets
@@ -107,18 +121,18 @@ def _check_round(centers, wall, domain):
         )
 
 
-def _cut_block(start, grid, spacing):
+def _cut_block(start, sites, wall, spacing):
     """Facets of a block of rows, links and walls apart.
 
     Volumes and numbers of links by row; indices, image, area and distance of links; row, side (planes of a round wall
     from 6 on), area and distance of walls.
     """
-    rows = np.arange(start, min(len(grid[0]), start + BLOCK))
-    volumes, number, neighbour, image, area, distance = _cut_rows(rows, grid, spacing)
+    rows = np.arange(start, min(len(sites.points), start + BLOCK))
+    volumes, number, neighbour, image, area, distance = _cut_rows(rows, sites, wall, spacing)
     row, big = np.repeat(np.arange(len(rows)), number), area > SLIVER * spacing**2
-    link, wall = big & (neighbour >= 0), big & (neighbour < 0)
+    link, end = big & (neighbour >= 0), big & (neighbour < 0)
     links = (neighbour[link].astype(np.uint32), image[link], area[link], distance[link])
-    walls = (start + row[wall], -1 - neighbour[wall], area[wall], distance[wall])
+    walls = (start + row[end], -1 - neighbour[end], area[end], distance[end])
     return volumes, np.bincount(row[link], minlength=len(rows)), *links, *walls
 
 
@@ -131,62 +145,77 @@ def _joined(parts):
     return joined
 
 
-def _cut_rows(rows, grid, spacing):
+def _cut_rows(rows, sites, wall, spacing):
     """Cut some rows, again and wider where a cell was not secured; flat columns of their facets."""
-    size, periodic, wall = grid[2], grid[3], grid[-1]
+    size, periodic = sites.size, sites.periodic
     widest = size[periodic].min() if periodic.any() else 2 * size.max()
-    reach, room, most, eps = min(2.5 * spacing, widest), 256, MOST_PLANES, 1e-11 * spacing
+    limits = kernels.Limits(min(2.5 * spacing, widest), ROOM, MOST_PLANES, 1e-11 * spacing)
     done = []
     while len(rows):
-        out = _empty_out(len(rows), most)
-        near = tangents_within(wall, grid[0][rows], reach)
-        kernels.cut_cells(rows, reach, room, most, eps, near, *grid[:-1], tuple(wall), out)
-        status = out[0]
-        done.append((rows[status == kernels.OK], _columns(out, status == kernels.OK)))
-        if reach >= widest and np.any(status == kernels.UNSECURED):
-            raise RuntimeError(
-                f"laguerre: {np.sum(status == kernels.UNSECURED)} cells reach across the periodic box "
-                f"of {len(grid[0])} points; use more points"
-            )
-        overfull = room == MOST_ROOM and np.any(status == kernels.OVERFLOW)
-        if overfull or (eps > 1e-8 * spacing and np.any(status != kernels.OK)):
-            raise RuntimeError(f"laguerre: {np.sum(status != kernels.OK)} cells could not be cut")
-        rows = rows[status != kernels.OK]
-        reach = min(1.35 * reach, widest)
-        room, most = min(4 * room, MOST_ROOM), min(3 * most, 2000)
-        if np.any(status == kernels.TANGLED):
-            eps *= 4
+        out = _empty_cut(len(rows), limits.most)
+        near = tangents_within(wall, sites.points[rows], limits.reach)
+        kernels.cut_cells(rows, sites, wall, near, limits, out)
+        good = out.status == kernels.OK
+        done.append((rows[good], _columns(out, good)))
+        _check_cut(out.status, sites, spacing, limits, widest)
+        rows, limits = rows[~good], _wider(limits, widest, np.any(out.status == kernels.TANGLED))
     return _in_order(done)
 
 
-def _empty_out(n, most):
+def _wider(limits, widest, tangled):
+    """Limits for the next pass over what is left."""
+    return kernels.Limits(
+        min(1.35 * limits.reach, widest),
+        min(4 * limits.room, MOST_ROOM),
+        min(3 * limits.most, 2000),
+        4 * limits.eps if tangled else limits.eps,
+    )
+
+
+def _check_cut(status, sites, spacing, limits, widest):
+    """Raise RuntimeError where another pass would not help."""
+    unsecured, overfull = np.sum(status == kernels.UNSECURED), np.any(status == kernels.OVERFLOW)
+    if limits.reach >= widest and unsecured:
+        raise RuntimeError(
+            f"laguerre: {unsecured} cells reach across the periodic box of {len(sites.points)} points; use more points"
+        )
+    left = np.sum(status != kernels.OK)
+    if (limits.room == MOST_ROOM and overfull) or (limits.eps > 1e-8 * spacing and left):
+        raise RuntimeError(f"laguerre: {left} cells could not be cut")
+
+
+def _empty_cut(n, most):
     shape = (n, most)
-    return (
-        np.empty(n, np.int8),
-        np.empty(n),
-        np.zeros(n, np.int64),
-        np.empty(shape, np.int64),
-        np.empty(shape, np.uint8),
-        np.empty(shape),
-        np.empty(shape),
+    return kernels.Cut(
+        status=np.empty(n, np.int8),
+        volume=np.empty(n),
+        number=np.zeros(n, np.int64),
+        neighbour=np.empty(shape, np.int64),
+        image=np.empty(shape, np.uint8),
+        area=np.empty(shape),
+        distance=np.empty(shape),
     )
 
 
 def _columns(out, good):
-    _, volume, number, neighbour, image, area, distance = out
-    used = good[:, None] & (np.arange(area.shape[1]) < number[:, None])
-    return volume[good], number[good], neighbour[used], image[used], area[used], distance[used]
+    """Volumes and numbers of facets of the good rows; neighbours, images, areas and distances of their facets."""
+    used = good[:, None] & (np.arange(out.area.shape[1]) < out.number[:, None])
+    return (
+        out.volume[good],
+        out.number[good],
+        *(part[used] for part in (out.neighbour, out.image, out.area, out.distance)),
+    )
 
 
 def _in_order(done):
     """Merge the passes over one block of rows back into row order."""
     rows = np.concatenate([r for r, _ in done])
-    columns = [np.concatenate(c) for c in zip(*(c for _, c in done), strict=True)]
+    volume, number, *facets = (np.concatenate(c) for c in zip(*(c for _, c in done), strict=True))
     if len(done) == 1:
-        return columns
+        return volume, number, *facets
     order = np.argsort(rows, kind="stable")
-    facet_order = np.argsort(np.repeat(rows, columns[1]), kind="stable")
-    return [c[order] for c in columns[:2]] + [c[facet_order] for c in columns[2:]]
+    facet_order = np.argsort(np.repeat(rows, number), kind="stable")
+    return volume[order], number[order], *(column[facet_order] for column in facets)
 
 
 def _check_filled(volumes, volume, domain):
@@ -195,9 +224,8 @@ def _check_filled(volumes, volume, domain):
         raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _matched(number, columns, spacing):
+def _matched(number, indices, image, area, distance, spacing):
     """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
-    indices, image, area, distance = columns
     indptr = np.concatenate([[0], np.cumsum(number)])
     matched = np.empty(len(area))
     kernels.match_links(indptr, indices, image, area, matched)

@@ -1,50 +1,133 @@
 """Compiled cell cutter of the radical (Laguerre, power) tessellation.
 
-A cell is a convex polyhedron. Its plane slots 0 to 5 are the sides of the start box, the others the radical planes with
-neighbours, nearest first, and planes of a round wall.
+A cell is a convex polyhedron around its site. Its plane slots 0 to 5 are the sides of the start box, the others the
+radical planes with neighbours, nearest first, and planes of a round wall.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit, prange
 
-from demheat.network.polyhedron_kernels import cut, measure, start_box
+from demheat.network.polyhedron_kernels import cut, empty_polyhedron, measure, start_box
 
 OK, UNSECURED, OVERFLOW, TANGLED = 0, 1, 2, 3
+# Code of the image in the box itself: no shift along any axis.
+HERE = 13
+# Sites cut with one scratch memory, by one thread.
+CHUNK = 128
+
+
+class Sites(NamedTuple):
+    """Weighted points in a box, filed in a grid of cells (see `bin_points`).
+
+    Attributes
+    ----------
+    points : (n, 3) float array, m
+    weights : (n,) float array, m2
+    heaviest : float, m2
+        The largest weight.
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    counts : (3,) int64 array
+        Cells of the grid along each axis.
+    start : (cells + 1,) int64 array
+    items : (n,) uint32 array
+    """
+
+    points: np.ndarray
+    weights: np.ndarray
+    heaviest: float
+    size: np.ndarray
+    periodic: np.ndarray
+    counts: np.ndarray
+    start: np.ndarray
+    items: np.ndarray
+
+
+class Limits(NamedTuple):
+    """How far the cutter looks and what it has room for.
+
+    Attributes
+    ----------
+    reach : float, m
+        Sites farther than this are not looked at.
+    room : int
+        Sites within reach at most.
+    most : int
+        Planes that may cut a cell at most, and facets that it may have.
+    eps : float, m
+        Vertices up to so high above a plane count as below it.
+    """
+
+    reach: float
+    room: int
+    most: int
+    eps: float
+
+
+class Cut(NamedTuple):
+    """What became of the cells of r rows, with up to f facets each.
+
+    Attributes
+    ----------
+    status : (r,) int8 array
+        OK; UNSECURED if a site beyond reach might cut the cell; OVERFLOW if the room is too small; TANGLED by rounding.
+        What follows is good for cells that are OK.
+    volume : (r,) float array, m3
+        Zero for the cell of a hidden site.
+    number : (r,) int64 array
+        Of facets.
+    neighbour : (r, f) int64 array
+        The site beyond each facet; -1 - s for side s of the box, -7 - q for plane q of a round wall.
+    image : (r, f) uint8 array
+        Which periodic image of it.
+    area : (r, f) float array, m2
+    distance : (r, f) float array, m
+        From the site to the facet's plane.
+    """
+
+    status: np.ndarray
+    volume: np.ndarray
+    number: np.ndarray
+    neighbour: np.ndarray
+    image: np.ndarray
+    area: np.ndarray
+    distance: np.ndarray
+
+
+class _Candidates(NamedTuple):
+    """Sites that may cut a cell: number, image, offset from its own site, distance of the plane, and a heap of them."""
+
+    number: np.ndarray
+    image: np.ndarray
+    offset: np.ndarray
+    plane: np.ndarray
+    heap: np.ndarray
 
 
 @njit(cache=True)
-def bin_points(points, size, counts):
-    """Sort points into a grid of counts[0] x counts[1] x counts[2] cells: (start of each cell, point numbers)."""
-    n = len(points)
-    cell = np.empty(n, np.int64)
-    start = np.zeros(counts[0] * counts[1] * counts[2] + 1, np.int64)
-    for i in range(n):
-        c = np.int64(0)
-        for k in range(3):
-            x = np.int64(points[i, k] / size[k] * counts[k])
-            c = c * counts[k] + min(max(x, 0), counts[k] - 1)
-        cell[i] = c
-        start[c + 1] += 1
-    start = np.cumsum(start)
-    fill = start[:-1].copy()
-    items = np.empty(n, np.uint32)
-    for i in range(n):
-        items[fill[cell[i]]] = i
-        fill[cell[i]] += 1
-    return start, items
+def _empty_candidates(room):
+    return _Candidates(
+        np.empty(room, np.int64),
+        np.empty(room, np.uint8),
+        np.empty((room, 3)),
+        np.empty(room),
+        np.empty(room, np.int64),
+    )
 
 
 @njit(cache=True)
-def _gather(i, reach, points, weights, size, periodic, counts, start, items, cand):
-    """Candidates within reach of point i into cand = (number, image code, offset, plane distance); their count."""
-    number, code, offset, plane = cand
+def _gather(i, reach, sites, found):
+    """Candidates within reach of site i; their number, or -1 if there are more than there is room for."""
+    points, weights, size, counts = sites.points, sites.weights, sites.size, sites.counts
     lo = np.empty(3, np.int64)
     hi = np.empty(3, np.int64)
     for k in range(3):
         width = size[k] / counts[k]
         lo[k] = np.int64(np.floor((points[i, k] - reach) / width))
         hi[k] = np.int64(np.floor((points[i, k] + reach) / width))
-        if not periodic[k]:
+        if not sites.periodic[k]:
             lo[k] = max(lo[k], 0)
             hi[k] = min(hi[k], counts[k] - 1)
         else:  # one image to either side; the driver refuses a reach beyond the box
@@ -58,26 +141,26 @@ def _gather(i, reach, points, weights, size, periodic, counts, start, items, can
             for cz in range(lo[2], hi[2] + 1):
                 sz = cz // counts[2]
                 c = ((cx - sx * counts[0]) * counts[1] + cy - sy * counts[1]) * counts[2] + cz - sz * counts[2]
-                for slot in range(start[c], start[c + 1]):
-                    j = items[slot]
+                for slot in range(sites.start[c], sites.start[c + 1]):
+                    j = sites.items[slot]
                     x = points[j, 0] - points[i, 0] + sx * size[0]
                     y = points[j, 1] - points[i, 1] + sy * size[1]
                     z = points[j, 2] - points[i, 2] + sz * size[2]
                     d2 = x * x + y * y + z * z
                     image = np.uint8((sx + 1) * 9 + (sy + 1) * 3 + sz + 1)
-                    if d2 > reach * reach or (j == i and image == 13):
+                    if d2 > reach * reach or (j == i and image == HERE):
                         continue
-                    if m == len(number):
+                    if m == len(found.number):
                         return -1
-                    number[m] = j
-                    code[m] = image
-                    offset[m, 0], offset[m, 1], offset[m, 2] = x, y, z
+                    found.number[m] = j
+                    found.image[m] = image
+                    found.offset[m, 0], found.offset[m, 1], found.offset[m, 2] = x, y, z
                     # Coincident centres: the heavier hides the lighter, of equals the later number is hidden.
                     if d2 == 0.0:
                         hides = weights[j] > weights[i] or (weights[j] == weights[i] and j < i)
-                        plane[m] = -np.inf if hides else np.inf
+                        found.plane[m] = -np.inf if hides else np.inf
                     else:
-                        plane[m] = (d2 + weights[i] - weights[j]) / (2.0 * np.sqrt(d2))
+                        found.plane[m] = (d2 + weights[i] - weights[j]) / (2.0 * np.sqrt(d2))
                     m += 1
     return m
 
@@ -100,44 +183,42 @@ def _sift(heap, key, root, count):
 
 
 @njit(cache=True)
-def _cut_wall(count, planes, center, eps, tangents, only, skip, wall, work):
-    """Cut by the planes of a round wall listed in tangents (by one of them if only >= 0, without one if skip >= 0).
+def _cut_wall(cell, count, planes, center, eps, wall, tangents, skip):
+    """Cut by the planes of a round wall listed in tangents, but for the plane `skip`.
 
-    Returns (status, vertex count, number of planes); a plane q is noted as source -1 - q.
+    Returns (status, vertex count, number of planes); a plane q is labelled -1 - q.
     """
-    vertex, triple, owner, above, edge, follow, normal, distance, source = work[2:11]
-    normals, radius, middle = wall[0], wall[1], wall[2]
+    normals, middle = wall.normals, wall.middle
     for q in tangents:
-        if (only >= 0 and q != only) or q == skip:
+        if q == skip:
             continue
-        if planes == len(distance):
+        if planes == len(cell.distance):
             return OVERFLOW, 0, 0
         x, y, z = normals[q]
-        h = radius - x * (center[0] - middle[0]) - y * (center[1] - middle[1]) - z * (center[2] - middle[2])
-        count = cut(count, planes, x, y, z, h, eps, vertex, triple, owner, above, edge, follow)
+        h = wall.radius - x * (center[0] - middle[0]) - y * (center[1] - middle[1]) - z * (center[2] - middle[2])
+        cell.normal[planes, 0], cell.normal[planes, 1], cell.normal[planes, 2], cell.distance[planes] = x, y, z, h
+        count = cut(cell, count, planes, eps)
         if count < 0:
             return TANGLED, 0, 0
         if count == 0:
             return OK, 0, 0
-        if triple[count - 1, 2] == planes:
-            normal[planes, 0], normal[planes, 1], normal[planes, 2] = x, y, z
-            distance[planes], source[planes] = h, -1 - q
+        if cell.triple[count - 1, 2] == planes:
+            cell.label[planes] = -1 - q
             planes += 1
     return OK, count, planes
 
 
 @njit(cache=True)
-def _misses_tangents(count, reach, center, vertex, wall):
+def _misses_tangents(vertex, count, reach, center, wall):
     """Whether a plane of a round wall farther than reach from the centre might still cut the cell.
 
     A plane beyond which a vertex lies touches the round body within sqrt(R_v^2 - R^2) of that vertex, R_v the vertex's
     distance from the body's middle or axis.
     """
-    radius, middle, across = wall[1], wall[2], wall[3]
     for v in range(count):
-        off, far = -(radius**2), 0.0
+        off, far = -(wall.radius**2), 0.0
         for k in range(3):
-            off += across[k] * (center[k] + vertex[v, k] - middle[k]) ** 2
+            off += wall.across[k] * (center[k] + vertex[v, k] - wall.middle[k]) ** 2
             far += vertex[v, k] ** 2
         if off > 0.0 and np.sqrt(far) + np.sqrt(off) > reach:
             return True
@@ -146,43 +227,36 @@ def _misses_tangents(count, reach, center, vertex, wall):
 
 @njit(cache=True)
 def _nearest(center, tangents, wall):
-    """The listed plane of a round wall that is nearest to the centre; -1 for an empty list."""
-    normals, best, found = wall[0], -np.inf, -1
-    for q in tangents:
+    """Where among the listed planes of a round wall that nearest to the centre stands; -1 for an empty list."""
+    best, found = -np.inf, -1
+    for t in range(len(tangents)):
         along = 0.0
         for k in range(3):
-            along += normals[q, k] * (center[k] - wall[2][k])
+            along += wall.normals[tangents[t], k] * (center[k] - wall.middle[k])
         if along > best:
-            best, found = along, q
+            best, found = along, t
     return found
 
 
 @njit(cache=True)
-def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, tangents, wall, work):
-    """Cut one cell; (status, vertex count, number of planes)."""
-    cand, heap, vertex, triple, owner, above, edge, follow, normal, distance, source, area = work
-    m = _gather(i, reach, points, weights, size, periodic, counts, start, items, cand)
-    if m < 0:
-        return OVERFLOW, 0, 0
+def _start(i, reach, sites, wall, cell):
+    """Begin the cell of site i as the box of its reach, within walls; the vertex count."""
     low, high = np.empty(3), np.empty(3)
     for k in range(3):
         low[k], high[k] = -reach, reach
         # Tangent planes enclose as much as the round body: their corners stand out of its box.
-        if not periodic[k] and wall[3][k] == 0.0:
-            low[k], high[k] = max(low[k], -points[i, k]), min(high[k], size[k] - points[i, k])
-        for side in range(2):
-            for axis in range(3):
-                normal[2 * k + side, axis] = 0.0
-            normal[2 * k + side, k] = 2 * side - 1
-            distance[2 * k + side] = high[k] if side else -low[k]
-    count = start_box(low, high, vertex, triple, owner)
-    planes, plane, offset = 6, cand[3], cand[2]
-    # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
-    first = _nearest(points[i], tangents, wall)
-    if first >= 0:
-        state, count, planes = _cut_wall(count, planes, points[i], eps, tangents, first, -1, wall, work)
-        if state != OK or count == 0:
-            return state, 0, 0
+        if not sites.periodic[k] and wall.across[k] == 0.0:
+            low[k], high[k] = max(low[k], -sites.points[i, k]), min(high[k], sites.size[k] - sites.points[i, k])
+    return start_box(low, high, cell)
+
+
+@njit(cache=True)
+def _cut_sites(cell, count, planes, found, m, eps):
+    """Cut by the radical planes of the m candidates, nearest first, until the next is beyond the cell.
+
+    Returns (status, vertex count, number of planes, distance of the farthest vertex).
+    """
+    heap, plane, offset = found.heap, found.plane, found.offset
     for c in range(m):
         heap[c] = c
     for root in range(m // 2 - 1, -1, -1):
@@ -193,98 +267,135 @@ def _cell(i, reach, heaviest, eps, points, weights, size, periodic, counts, star
         m -= 1
         heap[0] = heap[m]
         _sift(heap, plane, 0, m)
-        if planes == len(distance):
-            return OVERFLOW, 0, 0
+        if planes == len(cell.distance):
+            return OVERFLOW, 0, 0, farthest
         if h == -np.inf:
-            return OK, 0, 0
+            return OK, 0, 0, farthest
         d = np.sqrt(offset[c, 0] ** 2 + offset[c, 1] ** 2 + offset[c, 2] ** 2)
         for k in range(3):
-            normal[planes, k] = offset[c, k] / d
-        n = normal[planes]
-        count = cut(count, planes, n[0], n[1], n[2], h, eps, vertex, triple, owner, above, edge, follow)
+            cell.normal[planes, k] = offset[c, k] / d
+        cell.distance[planes] = h
+        count = cut(cell, count, planes, eps)
         if count < 0:
-            return TANGLED, 0, 0
+            return TANGLED, 0, 0, farthest
         if count == 0:
-            return OK, 0, 0
-        if triple[count - 1, 2] == planes:  # the newest vertices stand last, so the plane did cut
-            distance[planes], source[planes] = h, c
+            return OK, 0, 0, farthest
+        if cell.triple[count - 1, 2] == planes:  # the newest vertices stand last, so the plane did cut
+            cell.label[planes] = c
             planes += 1
             farthest = 0.0
             for v in range(count):
-                farthest = max(farthest, vertex[v, 0] ** 2 + vertex[v, 1] ** 2 + vertex[v, 2] ** 2)
+                farthest = max(farthest, cell.vertex[v, 0] ** 2 + cell.vertex[v, 1] ** 2 + cell.vertex[v, 2] ** 2)
             farthest = np.sqrt(farthest)
-    if (reach**2 + weights[i] - heaviest) / (2.0 * reach) < farthest:
+    return OK, count, planes, farthest
+
+
+@njit(cache=True)
+def _cell(i, sites, wall, tangents, limits, found, cell):
+    """Cut the cell of site i; (status, vertex count, number of planes)."""
+    reach, eps, center = limits.reach, limits.eps, sites.points[i]
+    m = _gather(i, reach, sites, found)
+    if m < 0:
+        return OVERFLOW, 0, 0
+    count, planes = _start(i, reach, sites, wall, cell), 6
+    # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
+    first = _nearest(center, tangents, wall)
+    if first >= 0:
+        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents[first : first + 1], -1)
+        if state != OK or count == 0:
+            return state, 0, 0
+    state, count, planes, farthest = _cut_sites(cell, count, planes, found, m, eps)
+    if state != OK or count == 0:
+        return state, 0, 0
+    if (reach**2 + sites.weights[i] - sites.heaviest) / (2.0 * reach) < farthest:
         return UNSECURED, 0, 0
-    if len(wall[0]) > 0:
-        state, count, planes = _cut_wall(count, planes, points[i], eps, tangents, -1, first, wall, work)
-        if state == OK and count > 0 and _misses_tangents(count, reach, points[i], vertex, wall):
-            state = UNSECURED
-        return state, count, planes
-    return OK, count, planes
+    if len(wall.normals) == 0:
+        return OK, count, planes
+    skip = tangents[first] if first >= 0 else -1
+    state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)
+    if state == OK and count > 0 and _misses_tangents(cell.vertex, count, reach, center, wall):
+        state = UNSECURED
+    return state, count, planes
+
+
+@njit(cache=True)
+def _note_facets(row, planes, found, cell, out):
+    """Note the facets that have an area."""
+    for f in range(planes):
+        if cell.area[f] <= 0.0:
+            continue
+        e = out.number[row]
+        if e == out.area.shape[1]:
+            out.status[row] = OVERFLOW
+            break
+        label = cell.label[f]
+        if f < 6:
+            out.neighbour[row, e], out.image[row, e] = -1 - f, HERE
+        elif label < 0:
+            out.neighbour[row, e], out.image[row, e] = label - 6, HERE
+        else:
+            out.neighbour[row, e], out.image[row, e] = found.number[label], found.image[label]
+        out.area[row, e], out.distance[row, e] = cell.area[f], cell.distance[f]
+        out.number[row] = e + 1
+
+
+@njit(cache=True)
+def _cut_chunk(first, last, rows, sites, wall, near, limits, out):
+    """Cut the cells of some rows with one scratch memory.
+
+    Not within the parallel loop: there Numba mixes up arrays that it meets as parts of a tuple made in the loop.
+    """
+    found, cell = _empty_candidates(limits.room), empty_polyhedron(limits.most)
+    for row in range(first, last):
+        out.number[row] = 0
+        out.volume[row] = 0.0
+        tangents = near.planes[near.pointers[row] : near.pointers[row + 1]]
+        state, count, planes = _cell(rows[row], sites, wall, tangents, limits, found, cell)
+        out.status[row] = state
+        if state != OK or count == 0:
+            continue
+        cell.area[:planes] = 0.0
+        out.volume[row] = measure(cell, count)
+        _note_facets(row, planes, found, cell, out)
 
 
 @njit(cache=True, parallel=True)
-def cut_cells(rows, reach, room, most, eps, near, points, weights, size, periodic, counts, start, items, wall, out):
-    """Cut the cells of the given rows into out = (status, volume, number, neighbour, image, area, distance).
+def cut_cells(rows, sites, wall, near, limits, out):
+    """Cut the cells of some sites; each thread writes its own rows only.
 
-    A cell may meet `room` candidates and be cut by `most` planes. A round wall = (normals (m, 3), radius, middle (3,),
-    across (3,): 1 on its round axes) is tangent planes normal.(x - middle) <= radius; near = (pointers by row, plane
-    numbers) lists those that touch the body within reach of each centre. Neighbour -1 - s stands for side s of the
-    box, -7 - q for plane q of a round wall. Each thread writes its own rows only.
+    Parameters
+    ----------
+    rows : (r,) int64 array
+        Numbers of the sites.
+    sites : Sites
+    wall : RoundWall
+        Tangent planes normal.(x - middle) <= radius; without planes for a box.
+    near : Tangents
+        The planes of the wall that touch the body within reach of each of these sites.
+    limits : Limits
+    out : Cut, out
     """
-    status, volume, number, neighbour, image, areas, distances = out
-    heaviest = weights.max()
-    chunk = 128
-    for block in prange((len(rows) + chunk - 1) // chunk):
-        cand = (np.empty(room, np.int64), np.empty(room, np.uint8), np.empty((room, 3)), np.empty(room))
-        work = (
-            cand,
-            np.empty(room, np.int64),
-            np.empty((4 * most, 3)),
-            np.empty((4 * most, 3), np.int16),
-            np.empty((most, most), np.int16),
-            np.empty(4 * most),
-            np.empty((4 * most, 4), np.int64),
-            np.empty(most, np.int64),
-            np.empty((most, 3)),
-            np.empty(most),
-            np.empty(most, np.int64),
-            np.empty(most),
-        )
-        for row in range(block * chunk, min(len(rows), (block + 1) * chunk)):
-            i = rows[row]
-            number[row] = 0
-            volume[row] = 0.0
-            tangents = near[1][near[0][row] : near[0][row + 1]]
-            state, count, planes = _cell(
-                i, reach, heaviest, eps, points, weights, size, periodic, counts, start, items, tangents, wall, work
-            )
-            status[row] = state
-            if state != OK or count == 0:
-                continue
-            triple, owner, normal, distance, source, area = work[3], work[4], work[8], work[9], work[10], work[11]
-            area[:planes] = 0.0
-            volume[row] = measure(count, normal, distance, work[2], triple, owner, area)
-            for f in range(planes):
-                if area[f] <= 0.0:
-                    continue
-                if number[row] == areas.shape[1]:
-                    status[row] = OVERFLOW
-                    break
-                e = number[row]
-                if f < 6:
-                    neighbour[row, e], image[row, e] = -1 - f, 13
-                elif source[f] < 0:
-                    neighbour[row, e], image[row, e] = source[f] - 6, 13
-                else:
-                    neighbour[row, e], image[row, e] = cand[0][source[f]], cand[1][source[f]]
-                areas[row, e], distances[row, e] = area[f], distance[f]
-                number[row] = e + 1
+    for block in prange((len(rows) + CHUNK - 1) // CHUNK):
+        _cut_chunk(block * CHUNK, min(len(rows), (block + 1) * CHUNK), rows, sites, wall, near, limits, out)
 
 
 @njit(cache=True, parallel=True)
 def match_links(indptr, indices, image, area, matched):
-    """Write to `matched` the mean of a facet's area seen from both cells, 0 where only one of them sees it."""
+    """Give each link one area, from those that its two cells see.
+
+    Parameters
+    ----------
+    indptr : (n + 1,) int64 array
+        Row pointers.
+    indices : (m,) uint32 array
+        The other cell of each link.
+    image : (m,) uint8 array
+        Which periodic image of it.
+    area : (m,) float array, m2
+        As seen from the row's cell.
+    matched : (m,) float array, m2, out
+        The mean of both; 0 where only one of the cells sees the facet.
+    """
     for p in prange(len(indptr) - 1):
         for e in range(indptr[p], indptr[p + 1]):
             q, back = indices[e], 26 - image[e]

@@ -8,8 +8,9 @@ from itertools import product
 
 import numpy as np
 
+from demheat.laws import Platonic
 from demheat.network.base import Facets
-from demheat.network.calibrated import TOUCH, WALL_RULES, contact_facets, heights, surface_distances, walls_of
+from demheat.network.calibrated import LEAST_GAP, at_walls, heights, joined_facets, walls_of
 from demheat.packing.neighbours import contacts
 
 # Edges of a face and faces at a vertex of the regular polyhedra.
@@ -22,9 +23,6 @@ CRYSTALS = {
     "body-centred cubic": ((0, 0, 0), (0.5, 0.5, 0.5)),
     "face-centred cubic": FACE_CENTRED,
 }
-# The paper does not say how many contacts its packings have. At so many the errors of conductance and capacity, 8 % too
-# much each, were found to cancel in the diffusivity (see `studies.table1_platonic`), which the paper's tests measure.
-COORDINATION = 7.2
 
 
 def solid_face(edges, meeting):
@@ -140,41 +138,34 @@ def _lines(x, knots, values):
     return values[k] + slope[k] * (x - knots[k])
 
 
-def platonic_facets(packing, *, links=None, coordination=COORDINATION, poor="nearest", wall="center") -> Facets:
+def platonic_facets(packing, law: Platonic) -> Facets:
     """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p neighbours of a particle.
 
     Parameters
     ----------
     packing : Packing
-    links : (indptr, indices, gap), optional
-        As `demheat.packing.neighbours.contacts` returns them; the default has `coordination` of them in the bulk.
-    coordination : float
-        Mean number of contacts of the bulk particles. The paper states none.
-    poor, wall : str
-        As in `demheat.network.calibrated.contact_facets`. A particle without any neighbour, whose capacity the paper's
-        table would make infinite, takes no part: with `poor = "keep"` it has neither links nor volume here.
+    law : Platonic
+        Its contacts, and what happens to particles with few links and at walls.
 
     Returns
     -------
     Facets
         Volumes carry the heat capacity: V_p / f(n_p), see `carrying_volumes`. They fill the box only by chance, so that
-        mass is not conserved.
+        mass is not conserved. A particle without any neighbour has neither links nor volume.
 
     Raises
     ------
     ValueError
-        If an argument is none of these, or a particle has more than 29 neighbours.
+        If a particle has more than 29 neighbours; as `demheat.packing.neighbours.contacts`.
     """
-    if wall not in WALL_RULES:
-        raise ValueError(f"wall = {wall!r}: must be one of {', '.join(WALL_RULES)}")
-    links = contacts(packing, coordination=coordination) if links is None else links
-    facets = contact_facets(packing, links=links, poor=poor, wall="center")
+    links = contacts(packing, coordination=law.coordination, gap=law.gap)
+    facets = joined_facets(packing, links, sparse=law.sparse)
     # What is taken out has no volume there.
     neighbours = np.where(facets.volumes > 0, count_neighbours(packing, facets.indptr, links[2]), 0)
     surface = surface_factors(neighbours) * packing.radii**2
     area = np.sqrt(np.repeat(surface, np.diff(facets.indptr)) * surface[facets.indices])
     facets = facets._replace(area=area, volumes=carrying_volumes(packing.radii, neighbours))
-    return facets if wall == "center" else facets._replace(wall_distance=surface_distances(facets, packing))
+    return at_walls(packing, facets, law.wall)
 
 
 def count_neighbours(packing, indptr, gap=0.0):
@@ -195,7 +186,7 @@ def count_neighbours(packing, indptr, gap=0.0):
     -------
     (n,) int array
     """
-    reach = packing.radii * (1.0 + max(gap, TOUCH))
+    reach = packing.radii * (1.0 + max(gap, LEAST_GAP))
     return np.diff(indptr) + sum(heights(packing, side) <= reach for side in walls_of(packing))
 
 

@@ -4,12 +4,90 @@ Every vertex is the meeting of three planes, kept as an oriented triple of plane
 vertices beyond the plane and closes the hole by a fan of new ones.
 """
 
+from typing import NamedTuple
+
+import numpy as np
 from numba import njit
 
 
+class Polyhedron(NamedTuple):
+    """A convex polyhedron around the origin, of up to p planes in slots, and scratch memory for cutting it.
+
+    Its volume is that of normal.x <= distance for all slots in use; how many vertices are in use its owner knows.
+
+    Attributes
+    ----------
+    vertex : (4 p, 3) float array, m
+    triple : (4 p, 3) int16 array
+        Slots of the three planes that meet in each vertex, counter-clockwise seen from outside.
+    owner : (p, p) int16 array
+        The vertex whose triple holds a and then b, cyclically, stands at [a, b].
+    normal : (p, 3) float array
+        Outward unit vectors.
+    distance : (p,) float array, m
+        Of the planes from the origin.
+    label : (p,) int64 array
+        What a plane is of, for who cuts.
+    area : (p,) float array, m2
+        Of the facets, by `measure`.
+    above : (4 p,) float array, m
+        Scratch: height of each vertex above the cutting plane.
+    edge : (4 p, 4) int64 array
+        Scratch: two planes of each cut edge, its vertex beyond the plane and that on this side.
+    follow : (p,) int64 array
+        Scratch: the plane that follows another along the rim of the cut.
+    """
+
+    vertex: np.ndarray
+    triple: np.ndarray
+    owner: np.ndarray
+    normal: np.ndarray
+    distance: np.ndarray
+    label: np.ndarray
+    area: np.ndarray
+    above: np.ndarray
+    edge: np.ndarray
+    follow: np.ndarray
+
+
 @njit(cache=True)
-def start_box(low, high, vertex, triple, owner):
-    """Vertices of the box as oriented plane triples; slots 2k and 2k + 1 are the low and high side of axis k."""
+def empty_polyhedron(most):
+    """Uninitialised memory of a Polyhedron of up to `most` planes."""
+    return Polyhedron(
+        np.empty((4 * most, 3)),
+        np.empty((4 * most, 3), np.int16),
+        np.empty((most, most), np.int16),
+        np.empty((most, 3)),
+        np.empty(most),
+        np.empty(most, np.int64),
+        np.empty(most),
+        np.empty(4 * most),
+        np.empty((4 * most, 4), np.int64),
+        np.empty(most, np.int64),
+    )
+
+
+@njit(cache=True)
+def start_box(low, high, cell):
+    """Begin a polyhedron as a box; slots 2k and 2k + 1 are the low and the high side of axis k.
+
+    Parameters
+    ----------
+    low, high : (3,) float arrays, m
+        Corners; the origin lies between them.
+    cell : Polyhedron, out
+
+    Returns
+    -------
+    int
+        Number of vertices, 8.
+    """
+    for side in range(6):
+        for k in range(3):
+            cell.normal[side, k] = 0.0
+        cell.normal[side, side // 2] = 2 * (side % 2) - 1
+        cell.distance[side] = high[side // 2] if side % 2 else -low[side // 2]
+    vertex = cell.vertex
     v = 0
     for a in range(2):
         for b in range(2):
@@ -20,7 +98,7 @@ def start_box(low, high, vertex, triple, owner):
                 p, q, r = a, 2 + b, 4 + c
                 if (a + b + c) % 2 == 0:  # keep every triple counter-clockwise seen from outside
                     q, r = r, q
-                _put(v, p, q, r, triple, owner)
+                _put(v, p, q, r, cell.triple, cell.owner)
                 v += 1
     return v
 
@@ -34,8 +112,28 @@ def _put(v, p, q, r, triple, owner):
 
 
 @njit(cache=True)
-def cut(count, slot, nx, ny, nz, h, eps, vertex, triple, owner, above, edge, follow):
-    """Cut the cell by n.x <= h; the new vertex count, or the old one if the plane misses, or -1 where tangled."""
+def cut(cell, count, slot, eps):
+    """Cut a polyhedron by the plane in a slot that it does not use yet.
+
+    Parameters
+    ----------
+    cell : Polyhedron
+        Normal and distance of the slot are set. The newest vertices stand last: the plane did cut if the last vertex
+        has it.
+    count : int
+        Number of vertices.
+    slot : int
+    eps : float, m
+        Vertices up to so high above the plane count as below it.
+
+    Returns
+    -------
+    int
+        The new number of vertices: the old one if the plane misses, 0 if nothing is left, -1 where rounding tangles.
+    """
+    vertex, triple, owner = cell.vertex, cell.triple, cell.owner
+    above, edge, follow = cell.above, cell.edge, cell.follow
+    nx, ny, nz, h = cell.normal[slot, 0], cell.normal[slot, 1], cell.normal[slot, 2], cell.distance[slot]
     removed = 0
     for v in range(count):
         above[v] = nx * vertex[v, 0] + ny * vertex[v, 1] + nz * vertex[v, 2] - h
@@ -83,8 +181,22 @@ def cut(count, slot, nx, ny, nz, h, eps, vertex, triple, owner, above, edge, fol
 
 
 @njit(cache=True)
-def measure(count, normal, distance, vertex, triple, owner, area):
-    """Facet areas by slot; the cell volume."""
+def measure(cell, count):
+    """Write the facet areas of a polyhedron by slot; only those of planes that a vertex has are touched.
+
+    Parameters
+    ----------
+    cell : Polyhedron
+    count : int
+        Number of vertices.
+
+    Returns
+    -------
+    float, m3
+        Its volume.
+    """
+    vertex, triple, owner = cell.vertex, cell.triple, cell.owner
+    normal, distance, area = cell.normal, cell.distance, cell.area
     for v in range(count):
         for k in range(3):
             area[triple[v, k]] = 0.0

@@ -5,7 +5,7 @@
 
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.cache import cached, grown, relaxed
-from demheat.packing.domain import cut, tile
+from demheat.packing.domain import cut, replicate
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal, Uniform
 from demheat.packing.relax import settle
@@ -23,6 +23,6 @@ __all__ = [
     "grown",
     "make_packing",
     "relaxed",
+    "replicate",
     "settle",
-    "tile",
 ]

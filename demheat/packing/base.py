@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import ROUND_AXES, domain_volume
+from demheat.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21
@@ -51,14 +51,14 @@ class Packing(NamedTuple):
         """Sum of the sphere volumes over the volume of the domain (overlaps counted twice)."""
         return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / self.volume)
 
-    def scaled(self, factor) -> Packing:
+    def scaled(self, factor: float) -> Packing:
         """The same packing with every length multiplied by `factor`, which must be > 0."""
         if not (np.isfinite(factor) and factor > 0):
             raise ValueError(f"factor = {factor!r}: must be a finite number > 0")
         return self._replace(centers=self.centers * factor, radii=self.radii * factor, size=self.size * factor)
 
 
-def make_packing(centers, radii, size, periodic, provenance, *, domain="box") -> Packing:
+def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: str = "box") -> Packing:
     """Check, cast and sort the arrays of a packing.
 
     Parameters
@@ -91,8 +91,7 @@ def make_packing(centers, radii, size, periodic, provenance, *, domain="box") ->
         raise ValueError(
             f"centers[{which}] = {centers[which].tolist()}: lies outside the walls of the box, 0 to {size}"
         )
-    axes = list(ROUND_AXES[domain])
-    far = np.linalg.norm(centers[:, axes] - size[axes] / 2, axis=1) > (size[axes[0]] / 2 if axes else 0.0)
+    far = from_middle(centers, domain, size) > round_radius(domain, size)
     if far.any():
         which = int(np.argmax(far))
         raise ValueError(f"centers[{which}] = {centers[which].tolist()}: lies outside the domain {domain!r}")
@@ -102,7 +101,23 @@ def make_packing(centers, radii, size, periodic, provenance, *, domain="box") ->
 
 
 def check_box(size, periodic):
-    """Cast the sides and the periodicity of a box to (3,) arrays, or raise ValueError."""
+    """Cast the sides and the periodicity of a box to arrays.
+
+    Parameters
+    ----------
+    size : (3,) sequence of float, m
+    periodic : bool or (3,) sequence of bool
+
+    Returns
+    -------
+    size : (3,) float array, m
+    periodic : (3,) bool array
+
+    Raises
+    ------
+    ValueError
+        If they are not as described, or a side is not > 0.
+    """
     try:
         sides = np.array(size, dtype=float)
     except (TypeError, ValueError):
@@ -116,9 +131,15 @@ def check_box(size, periodic):
 
 
 def check_domain(domain, size, periodic):
-    """Raise ValueError unless the domain is known, and its box square and without periods across the round axes."""
-    if not isinstance(domain, str) or domain not in ROUND_AXES:
-        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    """Raise ValueError unless the domain is known, and its box square and without periods across the round axes.
+
+    Parameters
+    ----------
+    domain : str
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    """
+    check_name("domain", domain)
     axes = list(ROUND_AXES[domain])
     if axes and (np.ptp(size[axes]) > 0 or np.any(periodic[axes])):
         raise ValueError(
@@ -128,14 +149,27 @@ def check_domain(domain, size, periodic):
 
 
 def wrap(centers, size, periodic):
-    """Centres moved into 0 <= x < size on the periodic axes, (n, 3) float array, m."""
+    """Centres moved into 0 <= x < size on the periodic axes, (n, 3) float array, m.
+
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    """
     wrapped = centers - np.where(periodic, np.floor(centers / size) * size, 0.0)
     # A tiny negative x wraps to exactly `size` by rounding: that is 0.
     return np.where(periodic & (wrapped >= size), 0.0, wrapped)
 
 
 def morton_order(centers, size):
-    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps."""
+    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps.
+
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    size : (3,) float array, m
+    """
     steps = np.clip(centers / np.max(size), 0.0, 1.0) * (2**MORTON_BITS - 1)
     x, y, z = (_spread_bits(column) for column in steps.astype(np.uint64).T)
     return np.argsort(x | (y << np.uint64(1)) | (z << np.uint64(2)), kind="stable")

@@ -9,20 +9,22 @@ import os
 import tempfile
 import warnings
 import zipfile
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from demheat.packing.base import Packing, check_box
-from demheat.packing.domain import tile, walled
+from demheat.packing.domain import replicate, walled
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 2
-RELAX = tuple(
-    f"demheat.packing.{name}" for name in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")
+RELAX = (
+    "demheat.bodies",
+    *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
 )
 LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")
 
@@ -34,7 +36,7 @@ def cache_folder() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or "~/.cache").expanduser() / "demheat" / "packings"
 
 
-def code_hash(*modules) -> str:
+def code_hash(*modules: str) -> str:
     """Digest of the source of modules, given by dotted name: as part of a key, it retires what older code has made."""
     digest = hashlib.sha256()
     for module in modules:
@@ -42,7 +44,7 @@ def code_hash(*modules) -> str:
     return digest.hexdigest()
 
 
-def cached(make, key, *, folder=None) -> Packing:
+def cached(make: Callable[[], Packing], key: dict, *, folder=None) -> Packing:
     """Return the packing stored under `key`, or make and store it.
 
     Parameters
@@ -73,7 +75,15 @@ def cached(make, key, *, folder=None) -> Packing:
 
 
 def relaxed(
-    number, *, size=(1.0, 1.0, 1.0), phi=0.64, radii=None, periodic=True, seed=0, folder=None, **knobs
+    number: int,
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    phi: float = 0.64,
+    radii=None,
+    periodic: bool | Sequence[bool] = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+    **knobs,
 ) -> Packing:
     """`relax` with a memory: boxes of one shape share one packing, scaled.
 
@@ -88,7 +98,16 @@ def relaxed(
     return _of_shape(relax, RELAX, request, size, radii, periodic, folder)
 
 
-def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, folder=None, **knobs) -> Packing:
+def grown(
+    number: int,
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    radii=None,
+    periodic: bool | Sequence[bool] = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+    **knobs,
+) -> Packing:
     """`lsa` with a memory: boxes of one shape share one packing, scaled.
 
     Parameters
@@ -104,23 +123,33 @@ def grown(number, *, size=(1.0, 1.0, 1.0), radii=None, periodic=True, seed=0, fo
     return _of_shape(lsa, LSA, request, size, radii, periodic, folder)
 
 
-def tiled(number, counts, *, size=(1.0, 1.0, 1.0), periodic=True, seed=0, folder=None) -> Packing:
-    """Tiles of one relaxed packing, which is made once; between walls for tessellations only.
+def replicated(
+    number: int,
+    counts: Sequence[int],
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    periodic: bool = True,
+    seed: int = 0,
+    folder: str | os.PathLike | None = None,
+) -> Packing:
+    """Replicas of one relaxed packing, which is made once; between walls for tessellations only.
 
     Parameters
     ----------
     number : int
-        Rounded so that every tile has as many.
+        Rounded so that every replica has as many.
     counts : (3,) sequence of int
-        Tiles along each axis, see `demheat.packing.domain.tile_counts`.
+        Replicas along each axis, see `demheat.packing.domain.replica_counts`.
     size, seed, folder
         As in `relaxed`.
     periodic : bool
-        If not, the tiles' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
+        If not, the replicas' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
     """
     sides, counts = np.array(size, dtype=float), np.array(counts)
-    packing = tile(relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder), counts)
-    # The size is met exactly: its tiles' may differ by rounding.
+    packing = replicate(
+        relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder), counts
+    )
+    # The size is met exactly: its replicas' may differ by rounding.
     centers = np.minimum(packing.centers, np.nextafter(sides, 0.0), out=packing.centers)
     packing = packing._replace(centers=centers, size=sides)
     return packing if periodic else walled(packing)

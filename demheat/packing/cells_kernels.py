@@ -12,6 +12,21 @@ from numba import njit, prange
 
 # Particles per task. Fixed, so that rows land in the same place whatever the number of threads.
 CHUNK = 256
+# Column of the radius in rows (x, y, z, radius).
+RADIUS = 3
+
+
+class Reach(NamedTuple):
+    """How near is near: two particles closer than scale (r_i + r_j) + skin.
+
+    Attributes
+    ----------
+    scale : float
+    skin : float, m
+    """
+
+    scale: float
+    skin: float
 
 
 class Grid(NamedTuple):
@@ -21,9 +36,9 @@ class Grid(NamedTuple):
     ----------
     dims : (levels, 3) int array
         Cells along each axis.
-    cell : (levels, 3) float array
+    cell : (levels, 3) float array, m
         Sides of a cell.
-    largest : (levels,) float array
+    largest : (levels,) float array, m
         Largest radius in the level.
     first : (levels,) int array
         Number of the first cell of each level.
@@ -31,9 +46,9 @@ class Grid(NamedTuple):
         First slot of each cell.
     order : (n,) uint32 array
         Particle in each slot.
-    slots : (n, 4) float array
+    slots : (n, 4) float array, m
         Wrapped centre and radius of that particle.
-    box : (3,) float array
+    box : (3,) float array, m
         Period of each axis, 0 where it is walled.
     """
 
@@ -48,18 +63,28 @@ class Grid(NamedTuple):
 
 
 @njit(cache=True)
-def fill_cells(points, level, dims, cell, first, start, order, slots):
-    """Counting sort of the points into cells; fills start, order and slots."""
-    n = len(points)
+def fill_cells(points, level, grid):
+    """Counting sort of the points into cells.
+
+    Parameters
+    ----------
+    points : (n, 4) float array, m
+        Wrapped centre and radius.
+    level : (n,) int array
+        Size level of each.
+    grid : Grid
+        Its start, order and slots are filled.
+    """
+    n, dims, start = len(points), grid.dims, grid.start
     keys = np.empty(n, np.int64)
     start[:] = 0
     for i in range(n):
         lev = level[i]
         key = np.int64(0)
         for axis in range(3):
-            c = np.int64(np.floor(points[i, axis] / cell[lev, axis]))
+            c = np.int64(np.floor(points[i, axis] / grid.cell[lev, axis]))
             key = key * dims[lev, axis] + min(max(c, 0), dims[lev, axis] - 1)
-        keys[i] = key + first[lev]
+        keys[i] = key + grid.first[lev]
         start[keys[i] + 1] += 1
     for k in range(len(start) - 1):
         start[k + 1] += start[k]
@@ -67,9 +92,9 @@ def fill_cells(points, level, dims, cell, first, start, order, slots):
     for i in range(n):
         t = place[keys[i]]
         place[keys[i]] += 1
-        order[t] = i
+        grid.order[t] = i
         for c in range(4):
-            slots[t, c] = points[i, c]
+            grid.slots[t, c] = points[i, c]
 
 
 @njit(cache=True)
@@ -102,8 +127,9 @@ def _distance_to_cell(x, c, cell, count, period, whole):
 
 
 @njit(cache=True)
-def _scan(i, p, begin, end, order, slots, box, scale, skin, out, k):
+def _scan(i, p, begin, end, grid, reach, out, k):
     """Append the particles of slots begin..end that are near particle i; counts on when `out` is full."""
+    box, order, slots = grid.box, grid.order, grid.slots
     last = len(out) - 1
     ix = 1.0 / box[0] if box[0] > 0.0 else 0.0
     iy = 1.0 / box[1] if box[1] > 0.0 else 0.0
@@ -116,28 +142,47 @@ def _scan(i, p, begin, end, order, slots, box, scale, skin, out, k):
         dx -= box[0] * np.rint(dx * ix)
         dy -= box[1] * np.rint(dy * iy)
         dz -= box[2] * np.rint(dz * iz)
-        reach = scale * (p[3] + slots[t, 3]) + skin
+        near = reach.scale * (p[RADIUS] + slots[t, RADIUS]) + reach.skin
         j = order[t]
         # Always written, kept only if near: no branch to mispredict.
         out[np.uint64(min(k, last))] = j
-        k += (dx * dx + dy * dy + dz * dz < reach * reach) & (j != i)
+        k += (dx * dx + dy * dy + dz * dz < near * near) & (j != i)
     return k
 
 
 @njit(cache=True)
-def _row(i, p, grid, scale, skin, out, k):
-    """Append all near neighbours of the particle i at p = (x, y, z, radius)."""
-    box, start, order, slots = grid.box, grid.start, grid.order, grid.slots
+def append_row(i, p, grid, reach, out, k):
+    """Append all near neighbours of one particle to a buffer.
+
+    Parameters
+    ----------
+    i : int
+        The particle, which is not its own neighbour; -1 for a place without one.
+    p : (4,) float array, m
+        Wrapped centre and radius.
+    grid : Grid
+    reach : Reach
+    out : (capacity + 1,) uint32 array, out
+        The last place is scratch.
+    k : int
+        How many it holds.
+
+    Returns
+    -------
+    int
+        How many it holds now; more than the capacity if it was too short.
+    """
+    box, start = grid.box, grid.start
     for lev in range(len(grid.largest)):
         # A hair more than the reach: cell edges are rounded, the comparison of distances is not.
-        reach = (scale * (p[3] + grid.largest[lev]) + skin) * (1.0 + 1e-9)
+        far = (reach.scale * (p[RADIUS] + grid.largest[lev]) + reach.skin) * (1.0 + 1e-9)
         nx, ny, nz = grid.dims[lev, 0], grid.dims[lev, 1], grid.dims[lev, 2]
         hx, hy, hz = grid.cell[lev, 0], grid.cell[lev, 1], grid.cell[lev, 2]
-        x0, x1, all_x = _span(p[0], reach, hx, nx, box[0])
-        y0, y1, all_y = _span(p[1], reach, hy, ny, box[1])
+        x0, x1, all_x = _span(p[0], far, hx, nx, box[0])
+        y0, y1, all_y = _span(p[1], far, hy, ny, box[1])
         for cx in range(x0, x1 + 1):
             gap = _distance_to_cell(p[0], cx, hx, nx, box[0], all_x)
-            left_x = reach * reach - gap * gap
+            left_x = far * far - gap * gap
             slab = grid.first[lev] + _wrapped(cx, nx) * ny * nz
             for cy in range(y0, y1 + 1):
                 gap = _distance_to_cell(p[1], cy, hy, ny, box[1], all_y)
@@ -148,26 +193,26 @@ def _row(i, p, grid, scale, skin, out, k):
                 row = slab + _wrapped(cy, ny) * nz
                 # One run of cells, or two when it crosses the period.
                 if z0 < 0:
-                    k = _scan(i, p, start[row + z0 + nz], start[row + nz], order, slots, box, scale, skin, out, k)
+                    k = _scan(i, p, start[row + z0 + nz], start[row + nz], grid, reach, out, k)
                     z0 = np.int64(0)
                 if z1 >= nz:
-                    k = _scan(i, p, start[row], start[row + z1 - nz + 1], order, slots, box, scale, skin, out, k)
+                    k = _scan(i, p, start[row], start[row + z1 - nz + 1], grid, reach, out, k)
                     z1 = nz - 1
-                k = _scan(i, p, start[row + z0], start[row + z1 + 1], order, slots, box, scale, skin, out, k)
+                k = _scan(i, p, start[row + z0], start[row + z1 + 1], grid, reach, out, k)
     return k
 
 
 @njit(parallel=True, cache=True)
-def near_rows(points, grid, scale, skin, buffer, lengths):
+def near_rows(points, grid, reach, buffer, lengths):
     """Rows of near neighbours, one chunk of particles per row of `buffer`; lengths are right even if it is too short.
 
     Parameters
     ----------
-    points : (n, 4) float array
+    points : (n, 4) float array, m
         Wrapped centre and radius.
     grid : Grid
-    scale, skin : float
-        j is near i when |x_i - x_j| < scale (r_i + r_j) + skin, nearest image.
+    reach : Reach
+        Of the nearest image.
     buffer : (chunks, capacity) uint32 array, out
         The last column is scratch.
     lengths : (n,) int array, out
@@ -177,13 +222,21 @@ def near_rows(points, grid, scale, skin, buffer, lengths):
         k = np.int64(0)
         for i in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
             before = k
-            k = _row(i, points[i], grid, scale, skin, buffer[chunk], k)
+            k = append_row(i, points[i], grid, reach, buffer[chunk], k)
             lengths[i] = k - before
 
 
 @njit(parallel=True, cache=True)
 def compact_rows(buffer, indptr, indices):
-    """Copy the rows of all chunks behind each other."""
+    """Copy the rows of all chunks behind each other.
+
+    Parameters
+    ----------
+    buffer : (chunks, capacity + 1) uint32 array
+        As `near_rows` fills it.
+    indptr : (n + 1,) int64 array
+    indices : (nnz,) uint32 array, out
+    """
     n = len(indptr) - 1
     for chunk in prange(len(buffer)):
         begin = indptr[chunk * CHUNK]
@@ -193,7 +246,13 @@ def compact_rows(buffer, indptr, indices):
 
 @njit(parallel=True, cache=True)
 def sort_rows(indptr, indices):
-    """Sort each row in place by insertion: rows are short and nearly sorted."""
+    """Sort each row in place by insertion: rows are short and nearly sorted.
+
+    Parameters
+    ----------
+    indptr : (n + 1,) int64 array
+    indices : (nnz,) uint32 array, in and out
+    """
     for i in prange(len(indptr) - 1):
         for a in range(indptr[i] + 1, indptr[i + 1]):
             value = indices[a]
@@ -206,7 +265,18 @@ def sort_rows(indptr, indices):
 
 @njit(parallel=True, cache=True)
 def row_distances(points, box, indptr, indices, out):
-    """Distance of each listed pair over the sum of its radii, nearest image."""
+    """Distance of each listed pair over the sum of its radii, nearest image.
+
+    Parameters
+    ----------
+    points : (n, 4) float array, m
+        Centre and radius.
+    box : (3,) float array, m
+        Period of each axis, 0 where it is walled.
+    indptr : (n + 1,) int64 array
+    indices : (nnz,) uint32 array
+    out : (nnz,) float array, out
+    """
     for i in prange(len(indptr) - 1):
         for t in range(indptr[i], indptr[i + 1]):
             j = indices[t]
@@ -216,4 +286,4 @@ def row_distances(points, box, indptr, indices, out):
                 if box[axis] > 0.0:
                     d -= box[axis] * np.rint(d / box[axis])
                 d2 += d * d
-            out[t] = np.sqrt(d2) / (points[i, 3] + points[j, 3])
+            out[t] = np.sqrt(d2) / (points[i, RADIUS] + points[j, RADIUS])

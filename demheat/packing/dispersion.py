@@ -1,23 +1,29 @@
 """Random dispersions of spheres as inclusions: exact volume fraction, no two surfaces closer than a gap.
 
 By the Lubachevsky-Stillinger algorithm (`lsa`), which at this slow growth leaves spheres much as in equilibrium, or by
-random sequential addition, one sphere after the other where it finds room (Widom, J. Chem. Phys. 44 (1966) 3888). Half
-the gap is added to every radius, and taken off every wall, while the spheres are placed.
+random sequential addition, one sphere after the other where it finds room. Half the gap is added to every radius, and
+taken off every wall, while the spheres are placed.
 """
 
 from __future__ import annotations
 
 import math
 import os
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
 
 import numpy as np
 
+from demheat.addition import MOST_FILLED, add_spheres
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.cache import LSA, cached, code_hash
 from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.parts import axis_number, finite, vector
-from demheat.scene import Scene, Sphere
+from demheat.scene import Material, Scene, Sphere
+
+# Whose source decides what a dispersion is.
+CODE = (*LSA, "demheat.addition", __name__)
 
 METHODS = ("lsa", "rsa")
 RATIO = 6.0
@@ -25,28 +31,56 @@ RATIO = 6.0
 # relaxed grid that they grow from; a second for a few hundred. At 0.02 and 0.0005 pair distributions were the same, at
 # fractions 0.1 to 0.5, within the noise of 3 cells of 12 diameters.
 GROWTH = 0.002
-# Spheres with their gaps: random close packing, beyond which `lsa` would jam or order them, and well below where random
-# addition jams (0.38), for there nearly every trial is refused.
-MOST_FILLED = {"lsa": 0.63, "rsa": 0.35}
+# Spheres with their gaps: random close packing, beyond which `lsa` would jam or order them; and where random addition
+# gives up.
+MOST = {"lsa": 0.63, "rsa": MOST_FILLED}
 MOST_ADDED = 0.3
-BATCH, TRIALS = 256, 200_000
 # A scene compares all pairs of its spheres, and random addition does too: more take hours.
 MOST_SPHERES = 100_000
 
 
+@dataclass(frozen=True)
+class Placing:
+    """How the spheres of a dispersion find their places.
+
+    D below is the diameter of the sphere of mean volume.
+
+    Parameters
+    ----------
+    gap : float
+        Least distance of two surfaces, and of a surface and a wall, in units of D.
+    method : {"lsa", "rsa"}
+        Lubachevsky-Stillinger, or random sequential addition (largest spheres first).
+    seed : int
+
+    Raises
+    ------
+    ValueError
+        If one is not as described.
+    """
+
+    gap: float = 0.02
+    method: str = "lsa"
+    seed: int = 0
+
+    def __post_init__(self):
+        if self.method not in METHODS:
+            raise ValueError(f"method = {self.method!r}: must be one of {', '.join(METHODS)}")
+        _check_whole("seed", self.seed, 0)
+        finite("gap", self.gap, "a finite number >= 0, in diameters", lambda v: v >= 0)
+
+
 def dispersion(
-    number=None,
+    number: int | None = None,
     *,
-    fraction=0.2,
-    ratio=None,
-    size=(1.0, 1.0, 1.0),
-    gap=0.02,
+    fraction: float = 0.2,
+    ratio: float | None = None,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
     radii=None,
-    periodic=True,
-    method="lsa",
-    seed=0,
-    folder=None,
-):
+    periodic: bool = True,
+    folder: str | os.PathLike | None = None,
+    **knobs,
+) -> tuple[np.ndarray, np.ndarray]:
     """Place spheres at random, equal or not; kept on disk, so that each dispersion is made once.
 
     D below is the diameter of the sphere of mean volume, which follows from number and fraction.
@@ -62,17 +96,14 @@ def dispersion(
     ratio : float, optional
         L/D, shortest side over D, 6 by default; not together with `number`.
     size : (3,) sequence of float, m
-    gap : float
-        Least distance of two surfaces, and of a surface and a wall, in units of D.
     radii : distribution or (number,) array_like, optional
         Only ratios count; equal by default. See `demheat.packing.radii`.
     periodic : bool
         A periodic cell, whose faces spheres may cross; or walls, with all spheres inside.
-    method : {"lsa", "rsa"}
-        Lubachevsky-Stillinger, or random sequential addition (largest spheres first).
-    seed : int
     folder : path, optional
         Default `demheat.packing.cache.cache_folder()`.
+    gap, method, seed
+        As in `Placing`.
 
     Returns
     -------
@@ -86,33 +117,34 @@ def dispersion(
     RuntimeError
         If no room is found for a sphere.
     """
-    sides, radii = _check(number, fraction, ratio, size, gap, radii, periodic, method, seed, folder)
+    placing = Placing(**knobs)
+    _check(number, fraction, ratio, periodic, folder, placing)
+    sides = check_box(size, periodic)[0]
+    radii = Gaussian(spread=0.0) if radii is None else distribution(radii)
     number = _checked_number(number, fraction, RATIO if ratio is None else ratio, sides)
-    longest = float(sides.max())
     # 12 digits: sides such as 0.1 and 0.3 are rounded already, and so are their ratios.
-    shape = np.round(sides / longest, 12)
-    drawn = radii.draw(number, np.random.default_rng([seed, 2]))
-    drawn = _filling(fraction, drawn, shape)
-    room = gap * _mean_diameter(drawn)
-    _check_room(drawn, room, shape, periodic, method)
-    if method == "lsa":
-        _check_few(drawn, room, shape, periodic, fraction, gap)
-    key = {"algorithm": "dispersion", "code": code_hash(*LSA, __name__), "radii": repr(radii), "shape": shape.tolist()}
-    key |= {"number": number, "fraction": fraction, "gap": gap, "periodic": periodic, "method": method, "seed": seed}
-    unit = cached(lambda: _placed(drawn, room, shape, periodic, method, seed), key, folder=folder)
-    return unit.centers * (sides / shape), _filling(fraction, unit.radii * longest, sides)
+    shape = np.round(sides / sides.max(), 12)
+    drawn = _filling(fraction, radii.draw(number, np.random.default_rng([placing.seed, 2])), shape)
+    room = placing.gap * _mean_diameter(drawn)
+    _check_room(drawn, room, shape, periodic, placing.method)
+    if placing.method == "lsa":
+        _check_few(drawn, room, shape, periodic, fraction, placing.gap)
+    key = {"algorithm": "dispersion", "code": code_hash(*CODE), "radii": repr(radii), "shape": shape.tolist()}
+    key |= {"number": number, "fraction": fraction, "periodic": periodic} | asdict(placing)
+    unit = cached(lambda: _placed(drawn, room, shape, periodic, placing), key, folder=folder)
+    return unit.centers * (sides / shape), _filling(fraction, unit.radii * float(sides.max()), sides)
 
 
 def dispersion_scene(
-    number=None,
+    number: int | None = None,
     *,
-    matrix,
-    inclusion,
-    load=None,
-    axis=1,
-    temperatures=(25.0, 35.0),
-    size=(1.0, 1.0, 1.0),
-    periodic=True,
+    matrix: Material,
+    inclusion: Material,
+    load: str | None = None,
+    axis: int = 1,
+    temperatures: Sequence[float] = (25.0, 35.0),
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    periodic: bool = True,
     **knobs,
 ) -> Scene:
     """Scene of a random dispersion under a load along one axis.
@@ -127,8 +159,12 @@ def dispersion_scene(
         walls held at them, the others insulated, the default for walled ones. Walled dispersions can take both, so that
         the same spheres are seen under either.
     axis : {0, 1, 2}
-    temperatures : (2,) sequence of float
+    temperatures : (2,) sequence of float, K or degrees Celsius
         Of the low and the high wall of the axis, different.
+
+    Returns
+    -------
+    Scene
 
     Raises
     ------
@@ -136,6 +172,14 @@ def dispersion_scene(
         As `dispersion`; if the axis or the temperatures are not as described; and if walls are asked for
         a periodic dispersion, whose spheres cross the faces.
     """
+    walls = _load(load, axis, temperatures, size, periodic)
+    centers, radii = dispersion(number, size=size, periodic=periodic, **knobs)
+    spheres = [Sphere(center, radius, inclusion) for center, radius in zip(centers, radii, strict=True)]
+    return Scene(size, matrix, spheres, **walls)
+
+
+def _load(load, axis, temperatures, size, periodic):
+    """Walls or gradient of a scene, as its keyword."""
     load = ("gradient" if periodic else "walls") if load is None else load
     if load not in ("gradient", "walls"):
         raise ValueError(f"load = {load!r}: must be 'gradient' or 'walls'")
@@ -145,11 +189,9 @@ def dispersion_scene(
     low, high = vector("temperatures", temperatures, length=2)
     if low == high:
         raise ValueError(f"temperatures = {temperatures!r}: must be two different ones, or there is no load")
-    centers, radii = dispersion(number, size=size, periodic=periodic, **knobs)
-    spheres = [Sphere(center, radius, inclusion) for center, radius in zip(centers, radii, strict=True)]
     if load == "walls":
-        return Scene(size, matrix, spheres, walls={"xyz"[axis] + "-": low, "xyz"[axis] + "+": high})
-    return Scene(size, matrix, spheres, gradient=(high - low) / size[axis] * np.eye(3)[axis])
+        return {"walls": {"xyz"[axis] + "-": low, "xyz"[axis] + "+": high}}
+    return {"gradient": (high - low) / size[axis] * np.eye(3)[axis]}
 
 
 def _checked_number(number, fraction, ratio, sides):
@@ -180,67 +222,42 @@ def _mean_diameter(radii):
     return 2 * float(np.cbrt(np.mean(radii**3)))
 
 
-def _placed(radii, room, sides, periodic, method, seed) -> Packing:
+def _placed(radii, room, sides, periodic, placing) -> Packing:
     """Place the spheres with half the room around each, in a box less that much at each wall."""
     inner = sides if periodic else sides - room
     wide = radii + room / 2
-    if method == "rsa":
-        centers, kept = _added(wide, inner, periodic, np.random.default_rng([seed, 3]))
+    if placing.method == "rsa":
+        kept, rng = np.sort(wide)[::-1], np.random.default_rng([placing.seed, 3])
+        centers = add_spheres(kept, inner, rng, periodic=periodic, margin=0.0 if periodic else kept)
     else:
         filled = float(4 / 3 * np.pi * np.sum(wide**3) / np.prod(inner))
-        grown = lsa(
-            len(radii), size=inner, phi=filled, radii=wide, periodic=periodic, seed=seed, growth=GROWTH, allow_few=True
-        )
+        box = {"size": inner, "periodic": periodic}
+        grown = lsa(len(radii), **box, radii=wide, seed=placing.seed, phi=filled, growth=GROWTH, allow_few=True)
         centers, kept = grown.centers, grown.radii
-    provenance = {"algorithm": f"dispersion by {method}", "seed": int(seed), "number": len(radii)}
+    provenance = {"algorithm": f"dispersion by {placing.method}", "seed": int(placing.seed), "number": len(radii)}
     return make_packing(centers + (sides - inner) / 2, kept - room / 2, sides, periodic, provenance)
 
 
-def _added(radii, sides, periodic, rng):
-    """Centres of spheres added at random where they overlap none, (n, 3) float array, and their radii.
-
-    Each trial is held against all spheres before it: fine for thousands.
-    """
-    radii = np.sort(radii)[::-1]
-    centers = np.empty((len(radii), 3))
-    for n, radius in enumerate(radii):
-        margin = 0.0 if periodic else radius
-        for _ in range(0, TRIALS, BATCH):
-            trials = margin + (sides - 2 * margin) * rng.random((BATCH, 3))
-            square = np.zeros((BATCH, n))
-            for axis, side in enumerate(sides):
-                along = np.abs(trials[:, axis, None] - centers[:n, axis])
-                square += (np.minimum(along, side - along) if periodic else along) ** 2
-            free = np.all(square >= (radii[:n] + radius) ** 2, axis=1)
-            if free.any():
-                centers[n] = trials[np.argmax(free)]
-                break
-        else:
-            raise RuntimeError(f"no room for sphere {n + 1} of {len(radii)} in {TRIALS} trials; use method='lsa'")
-    return centers, radii
-
-
-def _check(number, fraction, ratio, size, gap, radii, periodic, method, seed, folder):
-    """Sides of the box and the distribution of radii, all arguments checked."""
-    if method not in METHODS:
-        raise ValueError(f"method = {method!r}: must be one of {', '.join(METHODS)}")
+def _check(number, fraction, ratio, periodic, folder, placing):
+    """Raise ValueError unless the arguments of `dispersion` are as described there."""
     if number is not None and ratio is not None:
         raise ValueError(f"number = {number!r}, ratio = {ratio!r}: one gives the other; pass one of them")
-    for name, value, least in (("number", number, 1), ("seed", seed, 0)):
-        whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-        if not (whole and value >= least) and not (name == "number" and value is None):
-            raise ValueError(f"{name} = {value!r}: must be an integer >= {least}")
+    if number is not None:
+        _check_whole("number", number, 1)
     if not isinstance(periodic, bool | np.bool_):
         raise ValueError(f"periodic = {periodic!r}: must be True or False")
     if folder is not None and not isinstance(folder, str | os.PathLike):
         raise ValueError(f"folder = {folder!r}: must be a path, or None")
     finite("fraction", fraction, "> 0 and < 1", lambda v: 0 < v < 1)
-    finite("gap", gap, "a finite number >= 0, in diameters", lambda v: v >= 0)
     if ratio is not None:
         finite("ratio", ratio, "a finite number > 1", lambda v: v > 1)
-    if method == "rsa" and fraction > MOST_ADDED:
+    if placing.method == "rsa" and fraction > MOST_ADDED:
         raise ValueError(f"fraction = {fraction!r}: must be <= {MOST_ADDED} by 'rsa'; 'lsa' can do more")
-    return check_box(size, periodic)[0], Gaussian(spread=0.0) if radii is None else distribution(radii)
+
+
+def _check_whole(name, value, least):
+    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < least:
+        raise ValueError(f"{name} = {value!r}: must be an integer >= {least}")
 
 
 def _check_few(radii, room, sides, periodic, fraction, gap):
@@ -268,8 +285,8 @@ def _check_room(radii, room, sides, periodic, method):
             "side 1): must fit; use more spheres, or a smaller fraction or gap"
         )
     filled = float(4 / 3 * np.pi * np.sum((radii + room / 2) ** 3) / np.prod(inner))
-    if filled > MOST_FILLED[method]:
+    if filled > MOST[method]:
         raise ValueError(
-            f"{len(radii)} spheres and their gaps fill {filled:.3f} of the box; must be <= {MOST_FILLED[method]} by "
+            f"{len(radii)} spheres and their gaps fill {filled:.3f} of the box; must be <= {MOST[method]} by "
             f"{method!r}: use a smaller fraction or gap, or between walls more spheres"
         )

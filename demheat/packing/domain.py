@@ -3,25 +3,41 @@
 from __future__ import annotations
 
 import math
+import warnings
+from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
-from demheat.scene import ROUND_AXES
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
 ROUNDING = 1e-12
-# Beyond so many particles a packing is tiles of so many at most: a few CPU-seconds to make one of them, instead of
+# Beyond so many particles a packing is replicas of so many at most: a few CPU-seconds to make one of them, instead of
 # 90 for each million.
-UNTILED, TILE, LEAST_TILE = 2_000_000, 250_000, 1000
+UNREPEATED, REPLICA, LEAST_REPLICA = 2_000_000, 250_000, 1000
 # Least distance of a centre to a wall, and depth down to which particles are drawn off it, in mean radii. Found on the
-# centred sphere, 3e4 particles, contrasts 0.01, 5, 100: -.002, -.002, -.006 % in tiles, -.006, -.006, -.016 % relaxed
-# between walls; at (0.5, 4) it is -.004, -.004, -.010 %.
+# centred sphere, 3e4 particles, contrasts 0.01, 5, 100: -.002, -.002, -.006 % in replicas, -.006, -.006, -.016 %
+# relaxed between walls; at (0.5, 4) it is -.004, -.004, -.010 %.
 DRAWN = (1.0, 6.0)
 
 
-def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside") -> Packing:
+def __getattr__(name):
+    if name == "tile":
+        warnings.warn("tile is now replicate", DeprecationWarning, stacklevel=2)
+        return replicate
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def cut(
+    packing: Packing,
+    domain: str = "box",
+    *,
+    size: Sequence[float] | None = None,
+    center: Sequence[float] | None = None,
+    keep: str = "inside",
+) -> Packing:
     """Cut a domain out of a larger packing.
 
     The cut is rough: spheres lie at all distances from it, as in a sawn specimen, so that its outer layer is less dense
@@ -53,8 +69,7 @@ def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside"
         If an argument is not as described, the domain reaches beyond a wall, or no sphere is left.
     """
     _check_box_packing(packing)
-    if domain not in ROUND_AXES:
-        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    check_name("domain", domain)
     if keep not in KEEP:
         raise ValueError(f"keep = {keep!r}: must be one of {', '.join(KEEP)}")
     axes = list(ROUND_AXES[domain])
@@ -68,30 +83,30 @@ def cut(packing: Packing, domain="box", *, size=None, center=None, keep="inside"
     local = packing.centers - corner
     turns = np.floor((local - sides / 2) / packing.size + 0.5)
     local -= np.where(packing.periodic & ~whole, turns * packing.size, 0.0)
-    kept = _reach_inside(local, packing.radii if keep == "inside" else 0.0, sides, axes, np.flatnonzero(~whole))
+    kept = _reach_inside(local, packing.radii if keep == "inside" else 0.0, domain, sides, ~whole)
     if not kept.any():
         raise ValueError(f"size = {sides.tolist()}: no sphere of the packing is left in this {domain}; must be larger")
     provenance = {"algorithm": "cut", "keep": keep, "corner": corner.tolist(), "of": packing.provenance}
     return make_packing(local[kept], packing.radii[kept], sides, periodic, provenance, domain=domain)
 
 
-def tile(packing: Packing, repeats) -> Packing:
+def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
     """Repeat a packing along its periodic axes.
 
-    The larger packing is a legitimate periodic one, but holds no more information than the tile: a homogeneous periodic
-    network has the very same conductivity, and scatter between packings does not fall with the number of tiles.
+    The larger packing is a legitimate periodic one, but holds no more information than one replica: a homogeneous
+    periodic network has the very same conductivity, and scatter between packings does not fall with their number.
 
     Parameters
     ----------
     packing : Packing
     repeats : (3,) sequence of int
-        Tiles along each axis; 1 where there are walls.
+        Replicas along each axis; 1 where there are walls.
 
     Returns
     -------
     Packing
-        Tile after tile, each in the order of the given packing, so that neighbours in space stay near in memory.
-        provenance["repeats"] says how often it was repeated, "of" how the tile was made.
+        Replica after replica, each in the order of the given packing, so that neighbours in space stay near in memory.
+        provenance["repeats"] says how often it was repeated, "of" how the replica was made.
 
     Raises
     ------
@@ -112,44 +127,49 @@ def tile(packing: Packing, repeats) -> Packing:
     centers = np.empty((len(cells) * n, 3))
     for k, cell in enumerate(cells):
         np.add(packing.centers, cell * packing.size, out=centers[k * n : (k + 1) * n])
-    # Rounding may put the last tile's last centre on the far face, which is the first.
+    # Rounding may put the last replica's last centre on the far face, which is the first.
     beyond = packing.periodic & (centers >= size)
     centers[beyond] = 0.0
-    provenance = {"algorithm": "tile", "repeats": counts.tolist(), "number": len(centers), "of": packing.provenance}
+    provenance = {
+        "algorithm": "replicate",
+        "repeats": counts.tolist(),
+        "number": len(centers),
+        "of": packing.provenance,
+    }
     return packing._replace(centers=centers, radii=np.tile(packing.radii, len(cells)), size=size, provenance=provenance)
 
 
-def tile_counts(number, size, tiles=None):
+def replica_counts(number: int, size: Sequence[float], replicas: int | None = None) -> np.ndarray:
     """How often a packing of so many particles repeats a smaller one along each axis, (3,) int array.
 
     Parameters
     ----------
     number : int
     size : (3,) sequence of float, m
-    tiles : int, optional
-        Along the shortest side, and along the others what makes tiles nearest to cubes. By default 1 up to `UNTILED`
-        particles, and beyond as many as leave tiles of `TILE` particles or fewer.
+    replicas : int, optional
+        Along the shortest side, and along the others what makes them nearest to cubes. By default 1 up to `UNREPEATED`
+        particles, and beyond as many as leave replicas of `REPLICA` particles or fewer.
 
     Raises
     ------
     ValueError
-        If an argument is not as described, or `tiles` leaves less than `LEAST_TILE` particles to a tile.
+        If an argument is not as described, or `replicas` leaves less than `LEAST_REPLICA` particles to a replica.
     """
     if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     sides, _ = check_box(size, True)
-    if tiles is None:
-        edge = np.cbrt(sides.prod() * TILE / number) if number > UNTILED else sides.max()
+    if replicas is None:
+        edge = np.cbrt(sides.prod() * REPLICA / number) if number > UNREPEATED else sides.max()
         return np.ceil(sides / edge - ROUNDING).astype(int)
-    if not isinstance(tiles, int | np.integer) or isinstance(tiles, bool) or tiles < 1:
-        raise ValueError(f"tiles = {tiles!r}: must be an integer >= 1, or None")
-    counts = np.round(tiles * sides / sides.min())
-    needed = LEAST_TILE * counts.prod()
-    if tiles > 1 and number < needed:
+    if not isinstance(replicas, int | np.integer) or isinstance(replicas, bool) or replicas < 1:
+        raise ValueError(f"replicas = {replicas!r}: must be an integer >= 1, or None")
+    counts = np.round(replicas * sides / sides.min())
+    needed = LEAST_REPLICA * counts.prod()
+    if replicas > 1 and number < needed:
         made = " x ".join(f"{count:.0f}" for count in counts)
         raise ValueError(
-            f"tiles = {tiles}: makes {made} tiles of at least {LEAST_TILE} particles, which need {needed:.0f} of them; "
-            f"must be fewer for {number}"
+            f"replicas = {replicas}: makes {made} replicas of at least {LEAST_REPLICA} particles, which need "
+            f"{needed:.0f} of them; must be fewer for {number}"
         )
     return counts.astype(int)
 
@@ -205,13 +225,12 @@ def _checked_center(packing, center, sides):
     return middle
 
 
-def _reach_inside(local, reach, sides, axes, cut_axes):
-    """Which spheres, that reach so far around their centre, lie in the domain."""
+def _reach_inside(local, reach, domain, sides, is_cut):
+    """Which spheres, that reach so far around their centre, lie in the domain; its flat walls are cut on some axes."""
     inside = np.ones(len(local), dtype=bool)
-    for k in (k for k in cut_axes if k not in axes):
+    for k in set(np.flatnonzero(is_cut)) - set(ROUND_AXES[domain]):
         inside &= (local[:, k] >= reach) & (local[:, k] <= sides[k] - reach)
-    if axes:
-        off_axis = np.linalg.norm(local[:, axes] - sides[axes] / 2, axis=1)
-        # A hair less than the radius: the gate of `make_packing` squares in another order.
-        inside &= off_axis + reach <= sides[axes[0]] / 2 * (1 - ROUNDING)
+    if ROUND_AXES[domain]:
+        # A hair less than the radius: coordinates moved to the box's corner are rounded.
+        inside &= from_middle(local, domain, sides) + reach <= round_radius(domain, sides) * (1 - ROUNDING)
     return inside

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import math
 import warnings
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -31,27 +33,12 @@ DENSEST = 0.85
 LEAST_SIDES = {True: 4.2, False: 2.0}
 
 
-def lsa(
-    number=None,
-    *,
-    size=(1.0, 1.0, 1.0),
-    phi=None,
-    pressure=None,
-    radii=None,
-    periodic=True,
-    domain="box",
-    seed=0,
-    growth=0.02,
-    start=None,
-    allow_few=False,
-    progress=None,
-) -> Packing:
-    """Pack spheres without overlap by letting them grow while they move and collide.
+@dataclass(frozen=True)
+class Growth:
+    """How fast the spheres of `lsa` grow, and how far.
 
     Parameters
     ----------
-    number, size, radii, periodic, domain, seed, allow_few
-        As in `relax`.
     phi : float, optional
         Stop at this packing fraction, met to rounding.
     pressure : float, optional
@@ -61,11 +48,58 @@ def lsa(
     growth : float or sequence of (reduced pressure, rate)
         Growth rate of the mean diameter over the thermal velocity; of a sequence, each rate holds from its pressure on.
         Slower growth jams denser and takes longer.
+    progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
+
+    Raises
+    ------
+    ValueError
+        If a number is not as described.
+    """
+
+    phi: float | None = None
+    pressure: float | None = None
+    growth: float | Sequence[tuple[float, float]] = 0.02
+    progress: Callable[[float, float, float], None] | None = None
+
+    def __post_init__(self):
+        object.__setattr__(self, "growth", _checked_stages(self.growth))
+        if self.phi is not None:
+            object.__setattr__(self, "phi", finite("phi", self.phi, "> 0 and < 1", lambda v: 0 < v < 1))
+        pressure = JAMMED if self.phi is None and self.pressure is None else self.pressure
+        if pressure is not None:
+            valid = f">= {LEAST_PRESSURE:g}; give phi for a thinner gas"
+            pressure = finite("pressure", pressure, valid, lambda v: v >= LEAST_PRESSURE)
+        object.__setattr__(self, "pressure", pressure)
+
+    def rate(self, reached: float) -> float:
+        """Growth rate of the last stage whose pressure is reached, of the first before that."""
+        return max((stage for stage in self.growth if stage[0] <= reached), default=self.growth[0])[1]
+
+
+def lsa(
+    number: int | None = None,
+    *,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    radii=None,
+    periodic: bool | Sequence[bool] = True,
+    domain: str = "box",
+    seed: int = 0,
+    start: Packing | None = None,
+    allow_few: bool = False,
+    **knobs,
+) -> Packing:
+    """Pack spheres without overlap by letting them grow while they move and collide.
+
+    Parameters
+    ----------
+    number, size, radii, periodic, domain, seed, allow_few
+        As in `relax`.
     start : Packing, optional
         Begin from these spheres in their domain (`number`, `size`, `radii`, `periodic` and `domain` are then left out)
         instead of a relaxed packing at phi = 0.4 or 0.6 of the one asked for. All radii are shrunk until no two
         overlap, at most by half.
-    progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
+    phi, pressure, growth, progress
+        As in `Growth`: when to stop, and how fast to get there.
 
     Returns
     -------
@@ -88,12 +122,12 @@ def lsa(
     UserWarning
         If the sphere radii had to be shrunk by more than rounding to leave no overlap.
     """
-    stages, phi, pressure = _check_targets(growth, phi, pressure)
+    goal = Growth(**knobs)
     _check_seed(seed)
     if start is None:
         radii = Gaussian() if radii is None else distribution(radii)
         size, periodic = _check_request(number, size, periodic, domain, radii, allow_few)
-        begin = START if phi is None else min(START, START_OF_TARGET * phi)
+        begin = START if goal.phi is None else min(START, START_OF_TARGET * goal.phi)
         start = relax(
             number, size=size, phi=begin, radii=radii, periodic=periodic, domain=domain, seed=seed,
             overlap=START_OVERLAP, allow_few=allow_few,
@@ -101,41 +135,36 @@ def lsa(
     else:
         _check_alone(start, number, size, radii, periodic, domain)
     motion = Motion(start, np.random.default_rng([seed, 1]))
-    _check_room(start, motion.phi, phi)
-    stopped = _grow(motion, stages, phi, pressure, progress)
+    _check_room(start, motion.phi, goal.phi)
+    stopped = _grow(motion, goal)
     centers, radii_now, shrunk = motion.packing()
     if shrunk > 1e-10:
         warnings.warn(f"radii were shrunk by {shrunk:.1e} of themselves to leave no overlap", stacklevel=2)
     provenance = {"algorithm": "lsa", "seed": int(seed), "number": start.number, "start": start.provenance}
-    provenance |= {"growth": [list(stage) for stage in stages], "stopped_by": stopped} | motion.reached()
+    provenance |= {"growth": [list(stage) for stage in goal.growth], "stopped_by": stopped} | motion.reached()
     provenance |= {"start_shrunk": motion.start_shrunk, "shrunk": shrunk}
     return make_packing(centers, radii_now, start.size, start.periodic, provenance, domain=start.domain)
 
 
-def _grow(motion, stages, phi, pressure, progress):
-    """Run until the target is reached; returns what stopped it, or raises RuntimeError if the spheres jam before."""
-    windows, limit = 0, JAMMED if pressure is None else pressure
+def _grow(motion, goal):
+    """Run until the goal is reached; returns what stopped it, or raises RuntimeError if the spheres jam before."""
+    phi, windows, limit = goal.phi, 0, JAMMED if goal.pressure is None else goal.pressure
     while phi is None or motion.phi < phi * (1 - 1e-14):
         reached = motion.pressure if windows else 0.0
-        if not motion.run(_rate(stages, reached), phi):
+        if not motion.run(goal.rate(reached), phi):
             continue
         windows += 1
-        if progress is not None:
-            progress(motion.collisions / len(motion.spheres), motion.phi, motion.pressure)
+        if goal.progress is not None:
+            goal.progress(motion.collisions / len(motion.spheres), motion.phi, motion.pressure)
         # The first window may begin with many collisions of spheres that nearly touch.
         if windows > 1 and motion.pressure >= limit:
-            if pressure is None:
+            if goal.pressure is None:
                 raise RuntimeError(
                     f"phi = {phi} not reached: the spheres jam at phi = {motion.phi:.6f}, reduced pressure "
                     f"{motion.pressure:.2e}; ask for less, or let them grow more slowly"
                 )
             return "pressure"
     return "phi"
-
-
-def _rate(stages, reached):
-    """Growth rate of the last stage whose pressure is reached, of the first before that."""
-    return max((stage for stage in stages if stage[0] <= reached), default=stages[0])[1]
 
 
 def _check_alone(start, number, size, radii, periodic, domain):
@@ -166,8 +195,8 @@ def _check_seed(seed):
         raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
 
 
-def _check_targets(growth, phi, pressure):
-    """Growth as stages (reduced pressure from which it holds, rate), and the targets."""
+def _checked_stages(growth):
+    """Growth as a list of stages, [reduced pressure from which it holds, rate]."""
     try:
         stages = np.array([(0.0, growth)] if np.ndim(growth) == 0 else growth, dtype=float)
     except (TypeError, ValueError):
@@ -175,12 +204,7 @@ def _check_targets(growth, phi, pressure):
     good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
     if not (good and np.all(stages[:, 1] > 0) and np.all(np.diff(stages[:, 0]) > 0)):
         raise ValueError(f"growth = {growth!r}: must be a rate > 0, or pairs of ascending pressures and rates > 0")
-    if phi is not None:
-        phi = finite("phi", phi, "> 0 and < 1", lambda v: 0 < v < 1)
-    if pressure is not None:
-        valid = f">= {LEAST_PRESSURE:g}; give phi for a thinner gas"
-        pressure = finite("pressure", pressure, valid, lambda v: v >= LEAST_PRESSURE)
-    return stages.tolist(), phi, JAMMED if phi is None and pressure is None else pressure
+    return stages.tolist()
 
 
 def _check_room(start, now, phi):

@@ -19,6 +19,8 @@ LEFT, TIMED_OUT, COUNTED, STUCK = 0, 1, 2, 3
 TOO_MANY = 1000
 # Children of a node of the tree: their times are one cache line.
 FAN = 8
+# Columns of a sphere: centre, velocity, the time at which it was there, and its radius at time 0. One cache line.
+X, Y, Z, U, V, W, TIME, RADIUS = range(8)
 
 
 class Bounds(NamedTuple):
@@ -52,9 +54,44 @@ class Bounds(NamedTuple):
     last: float
 
 
+class Lists(NamedTuple):
+    """Whom each sphere may meet before it leaves its region.
+
+    Attributes
+    ----------
+    home : (n, 3) float array
+        Where each sphere was when its neighbours were listed.
+    indptr : (n + 1,) int64 array
+    indices : (nnz,) uint32 array
+    """
+
+    home: np.ndarray
+    indptr: np.ndarray
+    indices: np.ndarray
+
+
+class Events(NamedTuple):
+    """The next event of every sphere.
+
+    Attributes
+    ----------
+    times : (nodes,) float array
+        Tree of minima, leaves first: FAN children to a node.
+    levels : (depth + 1,) int array
+        Where each level of the tree begins.
+    partner : (n,) int32 array
+        Number of the sphere that will be met, or one of AGAIN, LEAVE, WALL and ROUND.
+    """
+
+    times: np.ndarray
+    levels: np.ndarray
+    partner: np.ndarray
+
+
 @njit(cache=True, error_model="numpy", inline="always")
-def _set_time(times, levels, i, time):
+def _set_time(events, i, time):
     """Give leaf i a time and mend the minima above it, as far up as they change."""
+    times, levels = events.times, events.levels
     times[i] = time
     node = i
     for level in range(1, len(levels) - 1):
@@ -71,8 +108,9 @@ def _set_time(times, levels, i, time):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _earliest(times, levels):
+def _earliest(events):
     """Leaf with the least time."""
+    times, levels = events.times, events.levels
     node = 0
     for level in range(len(levels) - 2, 0, -1):
         least = times[levels[level] + node]
@@ -87,11 +125,11 @@ def _earliest(times, levels):
 @njit(cache=True, error_model="numpy", inline="always")
 def _advance(spheres, i, now):
     """Move a sphere along its way to the time `now`."""
-    step = now - spheres[i, 6]
-    spheres[i, 0] += step * spheres[i, 3]
-    spheres[i, 1] += step * spheres[i, 4]
-    spheres[i, 2] += step * spheres[i, 5]
-    spheres[i, 6] = now
+    step = now - spheres[i, TIME]
+    spheres[i, X] += step * spheres[i, U]
+    spheres[i, Y] += step * spheres[i, V]
+    spheres[i, Z] += step * spheres[i, W]
+    spheres[i, TIME] = now
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -122,16 +160,16 @@ def _walls(bounds, s, home, i, now):
     """First meeting with a wall or the edge of the sphere's region: time from now, and which."""
     a = b = c = 0.0
     for k in range(3):
-        away = s[i, k] - home[i, k]
-        v = s[i, 3 + k]
+        away = s[i, X + k] - home[i, k]
+        v = s[i, U + k]
         a += v * v
         b += away * v
         c += away * away
     best, who = _parting(a, b, c - bounds.leash**2), LEAVE
-    radius, swell = s[i, 7] * (1.0 + bounds.grow * now), s[i, 7] * bounds.grow
+    radius, swell = s[i, RADIUS] * (1.0 + bounds.grow * now), s[i, RADIUS] * bounds.grow
     a = b = c = 0.0
     for k in range(3):
-        x, v = s[i, k], s[i, 3 + k]
+        x, v = s[i, X + k], s[i, U + k]
         if bounds.wall[k] > 0.0:
             if v < swell:
                 t = max(0.0, x - radius) / (swell - v)
@@ -155,33 +193,34 @@ def _walls(bounds, s, home, i, now):
 
 
 @njit(cache=True, error_model="numpy", inline="always")
-def _predict(bounds, s, home, indptr, indices, times, levels, partner, i, now):
+def _predict(bounds, s, lists, events, i, now):
     """Find the next event of sphere i, which stands at time `now`, and take its partner over from any other sphere.
 
     A collision that others have arranged with sphere i holds unless something comes earlier.
     """
+    indptr, indices, times, partner = lists.indptr, lists.indices, events.times, events.partner
     bx, by, bz = bounds.period
     ix = 1.0 / bx if bx > 0.0 else 0.0
     iy = 1.0 / by if by > 0.0 else 0.0
     iz = 1.0 / bz if bz > 0.0 else 0.0
     grow = bounds.grow
     size = 1.0 + grow * now
-    x, y, z, u, v, w, radius = s[i, 0], s[i, 1], s[i, 2], s[i, 3], s[i, 4], s[i, 5], s[i, 7]
-    wait, who = _walls(bounds, s, home, i, now)
+    x, y, z, u, v, w, radius = s[i, X], s[i, Y], s[i, Z], s[i, U], s[i, V], s[i, W], s[i, RADIUS]
+    wait, who = _walls(bounds, s, lists.home, i, now)
     best, held = now + wait, partner[i]
     if held >= 0 and times[i] <= best:
         best, who = times[i], np.int64(held)
     for t in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
         j = indices[t]
-        lag = now - s[j, 6]
-        du, dv, dw = s[j, 3] - u, s[j, 4] - v, s[j, 5] - w
-        dx = s[j, 0] + lag * s[j, 3] - x
-        dy = s[j, 1] + lag * s[j, 4] - y
-        dz = s[j, 2] + lag * s[j, 5] - z
+        lag = now - s[j, TIME]
+        du, dv, dw = s[j, U] - u, s[j, V] - v, s[j, W] - w
+        dx = s[j, X] + lag * s[j, U] - x
+        dy = s[j, Y] + lag * s[j, V] - y
+        dz = s[j, Z] + lag * s[j, W] - z
         dx -= bx * np.rint(dx * ix)
         dy -= by * np.rint(dy * iy)
         dz -= bz * np.rint(dz * iz)
-        reach = radius + s[j, 7]
+        reach = radius + s[j, RADIUS]
         swell = reach * grow
         reach *= size
         a = du * du + dv * dv + dw * dw - swell * swell
@@ -197,67 +236,86 @@ def _predict(bounds, s, home, indptr, indices, times, levels, partner, i, now):
         if held >= 0:
             partner[held] = AGAIN
         partner[i] = who
-        _set_time(times, levels, i, best)
+        _set_time(events, i, best)
         if who >= 0:
             if partner[who] >= 0:
                 partner[partner[who]] = AGAIN
             partner[who] = i
-            _set_time(times, levels, who, best)
+            _set_time(events, who, best)
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _collide(bounds, s, i, j):
     """Elastic collision of two spheres of mass 1, seen from the growing surfaces; returns impulse times distance."""
     bx, by, bz = bounds.period
-    dx, dy, dz = s[j, 0] - s[i, 0], s[j, 1] - s[i, 1], s[j, 2] - s[i, 2]
+    dx, dy, dz = s[j, X] - s[i, X], s[j, Y] - s[i, Y], s[j, Z] - s[i, Z]
     dx -= bx * np.rint(dx / bx) if bx > 0.0 else 0.0
     dy -= by * np.rint(dy / by) if by > 0.0 else 0.0
     dz -= bz * np.rint(dz / bz) if bz > 0.0 else 0.0
     distance = np.sqrt(dx * dx + dy * dy + dz * dz)
     dx, dy, dz = dx / distance, dy / distance, dz / distance
-    approach = dx * (s[j, 3] - s[i, 3]) + dy * (s[j, 4] - s[i, 4]) + dz * (s[j, 5] - s[i, 5])
-    impulse = bounds.grow * (s[i, 7] + s[j, 7]) - approach
-    s[i, 3] -= impulse * dx
-    s[i, 4] -= impulse * dy
-    s[i, 5] -= impulse * dz
-    s[j, 3] += impulse * dx
-    s[j, 4] += impulse * dy
-    s[j, 5] += impulse * dz
+    approach = dx * (s[j, U] - s[i, U]) + dy * (s[j, V] - s[i, V]) + dz * (s[j, W] - s[i, W])
+    impulse = bounds.grow * (s[i, RADIUS] + s[j, RADIUS]) - approach
+    s[i, U] -= impulse * dx
+    s[i, V] -= impulse * dy
+    s[i, W] -= impulse * dz
+    s[j, U] += impulse * dx
+    s[j, V] += impulse * dy
+    s[j, W] += impulse * dz
     return impulse * distance
 
 
 @njit(cache=True, error_model="numpy", inline="always")
 def _bounce(bounds, s, i, who):
     """Elastic collision with a wall, seen from the growing surface."""
-    swell = s[i, 7] * bounds.grow
+    swell = s[i, RADIUS] * bounds.grow
     if who == ROUND:
         square = normal = 0.0
         for k in range(3):
-            x = (s[i, k] - bounds.middle[k]) * bounds.across[k]
+            x = (s[i, X + k] - bounds.middle[k]) * bounds.across[k]
             square += x * x
-            normal += x * s[i, 3 + k]
+            normal += x * s[i, U + k]
         change = -2.0 * (normal / np.sqrt(square) + swell) / np.sqrt(square)
         for k in range(3):
-            s[i, 3 + k] += change * (s[i, k] - bounds.middle[k]) * bounds.across[k]
+            s[i, U + k] += change * (s[i, X + k] - bounds.middle[k]) * bounds.across[k]
     else:
         k, upper = (WALL - who) // 2, (WALL - who) % 2
-        s[i, 3 + k] = -s[i, 3 + k] + (-2.0 * swell if upper else 2.0 * swell)
+        s[i, U + k] = -s[i, U + k] + (-2.0 * swell if upper else 2.0 * swell)
 
 
 @njit(cache=True, error_model="numpy")
-def start(bounds, spheres, home, indptr, indices, times, levels, partner):
-    """Predict the first event of every sphere; all stand at time 0."""
-    partner[:] = AGAIN
-    times[:] = np.inf
+def start(bounds, spheres, lists, events):
+    """Predict the first event of every sphere; all stand at time 0.
+
+    Parameters
+    ----------
+    bounds : Bounds
+    spheres : (n, 8) float array
+        Columns X to RADIUS. Lengths in mean radii, times in mean radii over the thermal velocity.
+    lists : Lists
+    events : Events, out
+    """
+    events.partner[:] = AGAIN
+    events.times[:] = np.inf
     for i in range(len(spheres)):
-        _predict(bounds, spheres, home, indptr, indices, times, levels, partner, i, 0.0)
+        _predict(bounds, spheres, lists, events, i, 0.0)
 
 
 @njit(cache=True, error_model="numpy")
-def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
+def run(bounds, spheres, lists, events, most):
     """Work off events until a sphere leaves its region, the last time is reached or `most` collisions have happened.
 
     All spheres then stand at the same time.
+
+    Parameters
+    ----------
+    bounds : Bounds
+    spheres : (n, 8) float array, in and out
+        As in `start`.
+    lists : Lists
+    events : Events, in and out
+    most : int
+        Collisions.
 
     Returns
     -------
@@ -266,14 +324,16 @@ def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
     now : float
     collisions : int
         Between spheres.
-    events : int
+    worked_off : int
+        Events.
     virial : float
         Sum over the collisions of impulse times distance.
     """
-    collisions = events = 0
+    times, partner = events.times, events.partner
+    collisions = worked_off = 0
     virial = 0.0
     while True:
-        i = _earliest(times, levels)
+        i = _earliest(events)
         now = times[i]
         if now > bounds.last:
             now, why = bounds.last, TIMED_OUT
@@ -285,8 +345,8 @@ def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
         if collisions >= most:
             why = COUNTED
             break
-        events += 1
-        if events > TOO_MANY * (most + len(spheres)):
+        worked_off += 1
+        if worked_off > TOO_MANY * (most + len(spheres)):
             why = STUCK
             break
         _advance(spheres, i, now)
@@ -301,7 +361,7 @@ def run(bounds, spheres, home, indptr, indices, times, levels, partner, most):
         partner[i] = AGAIN
         # While the first is predicted the second's time is still now: nothing can be arranged with it.
         for turn in range(2 if met >= 0 else 1):
-            _predict(bounds, spheres, home, indptr, indices, times, levels, partner, met if turn else np.int64(i), now)
+            _predict(bounds, spheres, lists, events, met if turn else np.int64(i), now)
     for i in range(len(spheres)):
         _advance(spheres, i, now)
-    return why, now, collisions, events, virial
+    return why, now, collisions, worked_off, virial

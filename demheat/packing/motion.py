@@ -7,14 +7,15 @@ component); all spheres have mass 1.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.bodies import ROUND_AXES, domain_volume, nearest_wall, wall_names
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.base import wrap
 from demheat.packing.neighbours import near_rows
-from demheat.scene import ROUND_AXES, domain_volume
 
 # Collisions per sphere (each counted for one of the two) over which the pressure is averaged.
 WINDOW = 10
@@ -25,6 +26,18 @@ SKIN, SKIN_MOST, SKIN_LEAST, LONGER, SHORTER = 0.5, 2.0, 1e-7, 1.4, 0.6
 GROWTH_MOST, GROWTH_LEAST = 0.02, 1e-12
 # Spheres that overlap more than this are no start: one bad pair would make all others a thin gas.
 LEAST_RATIO = 0.5
+CENTER, VELOCITY = slice(kernels.X, kernels.Z + 1), slice(kernels.U, kernels.W + 1)
+
+
+class Window(NamedTuple):
+    """What was counted over some time: virial over the thermal energy, time, and collisions."""
+
+    virial: float
+    time: float
+    collisions: int
+
+
+NOTHING = Window(0.0, 0.0, 0)
 
 
 class Motion:
@@ -36,11 +49,11 @@ class Motion:
         self.periodic, self.domain = start.periodic, start.domain
         n = start.number
         self.spheres = _aligned(n)
-        self.spheres[:, :3] = start.centers / self.unit
-        self.spheres[:, 3:6] = rng.standard_normal((n, 3))
-        self.spheres[:, 3:6] -= self.spheres[:, 3:6].mean(axis=0)
-        self.spheres[:, 6] = 0.0
-        self.spheres[:, 7] = start.radii / self.unit
+        self.spheres[:, CENTER] = start.centers / self.unit
+        self.spheres[:, VELOCITY] = rng.standard_normal((n, 3))
+        self.spheres[:, VELOCITY] -= self.spheres[:, VELOCITY].mean(axis=0)
+        self.spheres[:, kernels.TIME] = 0.0
+        self.spheres[:, kernels.RADIUS] = start.radii / self.unit
         ratio = min(1.0, tightest(self.points, self.box, self.periodic, self.domain))
         if ratio < LEAST_RATIO:
             raise ValueError(
@@ -49,50 +62,82 @@ class Motion:
             )
         self.start_shrunk = 1.0 - ratio
         # A hair of room: spheres that touch exactly would all collide at once.
-        self.spheres[:, 7] *= ratio * (1 - 1e-12)
-        self.times, self.levels = _tree(n)
-        self.partner = np.empty(n, dtype=np.int32)
+        self.spheres[:, kernels.RADIUS] *= ratio * (1 - 1e-12)
+        self.next = kernels.Events(*tree(n), np.empty(n, dtype=np.int32))
         self.skin, self.room, self.row = SKIN, GROWTH_MOST, 16.0
         self.collisions = self.events = self.lists = 0
         self.pressure = math.nan
-        self.window = np.zeros(3)  # virial over thermal energy, time, collisions
+        self.window = NOTHING
         self._to_unit_temperature()
 
     @property
     def points(self):
         """Centres and radii, (n, 4) float array."""
-        return self.spheres[:, [0, 1, 2, 7]]
+        return np.column_stack((self.spheres[:, CENTER], self.radii))
+
+    @property
+    def radii(self):
+        """Radii, (n,) float array: a view."""
+        return self.spheres[:, kernels.RADIUS]
 
     @property
     def phi(self):
         """Packing fraction."""
-        return 4 / 3 * math.pi * float(np.sum(self.spheres[:, 7] ** 3)) / domain_volume(self.domain, self.box)
+        return 4 / 3 * math.pi * float(np.sum(self.radii**3)) / domain_volume(self.domain, self.box)
 
-    def run(self, rate, phi):
-        """Move on with one list of neighbours, up to `phi` or the end of the window; True if that has ended."""
+    def run(self, rate, phi) -> bool:
+        """Move on with one list of neighbours.
+
+        Parameters
+        ----------
+        rate : float
+            Growth rate of the mean diameter over the thermal velocity.
+        phi : float or None
+            Packing fraction at which to stop.
+
+        Returns
+        -------
+        bool
+            Whether the window has ended.
+
+        Raises
+        ------
+        RuntimeError
+            If events go on without collisions.
+        """
         n = len(self.spheres)
         indptr, indices = near_rows(
             self.points, self.box, self.periodic, scale=1.0 + self.room, skin=self.skin, guess=self.row
         )
         self.row = len(indices) / n
         # In units of the thermal velocity, per mean diameter that is 2 times the mean radius now.
-        grow = rate / (2 * float(np.mean(self.spheres[:, 7])))
+        grow = rate / (2 * float(np.mean(self.radii)))
         last = self.room / grow
         if phi is not None:
             last = min(last, (math.cbrt(phi / self.phi) - 1.0) / grow)
-        bounds = self._bounds(grow, last)
-        arrays = (self.spheres, self.spheres[:, :3].copy(), indptr, indices, self.times, self.levels, self.partner)
-        kernels.start(bounds, *arrays)
-        left = WINDOW * n - int(self.window[2])
-        why, now, collisions, events, virial = kernels.run(bounds, *arrays, left)
+        bounds, lists = self.bounds(grow, last), kernels.Lists(self.spheres[:, CENTER].copy(), indptr, indices)
+        kernels.start(bounds, self.spheres, lists, self.next)
+        left = WINDOW * n - self.window.collisions
+        why, now, collisions, events, virial = kernels.run(bounds, self.spheres, lists, self.next, left)
         if why == kernels.STUCK:
             raise RuntimeError(f"{events} events without {left} collisions at phi = {self.phi:.6f}: time stands still")
-        self.spheres[:, 7] *= 1.0 + grow * now
-        self.spheres[:, 6] = 0.0
-        self._count(why, now, collisions, events, virial, grow)
+        self.spheres[:, kernels.RADIUS] *= 1.0 + grow * now
+        self.spheres[:, kernels.TIME] = 0.0
+        self.events, self.lists = self.events + events, self.lists + 1
+        self._count(why, Window(virial, now, collisions))
+        self._adapt(why, 1.5 * grow * now, early=collisions < WINDOW * n / 2)
         return why == kernels.COUNTED
 
-    def _bounds(self, grow, last):
+    def bounds(self, grow, last) -> kernels.Bounds:
+        """What holds for a run.
+
+        Parameters
+        ----------
+        grow : float
+            Growth rate of the radii over the radii now.
+        last : float
+            Time from now at which to stop.
+        """
         across = np.zeros(3)
         across[list(ROUND_AXES[self.domain])] = 1.0
         period = np.where(self.periodic, self.box, 0.0)
@@ -101,34 +146,36 @@ class Motion:
         radius = float(np.max(across * self.box)) / 2
         return kernels.Bounds(*bounds, radius, grow, self.skin / 2, float(last))
 
-    def _count(self, why, now, collisions, events, virial, grow):
-        """Add up a run; at the end of a window find the pressure; adapt the lists to what happened."""
-        self.collisions, self.events, self.lists = self.collisions + collisions, self.events + events, self.lists + 1
+    def _count(self, why, run):
+        """Add up a run; at the end of a window find the pressure."""
+        self.collisions += run.collisions
         # Velocities grow by the collisions with growing spheres: mean of the thermal energy before (1) and after.
-        self.window += virial / ((1.0 + self._to_unit_temperature()) / 2), now, collisions
-        early = collisions < WINDOW * len(self.spheres) / 2
+        run = run._replace(virial=run.virial / ((1.0 + self._to_unit_temperature()) / 2))
+        self.window = Window(*(a + b for a, b in zip(self.window, run, strict=True)))
         if why == kernels.COUNTED:
-            self.pressure = 1.0 + self.window[0] / (3 * len(self.spheres) * self.window[1])
-            self.window[:] = 0.0
+            self.pressure = 1.0 + self.window.virial / (3 * len(self.spheres) * self.window.time)
+            self.window = NOTHING
+
+    def _adapt(self, why, used, *, early):
+        """Lists that reach farther or less far, and provide for the growth used up or more, as the last one did."""
         if why == kernels.LEFT and early:
             self.skin = min(self.skin * LONGER, SKIN_MOST)
         elif why == kernels.COUNTED and not early:
             self.skin = max(self.skin * SHORTER, SKIN_LEAST)
-        used = 1.5 * grow * now
         self.room = min(2 * self.room, GROWTH_MOST) if why == kernels.TIMED_OUT else max(used, GROWTH_LEAST)
 
     def _to_unit_temperature(self):
         """Scale the velocities to thermal velocity 1; returns the thermal energy they had."""
-        energy = float(np.mean(self.spheres[:, 3:6] ** 2))
-        self.spheres[:, 3:6] /= math.sqrt(energy)
+        energy = float(np.mean(self.spheres[:, VELOCITY] ** 2))
+        self.spheres[:, VELOCITY] /= math.sqrt(energy)
         return energy
 
     def packing(self):
         """Centres and radii in metres without overlap, and by how much of themselves the radii were shrunk for it."""
         centers = np.clip(
-            wrap(self.spheres[:, :3] * self.unit, self.box * self.unit, self.periodic), 0.0, self.box * self.unit
+            wrap(self.spheres[:, CENTER] * self.unit, self.box * self.unit, self.periodic), 0.0, self.box * self.unit
         )
-        radii = self.spheres[:, 7] * self.unit
+        radii = self.radii * self.unit
         ratio = min(1.0, tightest(np.column_stack((centers, radii)), self.box * self.unit, self.periodic, self.domain))
         return centers, radii * ratio, 1.0 - ratio
 
@@ -160,18 +207,11 @@ def tightest(points, size, periodic, domain):
     offsets -= np.where(periodic, size * np.rint(offsets / size), 0.0)
     contact = points[indices, 3] + points[rows, 3]
     least = np.min(np.linalg.norm(offsets, axis=1) / contact, initial=np.inf)
-    axes = list(ROUND_AXES[domain])
-    flat = ~np.asarray(periodic)
-    flat[axes] = False
-    walls = np.minimum(points[:, :3], size - points[:, :3])[:, flat] / points[:, 3:]
-    least = min(least, np.min(walls, initial=np.inf))
-    if axes:
-        inside = size[axes[0]] / 2 - np.linalg.norm(points[:, axes] - size[axes] / 2, axis=1)
-        least = min(least, np.min(inside / points[:, 3]))
-    return float(least)
+    depth = nearest_wall(points[:, :3], wall_names(domain, periodic), domain, size)
+    return float(min(least, np.min(depth / points[:, 3])))
 
 
-def _tree(n):
+def tree(n):
     """Storage of the tree of minima over n leaves: times of all levels, and where each level begins."""
     nodes, sizes = n, []
     while True:

@@ -8,8 +8,8 @@ from scipy import sparse
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
+from demheat.packing.walls import bulk
 from demheat.parts import finite
-from demheat.scene import ROUND_AXES
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0
@@ -20,7 +20,7 @@ FACTOR, MAX_LEVELS = 4.0, 12
 FIRST_GAP = 0.12
 
 
-def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
+def neighbours(packing: Packing, *, scale: float = 1.0, skin: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
     """List all pairs closer than scale (r_i + r_j) + skin, nearest periodic image.
 
     Parameters
@@ -48,7 +48,14 @@ def neighbours(packing: Packing, *, scale=1.0, skin=0.0):
     return indptr, indices
 
 
-def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additive=False):
+def contacts(
+    packing: Packing,
+    *,
+    coordination: float = 7.5,
+    gap: float | None = None,
+    margin: float = 4.0,
+    additive: bool = False,
+) -> tuple[np.ndarray, np.ndarray, float]:
     """Contact network: pairs with |x_i - x_j| <= (1 + gap)(r_i + r_j), gap chosen for a mean coordination number.
 
     Of a neighbour's periodic images only the nearest counts: boxes should be at least twice as thick as pairs reach.
@@ -82,15 +89,15 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additi
     if gap is not None:
         finite("gap", gap, "a finite part of r_i + r_j > -1", lambda v: v > -1)
         return *_closer(packing, 1.0 + gap, additive)[:2], float(gap)
-    bulk = _bulk(packing, margin)
+    deep = bulk(packing, margin)
     others = packing.number - 1
     finite("coordination", coordination, f"> 0 and <= {others}, all others", lambda v: 0 < v <= others)
     # Ends of links in the bulk; even, since most pairs have both there and midway to the next must not part them.
-    wanted = 2 * max(1, round(coordination * np.count_nonzero(bulk) / 2))
+    wanted = 2 * max(1, round(coordination * np.count_nonzero(deep) / 2))
     scale = 1.0 + FIRST_GAP
     while True:
         indptr, indices, ratio = _closer(packing, scale, additive)
-        counted = ratio[np.repeat(bulk, np.diff(indptr))]
+        counted = ratio[np.repeat(deep, np.diff(indptr))]
         if len(counted) > wanted or len(indices) == packing.number * others:
             break
         scale *= 1.2
@@ -103,7 +110,17 @@ def contacts(packing: Packing, *, coordination=7.5, gap=None, margin=4.0, additi
 
 
 def as_graph(indptr, indices):
-    """The network as a SciPy matrix of ones, for its graph routines."""
+    """The network as a SciPy matrix of ones, for its graph routines.
+
+    Parameters
+    ----------
+    indptr : (n + 1,) int array
+    indices : (nnz,) int array
+
+    Returns
+    -------
+    (n, n) scipy.sparse.csr_matrix of int8
+    """
     n = len(indptr) - 1
     return sparse.csr_matrix((np.ones(len(indices), np.int8), indices.astype(np.int32), indptr), shape=(n, n))
 
@@ -122,21 +139,6 @@ def _closer(packing, scale, additive):
     return np.concatenate(([0], np.cumsum(kept)))[indptr], indices[kept], measured[kept]
 
 
-def _bulk(packing, margin):
-    """Which particles lie at least `margin` mean radii away from every wall, flat or round."""
-    finite("margin", margin, "a finite number of mean radii >= 0", lambda v: v >= 0)
-    axes = list(ROUND_AXES[packing.domain])
-    depth = np.where(packing.periodic, np.inf, np.minimum(packing.centers, packing.size - packing.centers)).min(axis=1)
-    if axes:
-        # The box's sides touch the round wall: it is the nearer one everywhere.
-        off_axis = np.linalg.norm(packing.centers[:, axes] - packing.size[axes] / 2, axis=1)
-        depth = np.minimum(depth, packing.size[axes[0]] / 2 - off_axis)
-    bulk = depth >= margin * np.mean(packing.radii)
-    if not bulk.any():
-        raise ValueError(f"margin = {margin!r}: no particle is that many mean radii away from all walls")
-    return bulk
-
-
 def _ratios(packing, indptr, indices):
     """Distance over the sum of radii of each listed pair, (nnz,) float array; the same bits from both sides."""
     points = np.column_stack((packing.centers, packing.radii))
@@ -150,10 +152,12 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
 
     Parameters
     ----------
-    points : (n, 4) float array
+    points : (n, 4) float array, m
         Centre (anywhere on periodic axes) and radius; rows near each other in memory should be near in space.
-    size, periodic : (3,) arrays
-    scale, skin : float
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    scale : float
+    skin : float, m
     guess : float
         Expected mean length of a row; a wrong guess costs a second search, never a wrong list.
 
@@ -162,8 +166,9 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
     indptr : (n + 1,) int64 array
     indices : (nnz,) uint32 array
     """
-    points = np.column_stack((wrap(points[:, :3], size, periodic), points[:, 3]))
-    grid = build_grid(points, size, periodic, scale=scale, skin=skin)
+    points = wrapped(points, size, periodic)
+    reach = kernels.Reach(float(scale), float(skin))
+    grid = build_grid(points, size, periodic, reach)
     n = len(points)
     chunks = -(-n // kernels.CHUNK)
     lengths = np.empty(n, dtype=np.int64)
@@ -171,7 +176,7 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
     capacity = int(1.2 * guess * kernels.CHUNK) + 64
     while True:
         buffer = np.empty((chunks, capacity + 1), dtype=np.uint32)
-        kernels.near_rows(points, grid, scale, skin, buffer, lengths)
+        kernels.near_rows(points, grid, reach, buffer, lengths)
         longest = int(np.add.reduceat(lengths, np.arange(0, n, kernels.CHUNK)).max())
         if longest <= capacity:
             break
@@ -182,21 +187,49 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
     return indptr, indices
 
 
-def build_grid(points, size, periodic, *, scale, skin):
-    """File wrapped points, (n, 4), under the cells of one grid per size level."""
-    radii = points[:, 3]
+def wrapped(points, size, periodic):
+    """The same centres and radii with the centres in 0 <= x < size on periodic axes, rows whole in memory.
+
+    Parameters
+    ----------
+    points : (n, 4) float array, m
+    size : (3,) float array, m
+    periodic : (3,) bool array
+
+    Returns
+    -------
+    (n, 4) float array, m
+    """
+    # Columns of a slice come back column by column: kernels would be compiled a second time for such.
+    return np.ascontiguousarray(np.column_stack((wrap(points[:, :3], size, periodic), points[:, kernels.RADIUS])))
+
+
+def build_grid(points, size, periodic, reach) -> kernels.Grid:
+    """File points under the cells of one grid per size level.
+
+    Parameters
+    ----------
+    points : (n, 4) float array, m
+        Wrapped centre and radius.
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    reach : kernels.Reach
+        What will be looked for: cells need not be much smaller.
+    """
+    radii = points[:, kernels.RADIUS]
     raw = np.minimum(np.floor(np.log(radii.max() / radii) / np.log(FACTOR)).astype(np.int64), MAX_LEVELS - 1)
     used, level, count = np.unique(raw, return_inverse=True, return_counts=True)
     largest = np.zeros(len(used))
     np.maximum.at(largest, level, radii)
     side = np.cbrt(np.prod(size) * PER_CELL / count)
     # A cell need not be smaller than a third of what the smallest search through it spans.
-    side = np.maximum(side, (2 * scale * largest + skin) / 3)
+    side = np.maximum(side, (2 * reach.scale * largest + reach.skin) / 3)
     dims = np.maximum(1, np.floor(size / side[:, None])).astype(np.int64)
     first = np.concatenate(([0], np.cumsum(np.prod(dims, axis=1))))
     start = np.empty(first[-1] + 1, dtype=np.int64)
     order = np.empty(len(points), dtype=np.uint32)
     slots = np.empty((len(points), 4))
     cell = size / dims
-    kernels.fill_cells(points, level, dims, cell, first, start, order, slots)
-    return kernels.Grid(dims, cell, largest, first[:-1], start, order, slots, np.where(periodic, size, 0.0))
+    grid = kernels.Grid(dims, cell, largest, first[:-1], start, order, slots, np.where(periodic, size, 0.0))
+    kernels.fill_cells(points, level, grid)
+    return grid

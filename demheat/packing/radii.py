@@ -30,8 +30,18 @@ class Gaussian:
         valid = f">= 0 and < 1/cut = {1 / self.cut:.3g}, else some radii are not positive"
         _check("Gaussian.spread", self.spread, 0 <= self.spread * self.cut < 1, valid)
 
-    def draw(self, number, rng):
-        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+    def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw radii of mean 1 (expectation).
+
+        Parameters
+        ----------
+        number : int
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        (number,) float array
+        """
         return 1.0 + self.spread * _cut_normal(number, self.cut, rng)
 
 
@@ -44,8 +54,18 @@ class Uniform:
     def __post_init__(self):
         _check("Uniform.half_width", self.half_width, 0 <= self.half_width < 1, ">= 0 and < 1")
 
-    def draw(self, number, rng):
-        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+    def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw radii of mean 1 (expectation).
+
+        Parameters
+        ----------
+        number : int
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        (number,) float array
+        """
         return rng.uniform(1.0 - self.half_width, 1.0 + self.half_width, number)
 
 
@@ -68,8 +88,18 @@ class Lognormal:
         _check("Lognormal.spread", self.spread, self.spread >= 0, "a finite number >= 0")
         _check("Lognormal.cut", self.cut, self.cut > 0, "a finite number > 0")
 
-    def draw(self, number, rng):
-        """Draw `number` radii of mean 1 (expectation) from a numpy Generator, (number,) float array."""
+    def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw radii of mean 1 (expectation).
+
+        Parameters
+        ----------
+        number : int
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        (number,) float array
+        """
         s, c = self.spread, self.cut
         # E[exp(s z)] over |z| < c is exp(s^2/2) [ndtr(c - s) - ndtr(-c - s)] / [ndtr(c) - ndtr(-c)].
         mean = math.exp(s * s / 2) * (ndtr(c - s) - ndtr(-c - s)) / (ndtr(c) - ndtr(-c))
@@ -95,8 +125,18 @@ class Bidisperse:
         _check("Bidisperse.ratio", self.ratio, self.ratio >= 1, ">= 1")
         _check("Bidisperse.fraction", self.fraction, 0 <= self.fraction <= 1, "between 0 and 1")
 
-    def draw(self, number, rng):
-        """Draw `number` radii of mean 1 (within the rounding of the fraction), (number,) float array."""
+    def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
+        """Draw radii of mean 1 (within the rounding of the fraction).
+
+        Parameters
+        ----------
+        number : int
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        (number,) float array
+        """
         radii = np.ones(number)
         radii[: round(self.fraction * number)] = self.ratio
         return rng.permutation(radii) / (1.0 + self.fraction * (self.ratio - 1.0))
@@ -119,8 +159,24 @@ class Listed:
         digest = hashlib.sha256(np.array(self.values).tobytes()).hexdigest()
         return f"Listed({len(self.values)} values, sha256={digest})"
 
-    def draw(self, number, rng):
-        """Put the listed radii, divided by their mean, in random order; `number` must be their number."""
+    def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
+        """Put the listed radii, divided by their mean, in random order.
+
+        Parameters
+        ----------
+        number : int
+            Theirs.
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        (number,) float array
+
+        Raises
+        ------
+        ValueError
+            If it is another number.
+        """
         if number != len(self.values):
             raise ValueError(f"Listed.values: {len(self.values)} radii for {number} particles; must be one each")
         return rng.permutation(np.array(self.values) / np.mean(self.values))

@@ -7,16 +7,18 @@ in units of the mean radius; stiffness is 1.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
 from demheat.parts import finite
-from demheat.scene import ROUND_AXES, domain_volume
 
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).
@@ -32,19 +34,45 @@ JITTER = 1.0
 FEWEST = 100
 
 
+@dataclass(frozen=True)
+class Relaxation:
+    """How far `relax` and `settle` go.
+
+    Parameters
+    ----------
+    overlap : float
+        Stop when the mean overlap of the overlapping pairs is below this part of the mean diameter.
+    steps : int
+        Stop there at the latest; provenance["converged"] then is False and "mean_overlap" says what was reached.
+    progress : callable (step, mean overlap), optional
+
+    Raises
+    ------
+    ValueError
+        If a number is negative, or not finite.
+    """
+
+    overlap: float = 0.002
+    steps: int = 400
+    progress: Callable[[int, float], None] | None = None
+
+    def __post_init__(self):
+        finite("overlap", self.overlap, "a finite part of the mean diameter >= 0", lambda v: v >= 0)
+        if not isinstance(self.steps, int | np.integer) or self.steps < 0:
+            raise ValueError(f"steps = {self.steps!r}: must be an integer >= 0")
+
+
 def relax(
-    number,
+    number: int,
     *,
-    size=(1.0, 1.0, 1.0),
-    phi=0.64,
+    size: Sequence[float] = (1.0, 1.0, 1.0),
+    phi: float = 0.64,
     radii=None,
-    periodic=True,
-    domain="box",
-    seed=0,
-    overlap=0.002,
-    steps=400,
-    allow_few=False,
-    progress=None,
+    periodic: bool | Sequence[bool] = True,
+    domain: str = "box",
+    seed: int = 0,
+    allow_few: bool = False,
+    **knobs,
 ) -> Packing:
     """Pack exactly `number` spheres at packing fraction `phi` with small overlaps.
 
@@ -62,13 +90,10 @@ def relax(
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
         Inscribed in the box, with a hard round wall.
     seed : int
-    overlap : float
-        Stop when the mean overlap of the overlapping pairs is below this part of the mean diameter.
-    steps : int
-        Stop there at the latest; provenance["converged"] then is False and "mean_overlap" says what was reached.
     allow_few : bool
         Fewer than 100 particles are refused unless this is True.
-    progress : callable (step, mean overlap), optional
+    overlap, steps, progress
+        As in `Relaxation`.
 
     Returns
     -------
@@ -81,7 +106,9 @@ def relax(
         If an argument is not as described, or a sphere is too large for the box.
     """
     radii = Gaussian() if radii is None else distribution(radii)
-    size, periodic = _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few)
+    goal = Relaxation(**knobs)
+    _check_request(number, phi, seed, allow_few)
+    size, periodic = check_box(size, periodic)
     check_domain(domain, size, periodic)
     rng = np.random.default_rng(seed)
     centers = _starting_points(int(number), size, periodic, domain, rng)
@@ -89,14 +116,20 @@ def relax(
     drawn *= np.cbrt(phi * domain_volume(domain, size) / (4.0 / 3.0 * np.pi * np.sum(drawn**3)))
     check_fit(drawn, size, periodic)
     order = morton_order(centers, size)
-    box = (size, periodic, domain)
-    centers, reached = _minimise(centers[order], drawn, *box, overlap, steps, progress=progress)
+    centers, reached = _minimise(centers[order], drawn, (size, periodic, domain), goal)
     provenance = {"algorithm": "relax", "seed": int(seed), "number": int(number), "phi": float(phi)}
-    provenance |= {"radii": repr(radii), "overlap": float(overlap), "steps": int(steps)} | reached
+    provenance |= {"radii": repr(radii), "overlap": float(goal.overlap), "steps": int(goal.steps)} | reached
     return make_packing(centers, drawn, size, periodic, provenance, domain=domain)
 
 
-def settle(packing: Packing, *, fixed=None, steps=100, overlap=0.0, progress=None) -> Packing:
+def settle(
+    packing: Packing,
+    *,
+    fixed: np.ndarray | None = None,
+    steps: int = 100,
+    overlap: float = 0.0,
+    progress: Callable[[int, float], None] | None = None,
+) -> Packing:
     """Push overlapping particles of a given packing apart, some of them held fixed.
 
     Parameters
@@ -123,19 +156,25 @@ def settle(packing: Packing, *, fixed=None, steps=100, overlap=0.0, progress=Non
     fixed = np.zeros(n, dtype=bool) if fixed is None else np.asarray(fixed)
     if fixed.dtype != bool or fixed.shape != (n,):
         raise ValueError(f"fixed of shape {fixed.shape} and type {fixed.dtype}: must be {n} bools, one per particle")
-    _check_stop(overlap, steps)
+    goal = Relaxation(overlap, steps, progress)
     check_fit(packing.radii, packing.size, packing.periodic)
     box = (packing.size, packing.periodic, packing.domain)
-    centers, reached = _minimise(packing.centers, packing.radii, *box, overlap, steps, fixed=fixed, progress=progress)
+    centers, reached = _minimise(packing.centers, packing.radii, box, goal, fixed=fixed)
     centers[fixed] = packing.centers[fixed]
     return packing._replace(centers=centers, provenance=packing.provenance | {"settled": reached})
 
 
-def check_fit(radii, size, periodic):
+def check_fit(radii, size, periodic) -> None:
     """Raise ValueError if a sphere is too large for its box.
 
     Along a periodic axis only the nearest image of a neighbour is seen, so the two largest spheres must not be able to
     touch both ways round; between walls the largest sphere must fit.
+
+    Parameters
+    ----------
+    radii : (n,) float array, m
+    size : (3,) float array, m
+    periodic : (3,) bool array
     """
     largest = float(np.max(radii))
     for axis in range(3):
@@ -148,47 +187,55 @@ def check_fit(radii, size, periodic):
             )
 
 
-def _minimise(centers, radii, size, periodic, domain, overlap, steps, *, fixed=None, progress=None):
-    """Run FIRE; returns the centres, inside the box, and what was reached."""
+def _minimise(centers, radii, box, goal, *, fixed=None):
+    """Run FIRE in a box (size, periodic, domain); returns the centres, inside it, and what was reached."""
+    size, periodic, domain = box
     unit = float(np.mean(radii))
-    points, box = np.column_stack((centers, radii)) / unit, size / unit
-    period, across = np.where(periodic, box, 0.0), np.zeros(3)
-    across[list(ROUND_AXES[domain])] = 1.0
-    mobility = _mobility(points[:, 3], fixed)
+    spheres, inner = _in_units(centers, radii, box, unit, fixed)
+    points, force = spheres.points, np.zeros_like(spheres.velocity)
     chunks = -(-len(points) // kernels.CHUNK)
-    velocity, force = np.zeros((2, len(points), 3))
-    sums, farthest = np.empty((chunks, 6)), np.empty(chunks)
+    sums, farthest = np.empty((chunks, kernels.SUMS)), np.empty(chunks)
     start, lists, moved, row = None, 0, 0.0, 16.0
     pace = (DT, MIX, 0)
-    for step in range(steps + 1):
+    for step in range(goal.steps + 1):
         if start is None or 2 * moved > SKIN:
-            indptr, indices = near_rows(points, box, periodic, skin=SKIN, guess=row)
+            indptr, indices = near_rows(points, inner.size, periodic, skin=SKIN, guess=row)
             start, lists, row = points[:, :3].copy(), lists + 1, len(indices) / len(points)
-        kernels.forces(points, velocity, mobility, indptr, indices, box, period, across, force, sums)
-        mean = sums[:, 3].sum() / max(sums[:, 4].sum(), 1.0) / 2
-        if progress is not None:
-            progress(step, mean)
-        work = sums[:, :3].sum(axis=0)
-        if mean <= overlap or work[1] == 0.0 or step == steps:
+        kernels.forces(spheres, indptr, indices, inner, force, sums)
+        mean = sums[:, kernels.OVERLAP].sum() / max(sums[:, kernels.COUNT].sum(), 1.0) / 2
+        if goal.progress is not None:
+            goal.progress(step, mean)
+        power, ff, vv = sums[:, : kernels.OVERLAP].sum(axis=0)
+        if mean <= goal.overlap or ff == 0.0 or step == goal.steps:
             break
-        keep, push, pace = _fire(*work, *pace)
-        kernels.move(points, start, velocity, force, keep, push, pace[0], farthest)
+        stride, pace = _fire(power, ff, vv, *pace)
+        kernels.move(spheres, start, force, stride, farthest)
         moved = math.sqrt(farthest.max())
     reached = {"iterations": step, "lists": lists, "mean_overlap": float(mean)}
-    reached |= {"max_overlap": float(sums[:, 5].max()) / 2, "converged": bool(mean <= overlap)}
+    worst = float(sums[:, kernels.WORST].max()) / 2
+    reached |= {"max_overlap": worst, "converged": bool(mean <= goal.overlap)}
     centers = np.clip(wrap(points[:, :3] * unit, size, periodic), 0.0, size)
     return _inside(centers, size, domain), reached
+
+
+def _in_units(centers, radii, box, unit, fixed):
+    """Spheres at rest and their box as the kernels take them, lengths in mean radii."""
+    size, periodic, domain = box
+    points = np.column_stack((centers, radii)) / unit
+    spheres = kernels.Spheres(points, np.zeros((len(points), 3)), _mobility(points[:, kernels.RADIUS], fixed))
+    flags = np.zeros(3)
+    flags[list(ROUND_AXES[domain])] = 1.0
+    return spheres, kernels.Box(size / unit, np.where(periodic, size / unit, 0.0), flags)
 
 
 def _inside(centers, size, domain):
     """Centres that lie beyond the round wall drawn back to it."""
     axes = list(ROUND_AXES[domain])
     if axes:
-        middle = size[axes] / 2
-        away = np.linalg.norm(centers[:, axes] - middle, axis=1, keepdims=True)
+        off, away = across(centers, domain, size), from_middle(centers, domain, size)
         # A hair less than the radius, so that rounding leaves them inside.
-        shrink = np.minimum(1.0, middle[0] * (1 - 1e-15) / np.maximum(away, 1e-300))
-        centers[:, axes] = middle + (centers[:, axes] - middle) * shrink
+        shrink = np.minimum(1.0, round_radius(domain, size) * (1 - 1e-15) / np.maximum(away, 1e-300))
+        centers[:, axes] = size[axes] / 2 + off * shrink[:, None]
     return centers
 
 
@@ -202,25 +249,24 @@ def _mobility(radii, fixed):
 
 
 def _fire(power, ff, vv, dt, mix, downhill):
-    """Factors of the next FIRE step, v = keep v + push a and x += dt v, and the new pace (dt, mix, downhill)."""
+    """The next step and the new pace (dt, mix, downhill)."""
     if power <= 0 and vv > 0:
-        return 0.0, dt * DT_CUT, (dt * DT_CUT, MIX, 0)
+        return kernels.Step(0.0, dt * DT_CUT, dt * DT_CUT), (dt * DT_CUT, MIX, 0)
     if downhill >= DELAY:
         dt, mix = min(dt * DT_GROW, DT_MAX), mix * MIX_FADE
     # Norm of v + dt a, over the norm of a, in the metric of the masses.
     ratio = math.sqrt(max(vv + 2 * dt * power + dt * dt * ff, 0.0) / ff)
-    return 1 - mix, (1 - mix) * dt + mix * ratio, (dt, mix, downhill + 1)
+    return kernels.Step(1 - mix, (1 - mix) * dt + mix * ratio, dt), (dt, mix, downhill + 1)
 
 
 def _starting_points(number, size, periodic, domain, rng):
     """Points of a jittered grid inside the domain, (number, 3) float array, m."""
     if domain == "box":
         return _jittered_grid(number, size, periodic, rng)
-    axes = list(ROUND_AXES[domain])
     asked = math.ceil(number * np.prod(size) / domain_volume(domain, size))
     while True:
         points = _jittered_grid(asked, size, periodic, rng)
-        points = points[np.linalg.norm(points[:, axes] - size[axes] / 2, axis=1) < size[axes[0]] / 2]
+        points = points[from_middle(points, domain, size) < round_radius(domain, size)]
         if len(points) >= number:
             return points[:number]
         asked += asked // 20 + 1
@@ -241,7 +287,7 @@ def _jittered_grid(number, size, periodic, rng):
     return np.where(periodic, wrap(points, size, periodic), inside)
 
 
-def _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few):
+def _check_request(number, phi, seed, allow_few):
     if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     if number < FEWEST and not allow_few:
@@ -249,11 +295,3 @@ def _check_request(number, size, phi, periodic, seed, overlap, steps, allow_few)
     finite("phi", phi, "> 0 and <= 0.74, the densest packing of equal spheres", lambda v: 0 < v <= 0.74)
     if not isinstance(seed, int | np.integer) or seed < 0:
         raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
-    _check_stop(overlap, steps)
-    return check_box(size, periodic)
-
-
-def _check_stop(overlap, steps):
-    finite("overlap", overlap, "a finite part of the mean diameter >= 0", lambda v: v >= 0)
-    if not isinstance(steps, int | np.integer) or steps < 0:
-        raise ValueError(f"steps = {steps!r}: must be an integer >= 0")

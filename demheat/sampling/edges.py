@@ -35,7 +35,7 @@ class Edges(NamedTuple):
     held: np.ndarray
 
 
-def edges_of(scene, facets, network, solution):
+def edges_of(scene, network, solution):
     """Edges of all cells of a network with facets.
 
     A facet that lies on an interface has the temperature that the heat through it makes on the way from either centre:
@@ -44,34 +44,35 @@ def edges_of(scene, facets, network, solution):
     Parameters
     ----------
     scene : Scene
-    facets : Facets
     network : Network
+        With cells.
     solution : Solution
 
     Returns
     -------
     Edges
     """
-    parts = _interfaces(scene, facets, network, solution), _walls(scene, network, solution)
-    owner, *columns = (np.concatenate(column) for column in zip(*parts, strict=True))
-    kept = np.isfinite(columns[2]) & np.isfinite(columns[3])
+    parts = _interfaces(scene, network, solution), _walls(scene, network, solution)
+    columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
+    owner, _, _, values, slopes, _ = columns
+    kept = np.isfinite(values) & np.isfinite(slopes)
     order = np.flatnonzero(kept)[np.argsort(owner[kept], kind="stable")]
     count = np.bincount(owner[order], minlength=len(network.volumes))
-    return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns))
+    return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns[1:]))
 
 
-def _interfaces(scene, facets, network, solution):
+def _interfaces(scene, network, solution):
     row, k = row_numbers(network.indptr), scene.conductivities[network.phase]
     other = network.indices
     size = SMALL * np.cbrt(network.volumes) ** 2
-    here = (network.phase[row] != network.phase[other]) & (network.conductance > 0) & (facets.area > size[row])
+    here = (network.phase[row] != network.phase[other]) & (network.conductance > 0) & (network.area > size[row])
     row, other = row[here], other[here].astype(np.int64)
     ends = np.concatenate([[0], np.cumsum(here)])[network.indptr]
     step = branches(network.centers, network.size, ends, other, network.image[here])
-    normal, away = step / np.linalg.norm(step, axis=1)[:, None], facets.distance[here]
-    rise = solution.fluctuation[other] - solution.fluctuation[row] + step @ solution.gradient
-    slope = network.conductance[here] * rise / (k[row] * facets.area[here])
-    value = solution.fluctuation[row] + away * (slope - normal @ solution.gradient)
+    normal, away = step / np.linalg.norm(step, axis=1)[:, None], network.distance[here]
+    rise = solution.temperature[other] - solution.temperature[row] + step @ solution.mean_gradient
+    slope = network.conductance[here] * rise / (k[row] * network.area[here])
+    value = solution.temperature[row] + away * (slope - normal @ solution.mean_gradient)
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])

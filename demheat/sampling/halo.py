@@ -5,10 +5,14 @@ Source: Haddad et al. 2021, eqs. 22-23.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.network.laguerre_kernels import bin_points
+from demheat.bodies import inside
+from demheat.field import Field
+from demheat.network.bins_kernels import bin_points
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 
@@ -18,7 +22,17 @@ PART, FEWEST = 1 / 2, 8.0
 WALLS = ("clip", "mirror")
 
 
-def halo_average(points, values, volumes, *, radius, size, periodic, at=None, phase=None, at_phase=None):
+def halo_average(
+    points: np.ndarray,
+    values: np.ndarray,
+    volumes: np.ndarray,
+    *,
+    radius: float,
+    size: Sequence[float],
+    periodic: bool | Sequence[bool],
+    at: np.ndarray | None = None,
+    phases: tuple[np.ndarray, np.ndarray] | None = None,
+) -> np.ndarray:
     """Mean of values over the samples whose centres lie within a radius, weighted by volume.
 
     sum(volumes * values) / sum(volumes) over all samples with |x - x_at| <= radius (Haddad et al. 2021, eqs. 22-23,
@@ -38,8 +52,8 @@ def halo_average(points, values, volumes, *, radius, size, periodic, at=None, ph
     periodic : bool or (3,) sequence of bool
     at : (m, 3) float array, m, optional
         Where the means are wanted; default at the samples.
-    phase, at_phase : (n,) and (m,) int arrays, optional
-        Only samples of a point's own phase count; at_phase is needed with `at`.
+    phases : (n,) int array and (m,) int array, optional
+        Of the samples and of the points where means are wanted: only samples of a point's own phase count.
 
     Returns
     -------
@@ -55,24 +69,24 @@ def halo_average(points, values, volumes, *, radius, size, periodic, at=None, ph
     radius = _checked_radius(radius, size, periodic)
     points = _inside(_checked_points("points", points), size, periodic)
     values, volumes = _checked_values(len(points), values, volumes)
-    phase, at_phase = _checked_phases(len(points), at, phase, at_phase)
     at = points if at is None else _wrapped(_checked_points("at", at), size, periodic)
+    phase, wanted = _checked_phases(len(points), len(at), phases)
     columns = values.reshape(len(points), -1)
     means = np.empty((len(at), columns.shape[1]))
-    dims = _dims(len(points), size, radius)
-    start, order = bin_points(points, size, dims)
-    begin, places = (start, order) if at is points else bin_points(at, size, dims)
-    sorted_at, wanted = at[places], at_phase[places]
+    cells, order = _cells(points, volumes, phase, radius, size, periodic)
+    begin, places = (cells.start, order) if at is points else bin_points(at, size, cells.dims)
+    sorted_at, wanted, columns = at[places], wanted[places], columns[order]
     for first in range(0, columns.shape[1], 3):
         part = columns[:, first : first + 3]
-        cells = _cells(points, part, volumes, phase, order, start, dims, size, periodic)
         out = np.empty((len(at), 3))
-        kernels.ball_means(sorted_at, begin, wanted, radius, cells, out)
+        kernels.ball_means(sorted_at, begin, wanted, radius, _with_values(cells, part), out)
         means[places, first : first + 3] = out[:, : part.shape[1]]
     return means.reshape(len(at), *values.shape[1:])
 
 
-def halo_flux(field, *, ratio=11.0, walls="clip", same_phase=False, at=None):
+def halo_flux(
+    field: Field, *, ratio: float = 11.0, walls: str = "clip", same_phase: bool = False, at: np.ndarray | None = None
+) -> np.ndarray:
     """Flux of a field of particles, averaged over halos.
 
     Source: Haddad et al. 2021, eqs. 22-23.
@@ -128,8 +142,9 @@ def halo_flux(field, *, ratio=11.0, walls="clip", same_phase=False, at=None):
             )
         points, volumes, phase, flux = _mirrored(scene.at(field.time), radius, points, volumes, phase, flux)
         points, at, size = points + radius, at + radius, size + 2 * radius
-    phases = {"phase": phase, "at_phase": at_phase} if same_phase else {}
-    return halo_average(points, flux, volumes, radius=radius, size=size, periodic=scene.periodic, at=at, **phases)
+    phases = (phase, at_phase) if same_phase else None
+    where = {"radius": radius, "size": size, "periodic": scene.periodic}
+    return halo_average(points, flux, volumes, **where, at=at, phases=phases)
 
 
 def _mirrored(scene, radius, points, volumes, phase, flux):
@@ -165,15 +180,24 @@ def _dims(n, size, radius):
     return np.maximum(np.floor(size / edge), 1).astype(np.int64)
 
 
-def _cells(points, values, volumes, phase, order, start, dims, size, periodic):
-    """Samples with up to three values, in the order of their cells."""
+def _cells(points, volumes, phase, radius, size, periodic):
+    """Samples in the order of their cells, values left out, and that order."""
+    dims = _dims(len(points), size, radius)
+    start, order = bin_points(points, size, dims)
     slots = np.zeros((kernels.ROWS, len(points)))
     slots[:3] = points[order].T
     slots[kernels.PHASE] = phase[order] if len(phase) else 0.0
     slots[kernels.SUMS] = volumes[order]
-    slots[kernels.SUMS + 1 : kernels.SUMS + 1 + values.shape[1]] = values[order].T * slots[kernels.SUMS]
-    period = np.where(periodic, size, 0.0)
-    return kernels.Cells(dims, size / dims, period, start, slots, kernels.cell_totals(start, slots), len(phase) > 0)
+    period, totals = np.where(periodic, size, 0.0), np.zeros((len(start) - 1, kernels.ROWS - kernels.SUMS))
+    return kernels.Cells(dims, size / dims, period, start, slots, totals, len(phase) > 0), order
+
+
+def _with_values(cells, values):
+    """The same cells with up to three values, in their order; the slots are filled in place."""
+    slots, first = cells.slots, kernels.SUMS + 1
+    slots[first:] = 0.0
+    slots[first : first + values.shape[1]] = values.T * slots[kernels.SUMS]
+    return cells._replace(totals=kernels.cell_totals(cells.start, slots))
 
 
 def _halo_radius(field, ratio):
@@ -187,11 +211,7 @@ def _halo_radius(field, ratio):
 def _checked_at(at, scene):
     at = _checked_points("at", at)
     if not scene.periodic:
-        outside = np.any((at < 0) | (at > np.array(scene.size)), axis=1)
-        axes = list(ROUND_AXES[scene.domain])
-        if axes:
-            size = np.array(scene.size)
-            outside |= np.linalg.norm((at - size / 2)[:, axes], axis=1) > (0.5 + 1e-9) * size[axes[0]]
+        outside = ~inside(at, "box", scene.size) | ~inside(at, scene.domain, scene.size, slack=1e-9)
         if outside.any():
             raise ValueError(
                 f"at: {outside.sum()} points lie outside the {scene.domain} with walls, 0 to {scene.size}; the first "
@@ -253,13 +273,15 @@ def _checked_values(n, values, volumes):
     return values, volumes
 
 
-def _checked_phases(n, at, phase, at_phase):
+def _checked_phases(samples, wanted, phases):
     """Phases of samples (none if they do not count) and of points, as floats: exact up to 2^53."""
-    count = n if at is None else len(np.reshape(at, (-1, 3)))
-    if phase is None and at_phase is None:
-        return np.empty(0), np.zeros(count)
-    at_phase = phase if at is None and at_phase is None else at_phase
-    for name, given, length in (("phase", phase, n), ("at_phase", at_phase, count)):
+    if phases is None:
+        return np.empty(0), np.zeros(wanted)
+    if not (isinstance(phases, tuple | list) and len(phases) == 2):
+        raise ValueError(
+            f"phases = {phases!r}: must be a pair, of the samples and of the points where means are wanted"
+        )
+    for number, (given, length) in enumerate(zip(phases, (samples, wanted), strict=True)):
         if given is None or np.shape(given) != (length,) or not np.issubdtype(np.asarray(given).dtype, np.integer):
-            raise ValueError(f"{name} = {given!r}: must be {length} whole numbers where phases count")
-    return np.asarray(phase, dtype=float), np.asarray(at_phase, dtype=float)
+            raise ValueError(f"phases[{number}] = {given!r}: must be {length} whole numbers")
+    return tuple(np.asarray(given, dtype=float) for given in phases)

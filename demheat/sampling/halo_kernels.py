@@ -49,7 +49,18 @@ class Cells(NamedTuple):
 
 @njit(cache=True)
 def cell_totals(start, slots):
-    """Sums over each cell of the volume and of volume times values, (cells, 4)."""
+    """Sums over each cell of the volume and of volume times values.
+
+    Parameters
+    ----------
+    start : (cells + 1,) int array
+    slots : (8, n) float array
+        As in `Cells`.
+
+    Returns
+    -------
+    (cells, 4) float array
+    """
     totals = np.zeros((len(start) - 1, ROWS - SUMS))
     for c in range(len(totals)):
         for t in range(start[c], start[c + 1]):
@@ -69,12 +80,13 @@ def _bounds(points, low, high):
 
 
 @njit(cache=True)
-def _span(low, high, cell, count, period):
-    """First and last cell that low .. high meets; unwrapped on a periodic axis."""
+def _span(low, high, axis, cells):
+    """First and last cell that low .. high meets along an axis; unwrapped if that is periodic."""
+    cell = cells.cell[axis]
     first, last = np.int64(np.floor(low / cell)), np.int64(np.floor(high / cell))
-    if period > 0.0:
+    if cells.period[axis] > 0.0:
         return first, last
-    return max(first, 0), min(last, count - 1)
+    return max(first, 0), min(last, cells.dims[axis] - 1)
 
 
 @njit(cache=True)
@@ -105,9 +117,9 @@ def _gathered(low, high, radius, cells, buffer, common):
     near, far, shift = radius * (1.0 + HAIR), radius * (1.0 - HAIR), np.zeros(3)
     count, dims, cell, period = 0, cells.dims, cells.cell, cells.period
     common[:] = 0.0
-    x0, x1 = _span(low[0] - near, high[0] + near, cell[0], dims[0], period[0])
-    y0, y1 = _span(low[1] - near, high[1] + near, cell[1], dims[1], period[1])
-    z0, z1 = _span(low[2] - near, high[2] + near, cell[2], dims[2], period[2])
+    x0, x1 = _span(low[0] - near, high[0] + near, 0, cells)
+    y0, y1 = _span(low[1] - near, high[1] + near, 1, cells)
+    z0, z1 = _span(low[2] - near, high[2] + near, 2, cells)
     for cx in range(x0, x1 + 1):
         ax, bx = _nearest_and_farthest(cx, cell[0], low[0], high[0])
         shift[0] = cx // dims[0] * period[0]

@@ -9,12 +9,13 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.base import wall_normals
+from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling import particle_flux_kernels as kernels
 
 SPLITS = {"half": kernels.HALF, "radii": kernels.RADII, "cell": kernels.CELL}
 
 
-def particle_flux(packing, facets, network, solution, *, split="half"):
+def particle_flux(network, solution, *, split="half"):
     """Flux density of each particle, q_p = -(1 / V_p) sum over links of s W b.
 
     W is the heat that the particle receives over a link, b the branch vector to the other particle, V_p the volume that
@@ -25,10 +26,9 @@ def particle_flux(packing, facets, network, solution, *, split="half"):
 
     Parameters
     ----------
-    packing : Packing
-    facets : Facets
     network : Network
     solution : Solution
+        Of this network.
     split : {"half", "radii", "cell"}
         s = 1/2, as printed; R_p / (R_p + R_q); or what lies between the centre and the facet, over the length of the
         link. With "cell" wall links count too, by the distance from the centre to the wall; the printed sum is over
@@ -42,18 +42,16 @@ def particle_flux(packing, facets, network, solution, *, split="half"):
     Raises
     ------
     ValueError
-        If `split` is none of these or the arrays are not of one network.
+        If `split` is none of these or the solution is of another network.
     """
     if split not in SPLITS:
         raise ValueError(f"split = {split!r}: must be one of {', '.join(SPLITS)}")
-    sizes = {"packing": packing.number, "network": len(network.volumes), "solution": len(solution.fluctuation)}
-    if len(set(sizes.values())) > 1 or len(facets.distance) != len(network.indices):
-        raise ValueError(f"packing, facets, network, solution: must be of the same particles and links, not {sizes}")
-    flow = np.empty((packing.number, 3))
-    kernels.shared_moments(
-        network.centers, network.size, network.indptr, network.indices, network.image, network.conductance,
-        solution.gradient, np.nan_to_num(solution.fluctuation), packing.radii, facets.distance, SPLITS[split], flow,
-    )  # fmt: skip
+    sizes = {"network": len(network.volumes), "solution": len(solution.temperature)}
+    if len(set(sizes.values())) > 1:
+        raise ValueError(f"network, solution: must be of the same particles, not {sizes}")
+    flow = np.empty((len(network.volumes), 3))
+    state = links_of(network), places_of(network), solution.mean_gradient, np.nan_to_num(solution.temperature)
+    kernels.shared_moments(*state, network.radii, network.distance, SPLITS[split], flow)
     if split == "cell":
         depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)
         np.add.at(flow, network.wall_particle, depth)

@@ -3,31 +3,40 @@
 import numpy as np
 from numba import njit, prange
 
-from demheat.conduction.steady_kernels import _step
+from demheat.network.links_kernels import rise_along
 
 HALF, RADII, CELL = 0, 1, 2
 
 
 @njit(cache=True, parallel=True)
-def shared_moments(centers, size, indptr, indices, image, conductance, gradient, x, radii, distance, split, flow):
-    """Write sum over links of W s b to flow (n, 3): W heat received by the row, b the branch vector, s its part of it.
+def shared_moments(links, places, gradient, x, radii, distance, split, flow):
+    """Sum over the links of each particle of s W b: W the heat it receives, b the branch vector, s its own part of it.
 
-    Temperatures are x plus the linear field of the gradient. s is 1/2, R_p / (R_p + R_q), or distance over length.
+    Parameters
+    ----------
+    links : Links
+    places : Places
+    gradient : (3,) float array, K/m
+    x : (n,) float array, K
+        Temperatures less the linear field of the gradient.
+    radii : (n,) float array, m
+    distance : (m,) float array, m
+        From the row's centre to the facet of each link.
+    split : {HALF, RADII, CELL}
+        s is 1/2, R_p / (R_p + R_q), or distance over length.
+    flow : (n, 3) float array, W m, out
     """
+    indptr, indices, conductance = links
     for i in prange(len(x)):
         branch = np.empty(3)
         for k in range(3):
             flow[i, k] = 0.0
         for e in range(indptr[i], indptr[i + 1]):
-            j = indices[e]
-            length = np.sqrt(_step(i, e, centers, size, indices, image, branch))
-            rise = x[j] - x[i]
-            for k in range(3):
-                rise += gradient[k] * branch[k]
+            rise, square = rise_along(i, e, links, places, gradient, x, branch)
             share = 0.5
             if split == RADII:
-                share = radii[i] / (radii[i] + radii[j])
+                share = radii[i] / (radii[i] + radii[indices[e]])
             elif split == CELL:
-                share = distance[e] / length
+                share = distance[e] / np.sqrt(square)
             for k in range(3):
                 flow[i, k] += share * conductance[e] * rise * branch[k]

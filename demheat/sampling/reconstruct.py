@@ -50,7 +50,7 @@ class Reconstruction:
         self.apart = 2.0 * np.linalg.norm(network.size)
         lifted = np.column_stack([network.centers, self.apart * network.phase])
         # Temperature and flux at the same points are one fit.
-        self.last = np.empty((0, 3)), ()
+        self._points, self._found = np.empty((0, 3)), ()
         self.tree = cKDTree(lifted, boxsize=np.append(np.where(self.periodic, network.size, 0.0), 0.0))
 
     def temperature_at(self, points):
@@ -65,11 +65,10 @@ class Reconstruction:
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         if not len(points):
             return np.empty(0), np.empty((0, 3))
-        if not np.array_equal(points, self.last[0]):
+        if not np.array_equal(points, self._points):
             parts = [self._fitted(points[k : k + CHUNK]) for k in range(0, len(points), CHUNK)]
-            found = tuple(np.concatenate(part) for part in zip(*parts, strict=True))
-            self.last = points.copy(), found
-        return tuple(values.copy() for values in self.last[1])
+            self._points, self._found = points.copy(), [np.concatenate(part) for part in zip(*parts, strict=True)]
+        return tuple(values.copy() for values in self._found)
 
     def _fitted(self, points):
         size = self.network.size

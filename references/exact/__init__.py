@@ -1,6 +1,23 @@
 """Exact solutions: closed forms, cubic arrays by Rayleigh's method, series in time."""
 
+from demheat.method import Method
+
 __all__ = ["evolve", "solve"]  # noqa: F822, found by `__getattr__`
+
+METHODS = (
+    Method(
+        name="exact",
+        title="exact",
+        label="exact (Rayleigh)",
+        role="witness",
+        exceptions={
+            "errors": "it is what the others are held against",
+            "integral": "its samples are the middles of equal cells, blind to interfaces",
+        },
+        refuses={"several": "no closed form"},
+        look=("black", "", "-"),
+    ),
+)
 
 
 def __getattr__(name):

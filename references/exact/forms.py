@@ -80,7 +80,8 @@ def laminate(scene):
         return level + points @ sideways + gradient[normal] * (turns * length + np.interp(x, breaks, rise))
 
     def flux(points):
-        piece = np.clip(np.searchsorted(breaks, where(points)[1], side="right") - 1, 0, len(pieces) - 1)
+        _, x = where(points)
+        piece = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(pieces) - 1)
         result = -pieces[piece][:, None] * sideways
         result[:, normal] = -across * gradient[normal]
         return result

@@ -1,4 +1,4 @@
-"""Solid harmonics and the lattice sums of cubic arrays, computed to rounding and kept for the process.
+"""Solid harmonics, and their sums over cubic lattices, computed to rounding and kept for the process.
 
 Racah's normalisation: R_l^m = sqrt((l-m)!/(l+m)!) r^l P_l^m(cos t) exp(i m p), so that |R_l^m| <= r^l, and the
 irregular I_l^m = R_l^m / r^(2l+1). Lengths of this module are in units of the cube's edge.
@@ -6,6 +6,7 @@ irregular I_l^m = R_l^m / r^(2l+1). Lengths of this module are in units of the c
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -23,6 +24,8 @@ CIRCUMRADIUS = {"sc": np.sqrt(0.75), "bcc": np.sqrt(5.0) / 4, "fcc": 0.5}
 # From this degree on the plain sum over 7.5 nearest distances converges to rounding: 7.5^-20 = 3e-18.
 DIRECT_FROM = 22
 REACH = 7.5
+# Tables are made up to the next multiple of this degree and kept: an entry does not depend on where its table ends.
+STEP = 60
 
 
 class Sums(NamedTuple):
@@ -42,7 +45,22 @@ class Sums(NamedTuple):
 
 
 def legendre(z, square, order, m):
-    """Yield R_l^m / (x + i y)^m for l = m, ..., order at points given by z and r^2 (both (n,) float arrays)."""
+    """Values of R_l^m / (x + i y)^m, degree by degree.
+
+    Parameters
+    ----------
+    z : (n,) float array, length
+    square : (n,) float array, length^2
+        r^2.
+    order : int
+        Highest degree.
+    m : int
+
+    Yields
+    ------
+    (n,) float array, length^(l-m)
+        For l = m, ..., order.
+    """
     previous, current = np.zeros_like(z), np.full_like(z, _sectoral(m))
     for degree in range(m, order + 1):
         yield current
@@ -63,6 +81,7 @@ def series(tables, points):
     ----------
     tables : sequence of (n, n) float arrays
     points : (p, 3) float array
+        In the unit of length of the tables.
 
     Returns
     -------
@@ -121,8 +140,7 @@ def _weighted(points, order, weight):
     return table
 
 
-@lru_cache(maxsize=8)
-def lattice_sums(kind, order):
+def lattice_sums(kind, order) -> Sums:
     """Lattice sums of a cubic array by Ewald's splitting (low degrees) and plain summation (high degrees).
 
     Poisson's formula turns sum_R R_L(R) exp(-t R^2) into a sum over reciprocal vectors K; the part 0 < t < eta of
@@ -139,6 +157,13 @@ def lattice_sums(kind, order):
     -------
     Sums
     """
+    whole = _whole_sums(kind, math.ceil(order / STEP) * STEP)
+    wanted = np.s_[: order + 1, : order // 4 + 1]
+    return Sums(whole.total[wanted], whole.far[wanted], whole.near)
+
+
+@lru_cache(maxsize=8)
+def _whole_sums(kind, order):
     unit = NEAREST[kind]
     cell = 1.0 / len(SITES[kind]) / unit**3
     sites = _sites(kind, REACH * unit) / unit

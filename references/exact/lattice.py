@@ -65,18 +65,63 @@ class Solution(NamedTuple):
     far: np.ndarray
 
 
+class Unknowns(NamedTuple):
+    """Which harmonics are there.
+
+    Attributes
+    ----------
+    degree, m : (n,) int arrays
+    """
+
+    degree: np.ndarray
+    m: np.ndarray
+
+
 def radius(kind, fraction):
-    """Radius in edges of the spheres of volume fraction `fraction`."""
+    """Radius of the spheres of a cubic array.
+
+    Parameters
+    ----------
+    kind : {"sc", "bcc", "fcc"}
+    fraction : float
+        Their volume fraction.
+
+    Returns
+    -------
+    float, edges
+    """
     _check_kind(kind)
     return (3 * fraction / (4 * math.pi * len(SITES[kind]))) ** (1 / 3)
 
 
-def conductivity(kind, contrast, fraction, *, order=None, digits=6):
-    """Effective conductivity of a cubic array over that of its matrix; arguments as `solve`."""
+def conductivity(kind, contrast, fraction, *, order=None, digits=6) -> float:
+    """Effective conductivity of a cubic array over that of its matrix.
+
+    Parameters
+    ----------
+    kind : {"sc", "bcc", "fcc"}
+    contrast : float
+        Conductivity of the spheres over that of the matrix, 0 (pores) to infinity (inclusive).
+    fraction : float
+        Volume fraction of the spheres.
+    order : int, optional
+        Highest degree, odd; by default what convergence takes.
+    digits : float, optional
+        Fewest digits to accept.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    ValueError
+        As for `solve`.
+    """
     return solve(kind, contrast, fraction, order=order, digits=digits).conductivity
 
 
-def solve(kind, contrast, fraction, *, order=None, digits=6):
+def solve(kind, contrast, fraction, *, order=None, digits=6) -> Solution:
     """Solve a cubic array of spheres under a mean unit gradient.
 
     Parameters
@@ -117,7 +162,7 @@ def solve(kind, contrast, fraction, *, order=None, digits=6):
     return found._replace(far=_far(found))
 
 
-def zeta2(kind, fraction):
+def zeta2(kind, fraction) -> float:
     """Milton's parameter zeta_2 of a cubic array, exactly.
 
     The third order in s - 1 of Rayleigh's solution against that of Torquato's expansion:
@@ -140,9 +185,9 @@ def zeta2(kind, fraction):
     _check(kind, 1.0, fraction, None)
     dipole, others = _unknowns(1), _unknowns(HIGHEST_ORDER)
     sums, scale = lattice_sums(kind, HIGHEST_ORDER + 1).total, radius(kind, fraction) / NEAREST[kind]
-    there = _translation(dipole, others, sums, (scale, scale))[0]
-    back = _translation(others, dipole, sums, (scale, scale))[:, 0]
-    degree = others[0]
+    (there,) = _translation(dipole, others, sums, scale, scale)
+    (back,) = _translation(others, dipole, sums, scale, scale).T
+    degree = others.degree
     return float(1.5 / (1 - fraction) * np.sum((degree / (2 * degree + 1) * there * back)[1:]))
 
 
@@ -164,9 +209,9 @@ def _check(kind, contrast, fraction, order):
 
 
 def _unknowns(order):
-    """Degrees l = 1, 3, ..., order and orders m = 0, 4, ..., l of the unknowns, two int arrays."""
+    """`Unknowns` with l = 1, 3, ..., order and m = 0, 4, ..., l."""
     pairs = [(degree, m) for degree in range(1, order + 1, 2) for m in range(0, degree + 1, 4)]
-    return np.array(pairs).T
+    return Unknowns(*np.array(pairs).T)
 
 
 def _binomials(size):
@@ -178,18 +223,18 @@ def _binomials(size):
     return table
 
 
-def _translation(receive, send, sums, scales):
+def _translation(receive, send, sums, length, size):
     """Matrix from B_lm / r^(l+1) of other spheres to minus what they make here, (n', n) float array.
 
     I_l^m(R - x) = sum over l'm' of sqrt(C(l+l'+m+m', l+m) C(l+l'-m-m', l-m)) conj(R_l'^m'(x)) I_(l+l')^(m+m')(R).
-    `scales` are the length to which R_l'^m' refers and the radius r, in nearest distances.
+    The length to which R_l'^m' refers and the radius r, its size, are in nearest distances.
     """
-    (p, q), (n, m) = (receive[0][:, None], receive[1][:, None]), (send[0][None], send[1][None])
+    p, q, n, m = receive.degree[:, None], receive.m[:, None], send.degree[None], send.m[None]
     choose = np.sqrt(_binomials(2 * int(p.max() + n.max())))
     plus = choose[p + n + q + m, n + m] * choose[p + n - q - m, n - m] * sums[p + n, (q + m) // 4]
     minus = choose[p + n + q - m, n - m] * choose[p + n - q + m, n + m] * sums[p + n, abs(q - m) // 4]
     # The powers meet the binomials in two steps: apart they stay within the range of floats.
-    return scales[0] ** p.astype(float) * (plus + np.where(m > 0, minus, 0.0)) * scales[1] ** (n + 1.0)
+    return length ** p.astype(float) * (plus + np.where(m > 0, minus, 0.0)) * size ** (n + 1.0)
 
 
 def _far(solution):
@@ -197,16 +242,27 @@ def _far(solution):
     kind, order, unit = solution.kind, solution.order, NEAREST[solution.kind]
     here, send = _unknowns(FAR_ORDER), _unknowns(order)
     sums = lattice_sums(kind, order + FAR_ORDER).far
-    translation = _translation(here, send, sums, (CIRCUMRADIUS[kind] / unit, solution.radius / unit))
+    translation = _translation(here, send, sums, CIRCUMRADIUS[kind] / unit, solution.radius / unit)
     table = np.zeros((FAR_ORDER + 1, FAR_ORDER + 1))
     degree, m = here
-    made = translation @ solution.source[tuple(send)]
+    made = translation @ solution.source[send.degree, send.m]
     table[degree, m] = np.where(degree == 1, CIRCUMRADIUS[kind], 0.0) - made
     return table
 
 
 def polarisability(contrast, degree):
-    """alpha_l of the module docstring for integer degrees, (n,) int array -> (n,) float array."""
+    """alpha_l of the module docstring.
+
+    Parameters
+    ----------
+    contrast : float
+        Conductivity of the sphere over that of the matrix, infinity included.
+    degree : (n,) int array
+
+    Returns
+    -------
+    (n,) float array
+    """
     if math.isinf(contrast):
         return np.ones(len(degree))
     return degree * (contrast - 1) / (degree * contrast + degree + 1)
@@ -216,7 +272,7 @@ def _solve(kind, contrast, fraction, order):
     r = radius(kind, fraction)
     degree, m = unknowns = _unknowns(order)
     sums, scale = lattice_sums(kind, 2 * order).total, r / NEAREST[kind]
-    matrix, alpha = _translation(unknowns, unknowns, sums, (scale, scale)), polarisability(contrast, degree)
+    matrix, alpha = _translation(unknowns, unknowns, sums, scale, scale), polarisability(contrast, degree)
     system = np.eye(len(degree)) - alpha[:, None] * matrix
     load = np.where(degree == 1, -alpha * r, 0.0)
     b = np.linalg.solve(system, load)

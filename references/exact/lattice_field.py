@@ -65,7 +65,17 @@ def flux(solution, points, gradient=(0.0, 0.0, 1.0)):
 
 
 def nearest_site(kind, points):
-    """The site of the array nearest to each point, (n, 3) float array -> (n, 3) float array, edges."""
+    """The site of the array nearest to each point.
+
+    Parameters
+    ----------
+    kind : {"sc", "bcc", "fcc"}
+    points : (n, 3) float array, edges
+
+    Returns
+    -------
+    (n, 3) float array, edges
+    """
     nearest = np.round(points)
     for site in np.array(SITES[kind][1:]).reshape(-1, 3):
         other = np.round(points - site) + site

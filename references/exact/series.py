@@ -2,20 +2,22 @@
 
 Source: the exact solutions of Haddad et al. 2021, eqs. 17-19 (18-19 as printed swap initial and surface temperature and
 lose the radius) and of Terreros et al. 2013, eq. 8 (as printed its coordinate starts at the insulated end). The methods
-are those of Carslaw and Jaeger, see `series_forms`.
+are those of Carslaw and Jaeger, see `responses`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import ROUND_AXES, Flux, Heating
-from references.exact.series_forms import CROSSOVER, response, sphere_response
+from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource
+from references.exact.responses import CROSSOVER, response, sphere_response
+from references.midpoints import check_points_per_axis
+from references.times import checked_times
 
 KNOWN = (
     "a homogeneous body at one initial temperature, uniformly heated or not: between two opposite walls with constant "
@@ -66,14 +68,14 @@ class Solved(NamedTuple):
     flux: Callable
 
 
-def evolve(scene, times, *, points_per_axis=24):
+def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -> Iterator[Field]:
     """Solve a transient in closed form.
 
     Parameters
     ----------
     scene : Scene
         With one material, one initial temperature, and either walls across one axis (any body whose sides are straight
-        along it, and insulated) or a round wall of a sphere. Sources must be `Heating`.
+        along it, and insulated) or a round wall of a sphere. Sources must be `UniformSource`.
     times : sequence of float, s
         Increasing, >= 0.
     points_per_axis : int
@@ -93,29 +95,12 @@ def evolve(scene, times, *, points_per_axis=24):
         If the scene has no series here.
     """
     scene.require(steady=False)
-    times = _checked_times(times)
-    if not isinstance(points_per_axis, int) or points_per_axis < 1:
-        raise ValueError(f"points_per_axis = {points_per_axis!r}: must be an integer >= 1")
+    times = checked_times(times)
+    check_points_per_axis(points_per_axis)
     body = _body(scene)
     solve = _sphere if "round" in scene.walls else _slab
     _slab_axis(scene)
-    return (_field(scene, body, time, solve(scene, body, time), points_per_axis) for time in times.tolist())
-
-
-def _checked_times(times):
-    try:
-        times = np.atleast_1d(np.asarray(times, dtype=float))
-    except (TypeError, ValueError):
-        raise ValueError(f"times = {times!r}: must be increasing numbers >= 0, in seconds") from None
-    if (
-        times.ndim != 1
-        or not len(times)
-        or not np.all(np.isfinite(times))
-        or np.any(times < 0)
-        or np.any(np.diff(times) <= 0)
-    ):
-        raise ValueError(f"times = {times.tolist()}: must be increasing numbers >= 0, in seconds")
-    return times
+    return (_field(scene, body, time, solve(scene, body, time), points_per_axis) for time in times)
 
 
 def _body(scene):
@@ -128,8 +113,10 @@ def _body(scene):
     if callable(scene.initial):
         raise NotImplementedError("Scene.initial is a function: the series start from one temperature")
     for source in scene.sources:
-        if not isinstance(source, Heating):
-            raise NotImplementedError(f"Scene.sources: {type(source).__name__} has no series here; only Heating has")
+        if not isinstance(source, UniformSource):
+            raise NotImplementedError(
+                f"Scene.sources: {type(source).__name__} has no series here; only UniformSource has"
+            )
     for name, load in scene.walls.items():
         if callable(getattr(load, "value", load)):
             raise NotImplementedError(f"Scene.walls[{name!r}] depends on time: the series need constants")
@@ -169,8 +156,13 @@ def _slab(scene, body, time):
 
     def flux(points):
         result = np.zeros((len(points), 3))
-        result[:, axis] = -body.conductivity * profile(points[:, axis])[1]
+        _, slope = profile(points[:, axis])
+        result[:, axis] = -body.conductivity * slope
         return result
+
+    def temperature(points):
+        value, _ = profile(points[:, axis])
+        return value
 
     ends, slopes = profile(np.array([0.0, length]))
     into = -body.conductivity * scene.volume / length * slopes * [1.0, -1.0]
@@ -178,7 +170,7 @@ def _slab(scene, body, time):
     mean[axis] = -body.conductivity * (ends[1] - ends[0]) / length
     names = (letter + "-", letter + "+")
     at_walls, heat = dict(zip(names, ends.tolist(), strict=True)), dict(zip(names, into.tolist(), strict=True))
-    return Solved("slab", fourier, mean, at_walls, heat, lambda points: profile(points[:, axis])[0], flux)
+    return Solved("slab", fourier, mean, at_walls, heat, temperature, flux)
 
 
 def _drives(body, load, length):
@@ -206,13 +198,19 @@ def _sphere(scene, body, time):
         return np.minimum(np.linalg.norm(points - center, axis=1) / radius, 1.0)
 
     def flux(points):
-        r = radii(points)[:, None]
-        along = np.divide(points - center, r * radius, out=np.zeros_like(points), where=r > 0)
-        return -body.conductivity * profile(r[:, 0])[1][:, None] * along
+        r = radii(points)
+        _, slope = profile(r)
+        along = np.divide(points - center, r[:, None] * radius, out=np.zeros_like(points), where=r[:, None] > 0)
+        return -body.conductivity * slope[:, None] * along
 
-    heat = 4 * math.pi * radius**2 * body.conductivity * float(profile(np.ones(1))[1][0])
+    def temperature(points):
+        value, _ = profile(radii(points))
+        return value
+
+    _, (steepest,) = profile(np.ones(1))
+    heat = 4 * math.pi * radius**2 * body.conductivity * float(steepest)
     held = {"round": scene.wall_temperatures["round"]}
-    return Solved("sphere", fourier, np.zeros(3), held, {"round": heat}, lambda p: profile(radii(p))[0], flux)
+    return Solved("sphere", fourier, np.zeros(3), held, {"round": heat}, temperature, flux)
 
 
 def _field(scene, body, time, solved, n):

@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field, Samples
+from demheat.scene import Scene
 from references.exact.forms import coated_spheres, cubic_array, laminate
+from references.midpoints import check_points_per_axis, midpoints
 
 KNOWN = (
     "a homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic cell "
@@ -14,13 +16,13 @@ KNOWN = (
 )
 
 
-def solve(scene, *, points_per_axis=24):
+def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     """Solve a scene in closed form.
 
     Parameters
     ----------
     scene : Scene
-        Homogeneous, laminate, cubic array of spheres or neutral coated spheres; see `exact_forms`.
+        Homogeneous, laminate, cubic array of spheres or neutral coated spheres; see `forms`.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
 
@@ -37,8 +39,7 @@ def solve(scene, *, points_per_axis=24):
     NotImplementedError
         If the scene has no closed form here.
     """
-    if not isinstance(points_per_axis, int) or points_per_axis < 1:
-        raise ValueError(f"points_per_axis = {points_per_axis!r}: must be an integer >= 1")
+    check_points_per_axis(points_per_axis)
     scene.require(steady=True)
     closed = laminate(scene) or cubic_array(scene) or coated_spheres(scene)
     if closed is None:
@@ -89,8 +90,6 @@ def _wall_mean(scene, closed, axis, side):
     return float(np.average(closed.temperature(points), weights=pieces))
 
 
-def _samples(scene, closed, n):
-    axes = [(np.arange(n) + 0.5) * length / n for length in scene.size]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    volumes = np.full(len(points), scene.volume / len(points))
+def _samples(scene, closed, points_per_axis):
+    points, volumes = midpoints(scene, points_per_axis)
     return Samples(points, volumes, closed.temperature(points), scene.phase_at(points), closed.flux(points))

@@ -13,7 +13,7 @@ from scipy.sparse import dia_matrix
 from demheat.field import Samples
 from demheat.scene import WALLS, Layer, Scene
 from references.fem.separable import MASS, STIFFNESS, separable
-from references.fem.space import Space, capacities
+from references.fem.space import Space, WallNodes, capacities
 
 # Cube root of the box volume over the default edge.
 EDGES = 32
@@ -58,7 +58,18 @@ class Bricks:
         return -self.scene.conductivities[self.phase[self._bricks(points)], None] * gradient
 
     def spread(self, points, amounts):
-        """Share amounts (p,) at points (p, 3) in metres among the nodes by their shape functions, (n,) float array."""
+        """Share amounts at points among the nodes by their shape functions.
+
+        Parameters
+        ----------
+        points : (p, 3) float array, m
+        amounts : (p,) float array
+            In any unit.
+
+        Returns
+        -------
+        (n,) float array
+        """
         nodes, local, _ = self._local(points)
         return np.bincount(nodes.ravel(), (_shares(local) * amounts).ravel(), len(self.temperature))
 
@@ -105,7 +116,7 @@ def _slopes(local, widths):
     return np.moveaxis(np.array(rows), 1, 2)
 
 
-def hexahedra(scene, size=None):
+def hexahedra(scene, size=None) -> Space:
     """`Space` of bricks.
 
     Parameters
@@ -154,12 +165,37 @@ def hexahedra(scene, size=None):
 
 
 def outer(a, b, c):
-    """Products a_i b_j c_k."""
+    """Products a_i b_j c_k.
+
+    Parameters
+    ----------
+    a, b, c : (l,), (m,) and (n,) float arrays
+
+    Returns
+    -------
+    (l, m, n) float array
+    """
     return a[:, None, None] * b[:, None] * c
 
 
-def checked_size(scene, size):
-    """Longest edge in metres, or ValueError."""
+def checked_size(scene, size) -> float:
+    """Longest edge of the bricks of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    size : float, m, or None
+        As asked for.
+
+    Returns
+    -------
+    float, m
+
+    Raises
+    ------
+    ValueError
+        If it is not a length or asks for more than 2e6 bricks.
+    """
     if size is None:
         return scene.volume ** (1 / 3) / EDGES
     if isinstance(size, bool) or not isinstance(size, int | float) or not (math.isfinite(size) and size > 0):
@@ -215,9 +251,9 @@ def _matrices(widths, conductivity, capacity):
 
 
 def _wall(name, lumped):
-    """Nodes of a face of the box and the integrals of their shape functions over it."""
+    """A face of the box on the nodes."""
     axis, ends = "xyz".index(name[0]), [w.copy() for w in lumped]
     ends[axis] = np.zeros(len(lumped[axis]))
     ends[axis][0 if name[1] == "-" else -1] = 1.0
     weights = outer(*ends).ravel()
-    return np.flatnonzero(weights), weights
+    return WallNodes(np.flatnonzero(weights), weights)

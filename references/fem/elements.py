@@ -52,6 +52,12 @@ def blocks(mesh, degree=5):
     It is exact for straight elements. Curved ones get the degree asked for: 5 (14 points, some on edges) or 7 (24, all
     inside); the Jacobian and the flux, both cubics, are integrated exactly either way, all weights are positive.
 
+    Parameters
+    ----------
+    mesh : Mesh
+    degree : {5, 7}
+        Of the quadrature on curved elements.
+
     Yields
     ------
     (b,) int array
@@ -68,6 +74,14 @@ def blocks(mesh, degree=5):
 def gradients(mesh, ids, rule):
     """Gradients of the shape functions of one block at its quadrature points.
 
+    Parameters
+    ----------
+    mesh : Mesh
+    ids : (b,) int array
+        Elements.
+    rule : tuple of (3, q) and (q,) float arrays
+        Local points and weights.
+
     Returns
     -------
     (b, q, nodes, 3) float array, 1/m
@@ -76,9 +90,11 @@ def gradients(mesh, ids, rule):
     """
     X, weights = rule
     cells = mesh.cells[ids]
-    local = shapes(cells.shape[1], X)[1]
+    _, local = shapes(cells.shape[1], X)
     # The mapping of a straight element is that of its corners, with one constant gradient.
-    geometry = local if mesh.curved[ids[0]] else shapes(4, X[:, :1])[1]
+    geometry = local
+    if not mesh.curved[ids[0]]:
+        _, geometry = shapes(4, X[:, :1])
     nodes = mesh.points[cells[:, : geometry.shape[1]]]
     back, det = inverse(np.einsum("bnx,qnk->bqxk", nodes, geometry, optimize=True))
     return local @ back, det * weights
@@ -123,7 +139,18 @@ def assemble(mesh, conductivity, dof, lift):
 
 
 def wall_weights(mesh, triangles):
-    """Integral of each node's shape function over triangles, (n,) float array, m2."""
+    """Integral of each node's shape function over triangles.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    triangles : (t, 3) or (t, 6) int array
+        Nodes.
+
+    Returns
+    -------
+    (n,) float array, m2
+    """
     X, weights = get_quadrature(RefTri, 5)
     values, slopes = shapes(triangles.shape[1], X)
     tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
@@ -147,9 +174,9 @@ def at_quadrature(mesh, temperature, degree=5):
     ids, points, weights, temperature, gradient
         (b,) int; (b, q, 3) m; (b, q) m3; (b, q) K; (b, q, 3) K/m.
     """
-    for ids, rule in blocks(mesh, degree):
-        slopes, weights = gradients(mesh, ids, rule)
-        values = shapes(mesh.cells.shape[1], rule[0])[0]
+    for ids, (X, weights) in blocks(mesh, degree):
+        slopes, weights = gradients(mesh, ids, (X, weights))
+        values, _ = shapes(mesh.cells.shape[1], X)
         nodal = temperature[mesh.cells[ids]]
         points = np.einsum("qn,bnx->bqx", values, mesh.points[mesh.cells[ids]], optimize=True)
         yield ids, points, weights, nodal @ values.T, np.einsum("bqnx,bn->bqx", slopes, nodal, optimize=True)

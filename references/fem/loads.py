@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Heating
+from demheat.scene import UniformSource
 from references.fem.sources import deposit
 
 
@@ -52,14 +52,14 @@ class Loads:
     def __init__(self, scene, space, *, level):
         self.scene, self.space, self.level = scene, space, level
         self.names = (*scene.walls, "sources", "lost")
-        self.walls = {name: space.walls[name][0] for name in scene.wall_temperatures}
+        self.walls = {name: space.walls[name].nodes for name in scene.wall_temperatures}
         self.count = np.zeros(len(space.points))  # held walls that meet at each node
         for nodes in self.walls.values():
             self.count[nodes] += 1
         self.held = np.flatnonzero(self.count)
-        steady = sum(source.power_density for source in scene.sources if isinstance(source, Heating))
+        steady = sum(source.power_density for source in scene.sources if isinstance(source, UniformSource))
         self.heating = steady * space.volumes
-        self.moving = [source for source in scene.sources if not isinstance(source, Heating)]
+        self.moving = [source for source in scene.sources if not isinstance(source, UniformSource)]
         self._known = {}
 
     def at(self, time):
@@ -79,7 +79,7 @@ class Loads:
         # On an edge where two held walls meet, the mean of both.
         temperature[self.held] /= self.count[self.held]
         for name, value in now.wall_fluxes.items():
-            entering = value * self.space.walls[name][1]
+            entering = value * self.space.walls[name].weights
             heat += entering
             powers[name] = entering.sum()
         powers["sources"] = self.heating.sum()
@@ -91,7 +91,19 @@ class Loads:
         return Loading(temperature[self.held], heat, np.array(list(powers.values())), now.wall_temperatures)
 
     def shares(self, entering, loading):
-        """Heat of each of the names, (m,) float array: held walls by what their nodes draw in, the rest as loaded."""
+        """Heat of each of the names: held walls by what their nodes draw in, the rest as loaded.
+
+        Parameters
+        ----------
+        entering : (n,) float array, W
+            What nodes draw in.
+        loading : Loading
+            At that time.
+
+        Returns
+        -------
+        (m,) float array, W
+        """
         powers = loading.powers.copy()
         for place, name in enumerate(self.names):
             if name in self.walls:

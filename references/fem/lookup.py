@@ -74,7 +74,18 @@ class Solution:
         return total / self.scene.volume
 
     def spread(self, points, amounts):
-        """Share amounts (p,) at points (p, 3) in metres among the nodes by their shape functions, (n,) float array."""
+        """Share amounts at points among the nodes by their shape functions.
+
+        Parameters
+        ----------
+        points : (p, 3) float array, m
+        amounts : (p,) float array
+            In any unit.
+
+        Returns
+        -------
+        (n,) float array
+        """
         total = np.zeros(len(self.mesh.points))
         for part, ids, X in self._located(self._inside(np.asarray(points, dtype=float))):
             values, _ = shapes(self.mesh.cells.shape[1], X.T)
@@ -142,7 +153,8 @@ def _local(mesh, ids, points):
     """Local coordinates (p, 3) of points in given elements; far outside a curved one, those of its corners."""
     corners = mesh.points[mesh.cells[ids, :4]]
     J = np.swapaxes(corners[:, 1:] - corners[:, :1], 1, 2)
-    X = np.einsum("pkx,px->pk", inverse(J)[0], points - corners[:, 0])
+    back, _ = inverse(J)
+    X = np.einsum("pkx,px->pk", back, points - corners[:, 0])
     curved = np.flatnonzero(mesh.curved[ids] & np.all(np.abs(X - 0.25) < 2, axis=1))
     nodes = mesh.points[mesh.cells[ids[curved]]]
     for _ in range(8 if len(curved) else 0):  # Newton: 4 steps reach rounding from a point inside

@@ -19,13 +19,14 @@ SMOOTHER = ("gauss_seidel", {"sweep": "symmetric"})
 COARSEST = {"max_coarse": 100, "coarse_solver": "splu", "presmoother": SMOOTHER, "postsmoother": SMOOTHER}
 
 
-def solve_free(mesh, system, fixed, dof, tolerance):
+def solve_free(mesh, matrix, load, fixed, dof, tolerance):
     """Solve for the free nodes, those that are not fixed and have a row.
 
     Parameters
     ----------
     mesh : Mesh
-    system : tuple of (n, n) CSR matrix and (n,) float array
+    matrix : (n, n) CSR matrix, W/K
+    load : (n,) float array, W
     fixed : (n,) bool array
         Where the solution is zero.
     dof : (n,) int array
@@ -35,7 +36,7 @@ def solve_free(mesh, system, fixed, dof, tolerance):
 
     Returns
     -------
-    (n,) float array
+    (n,) float array, K
     dict
         `unknowns`, `iterations`, `residual` (recomputed).
 
@@ -44,7 +45,6 @@ def solve_free(mesh, system, fixed, dof, tolerance):
     RuntimeError
         If the residual stays above the tolerance.
     """
-    matrix, load = system
     diagonal, solution = matrix.diagonal(), np.zeros(len(load))
     free = np.flatnonzero(~fixed & (diagonal > 0))
     stats = {"unknowns": len(free), "iterations": 0, "residual": 0.0}
@@ -122,7 +122,20 @@ def _cycle(levels, b, number=0):
 
 
 def prolongation(mesh, free, dof):
-    """From corners to all free nodes: a middle is the mean of its edge's ends. None for linear elements."""
+    """From corners to all free nodes: a middle is the mean of its edge's ends.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    free : (m,) int array
+        Rows of the free nodes.
+    dof : (n,) int array
+        Row of each node.
+
+    Returns
+    -------
+    (m, k) CSR matrix, or None for linear elements
+    """
     if mesh.cells.shape[1] == 4:
         return None
     count = len(dof)

@@ -5,12 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field
+from demheat.scene import Scene
 from references.fem.lookup import Solution
 from references.fem.system import solve_nodes
 from references.mesh import make
 
 
-def solve(scene, *, order=2, size=None, curved=True, tolerance=1e-9):
+def solve(
+    scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
+) -> Field:
     """Solve a scene by finite elements.
 
     Parameters

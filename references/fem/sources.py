@@ -15,13 +15,21 @@ import numpy as np
 from demheat.scene import MovingCylinder
 
 # Of the box: a rim that touches the edge, as typed, is inside.
-TOUCH = 1e-9
+SLACK = 1e-9
 # Points of the disc along its radius.
 LEAST_RINGS, MOST_RINGS = 8, 128
 
 
 class Deposit(NamedTuple):
-    """Heat into each node (n,) W; the power inside of the body, W; what lies outside, W."""
+    """What a source gives.
+
+    Attributes
+    ----------
+    heat : (n,) float array, W
+        Into each node.
+    power, lost : float, W
+        Inside of the body and outside.
+    """
 
     heat: np.ndarray
     power: float
@@ -30,6 +38,11 @@ class Deposit(NamedTuple):
 
 def check_sources(scene, last):
     """Refuse sources that leave the body before a time, unless they are clipped.
+
+    Parameters
+    ----------
+    scene : Scene
+    last : float, s
 
     Raises
     ------
@@ -58,7 +71,7 @@ def check_sources(scene, last):
 def _room(scene, source):
     """Lowest and highest place of the axis of a source inside."""
     across = np.array([scene.size[axis] for axis in range(3) if axis != source.axis])
-    slack, radius = TOUCH * across, source.diameter / 2
+    slack, radius = SLACK * across, source.diameter / 2
     return radius - slack, across - radius + slack
 
 
@@ -74,7 +87,7 @@ def _leaves(source, low, high, last):
     return float(times.min()) if times.min() < last else None
 
 
-def deposit(scene, space, source, time):
+def deposit(scene, space, source, time) -> Deposit:
     """Heat of a source in each node.
 
     Parameters
@@ -93,7 +106,7 @@ def deposit(scene, space, source, time):
     center = source.position(time)
     rings = int(np.clip(math.ceil(radius / space.spacing), LEAST_RINGS, MOST_RINGS))
     disc = center + radius * disc_points(rings)
-    slack = TOUCH * sides
+    slack = SLACK * sides
     disc = np.clip(disc[np.all((disc >= -slack) & (disc <= sides + slack), axis=1)], 0, sides)
     per_area = source.power_density * scene.size[source.axis]
     whole = per_area * math.pi * radius**2
@@ -126,7 +139,20 @@ def disc_points(rings):
 
 
 def overlap(center, radius, sides):
-    """Area that a disc and the rectangle from 0 to `sides` share, m2."""
+    """Area that a disc shares with a rectangle that begins at the origin.
+
+    Parameters
+    ----------
+    center : (2,) float array, m
+        Of the disc.
+    radius : float, m
+    sides : (2,) float array, m
+        Of the rectangle.
+
+    Returns
+    -------
+    float, m2
+    """
     (x0, y0), (x1, y1) = -np.asarray(center) / radius, (np.asarray(sides) - center) / radius
     return radius**2 * (_quadrant(x1, y1) - _quadrant(x0, y1) - _quadrant(x1, y0) + _quadrant(x0, y0))
 

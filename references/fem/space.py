@@ -24,6 +24,21 @@ LOST_ON_CHORDS = 0.3
 RESOLVE = 3
 
 
+class WallNodes(NamedTuple):
+    """A wall on the nodes.
+
+    Attributes
+    ----------
+    nodes : (k,) int array
+        Those on it.
+    weights : (n,) float array, m2
+        Integrals of all shape functions over it.
+    """
+
+    nodes: np.ndarray
+    weights: np.ndarray
+
+
 class Space(NamedTuple):
     """Equations C dT/dt + K T = heat of the n nodes of a mesh.
 
@@ -35,8 +50,7 @@ class Space(NamedTuple):
     stiffness : (n, n) CSR matrix, W/K
     volumes : (n,) float array, m3
         Integrals of the shape functions.
-    walls : mapping of str to ((k,) int array, (n,) float array, m2)
-        Nodes of each wall, and the integrals of the shape functions over it.
+    walls : mapping of str to WallNodes
     quadratic : callable (free nodes) -> CSR matrix or None
         From the corners to all free nodes of quadratic elements.
     separable : callable (free nodes) -> callable (tau, load) -> solution, or None
@@ -57,7 +71,7 @@ class Space(NamedTuple):
     mass: csr_matrix
     stiffness: csr_matrix
     volumes: np.ndarray
-    walls: dict[str, tuple[np.ndarray, np.ndarray]]
+    walls: dict[str, WallNodes]
     quadratic: Callable
     separable: Callable | None
     spread: Callable
@@ -68,8 +82,18 @@ class Space(NamedTuple):
     stats: dict[str, object]
 
 
-def tetrahedra(scene, mesh):
-    """`Space` of a scene on a mesh of tetrahedra."""
+def tetrahedra(scene, mesh) -> Space:
+    """`Space` of tetrahedra.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh
+
+    Returns
+    -------
+    Space
+    """
     count, dof = len(mesh.points), np.arange(len(mesh.points))
     stiffness, _ = assemble(mesh, scene.conductivities[mesh.phase], dof, np.zeros(count))
     mass, volumes = _mass(mesh, capacities(scene)[mesh.phase])
@@ -77,7 +101,7 @@ def tetrahedra(scene, mesh):
     # Distance of nodes that are neighbours.
     edge = mesh.stats["size"] / (2 if mesh.cells.shape[1] == 10 else 1)
     view = partial(Solution, scene, mesh, lost=lost)
-    walls = {name: (np.unique(t), wall_weights(mesh, t)) for name, (t, _) in mesh.walls.items()}
+    walls = {name: WallNodes(np.unique(t), wall_weights(mesh, t)) for name, (t, _) in mesh.walls.items()}
     return Space(
         points=mesh.points,
         mass=mass,
@@ -112,7 +136,7 @@ def _mass(mesh, capacity):
     straight = 2 if nodes == 4 else 4
     for curved, degree in ((False, straight), (True, straight + 3)):
         chosen, (X, weights) = np.flatnonzero(mesh.curved == curved), get_quadrature(RefTet, degree)
-        values = shapes(nodes, X)[0]
+        values, _ = shapes(nodes, X)
         products = (values[:, :, None] * values[:, None, :]).reshape(len(weights), -1)
         for start in range(0, len(chosen), BLOCK):
             ids = chosen[start : start + BLOCK]

@@ -54,7 +54,7 @@ class _Bodies(NamedTuple):
     pins: np.ndarray
 
 
-def solve_nodes(scene, mesh, tolerance):
+def solve_nodes(scene, mesh, tolerance) -> Solved:
     """Nodal temperatures of a scene.
 
     Parameters
@@ -91,11 +91,11 @@ def solve_nodes(scene, mesh, tolerance):
     assembled = time.perf_counter()
     fixed = given.shares > 0
     fixed[bodies.pins] = True
-    correction, stats = solve_free(mesh, (matrix, load), fixed, dof, tolerance)
+    correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance)
     heat = unit * (matrix @ correction - load)
     temperature = given.lift + correction[dof]
     if not conductivity.all():
-        shift, more = _pore_shift(mesh, conductivity == 0, (temperature, dof, given, bodies), tolerance)
+        shift, more = _pore_shift(mesh, conductivity == 0, temperature, dof, given, bodies, tolerance)
         temperature += shift
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
@@ -129,7 +129,10 @@ def _given(scene, mesh, solid):
 
 def _bodies(matrix, held, pores):
     present = matrix.diagonal() > 0
-    label = np.where(present, connected_components(matrix, directed=False)[1] if pores else 0, -1)
+    label = np.where(present, 0, -1)
+    if pores:
+        _, component = connected_components(matrix, directed=False)
+        label[present] = component[present]
     loose = np.setdiff1d(label[present], label[held & present])
     if not held.any():  # in a periodic cell the largest body is the main one: it comes first
         loose = loose[np.argsort(-np.bincount(label[present])[loose], kind="stable")]
@@ -145,20 +148,19 @@ def _check_loose(mesh, imposed, bodies):
             raise ValueError(f"Scene.walls: a flux enters a part, near {mesh.points[pin]}, that no temperature reaches")
 
 
-def _pore_shift(mesh, pores, solution, tolerance):
+def _pore_shift(mesh, pores, temperature, dof, given, bodies, tolerance):
     """What to add to the temperature in pores and islands: the limit of a vanishing conductivity of the pores.
 
     Pores then obey Laplace's equation between the bodies, an island floats at the level at which no heat enters it.
     """
-    temperature, dof, given, bodies = solution
     floating = bodies.loose if given.nodes else bodies.loose[1:]
     merged = np.arange(len(dof))
     for body in floating:
         merged[bodies.label == body] = np.argmax(bodies.label == body)
     merged = merged[dof]
     fixed = ((bodies.label >= 0) & ~np.isin(bodies.label, floating)) | (given.shares > 0)
-    system = assemble(mesh, pores.astype(float), merged, temperature)
-    shift, stats = solve_free(mesh, system, fixed, merged, tolerance)
+    matrix, load = assemble(mesh, pores.astype(float), merged, temperature)
+    shift, stats = solve_free(mesh, matrix, load, fixed, merged, tolerance)
     return shift[merged], stats
 
 

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 import time as clock
+from collections.abc import Iterator, Sequence
 from numbers import Real
 
 import numpy as np
 
 from demheat.field import Field
+from demheat.scene import Scene
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
@@ -16,6 +18,7 @@ from references.fem.sources import check_sources
 from references.fem.space import tetrahedra
 from references.fem.trbdf2 import Clock, Problem, begin
 from references.mesh import make, make_round
+from references.times import checked_times
 
 # Cube root of the body's volume over the default edge: 2.5e4 unknowns at either order, each solved some hundred times.
 EDGES = {1: 30, 2: 16}
@@ -23,7 +26,17 @@ EDGES = {1: 30, 2: 16}
 EDGES_APART = 8
 
 
-def evolve(scene, times, *, order=None, size=None, elements="tetrahedra", step=None, accuracy=2e-5, tolerance=1e-9):  # noqa: D417
+def evolve(
+    scene: Scene,
+    times: Sequence[float],
+    *,
+    order: int | None = None,
+    size: float | None = None,
+    elements: str = "tetrahedra",
+    step: float | None = None,
+    accuracy: float = 2e-5,
+    tolerance: float = 1e-9,
+) -> Iterator[Field]:
     """Let a scene evolve from its initial temperature.
 
     The mass matrix is consistent. Where a wall's temperature jumps, temperatures a node or two away overshoot at first
@@ -68,7 +81,7 @@ def evolve(scene, times, *, order=None, size=None, elements="tetrahedra", step=N
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
     """
     scene.require("heat would not move in pores; transients do without", steady=False, pores=False)
-    times = _checked_times(times)
+    times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
         if not (_number(value) and 0 < value < 1):
@@ -78,12 +91,11 @@ def evolve(scene, times, *, order=None, size=None, elements="tetrahedra", step=N
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
-    return _fields(scene, times, (elements, order, size), (step, accuracy, tolerance))
+    return _fields(scene, times, elements, order, size, step, accuracy, tolerance)
 
 
-def _fields(scene, times, mesh, knobs):
-    step, accuracy, tolerance = knobs
-    space = _space(scene, *mesh)
+def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
+    space = _space(scene, elements, order, size)
     initial = _initial(scene, space.points)
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
@@ -115,7 +127,7 @@ def _field(scene, problem, state, initial, stats):
     rates = dict(zip(loads.names, state.rates.tolist(), strict=True))
     walls = dict(loads.at(state.time).wall_temperature)
     for name in scene.wall_fluxes:
-        weights = space.walls[name][1]
+        weights = space.walls[name].weights
         walls[name] = float(weights @ state.temperature / weights.sum()) + loads.level
     return Field(
         scene=scene,
@@ -156,19 +168,6 @@ def _initial(scene, points):
 
 def _number(value):
     return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _checked_times(times):
-    try:
-        array = np.asarray(times, dtype=float)
-    except (TypeError, ValueError):
-        array = np.full(1, np.nan)
-    good = (
-        array.ndim == 1 and array.size and np.all(np.isfinite(array)) and array[0] >= 0 and np.all(np.diff(array) > 0)
-    )
-    if not good:
-        raise ValueError(f"times = {times!r}: must be at least one finite number of seconds >= 0, and increasing")
-    return array.tolist()
 
 
 def _checked_order(order, elements):

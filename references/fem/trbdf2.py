@@ -59,15 +59,38 @@ class State(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """Equations, loads and solver."""
+    """Equations, loads and solver.
+
+    Attributes
+    ----------
+    loads : Loads
+    solver : Shifted
+    free : (m,) int array
+        Nodes that no wall holds.
+    """
 
     loads: Loads
     solver: object
     free: np.ndarray
 
 
-def begin(problem, temperature, time, hint):
-    """State at the start, walls at their temperatures; `hint` is a short time in seconds."""
+def begin(problem, temperature, time, hint) -> State:
+    """State at the start, walls at their temperatures.
+
+    Parameters
+    ----------
+    problem : Problem
+    temperature : (n,) float array, K
+        The initial one, from the level of the loads.
+    time : float, s
+        Of the start.
+    hint : float, s
+        A short time.
+
+    Returns
+    -------
+    State
+    """
     loads, free, held = problem.loads, problem.free, problem.loads.held
     loading = loads.at(time)
     y, rate = temperature.copy(), np.zeros_like(temperature)
@@ -104,10 +127,10 @@ def advance(problem, state, step, *, estimate):
     """
     y, tau = state.temperature, DIAGONAL * step
     half = y + tau * state.rate
-    middle = _stage(problem, state, (state.time + GAMMA * step, tau), half, half + tau * state.rate)
+    middle = _stage(problem, state, state.time + GAMMA * step, tau, half, half + tau * state.rate)
     start = y + step * WEIGHTS[0] * (state.rate + middle.rate)
     slope = state.rate + (middle.rate - state.rate) / GAMMA
-    last = _stage(problem, state, (state.time + step, tau), start, start + tau * slope)
+    last = _stage(problem, state, state.time + step, tau, start, start + tau * slope)
     stages = (state, middle, last)
     heat = [step * w * s.rates for w, s in zip(WEIGHTS, stages, strict=True)]
     new = last._replace(
@@ -118,9 +141,9 @@ def advance(problem, state, step, *, estimate):
     return new, _error(problem, stages, step) if estimate else 0.0
 
 
-def _stage(problem, state, when, start, guess):
+def _stage(problem, state, time, tau, start, guess):
     """Solve M (y - start) / tau + K y = heat at a time."""
-    loads, free, (time, tau) = problem.loads, problem.free, when
+    loads, free = problem.loads, problem.free
     mass, stiffness, loading = loads.space.mass, loads.space.stiffness, loads.at(time)
     y = guess
     y[loads.held] = loading.temperature
@@ -160,7 +183,22 @@ class Clock:
         self.steps, self.rejected, self.last = 0, 0, 0.0
 
     def run(self, state, time):
-        """State at a later time."""
+        """State at a later time.
+
+        Parameters
+        ----------
+        state : State
+        time : float, s
+
+        Returns
+        -------
+        State
+
+        Raises
+        ------
+        RuntimeError
+            If the step shrinks to nothing.
+        """
         if self.given is not None:
             return self._equal(state, time)
         if self.wanted is None:
@@ -185,7 +223,7 @@ class Clock:
         count = max(1, math.ceil((time - state.time) / self.given * (1 - 1e-9)))
         begin, step = state.time, (time - state.time) / count
         for number in range(1, count + 1):
-            state = advance(self.problem, state, step, estimate=False)[0]
+            state, _ = advance(self.problem, state, step, estimate=False)
             state = state._replace(time=time if number == count else begin + number * step)
         self.steps, self.last = self.steps + count, step
         return state
@@ -206,7 +244,18 @@ class Clock:
 
 
 def first_step(state, time):
-    """A short first step: a hundredth of the way, or what the fastest node takes for a twentieth of the span."""
+    """A short first step: a hundredth of the way, or what the fastest node takes for a twentieth of the span.
+
+    Parameters
+    ----------
+    state : State
+    time : float, s
+        Where to.
+
+    Returns
+    -------
+    float, s
+    """
     step, fastest = (time - state.time) / 100, np.abs(state.rate).max()
     span = state.span[1] - state.span[0]
     return min(step, 0.05 * span / fastest) if span > 0 and fastest > 0 else step

@@ -15,13 +15,16 @@ are then checked once more from the recomputed residual.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
 
 from references.fft import cg_kernels as kernels
-from references.fft import link_kernels
-from references.fft.problem import Clock, Problem, Solution
+from references.fft.cg_kernels import Symbol, Vectors
+from references.fft.hexahedron_kernels import Body, Sums, conduct_voxels, voxel_state
+from references.fft.link_kernels import Links, conduct_links, link_state
+from references.fft.problem import Clock, Problem, Solution, total
 from references.fft.sweeps import Transform
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -31,31 +34,22 @@ from references.voxels.paint import medium
 ZERO = 1e-30
 
 
-class _Operator(NamedTuple):
-    """The discrete problem: kernels, their arguments, and what inverts the homogeneous one."""
+class _System(NamedTuple):
+    """The discrete problem, the vectors of its iteration, and what inverts the homogeneous problem."""
 
-    conduct: object
-    material: object
-    inverse: np.ndarray
+    conduct: Callable
+    body: Body
     transform: Transform
-    symbol: tuple
-    weights: tuple
-    shape: tuple
-
-
-class _Vectors(NamedTuple):
-    theta: np.ndarray
-    residual: np.ndarray
-    direction: np.ndarray
-    work: np.ndarray
-    sums: np.ndarray
-    partial: np.ndarray
+    symbol: Symbol
+    vectors: Vectors
+    sums: Sums
 
 
 class _State(NamedTuple):
-    """Where the true residual stands: sums of g.q, q and q.q, flux at both ends, r.z and p.A p of the next step."""
+    """Where the true residual stands: sums of g.q and q, mean flux at both ends, r.z and p.A p of the next step."""
 
-    sums: np.ndarray
+    energy: float
+    flux: np.ndarray
     ends: np.ndarray
     rz: float
     curvature: float
@@ -73,24 +67,20 @@ def solve(problem: Problem) -> Solution:
     RuntimeError
         If the energy still decreases after the allowed iterations, or rounding keeps the recomputed residual up.
     """
-    operator = _operator(problem)
-    work = operator.transform.real[0]
-    theta, residual, direction = (np.zeros(operator.shape, problem.dtype) for _ in range(3))
-    planes = problem.voxels.phase.shape[0]
-    vectors = _Vectors(theta, residual, direction, work, np.zeros((planes, 5)), np.zeros(len(work)))
-    iterations, before, clock = 0, math.inf, Clock(operator.transform)
+    system = _system(problem)
+    iterations, before, clock = 0, math.inf, Clock(system.transform)
     while True:
-        state = _restart(problem, operator, vectors)
-        error = _error(state.rz, state.sums[0], problem)
+        state = _restart(problem, system)
+        error = _error(state.rz, state.energy, problem)
         # How far each criterion is from being met: both are below 1 at the end.
-        excess = max(state.decrease / (problem.tolerance**2 * state.sums[0]), error / problem.tolerance) if error else 0
+        excess = max(state.decrease / (problem.tolerance**2 * state.energy), error / problem.tolerance) if error else 0
         if excess <= 1:
-            return _solution(problem, operator, vectors, state, iterations, error, clock.cost())
+            return _solution(problem, system, state, iterations, error, clock.cost())
         if iterations >= problem.max_iterations or not excess < before:
             _fail(iterations, error, problem.tolerance)
         before = excess
         with clock:
-            iterations = _iterate(problem, operator, vectors, state, iterations)
+            iterations = _iterate(problem, system, state, iterations)
 
 
 def _error(rz, energy, problem):
@@ -105,102 +95,121 @@ def _fail(iterations, error, tolerance):
     )
 
 
-def _operator(problem):
-    shape, spacing = problem.voxels.phase.shape, problem.voxels.spacing
+def _system(problem):
+    voxels, links, dtype = problem.voxels, problem.links, problem.dtype
+    nx, ny, nz = voxels.phase.shape
+    if links:
+        conduct, inverse = conduct_links, 1.0 / voxels.spacing
+        material = Links(*(np.ascontiguousarray(link, dtype) for link in links))
+    else:
+        conduct, inverse = conduct_voxels, 0.25 / voxels.spacing
+        material = medium(voxels, voxels.conductivity, voxels.tensor, dtype)
+    nodes = (nx - 1, ny + 1, nz + 1) if problem.walls and not links else (nx, ny, nz)
+    transform = _transform(problem, nodes)
+    vectors = _vectors(problem, nodes, transform.real[0])
+    sums = Sums(np.zeros(nx), np.zeros((nx, 3)))
+    body = Body(material, inverse.astype(dtype), problem.walls)
+    return _System(conduct, body, transform, _symbol(problem, transform), vectors, sums)
+
+
+def _transform(problem, nodes):
     make = {"dtype": problem.dtype, "threads": problem.team.threads}
-    nx, ny, nz = shape
-    if problem.links is not None:
-        conduct, inverse, kind = link_kernels.conduct_links, 1.0 / spacing, "2"
-        material = link_kernels.Links(*(np.ascontiguousarray(link, problem.dtype) for link in problem.links))
-    else:
-        conduct, inverse, kind = kernels.conduct_voxels, 0.25 / spacing, "1"
-        material = medium(problem.voxels, problem.voxels.conductivity, problem.voxels.tensor, problem.dtype)
-        shape = (nx - 1, ny + 1, nz + 1) if problem.walls else shape
-    if problem.walls:
-        transform = trigonometric([("sin" + kind, "cos" + kind, "cos" + kind)], shape, **make)
-        numbers = [np.pi * (np.arange(shape[0]) + 1) / nx]
-        numbers += [np.pi * np.arange(m) / n for m, n in zip(shape[1:], (ny, nz), strict=True)]
-    else:
-        transform = fourier(1, shape, **make)
-        numbers = [2 * np.pi * np.arange(m) / n for m, n in zip(transform.modes.shape[1:], shape, strict=True)]
-    weights = tuple(np.ones(n, problem.dtype) for n in shape[1:])
-    if problem.walls and kind == "1":
+    if not problem.walls:
+        return fourier(1, nodes, **make)
+    # Links have their nodes half a step inside the walls, voxels on them.
+    kind = "2" if problem.links else "1"
+    return trigonometric([("sin" + kind, "cos" + kind, "cos" + kind)], nodes, **make)
+
+
+def _vectors(problem, nodes, work):
+    theta, residual, direction = (np.zeros(nodes, problem.dtype) for _ in range(3))
+    weights = [np.ones(n, problem.dtype) for n in nodes[1:]]
+    if problem.walls and not problem.links:
         # A node on an insulated face owns half a cell: the preconditioner acts on its residual per volume.
         for weight in weights:
             weight[[0, -1]] = 2
-    if not problem.walls:
+    return Vectors(theta, residual, direction, work, *weights, partial=np.zeros(len(work)))
+
+
+def _symbol(problem, transform):
+    """Per axis (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1; those of x as wide as a column of modes."""
+    modes, shape = transform.modes.shape[1:], problem.voxels.phase.shape
+    if problem.walls:
+        numbers = [np.pi * (np.arange(m) + (axis == 0)) / shape[axis] for axis, m in enumerate(modes)]
+    else:
+        numbers = [2 * np.pi * np.arange(m) / n for m, n in zip(modes, shape, strict=True)]
         # Columns of modes have real and imaginary parts in turn.
         numbers[0] = np.repeat(numbers[0], 2)
-    symbol = _symbol(numbers, spacing, kind == "2", problem.dtype)
-    return _Operator(conduct, material, inverse.astype(problem.dtype), transform, symbol, weights, shape)
+    sines = [(2 * np.sin(k / 2) / h) ** 2 for k, h in zip(numbers, problem.voxels.spacing, strict=True)]
+    cosines = [np.ones_like(k) if problem.links else np.cos(k / 2) ** 2 for k in numbers]
+    return Symbol(
+        tuple(s.astype(problem.dtype) for s in sines),
+        tuple(np.where(c < ZERO, 0.0, c).astype(problem.dtype) for c in cosines),
+    )
 
 
-def _symbol(numbers, spacing, links, dtype):
-    """Factors of the symbol of minus the discrete Laplacian, per axis: (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1."""
-    sines = tuple(((2 * np.sin(k / 2) / h) ** 2).astype(dtype) for k, h in zip(numbers, spacing, strict=True))
-    cosines = [np.ones_like(k) if links else np.cos(k / 2) ** 2 for k in numbers]
-    return sines, tuple(np.where(c < ZERO, 0.0, c).astype(dtype) for c in cosines)
+def _conduct(problem, system, theta, gradient):
+    """work = -div(K grad(theta + gradient.x)); fills the sums of every plane."""
+    arguments = (theta, system.vectors.work, system.body, gradient.astype(problem.dtype), system.sums)
+    problem.team.run(system.conduct, len(theta), *arguments)
 
 
-def _conduct(problem, operator, vectors, theta, gradient):
-    """work = -div(K grad(theta + gradient.x)); returns the sums over all voxels."""
-    arguments = (theta, vectors.work, operator.material, gradient.astype(problem.dtype), operator.inverse)
-    problem.team.run(operator.conduct, len(theta), *arguments, problem.walls, vectors.sums)
-    return vectors.sums.sum(axis=0)
-
-
-def _precondition(problem, operator, vectors, kernel, *arguments):
-    """work = inverse homogeneous operator on what kernel(*arguments) leaves in work; returns residual.work."""
-    transform = operator.transform
-    transform.planes(kernel, *arguments, *operator.weights, forward=True)
-    transform.columns(kernels.divide, *operator.symbol, problem.dtype(transform.scale))
-    transform.planes(kernels.dot, vectors.residual, vectors.work, vectors.partial, backward=True)
+def _precondition(problem, system, kernel, *arguments):
+    """work = inverse homogeneous operator on what kernel(vectors, *arguments) leaves in work; returns residual.work."""
+    transform, vectors = system.transform, system.vectors
+    transform.planes(kernel, vectors, *arguments, forward=True)
+    transform.columns(kernels.divide, system.symbol, problem.dtype(transform.scale))
+    transform.planes(kernels.dot, vectors, backward=True)
     return float(vectors.partial.sum())
 
 
-def _restart(problem, operator, vectors):
+def _turn(problem, system, beta):
+    """Make work + beta direction the direction; returns p.A p."""
+    vectors = system.vectors
+    problem.team.run(kernels.turn, len(vectors.work), vectors, problem.dtype(beta))
+    _conduct(problem, system, vectors.direction, np.zeros(3))
+    return total(system.sums.energy)
+
+
+def _restart(problem, system):
     """Recompute the residual and make the preconditioned residual the direction."""
-    sums = _conduct(problem, operator, vectors, vectors.theta, problem.gradient)
-    ends = vectors.sums[[0, -1], 1] * len(vectors.sums) / problem.voxels.phase.size
-    rz = _precondition(problem, operator, vectors, kernels.start, vectors.residual, vectors.work)
-    problem.team.run(kernels.turn, len(vectors.work), vectors.direction, vectors.work, problem.dtype(0))
-    curvature = _conduct(problem, operator, vectors, vectors.direction, np.zeros(3))[0]
-    return _State(sums, ends, rz, curvature)
+    _conduct(problem, system, system.vectors.theta, problem.gradient)
+    energy, flux = total(system.sums.energy), system.sums.flux.sum(axis=0)
+    ends = system.sums.flux[[0, -1], 0] * len(system.sums.flux) / problem.voxels.phase.size
+    rz = _precondition(problem, system, kernels.start)
+    return _State(energy, flux, ends, rz, curvature=_turn(problem, system, 0))
 
 
-def _iterate(problem, operator, vectors, state, iterations):
+def _iterate(problem, system, state, iterations):
     """Conjugate gradients from a fresh direction until the decrease of energy is small; returns the iterations."""
-    planes = len(vectors.work)
-    energy, rz, curvature, decreases = state.sums[0], state.rz, state.curvature, []
+    energy, rz, curvature, decreases = state.energy, state.rz, state.curvature, []
     while iterations < problem.max_iterations and curvature > 0:
         alpha = rz / curvature
         decreases.append(alpha * rz)
         energy -= decreases[-1]
         iterations += 1
-        arguments = (vectors.theta, vectors.direction, vectors.residual, vectors.work, problem.dtype(alpha))
-        before, rz = rz, _precondition(problem, operator, vectors, kernels.step, *arguments)
+        before, rz = rz, _precondition(problem, system, kernels.step, problem.dtype(alpha))
         small = sum(decreases[-max(2, len(decreases) // 8) :]) <= problem.tolerance**2 * energy
         if small and _error(rz, energy, problem) <= problem.tolerance:
             break
-        problem.team.run(kernels.turn, planes, vectors.direction, vectors.work, problem.dtype(rz / before))
-        curvature = _conduct(problem, operator, vectors, vectors.direction, np.zeros(3))[0]
+        curvature = _turn(problem, system, rz / before)
     return iterations
 
 
-def _solution(problem, operator, vectors, state, iterations, error, cost):
-    shape, theta = problem.voxels.phase.shape, vectors.theta
-    # Not the operator itself, whose transform holds as much as all temperatures.
-    arguments = (operator.material, problem.gradient.astype(problem.dtype), operator.inverse, problem.walls)
+def _solution(problem, system, state, iterations, error, cost):
+    # Not the system itself, whose transform holds as much as all temperatures.
+    body, theta = system.body, system.vectors.theta
+    shape, gradient = problem.voxels.phase.shape, problem.gradient.astype(problem.dtype)
 
     def centers():
         flux = np.empty((3, *shape), problem.dtype)
         with Team(problem.team.threads) as team:
-            if problem.links is not None:
-                team.run(link_kernels.link_state, shape[0], theta, *arguments, flux)
+            if problem.links:
+                team.run(link_state, shape[0], theta, body, gradient, flux)
                 return theta.copy(), flux
             temperature = np.empty(shape, problem.dtype)
-            team.run(kernels.voxel_state, shape[0], theta, *arguments, temperature, flux)
+            team.run(voxel_state, shape[0], theta, body, gradient, temperature, flux)
         return temperature, flux
 
-    mean_flux = state.sums[1:4] / problem.voxels.phase.size
+    mean_flux = state.flux / problem.voxels.phase.size
     return Solution(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error}, cost)

@@ -15,14 +15,27 @@ same algebra runs on the box itself.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
 from references.fft import eyre_milton_kernels as kernels
-from references.fft.problem import Clock, Problem, Solution
+from references.fft import projection_kernels
+from references.fft.eyre_milton_kernels import Sums
+from references.fft.problem import Clock, Problem, Solution, total
+from references.fft.projection_kernels import Parts, Waves
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
-from references.voxels.paint import Voxels, medium
+from references.voxels.paint import Medium, Voxels, medium
+
+
+class _Scheme(NamedTuple):
+    """The reference conductivity c0; Z = (K - c0)/(K + c0) and K of every voxel; the wave numbers of all modes."""
+
+    reference: float
+    mirror: Medium
+    conductor: Medium
+    waves: Waves
 
 
 def solve(problem: Problem) -> Solution:
@@ -35,21 +48,20 @@ def solve(problem: Problem) -> Solution:
         implies.
     """
     low, high = _extremes(problem.voxels)
-    reference = math.sqrt(low * high)
-    mirror, conductor = _media(problem.voxels, reference, problem.dtype)
+    scheme = _scheme(problem, math.sqrt(low * high))
     transform = _transform(problem, 3)
     field = np.zeros((3, *problem.voxels.phase.shape), problem.dtype)
-    iterations, error, cost = _iterate(problem, reference, mirror, transform, field)
+    iterations, error, cost = _iterate(problem, scheme, transform, field)
     # Not a number must fail too.
     if not error <= problem.tolerance:
         _fail(iterations, error, problem.tolerance)
-    mean_flux, ends, errors = _measure(problem, reference, mirror, conductor, transform, field)
+    mean_flux, ends, errors = _measure(problem, scheme, transform, field)
     # The iterate's errors are below the tolerance; making g compatible moves q by at most K/c0 of it.
-    if not errors["equilibrium"] <= (1 + high / reference) * problem.tolerance:
+    if not errors["equilibrium"] <= (1 + high / scheme.reference) * problem.tolerance:
         _fail(iterations, errors["equilibrium"], problem.tolerance)
 
     def state():
-        return _state(problem, reference, mirror, conductor, field)
+        return _state(problem, scheme, field)
 
     return Solution(mean_flux, ends, state, field.size, iterations, errors, cost)
 
@@ -67,12 +79,14 @@ def _extremes(voxels: Voxels):
     return float(present.min()), float(present.max())
 
 
-def _media(voxels, reference, dtype):
-    """Z and K as kernels read them."""
+def _scheme(problem, reference):
+    voxels, dtype = problem.voxels, problem.dtype
     tensor = voxels.tensor.copy()
     kernels.mirror(tensor, reference)
     scalar = (voxels.conductivity - reference) / (voxels.conductivity + reference)
-    return medium(voxels, scalar, tensor, dtype), medium(voxels, voxels.conductivity, voxels.tensor, dtype)
+    mirror = medium(voxels, scalar, tensor, dtype)
+    conductor = medium(voxels, voxels.conductivity, voxels.tensor, dtype)
+    return _Scheme(reference, mirror, conductor, _waves(problem))
 
 
 def _transform(problem, components):
@@ -83,117 +97,115 @@ def _transform(problem, components):
     return trigonometric(gradient if components == 3 else [("sin2", "cos2", "cos2")], shape, **make)
 
 
-def _waves(problem, transform):
-    """Wave numbers per axis, and how often each counts in a sum of squares over all modes."""
+def _waves(problem):
+    """Wave numbers of all modes, those of x once."""
     shape = problem.voxels.phase.shape
     lengths = np.array(shape) * problem.voxels.spacing
-    if problem.walls:
-        numbers = [np.pi * np.arange(n + 1) / length for n, length in zip(shape, lengths, strict=True)]
-        weights = [np.full(n + 1, 2.0) for n in shape]
-        for number, weight, sign in zip(numbers, weights, (1, -1, -1), strict=True):
-            number *= sign
-            number[-1] = 0.0
-            weight[[0, -1]] = 1.0
-        free = [np.arange(n + 1) == n for n in shape]
-        return _cast(numbers, problem), _cast(free, problem), _cast(weights, problem)
-    numbers, free = [], []
-    for n, length in zip(shape, lengths, strict=True):
-        number = 2 * np.pi / length * np.fft.fftfreq(n, 1 / n)
-        nyquist = np.arange(n) * 2 == n
+    found = (_box_waves if problem.walls else _cell_waves)(shape, lengths)
+    return Waves(*(tuple(axis.astype(problem.dtype) for axis in axes) for axes in found))
+
+
+def _cell_waves(shape, lengths):
+    numbers = [2 * np.pi / length * np.fft.fftfreq(n, 1 / n) for n, length in zip(shape, lengths, strict=True)]
+    free = [np.arange(n) * 2 == n for n in shape]
+    for number, nyquist in zip(numbers, free, strict=True):
         number[nyquist] = 0.0
-        numbers.append(number)
-        free.append(nyquist)
-    half = transform.modes.shape[3]
+    half = shape[2] // 2 + 1
     numbers[2], free[2] = np.abs(numbers[2][:half]), free[2][:half]
-    weight = np.full(half, 2.0)
-    weight[0] = 1.0
+    # Of the last axis only half the modes are kept; the other half are their conjugates.
+    multiplicity = [np.ones(shape[0]), np.ones(shape[1]), np.full(half, 2.0)]
+    multiplicity[2][0] = 1.0
     if shape[2] % 2 == 0:
-        weight[-1] = 1.0
-    return _cast(numbers, problem), _cast(free, problem), weight.astype(problem.dtype)
+        multiplicity[2][-1] = 1.0
+    return numbers, free, multiplicity
 
 
-def _cast(arrays, problem):
-    return tuple(array.astype(problem.dtype) for array in arrays)
+def _box_waves(shape, lengths):
+    numbers = [np.pi * np.arange(n + 1) / length for n, length in zip(shape, lengths, strict=True)]
+    free = [np.arange(n + 1) == n for n in shape]
+    multiplicity = [np.full(n + 1, 2.0) for n in shape]
+    for number, weight, sign in zip(numbers, multiplicity, (1, -1, -1), strict=True):
+        number *= sign
+        number[-1] = 0.0
+        weight[[0, -1]] = 1.0
+    return numbers, free, multiplicity
 
 
-def _rows(wave, free):
-    """Wave numbers as columns of modes have them: real and imaginary parts in turn along x."""
-    return (np.repeat(wave[0], 2), *wave[1:]), (np.repeat(free[0], 2), *free[1:])
-
-
-def _on_modes(problem, transform, name, *arguments, backward=True):
-    """Transform along x, let the kernel of this name change the modes, transform back; y and z are done before."""
-    wave, free, _ = _waves(problem, transform)
+def _on_modes(problem, scheme, transform, kernel, *arguments, backward=True):
+    """Transform along x, let the kernel change the modes, transform back; y and z are done before."""
     if not problem.walls:
-        kernel = getattr(kernels, name + "_modes")
-        transform.columns(kernel, *_rows(wave, free), *arguments, backward=backward)
+        # Columns have real and imaginary parts in turn.
+        waves = Waves(*((np.repeat(axes[0], 2), *axes[1:]) for axes in scheme.waves))
+        transform.columns(kernel, waves, *arguments, backward=backward)
         return
     # Components of a box have modes of different wave numbers at the same place: they do not go column by column.
     transform.columns(backward=False)
-    kernel = getattr(kernels, name + "_waves")
-    problem.team.run(kernel, transform.modes.shape[1] + 1, transform.modes, wave, free, *arguments)
+    problem.team.run(kernel, transform.modes.shape[1] + 1, transform.modes, scheme.waves, *arguments)
     if backward:
         transform.columns(forward=False)
 
 
-def _iterate(problem, reference, mirror, transform, field):
+def _iterate(problem, scheme, transform, field):
     """Reflect in turn until p no longer changes; returns the iterations, the error that the last change shows, cost."""
-    cells, work = problem.voxels.phase.size, transform.real
-    sums = np.zeros((field.shape[1], 4))
-    scale, mean = problem.dtype(transform.scale), (2 * reference * problem.gradient).astype(problem.dtype)
+    cells, planes, work = problem.voxels.phase.size, field.shape[1], transform.real
+    sums = Sums(np.zeros(planes), np.zeros((planes, 3)))
+    scale = problem.dtype(transform.scale)
+    mean = (2 * scheme.reference * problem.gradient).astype(problem.dtype)
+    kernel = projection_kernels.reflect_waves if problem.walls else projection_kernels.reflect_modes
     for component, value in zip(work, mean, strict=True):
         component[:] = value
-    transform.planes(kernels.reflect, field, work, mirror, sums, forward=True)
+    transform.planes(kernels.reflect, field, work, scheme.mirror, sums, forward=True)
     iterations, error, clock = 0, math.inf, Clock(transform)
     with clock:
         while error > problem.tolerance and iterations < problem.max_iterations:
-            _on_modes(problem, transform, "reflect", scale, mean)
-            transform.planes(kernels.reflect, field, work, mirror, sums, backward=True, forward=True)
-            total = sums.sum(axis=0)
-            flux = 0.5 * np.linalg.norm(total[1:]) / cells
-            error = 0.5 * math.sqrt(total[0] / cells) / flux if flux > 0 else math.inf
+            _on_modes(problem, scheme, transform, kernel, scale, mean)
+            transform.planes(kernels.reflect, field, work, scheme.mirror, sums, backward=True, forward=True)
+            flux = 0.5 * np.linalg.norm(sums.flux.sum(axis=0)) / cells
+            error = 0.5 * math.sqrt(total(sums.change) / cells) / flux if flux > 0 else math.inf
             iterations += 1
     return iterations, error, clock.cost()
 
 
-def _measure(problem, reference, mirror, conductor, transform, field):
+def _measure(problem, scheme, transform, field):
     """Mean flux, flux at both ends and errors of the compatible gradient and its own flux; the field stays."""
-    cells, work = problem.voxels.phase.size, transform.real
-    transform.planes(kernels.gradient, field, work, mirror, problem.dtype(0.5 / reference), forward=True)
-    _, incompatible = _split(problem, transform, problem.gradient)
-    sums = np.zeros((field.shape[1], 3))
-    transform.planes(kernels.conduct, work, conductor, sums, backward=True, forward=True)
-    ends = sums[[0, -1], 0] / (cells / len(sums))
-    mean_flux = sums.sum(axis=0) / cells
-    unbalanced, _ = _split(problem, transform, mean_flux, backward=False)
+    cells, planes, work = problem.voxels.phase.size, field.shape[1], transform.real
+    factor = problem.dtype(0.5 / scheme.reference)
+    transform.planes(kernels.gradient, field, work, scheme.mirror, factor, forward=True)
+    _, incompatible = _split(problem, scheme, transform, problem.gradient)
+    flux = np.zeros((planes, 3))
+    transform.planes(kernels.conduct, work, scheme.conductor, flux, backward=True, forward=True)
+    ends = flux[[0, -1], 0] / (cells / planes)
+    mean_flux = flux.sum(axis=0) / cells
+    unbalanced, _ = _split(problem, scheme, transform, mean_flux, backward=False)
     equilibrium = math.sqrt(unbalanced) / float(np.linalg.norm(mean_flux))
     errors = {"residual": equilibrium, "equilibrium": equilibrium, "compatibility": math.sqrt(incompatible)}
     return mean_flux, ends, errors
 
 
-def _split(problem, transform, mean, backward=True):
+def _split(problem, scheme, transform, mean, backward=True):
     """Replace a field's modes by its compatible part; returns the mean squares of that part and of the rest."""
     _, mx, my, mz = transform.modes.shape
-    sums = np.zeros((mx + 1 if problem.walls else my * mz, 2))
-    _, _, multiplicity = _waves(problem, transform)
-    arguments = (multiplicity, problem.dtype(transform.scale), mean.astype(problem.dtype), sums)
-    _on_modes(problem, transform, "split", *arguments, backward=backward)
-    return sums.sum(axis=0)
+    count = mx + 1 if problem.walls else my * mz
+    parts = Parts(np.zeros(count), np.zeros(count))
+    kernel = projection_kernels.split_waves if problem.walls else projection_kernels.split_modes
+    arguments = (problem.dtype(transform.scale), mean.astype(problem.dtype), parts)
+    _on_modes(problem, scheme, transform, kernel, *arguments, backward=backward)
+    return total(parts.inside), total(parts.outside)
 
 
-def _state(problem, reference, mirror, conductor, field):
+def _state(problem, scheme, field):
     """Temperature less its linear part, and the flux of its gradient, made when asked for."""
     with Team(problem.team.threads) as team:
         problem = problem._replace(team=team)
         transform, potential = _transform(problem, 3), _transform(problem, 1)
-        work, wave = transform.real, _waves(problem, transform)[0]
-        transform.planes(kernels.gradient, field, work, mirror, problem.dtype(0.5 / reference), forward=True)
-        _split(problem, transform, problem.gradient, backward=False)
-        integrate = kernels.integrate_waves if problem.walls else kernels.integrate_modes
+        work, factor = transform.real, problem.dtype(0.5 / scheme.reference)
+        transform.planes(kernels.gradient, field, work, scheme.mirror, factor, forward=True)
+        _split(problem, scheme, transform, problem.gradient, backward=False)
+        integrate = projection_kernels.integrate_waves if problem.walls else projection_kernels.integrate_modes
         planes = transform.modes.shape[1] + (1 if problem.walls else 0)
-        team.run(integrate, planes, transform.modes, potential.modes, wave)
+        team.run(integrate, planes, transform.modes, potential.modes, scheme.waves)
         potential.backward()
         transform.columns(forward=False)
-        transform.planes(kernels.conduct, work, conductor, np.zeros((field.shape[1], 3)), backward=True)
+        transform.planes(kernels.conduct, work, scheme.conductor, np.zeros((field.shape[1], 3)), backward=True)
     depth = field.shape[3]
     return potential.real[0, ..., :depth], work[..., :depth]

@@ -1,8 +1,8 @@
-"""Steady conduction on voxels by fast Fourier transforms: Eyre and Milton's scheme, and a faster scalar one."""
+"""Steady conduction on voxels: checks, the choice of a rule, units and axes around the two schemes."""
 
 from __future__ import annotations
 
-import os
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
 from numbers import Integral, Real
@@ -13,9 +13,10 @@ import numpy as np
 from demheat.field import Field
 from demheat.scene import Scene
 from references.fft import cg, eyre_milton
-from references.fft import field as fields
+from references.fft.interpolation import Grid, flux_at, samples, temperature_at
+from references.fft.link_kernels import Links
 from references.fft.problem import Problem
-from references.threads import Team
+from references.threads import Team, thread_count
 from references.voxels.links import cut, links
 from references.voxels.paint import grid_shape, paint, voxelise
 
@@ -32,18 +33,19 @@ MEASURED = {
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
+SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
 def solve(
     scene: Scene,
     *,
-    voxels=128,
-    scheme="cg",
-    rule="auto",
-    precision="float64",
-    threads=2,
-    tolerance=None,
-    max_iterations=5000,
+    voxels: int | Sequence[int] = 128,
+    scheme: str = "cg",
+    rule: str = "auto",
+    precision: str = "float64",
+    threads: int | None = 2,
+    tolerance: float | None = None,
+    max_iterations: int = 5000,
 ) -> Field:
     """Solve a periodic cell, or a box between two opposite isothermal walls with four insulated sides.
 
@@ -89,35 +91,34 @@ def solve(
     RuntimeError
         If the iteration does not converge.
     """
-    _check(scheme, rule, precision, tolerance, max_iterations)
+    knobs = _checked(scheme, rule, precision, tolerance, max_iterations)
     threads = thread_count(threads)
     _check_load(scene)
     order = (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
     box = _turned(scene, order)
     shape = tuple(grid_shape(scene, voxels)[a] for a in order)
-    rule = _automatic(scheme, scene) if rule == "auto" else rule
-    _check_scheme(box, scheme, rule, shape)
+    if rule == "auto":
+        knobs = knobs._replace(rule=_automatic(scheme, scene))
+    _check_scheme(box, scheme, knobs.rule, shape)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
-    grid = voxelise(box, shape, laminate=rule != "plain")
+    painted = voxelise(box, shape, laminate=knobs.rule != "plain")
     slope, level = _linear_part(box)
-    steep = float(np.linalg.norm(slope))
-    units = _Units(max(box.size), float(grid.conductivity[grid.fractions > 0].max()) or 1.0, steep)
+    grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
+    units = _units(grid)
     with Team(threads) as team:
-        problem = Problem(
-            voxels=_scaled(grid, units),
-            links=_scaled_links(links(box, shape, phase=grid.phase), units) if rule == "links" else None,
-            # Equal wall temperatures: any load's solution, times zero.
-            gradient=slope / steep if steep else np.array([1.0, 0.0, 0.0]),
-            walls=not scene.periodic,
-            dtype=PRECISIONS[precision],
-            team=team,
-            tolerance=TOLERANCES[scheme] if tolerance is None else tolerance,
-            max_iterations=max_iterations,
-        )
-        solution = (cg if scheme == "cg" else eyre_milton).solve(problem)
-    knobs = {"scheme": scheme, "rule": rule, "precision": precision, "tolerance": problem.tolerance}
-    field_grid = fields.Grid(box, order, grid, None, None, slope, level, sharp=rule == "links")
-    return _field(scene, field_grid, units, solution, knobs)
+        problem = _problem(grid, units, knobs, team)
+        solution = SOLVERS[scheme](problem)
+    return _field(scene, grid, units, solution, knobs)
+
+
+class _Knobs(NamedTuple):
+    """What the user asks of the scheme, checked; by the names that `stats` has."""
+
+    scheme: str
+    rule: str
+    precision: str
+    tolerance: float
+    max_iterations: int
 
 
 class _Units(NamedTuple):
@@ -127,8 +128,16 @@ class _Units(NamedTuple):
     conductivity: float
     slope: float
 
+    @property
+    def flux(self):
+        return self.conductivity * self.slope
 
-def _check(scheme, rule, precision, tolerance, max_iterations):
+    @property
+    def temperature(self):
+        return self.slope * self.length
+
+
+def _checked(scheme, rule, precision, tolerance, max_iterations):
     if scheme not in RULES:
         raise ValueError(f"scheme = {scheme!r}: must be one of {', '.join(RULES)}")
     if rule not in RULES[scheme]:
@@ -142,15 +151,8 @@ def _check(scheme, rule, precision, tolerance, max_iterations):
         )
     if not isinstance(max_iterations, Integral) or isinstance(max_iterations, bool) or max_iterations < 1:
         raise ValueError(f"max_iterations = {max_iterations!r}: must be a whole number >= 1")
-
-
-def thread_count(threads):
-    """Number of threads, one per processor for None, or a ValueError."""
-    if threads is None:
-        return os.cpu_count() or 1
-    if not isinstance(threads, Integral) or isinstance(threads, bool) or threads < 1:
-        raise ValueError(f"threads = {threads!r}: must be a whole number >= 1, or None for one per processor")
-    return int(threads)
+    tolerance = TOLERANCES[scheme] if tolerance is None else tolerance
+    return _Knobs(scheme, rule, precision, tolerance, max_iterations)
 
 
 def _check_load(scene):
@@ -223,15 +225,37 @@ def _linear_part(box):
     return np.array([(high - low) / box.size[0], 0.0, 0.0]), low
 
 
-def _scaled(grid, units):
-    return grid._replace(
-        spacing=grid.spacing / units.length,
-        conductivity=grid.conductivity / units.conductivity,
-        tensor=grid.tensor / units.conductivity,
+def _units(grid):
+    conductivity = grid.voxels.conductivity[grid.voxels.fractions > 0].max()
+    return _Units(max(grid.scene.size), float(conductivity) or 1.0, float(np.linalg.norm(grid.slope)))
+
+
+def _problem(grid, units, knobs, team):
+    """The problem that a scheme solves."""
+    return Problem(
+        voxels=_scaled(grid.voxels, units),
+        links=_links(grid, units) if knobs.rule == "links" else None,
+        # Equal wall temperatures: any load's solution, times zero.
+        gradient=grid.slope / units.slope if units.slope else np.array([1.0, 0.0, 0.0]),
+        walls=not grid.scene.periodic,
+        dtype=PRECISIONS[knobs.precision],
+        team=team,
+        tolerance=knobs.tolerance,
+        max_iterations=knobs.max_iterations,
     )
 
 
-def _scaled_links(found, units):
+def _scaled(voxels, units):
+    return voxels._replace(
+        spacing=voxels.spacing / units.length,
+        conductivity=voxels.conductivity / units.conductivity,
+        tensor=voxels.tensor / units.conductivity,
+    )
+
+
+def _links(grid, units):
+    found = Links(*links(grid.scene, grid.voxels.phase.shape, phase=grid.voxels.phase))
+    # In place: they take as much as three fields.
     for link in found:
         link /= units.conductivity
     return found
@@ -239,41 +263,34 @@ def _scaled_links(found, units):
 
 def _field(scene, grid, units, solution, knobs):
     """The solution in the user's units and axes; what is costly is made when asked for."""
-    flux_unit = units.conductivity * units.slope
     mean_flux = np.empty(3)
-    mean_flux[list(grid.order)] = -flux_unit * solution.mean_flux
-    heat = {}
-    if not scene.periodic:
-        area = scene.volume / scene.size[scene.axis]
-        name = "xyz"[scene.axis]
-        heat = {
-            name + "-": float(-flux_unit * solution.ends[0] * area),
-            name + "+": float(flux_unit * solution.ends[1] * area),
-        }
+    mean_flux[list(grid.order)] = -units.flux * solution.mean_flux
 
     @cache
     def whole():
         temperature, flux = solution.state()
-        temperature *= units.slope * units.length
-        flux *= -flux_unit
+        temperature *= units.temperature
+        flux *= -units.flux
         return grid._replace(temperature=temperature, flux=flux)
 
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
+    found = {"unknowns": solution.unknowns, "iterations": solution.iterations, **solution.errors, **solution.cost}
+    asked = {name: value for name, value in knobs._asdict().items() if name != "max_iterations"}
     return Field(
         scene=scene,
         mean_flux=mean_flux,
         fractions=grid.voxels.fractions,
-        sampler=lambda: fields.samples(whole()),
-        temperature_at=lambda points: fields.temperature_at(whole(), points),
-        flux_at=lambda points: fields.flux_at(whole(), points),
+        sampler=lambda: samples(whole()),
+        temperature_at=lambda points: temperature_at(whole(), points),
+        flux_at=lambda points: flux_at(whole(), points),
         wall_temperature=scene.wall_temperatures,
-        wall_heat=heat,
-        stats={
-            "unknowns": solution.unknowns,
-            "iterations": solution.iterations,
-            **solution.errors,
-            **solution.cost,
-            **knobs,
-            "voxels": shape,
-        },
+        wall_heat={} if scene.periodic else _wall_heat(scene, units, solution),
+        stats={**found, **asked, "voxels": shape},
     )
+
+
+def _wall_heat(scene, units, solution):
+    """Heat into the body through each of the two walls, W."""
+    area, name = scene.volume / scene.size[scene.axis], "xyz"[scene.axis]
+    low, high = (float(units.flux * end * area) for end in solution.ends)
+    return {name + "-": -low, name + "+": high}

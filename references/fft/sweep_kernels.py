@@ -32,7 +32,13 @@ def take(modes, buffer, first, count):
 
 @compiled
 def put(modes, buffer, first, count):
-    """modes[c, i, first + r] = buffer[c, r, i]; see `take`."""
+    """modes[c, i, first + r] = buffer[c, r, i].
+
+    Parameters
+    ----------
+    modes, buffer, first, count : see `take`
+        Out: `modes`.
+    """
     for component in range(modes.shape[0]):
         target, source = modes[component], buffer[component]
         for low in range(0, target.shape[0], TILE):

@@ -81,7 +81,13 @@ class Transform:
     def planes(self, kernel=None, *arguments, backward=False, forward=False):
         """Block by block: transform back along y and z, call kernel(*arguments, low, high), transform along y and z.
 
-        The kernel works on the planes low <= i < high of the first axis.
+        Parameters
+        ----------
+        kernel : callable (*arguments, low, high), optional
+            Works on the planes low <= i < high of the first axis.
+        *arguments
+        backward, forward : bool
+            Whether to transform before the kernel, and after it.
         """
         job = (kernel, arguments, backward, forward)
         self._share(self._planes, job, -(-self.modes.shape[1] // self._block))
@@ -89,8 +95,14 @@ class Transform:
     def columns(self, kernel=None, *arguments, forward=True, backward=True):
         """Some columns at a time: transform along x, call kernel(rows, first, count, *arguments), transform back.
 
-        `rows` is a (components, count or more, width) float array of coefficients along x, where width is mx, or 2 mx
-        with real and imaginary parts in turn; row r belongs to column first + r of the my * mz columns.
+        Parameters
+        ----------
+        kernel : callable (rows, first, count, *arguments), optional
+            `rows` is a (components, count or more, width) float array of coefficients along x, where width is mx, or
+            2 mx with real and imaginary parts in turn; row r belongs to column first + r of the my * mz columns.
+        *arguments
+        forward, backward : bool
+            Whether to transform before the kernel, and after it.
         """
         job = (kernel, arguments, forward, backward)
         self._share(self._columns, job, -(-self.modes[0, 0].size // self._count))

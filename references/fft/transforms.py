@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -23,7 +24,7 @@ PLANNING_SECONDS = 5.0
 _loaded = set()
 
 
-def fourier(components, shape, dtype, threads) -> Transform:
+def fourier(components: int, shape: tuple, dtype: type, threads: int) -> Transform:
     """Real discrete Fourier transform of a periodic field.
 
     Parameters
@@ -40,7 +41,7 @@ def fourier(components, shape, dtype, threads) -> Transform:
     return _transform(modes.view(dtype), modes, shape, ways, 1.0 / np.prod(shape, dtype=float), threads)
 
 
-def trigonometric(kinds, shape, dtype, threads) -> Transform:
+def trigonometric(kinds: Sequence, shape: tuple, dtype: type, threads: int) -> Transform:
     """Sine and cosine transforms of fields in a box.
 
     Parameters

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-# Unit lengths. Nodes this close to a face lie on it (found: they are 1e-15 off, or on spheres at least `TOUCH`).
+# Unit lengths. Nodes this close to a face lie on it (found: they are 1e-15 off, or on spheres at least `NARROWEST`).
 SNAP = 1e-9
 # Nodes and surfaces this close after the periodic shift are twins (OpenCASCADE's own tolerance is 1e-7).
 MATCH = 1e-6

@@ -14,7 +14,7 @@ EDGES = {1: 50, 2: 26}
 EDGES_APART = 8
 MOST_CELLS = 3e7
 # Of the longest edge. Closer surfaces touch: the cusp between them has no valid elements (2e-6 meshes, 0 does not).
-TOUCH = 1e-6
+NARROWEST = 1e-6
 _WHY = "the cusp between touching surfaces has no valid elements; leave a gap or let them overlap clearly"
 # Of the longest edge. Coordinates closer than this are one plane: rounding of what the user typed.
 SAME = 1e-10
@@ -139,7 +139,7 @@ def _planes(scene):
         values = np.clip([0.0, length, *(x.start for x in layers), *(x.stop for x in layers)], 0.0, length)
         values = np.unique(values)
         gaps = np.diff(values, prepend=-np.inf)
-        if np.any((gaps > SAME * longest) & (gaps < TOUCH * longest)):
+        if np.any((gaps > SAME * longest) & (gaps < NARROWEST * longest)):
             raise NotImplementedError(f"layer planes along axis {axis} at {values}: too close to mesh between them")
         planes.append(values[gaps > SAME * longest])
     return planes
@@ -156,7 +156,7 @@ def _pairs(scene, centers, radii):
         distance = np.linalg.norm(offset, axis=1)
         inside = distance < radii[outer]
         gap = np.where(inside, radii[outer] - radii[inner] - distance, distance - radii[outer] - radii[inner])
-        for i in np.flatnonzero(gap < TOUCH * max(scene.size)):
+        for i in np.flatnonzero(gap < NARROWEST * max(scene.size)):
             raise NotImplementedError(f"spheres at {centers[k]} and {centers[other[i]]} touch: {_WHY}")
         nested.append((outer[inside], inner[inside]))
         # Concentric spheres have no narrowest point; their shell counts instead.
@@ -177,7 +177,7 @@ def _box_gaps(scene, centers, radii, planes):
             points[:, axes] = values
             gap = np.abs(np.linalg.norm(points - centers, axis=1) - radii)
             faces_it = np.all((points >= 0) & (points <= box), axis=1)
-            for i in np.flatnonzero(faces_it & (gap < TOUCH * max(scene.size))):
+            for i in np.flatnonzero(faces_it & (gap < NARROWEST * max(scene.size))):
                 raise NotImplementedError(f"sphere at {centers[i]} touches a plane or edge at {points[i]}: {_WHY}")
             rows.append(np.column_stack([points, gap, radii])[faces_it])
     return np.vstack(rows)

@@ -10,9 +10,10 @@ import math
 
 import numpy as np
 
-from references.multipole import kernels
+from references.multipole import field_kernels as kernels
 from references.multipole.sums import entries, harmonics, splitting, wave_weights
-from references.multipole.system import Solved, Spheres, scales
+from references.multipole.system import Solved
+from references.multipole.translations import Spheres, scales
 
 # Nanoseconds, about, of one harmonic of one image and of one wave at one point: they set the splitting.
 HARMONIC, WAVE = 4.0, 4.0
@@ -28,12 +29,13 @@ class Evaluator:
     spheres : Spheres
     solved : Solved
     gradient : (3,) float array, K/length
+        The mean one.
     """
 
     def __init__(self, spheres: Spheres, solved: Solved, gradient):
         self.spheres, self.order, self.gradient = spheres, solved.order, np.asarray(gradient, dtype=float)
         self.regular = _regular(spheres, solved)
-        self.multipoles = _complex(solved.source * scales(spheres.radii, solved.order)[0])
+        self.multipoles = _complex(solved.source * scales(spheres.radii, solved.order).sent)
         self.split = _splitting(spheres, solved.order)
         self.amplitudes = _amplitudes(spheres, solved, self.split)
 
@@ -53,7 +55,7 @@ class Evaluator:
         """
         spheres = self.spheres
         offsets, owner = np.array(points, dtype=float), np.empty(len(points), dtype=np.int64)
-        kernels.owners(offsets, spheres.centers, spheres.radii, spheres.size, owner)
+        kernels.owners(offsets, spheres, owner)
         result = np.zeros((len(points), 4))
         inner, outer = np.flatnonzero(owner >= 0), np.flatnonzero(owner < 0)
         part = np.empty((len(inner), 4))
@@ -62,17 +64,8 @@ class Evaluator:
         part[:, 0] += (points[inner] - offsets[inner]) @ self.gradient
         result[inner] = part
         part = np.zeros((len(outer), 4))
-        kernels.near(
-            offsets[outer],
-            spheres.centers,
-            spheres.size,
-            self.multipoles,
-            self.order,
-            self.split.eta,
-            self.split.reach,
-            part,
-        )
-        kernels.far(offsets[outer], spheres.size, self.split.waves, self.amplitudes, part)
+        kernels.near(offsets[outer], spheres, self.multipoles, self.order, self.split, part)
+        kernels.far(offsets[outer], spheres.size, self.split, self.amplitudes, part)
         part[:, 0] += offsets[outer] @ self.gradient
         part[:, 1:] += self.gradient
         result[outer] = part
@@ -89,7 +82,7 @@ def _regular(spheres, solved):
     Without the value that the mean gradient has at the centre: `Evaluator` adds it.
     """
     n, _ = entries(solved.order)
-    root = scales(np.ones(1), solved.order)[1]
+    root = scales(np.ones(1), solved.order).made
     factor = (2 * n + 1) / (n * spheres.contrasts[:, None] + n + 1)
     return _complex(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
 

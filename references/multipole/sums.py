@@ -5,9 +5,10 @@ formula turns sum_R R_L(X + R) exp(-t |X + R|^2) into a sum over reciprocal vect
 r^-(2L+1) = int t^(L-1/2) exp(-t r^2) dt / Gamma(L+1/2) integrates to exp(-K^2/(4 eta)) / K^2. Without K = 0 the sums
 are those of the periodic Green function -laplace psi = 4 pi (delta - 1/volume), whose mean slope is zero: just what a
 mean gradient imposed on the cell asks for. Its uniform background appears only where two derivatives meet: see
-`multipole_system`.
+`translations.received`.
 
-Harmonics in Racah's normalisation, as in `multipoles`; entry (L, M >= 0) of a table stands at L (L + 1)/2 + M.
+Harmonics in Racah's normalisation, as in `references.exact.harmonics`; entry (L, M >= 0) of a table stands at
+L (L + 1)/2 + M.
 """
 
 from __future__ import annotations
@@ -53,12 +54,18 @@ def entries(degree):
     return np.array(pairs).T
 
 
-def splitting(size, contact, degree, eta=None):
+def highest_degree(width) -> int:
+    """Highest degree in a table of so many entries."""
+    return math.isqrt(2 * width) - 1
+
+
+def splitting(size, contact, degree, eta=None) -> Splitting:
     """Choose where to split and to cut, for harmonics up to `degree` in units of contact^-(L+1).
 
     Parameters
     ----------
     size : (3,) float array, length
+        Of the cell.
     contact : float, length
         Largest distance to which sources and receivers refer.
     degree : int
@@ -102,7 +109,18 @@ def _half_space(size, reach):
 
 
 def harmonics(points, degree):
-    """R_L^M of points on the unit sphere, (n, 3) float array -> (n, entries) complex array."""
+    """R_L^M of points on the unit sphere.
+
+    Parameters
+    ----------
+    points : (n, 3) float array
+    degree : int
+        Highest L.
+
+    Returns
+    -------
+    (n, entries) complex array
+    """
     x, y, z = points.T
     table = np.empty((len(points), (degree + 1) * (degree + 2) // 2), dtype=complex)
     for m in range(degree + 1):
@@ -113,7 +131,25 @@ def harmonics(points, degree):
 
 
 def wave_weights(waves, size, eta, degree):
-    """Weights of R_L^M(K/k) in the sum over waves without (-i)^L, (w, degree + 1) float array, and K, (w, 3)."""
+    """Weights of R_L^M(K/k) in the sum over waves, without (-i)^L.
+
+    Parameters
+    ----------
+    waves : (w, 3) int array
+        K in units of 2 pi/size.
+    size : (3,) float array, length
+        Of the cell.
+    eta : float, length^-2
+        Where Ewald's sum is split.
+    degree : int
+        Highest L.
+
+    Returns
+    -------
+    (w, degree + 1) float array, length^-(L+1)
+    (w, 3) float array, length^-1
+        K.
+    """
     vectors = 2 * math.pi * waves / np.asarray(size)
     k = np.linalg.norm(vectors, axis=1)[:, None]
     return np.exp(_log_weight(np.arange(degree + 1)[None], k, eta, float(np.prod(size)))), vectors
@@ -174,13 +210,13 @@ def _wave_table(degree, size, cut):
     """Reciprocal vectors, (w, 3), and what each adds without its phase, (w, entries) complex array."""
     weights, vectors = wave_weights(cut.waves, size, cut.eta, degree)
     table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], degree)
-    return vectors, table * weights[:, entries(degree)[0]]
+    n, _ = entries(degree)
+    return vectors, table * weights[:, n]
 
 
 def _add_waves(result, angle, table):
     """K and -K together give 2 Re((-i)^L exp(i K.X)): a cosine where L is even, a sine where it is odd."""
-    degree = int(math.sqrt(2 * table.shape[1])) - 1
-    n, _ = entries(degree)
+    n, _ = entries(highest_degree(table.shape[1]))
     for parity, wave in ((0, np.cos(angle)), (1, np.sin(angle))):
         chosen = np.flatnonzero(n % 2 == parity)
         signs = 2.0 * (-1.0) ** (n[chosen] // 2)

@@ -18,11 +18,30 @@ TIE = 1e-9
 
 @numba.njit(cache=True)
 def count(phase, phases):
-    """How often each phase number occurs, (phases,) int array; without the copy to 64 bits that bincount makes."""
+    """How often each phase number occurs; without the copy to 64 bits that bincount makes.
+
+    Parameters
+    ----------
+    phase : (n,) int array
+    phases : int
+        Numbers that there are.
+
+    Returns
+    -------
+    (phases,) int array
+    """
     result = np.zeros(phases, np.int64)
     for i in range(len(phase)):
         result[phase[i]] += 1
     return result
+
+
+@numba.njit(cache=True)
+def _shell(radius, spacing):
+    """Squared distances from a sphere's centre between which lie the centres of all voxels that its surface cuts."""
+    reach = 0.5 * math.sqrt(spacing[0] ** 2 + spacing[1] ** 2 + spacing[2] ** 2)
+    # Where half a voxel's diagonal exceeds the radius the surface may cut even the voxel that the sphere is centred in.
+    return (radius - reach) ** 2 if radius > reach else -1.0, (radius + reach) ** 2
 
 
 @numba.njit(cache=True)
@@ -44,9 +63,7 @@ def paint_sphere(grid, phase, center, radius, spacing, low, high):
     -------
     count : int
     """
-    reach = 0.5 * math.sqrt(spacing[0] ** 2 + spacing[1] ** 2 + spacing[2] ** 2)
-    outer = (radius + reach) ** 2
-    inner = max(radius - reach, 0.0) ** 2
+    inner, outer = _shell(radius, spacing)
     count = 0
     for i in range(low[0], high[0]):
         x2 = ((i + 0.5) * spacing[0] - center[0]) ** 2
@@ -88,9 +105,7 @@ def cut_sphere(shape, center, radius, spacing, low, high, index, fraction, momen
     found : int
         Rows filled; fewer than `count` of `paint_sphere`, which only bounds it.
     """
-    reach = 0.5 * math.sqrt(spacing[0] ** 2 + spacing[1] ** 2 + spacing[2] ** 2)
-    outer = (radius + reach) ** 2
-    inner = max(radius - reach, 0.0) ** 2
+    inner, outer = _shell(radius, spacing)
     corner = np.empty(3)
     found = 0
     for i in range(low[0], high[0]):

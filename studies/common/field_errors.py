@@ -1,8 +1,4 @@
-"""Errors of one field against the exact one, at points, over a plane and at the method's own points; planes as text.
-
-Errors of the flux are the size of the vector's, in % of the exact mean flux; those of temperature in % of the span
-between the walls that the load imposes.
-"""
+"""What the studies of fields look at: points, a plane, the method's own points; errors by the referee, in %."""
 
 from __future__ import annotations
 
@@ -10,8 +6,9 @@ import math
 
 import numpy as np
 
-from demheat.referee import span
-from demheat.slices import on_plane, plane
+from demheat import referee
+from demheat.slices import filled, plane
+from studies.harness.cells import cell
 from studies.harness.cost import measured
 
 # Radii of the packings: Gaussian, whose cut leaves a standard deviation of 0.29 of the mean; packing fraction.
@@ -21,13 +18,29 @@ OWN_POINTS = 20_000
 
 
 def mean_diameter(particles, scene):
-    """Mean diameter of so many particles that fill the scene as packings do, m."""
+    """Mean diameter of so many particles that fill the scene as packings do, m.
+
+    Parameters
+    ----------
+    particles : int
+    scene : Scene
+    """
     cubes = scene.volume * PACKED / (particles * math.pi / 6)  # mean cube of the diameters
     return (cubes / (1 + 3 * SPREAD**2)) ** (1 / 3)
 
 
 def clearance(scene, points):
-    """Distance to the nearest surface of a sphere or insulated face, (n, 3) float array, m -> (n,) float array, m."""
+    """Distance to the nearest surface of a sphere or insulated face.
+
+    Parameters
+    ----------
+    scene : Scene
+    points : (n, 3) float array, m
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     gaps = [np.abs(np.linalg.norm(points - sphere.center, axis=1) - sphere.radius) for sphere in scene.inclusions]
     for axis, letter in enumerate("xyz"):
         for side, face in (("-", 0.0), ("+", scene.size[axis])):
@@ -42,20 +55,25 @@ def at_points(field, flux_at, reference, places):
     Parameters
     ----------
     field, reference : Field
-    flux_at : callable (points) -> fluxes
+    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
         The flux of `field` that is looked at.
     places : dict of str to (3,) tuple
         In units of the box.
+
+    Returns
+    -------
+    dict
+        `T_A`, `T_A_error`, `q_A`, `q_A_error` and the like.
     """
     points, axis = np.array(list(places.values())) * field.scene.size, field.scene.axis
-    found, exact = (
-        np.column_stack([one.temperature_at(points), -flux(points)[:, axis]])
-        for one, flux in ((field, flux_at), (reference, reference.flux_at))
-    )
+    warm = field.temperature_at(points)
+    off = referee.temperature_error(field, reference, points, values=warm, unit="K").values
+    flux, exact = (-at(points)[:, axis] for at in (flux_at, reference.flux_at))
+    flux_off = 100 * referee.value_error(flux, exact)
     row = {}
-    for letter, (t, q), (exact_t, exact_q) in zip(places, found, exact, strict=True):
-        row |= {f"T_{letter}": t, f"T_{letter}_error": t - exact_t}
-        row |= {f"q_{letter}": q, f"q_{letter}_error": 100 * (q / exact_q - 1)}
+    for letter, *found in zip(places, warm, off, flux, flux_off, strict=True):
+        names = (f"T_{letter}", f"T_{letter}_error", f"q_{letter}", f"q_{letter}_error")
+        row |= dict(zip(names, found, strict=True))
     return row
 
 
@@ -77,60 +95,69 @@ def over_plane(field, flux_at, reference, where, n, widths):
     Returns
     -------
     dict
-        `temperature_rms`, `temperature_max`, `flux_rms` and `flux_max` with each ending and "_band"; `sample_cpu_s`
-        and the like.
+        `temperature_rms`, `temperature_max` (% of the span), `flux_rms` and `flux_max` (size of the vector's error, %
+        of the exact mean flux) with each ending and "_band"; `sample_cpu_s` and the like.
     """
     points, _ = plane(field.scene, **where, n=n)
     (temperature, flux), cost = measured(lambda: (field.temperature_at(points), flux_at(points)))
-    warm = 100 * (temperature - reference.temperature_at(points)) / span(field.scene)
-    misses = np.linalg.norm(flux - reference.flux_at(points), axis=1)
-    misses *= 100 / np.linalg.norm(reference.mean_flux)
+    warm = referee.temperature_error(field, reference, points, values=temperature, unit="%")
+    misses = referee.flux_error(field, reference, points, values=flux, unit="%")
     clear = clearance(field.scene, points)
     regions = {ending: clear > width for ending, width in widths.items()}
     regions["_band"] = ~regions[""]
-    row = {"temperature_rms": np.sqrt(np.mean(warm**2)), "temperature_max": np.abs(warm).max()}
+    row = {"temperature_rms": warm.rms, "temperature_max": warm.max}
     for ending, here in regions.items():
-        row |= {f"flux_rms{ending}": np.sqrt(np.mean(misses[here] ** 2)), f"flux_max{ending}": misses[here].max()}
+        part = misses.part(here)
+        row |= {f"flux_rms{ending}": part.rms, f"flux_max{ending}": part.max}
     return row | {f"sample_{name}": cost[name] for name in ("wall_s", "cpu_s", "peak_mib")}
 
 
 def at_own_points(field, reference):
-    """Error of the temperature at the method's own points, %, rms weighted by volume; every k-th of many points."""
-    samples = field.samples
-    step = -(-len(samples.points) // OWN_POINTS)
-    points, volumes, temperature = (part[::step] for part in samples[:3])
-    error = 100 * (temperature - reference.temperature_at(points)) / span(field.scene)
-    return {"own_temperature_rms": math.sqrt(np.average(error**2, weights=volumes))}
+    """Error of the temperature at the method's own points, %, rms weighted by volume; every k-th of many points.
 
-
-def pictures(field, flux_at, reference, where, n):
-    """The plane in two cells of text, `slice_temperature` and `slice_flux`, %.
-
-    Of the reference itself its temperature over the coldest wall's and its flux down the load, in units of span and
-    mean flux; of any other field the errors of both.
+    Parameters
+    ----------
+    field, reference : Field
     """
-    axis = field.scene.axis
-    mine, exact = on_plane(field, **where, n=n, flux_at=flux_at), on_plane(reference, **where, n=n)
-    warm, flux = mine.temperature - exact.temperature, mine.flux - exact.flux
-    if field.stats.get("form"):
-        warm, flux = mine.temperature - min(field.scene.wall_temperatures.values()), mine.flux
-    scale = -100 / abs(reference.mean_flux[axis])
-    return {
-        "slice_temperature": cell(100 * warm / span(field.scene), 3),
-        "slice_flux": cell(scale * flux[..., axis], 2),
-    }
+    number = len(field.samples.points)
+    some = np.arange(number) % -(-number // OWN_POINTS) == 0
+    return {"own_temperature_rms": referee.temperature_error(field, reference, mask=some, unit="%").rms}
 
 
-def cell(values, digits):
-    """A (rows, columns) float array as one cell of a table, so many digits behind the point."""
-    # Adding zero turns the -0.0 that rounding leaves into 0.0.
-    return " ".join(f"{round(float(value), digits) + 0.0:g}" for value in values.ravel())
+def field_pictures(field, where, n):
+    """A field on a plane in two cells, `slice_temperature` and `slice_flux`: over the coldest wall's, down the load, %.
+
+    Parameters
+    ----------
+    field : Field
+    where : dict
+        `axis` and `at` of the plane.
+    n : int
+        Pixels along each side.
+    """
+    axis, coldest = field.scene.axis, min(field.scene.wall_temperatures.values())
+    points, mask = plane(field.scene, **where, n=n)
+    warm = 100 * (field.temperature_at(points) - coldest) / referee.span(field.scene)
+    flux = -100 * field.flux_at(points)[:, axis] / abs(field.mean_flux[axis])
+    return _cells(mask, warm, flux)
 
 
-def picture(text):
-    """The square float array of such a cell."""
-    values = np.array([float(word) for word in text.split()])
-    side = math.isqrt(len(values))
-    if side**2 != len(values):
-        raise ValueError(f"cell of {len(values)} numbers: must hold a square picture")
-    return values.reshape(side, side)
+def error_pictures(field, flux_at, reference, where, n):
+    """Errors on a plane in the same two cells: of the temperature, % of the span; along the mean flux, % of it.
+
+    Parameters
+    ----------
+    field, flux_at, reference
+        As for `at_points`.
+    where, n
+        As for `field_pictures`.
+    """
+    points, mask = plane(field.scene, **where, n=n)
+    warm = referee.temperature_error(field, reference, points, unit="%")
+    flux = referee.flux_error(field, reference, points, values=flux_at(points), unit="%", along=True)
+    return _cells(mask, warm.values, flux.values)
+
+
+def _cells(mask, warm, flux):
+    pictures = {"slice_temperature": (warm, 3), "slice_flux": (flux, 2)}
+    return {name: cell(filled(mask, values), decimals=digits) for name, (values, digits) in pictures.items()}

@@ -13,6 +13,11 @@ from studies.harness.cost import measured
 def tessellation(particles, seed):
     """CPU time of the radical cells of one walled packing by our kernel and by Voro++ (multivoro).
 
+    Parameters
+    ----------
+    particles, seed : int
+        Of the packing between walls.
+
     Returns
     -------
     dict
@@ -49,7 +54,7 @@ def _voro(packing):
 def steady(particles, seed, scene):
     """CPU time of one steady solve by our solver and by plain pyamg on the same matrix, to the same residual.
 
-    The packing is tiles of a smaller one, drawn off the walls; twins at interfaces are not repeated.
+    The packing is replicas of a smaller one, drawn off the walls; twins at interfaces are not repeated.
 
     Parameters
     ----------
@@ -72,7 +77,7 @@ def steady(particles, seed, scene):
         network = _network(scene, number, seed)
         solution, cost = measured(solve_steady, network, scene)
     a, b = _matrix(network, scene)
-    reached = float(np.linalg.norm(b - a @ solution.fluctuation) / np.linalg.norm(b))
+    reached = float(np.linalg.norm(b - a @ solution.temperature) / np.linalg.norm(b))
     low, high = scene.wall_temperatures["y-"], scene.wall_temperatures["y+"]
     start = low + (high - low) * network.centers[:, 1] / scene.size[1]  # as ours starts
     row = {"solver": solution.stats["solver"], "unknowns": len(b), "residual": reached}
@@ -85,22 +90,18 @@ def steady(particles, seed, scene):
     return row
 
 
-# Particles in a tile of the packing, at most: what the matrix looks like does not depend on it, and a tile is quickly
-# made.
-TILE = 130_000
+# Particles in a replica of the packing, at most: what the matrix looks like does not depend on it, and it is soon made.
+REPLICA = 130_000
 
 
 def _network(scene, particles, seed):
-    from demheat.network.interface import connect
-    from demheat.network.laguerre import laguerre
-    from demheat.packing.cache import tiled
-    from demheat.packing.conforming import conform
+    from demheat.build import network_of
+    from demheat.laws import Laguerre
+    from demheat.packing.cache import replicated
 
-    counts = [math.ceil((particles / TILE) ** (1 / 3))] * 3
-    packing = tiled(particles, counts, size=scene.size, periodic=scene.periodic, seed=seed)
-    packing = conform(packing, scene, seed=seed)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
-    return connect(facets, packing.centers, packing.size, scene.phase_at(packing.centers), scene.conductivities)
+    counts = [math.ceil((particles / REPLICA) ** (1 / 3))] * 3
+    packing = replicated(particles, counts, size=scene.size, periodic=scene.periodic, seed=seed)
+    return network_of(scene, packing, Laguerre(), seed=seed)
 
 
 def _matrix(network, scene):

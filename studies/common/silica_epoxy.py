@@ -5,6 +5,7 @@ from __future__ import annotations
 from demheat.gallery import EDGE, EPOXY, SILICA
 from studies.harness import methods
 from studies.harness.cost import measured
+from studies.harness.methods import resolution
 
 RATIO = 6.0  # edge of the cube over the diameter
 GAP = 0.02  # least distance of two surfaces, in diameters, if no other is asked for
@@ -16,17 +17,26 @@ STATS = (
 )
 
 
-def case(name, **more):
-    """Case of one method, as `methods.case`; "multipole" besides, the exact witness."""
-    if name == "multipole":
-        return {"name": name, **more, "method": "multipole"}
-    return methods.case(name, **more)
-
-
 def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
     """Spheres of one kind in a cube: equal ones in a periodic cell or between walls, or unequal ones in a cell.
 
     Walled spheres, none of which crosses a face, can be under a mean gradient as well as between isothermal walls.
+
+    Parameters
+    ----------
+    kind : {"periodic", "walled", "unequal"}
+    fraction : float
+        Of the spheres' volume.
+    seed : int
+    axis : {0, 1, 2}
+        Of the load.
+    boundary : {"gradient", "walls"}
+    gap : float
+        Least distance of two surfaces, in diameters.
+
+    Returns
+    -------
+    Scene
     """
     from demheat.packing.dispersion import dispersion_scene
     from demheat.packing.radii import Gaussian
@@ -47,7 +57,20 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
 
 
 def solved(made, *, method, **knobs):
-    """Solve a scene; return its Field and a row: k over the matrix's, the discrete fraction, statistics and cost."""
+    """Solve a scene; return its Field and a row: k over the matrix's, the discrete fraction, statistics and cost.
+
+    Parameters
+    ----------
+    made : Scene
+    method : str
+        Name of its module.
+    knobs : keywords of its `solve`
+
+    Returns
+    -------
+    field : Field
+    row : dict
+    """
     field, cost = measured(methods.load(method).solve, made, **knobs)
     row = {"k_ratio": field.conductivity / EPOXY.conductivity, "inclusion": float(sum(field.fractions[1:]))}
     # "order" is a knob of finite elements.
@@ -59,7 +82,19 @@ def solved(made, *, method, **knobs):
 
 
 def together(rows, axes):
-    """One row of the solves along some axes: the mean of k and each one's; costs are sums, sizes those of the last."""
+    """One row of the solves along some axes: the mean of k and each one's; costs are sums, sizes those of the last.
+
+    Parameters
+    ----------
+    rows : sequence of dict
+        As from `solved`.
+    axes : str
+        Of the load, as "xyz".
+
+    Returns
+    -------
+    dict
+    """
     row = dict(rows[-1]) | {f"k_{axis}": each["k_ratio"] for axis, each in zip(axes, rows, strict=True)}
     row["k_ratio"] = sum(each["k_ratio"] for each in rows) / len(rows)
     for name in ("wall_s", "cpu_s"):
@@ -68,9 +103,9 @@ def together(rows, axes):
     return row
 
 
-def warm_up(method, **knobs):
-    """Load and compile what a row needs."""
-    if method == "multipole":
-        methods.load(method).solve(scene("periodic", 0.01, seed=99), order=3)
-    else:
-        methods.warm_up(method, **knobs)
+def words(row):
+    """Resolution of a row; sizes as parts of the cube's edge."""
+    refined = methods.found()[row["name"]].resolution
+    if refined and refined.metric:
+        return f"h = L/{1 / methods.size_of(row):.0f}"
+    return resolution(row).removesuffix(" voxels")

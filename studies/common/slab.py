@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from demheat.scene import Material, Scene
 
 # Section on transient conduction; its Table 1 prints a heat capacity of 0.9 J/(kg K), a thousandth of a metal's.
@@ -18,16 +16,16 @@ def slab():
 
 
 def packing_of(particles, seed=0):
-    """Packing between the slab's walls, kept in the cache."""
+    """Packing between the slab's walls, kept in the cache.
+
+    Parameters
+    ----------
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     from demheat.packing.cache import relaxed
 
     return relaxed(particles, size=slab().size, periodic=False, seed=seed)
-
-
-def binned(y, values, bins=20):
-    """Mean of values in equal slices of y / L, and the slices' middles."""
-    edges = np.linspace(0.0, 1.0, bins + 1)
-    place = np.clip(np.digitize(y / LENGTH, edges) - 1, 0, bins - 1)
-    return (edges[1:] + edges[:-1]) / 2, np.bincount(place, values, bins) / np.maximum(
-        np.bincount(place, minlength=bins), 1
-    )

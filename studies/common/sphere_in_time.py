@@ -23,8 +23,6 @@ CONTACTS, PAPERS = ("calibrated", "platonic"), 100_000
 SIZES = {1: (0.008, 0.005, 0.00276), 2: (0.012, 0.008, 0.005, 0.00276)}
 # Temporal errors far below the spatial ones: of the whole march, and of each of some 200 steps.
 ACCURACY = {"dem": 1e-5, "fem": 2e-6}
-# What a warm-up solves: the same code at a size that costs next to nothing.
-SMALL = {"dem": {"particles": 500, "seed": 99}, "fem": {"size": DIAMETER / 5}}
 
 
 def sphere():
@@ -55,7 +53,16 @@ def quick(case):
 
 
 def packing_of(particles, seed):
-    """Packing in the sphere, kept in the cache."""
+    """Packing in the sphere, kept in the cache.
+
+    Parameters
+    ----------
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     from demheat.packing.cache import relaxed
 
     return relaxed(particles, size=sphere().size, periodic=False, domain="sphere", seed=seed)
@@ -98,14 +105,20 @@ def marched(times, look, *, method, **knobs):
 
 
 def prepare(times, look, *, method, **knobs):
-    """Make and keep the packing, load and compile: nothing of it is part of what is compared."""
+    """Make and keep the packing, load and compile: nothing of it is part of what is compared.
+
+    Parameters
+    ----------
+    times, look, method, knobs
+        As those of `marched`.
+    """
     if "particles" in knobs:
         packing = packing_of(knobs["particles"], knobs["seed"])
         if knobs["law"] == "calibrated":
             from demheat.calibration import cube_like
 
             cube_like(packing)
-    marched(times, look, method=method, **{**knobs, **SMALL[method]})
+    marched(times, look, method=method, **{**knobs, **methods.small(method)})
 
 
 def radii(points):
@@ -115,6 +128,14 @@ def radii(points):
 
 def in_shells(r, values, weights, shells=20):
     """Weighted mean and largest size of values in shells of equal thickness; not-a-number in empty ones.
+
+    Parameters
+    ----------
+    r : (n,) float array
+        Distance from the centre, in radii.
+    values : (n,) float array, any unit
+    weights : (n,) float array, m3
+    shells : int
 
     Returns
     -------
@@ -136,16 +157,6 @@ def slice_grid(n=41):
     return plane(sphere(), axis=2, at=DIAMETER / 2, n=n)
 
 
-def text(values):
-    """Numbers as one cell of a table."""
-    return " ".join(f"{value:.6g}" for value in values)
-
-
-def numbers(cell):
-    """The numbers of such a cell."""
-    return np.array([float(word) for word in cell.split()])
-
-
 def name_of(row):
     """What a row is, in words without its resolution."""
     return f"DEM, {row['law']}" if row["method"] == "dem" else f"FEM, P{row['order']:.0f}"
@@ -158,7 +169,18 @@ def solved(df):
 
 
 def order_of(rows, column):
-    """Order in the particle spacing of a column's mean over packings."""
+    """Order in the particle spacing of a column's mean over packings.
+
+    Parameters
+    ----------
+    rows : data frame
+    column : str
+        Of errors.
+
+    Returns
+    -------
+    float
+    """
     means = rows.groupby("particles")[column].agg(lambda errors: errors.mean(skipna=False))
     return -3 * np.polyfit(np.log(means.index), np.log(means), 1)[0]
 

@@ -4,12 +4,9 @@ from __future__ import annotations
 
 from functools import cache
 
-import numpy as np
-
+from demheat.build import network_of
 from demheat.calibration import calibration
-from demheat.network.calibrated import contact_facets
-from demheat.network.laguerre import laguerre, without_hidden
-from demheat.network.platonic import platonic_facets
+from demheat.laws import LAWS
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Uniform
@@ -40,7 +37,17 @@ def sheet():
 
 
 def packing_of(scene, particles, seed):
-    """Packing between the walls of a body, radii as in the paper, kept in the cache."""
+    """Packing between the walls of a body, radii as in the paper, kept in the cache.
+
+    Parameters
+    ----------
+    scene : Scene
+    particles, seed : int
+
+    Returns
+    -------
+    Packing
+    """
     domain = {} if scene.domain == "box" else {"domain": scene.domain}
     return relaxed(particles, size=scene.size, periodic=False, radii=SPREAD, seed=seed, **domain)
 
@@ -53,22 +60,18 @@ def steady_conductivity(packing, law, **contact):
     packing : Packing
         Of the beam.
     law : {"laguerre", "calibrated", "platonic"}
-    contact : coordination
+    contact : coordination, float
         As in `demheat.dem.evolve`; end temperatures act in the centres of particles, as its default has it.
 
     Returns
     -------
     float
     """
-    if law == "laguerre":
-        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain=packing.domain)
-    elif law == "platonic":
-        facets = platonic_facets(packing, **contact)
-    else:
-        facets = contact_facets(packing, links=contacts(packing, **contact))
-    packing, facets = without_hidden(packing, facets)
+    kind = LAWS[law]
+    if kind.factor is None:  # of a law that is calibrated
+        contact["factor"] = 1.0
     between_ends = Scene(size=tuple(packing.size), matrix=Material(1.0), walls={"x-": 0.0, "x+": 1.0})
-    return 1.0 / calibration(facets, packing, between_ends)
+    return 1.0 / calibration(network_of(between_ends, packing, kind(**contact)), between_ends)
 
 
 @cache
@@ -78,47 +81,3 @@ def bulk_gap(coordination):
     The sheet has no particle four radii away from every wall, whose contacts could be counted.
     """
     return contacts(relaxed(BULK, radii=SPREAD, seed=0), coordination=coordination)[2]
-
-
-def binned(x, values, bins=20):
-    """Mean of values in equal slices of the beam, and the slices' middles in its lengths; NaN in empty ones."""
-    edges = np.linspace(0.0, 1.0, bins + 1)
-    place = np.clip(np.digitize(x / LENGTH, edges) - 1, 0, bins - 1)
-    count = np.bincount(place, minlength=bins)
-    mean = np.full(bins, np.nan)
-    np.divide(np.bincount(place, values, bins), count, out=mean, where=count > 0)
-    return (edges[1:] + edges[:-1]) / 2, mean
-
-
-def dispersion(curves):
-    """Mean over time of (max - min)/max over packings, in per cent: the paper's measure.
-
-    Parameters
-    ----------
-    curves : (packings, times) float array, degrees Celsius
-
-    Returns
-    -------
-    float
-    """
-    curves = np.asarray(curves, dtype=float)
-    highest = curves.max(axis=0)
-    return float(100 * np.mean((highest - curves.min(axis=0)) / highest))
-
-
-def largest_difference(curve, reference):
-    """Where two curves differ most: its index, and the difference there in per cent of the reference.
-
-    Parameters
-    ----------
-    curve, reference : (times,) float array, degrees Celsius
-
-    Returns
-    -------
-    at : int
-    percent : float
-        Signed.
-    """
-    off = np.asarray(curve) - np.asarray(reference)
-    at = int(np.argmax(np.abs(off)))
-    return at, float(100 * off[at] / reference[at])

@@ -44,12 +44,29 @@ def links(grid):
 
 
 def wall_links(grid, name):
-    """Conductance of the cells at a wall to it, W/K."""
+    """Conductance of the cells at a wall to it, W/K.
+
+    Parameters
+    ----------
+    grid : Grid
+    name : str
+        Of the wall, as "x-".
+
+    Returns
+    -------
+    (n, m) float array, W/K
+    """
     return 2.0 * _layer(grid.k, name) * grid.edge
 
 
 def heat(grid, temperature):
-    """Heat that each cell receives, (nx, ny, nz) float array, W."""
+    """Heat that each cell receives, (nx, ny, nz) float array, W.
+
+    Parameters
+    ----------
+    grid : Grid
+    temperature : (nx, ny, nz) float array, K
+    """
     received = np.zeros_like(temperature)
     for axis, conductance in enumerate(links(grid)):
         flow = conductance * np.diff(temperature, axis=axis)
@@ -62,7 +79,14 @@ def heat(grid, temperature):
 
 
 def explicit_step(grid, temperature, dt):
-    """Temperatures after one explicit step."""
+    """Temperatures after one explicit step.
+
+    Parameters
+    ----------
+    grid : Grid
+    temperature : (nx, ny, nz) float array, K
+    dt : float, s
+    """
     return temperature + dt * heat(grid, temperature) / grid.capacity
 
 

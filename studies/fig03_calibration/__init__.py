@@ -6,13 +6,12 @@ read at the top in the centres of the particles there, the sides insulated, 7.5 
 between walls; "isothermal" has two temperatures instead. "across" has walls along the load only, is periodic across,
 counts links in the bulk and puts imposed temperatures at the wall; "periodic" has no walls. Packings: "lsa" is hard
 spheres grown to a reduced pressure of 120, "relaxed" is overlapping spheres pushed apart, at the same packing fraction
-of the bulk; "tiled" repeats a relaxed periodic one.
+of the bulk; "replicated" repeats a relaxed periodic one.
 """
 
-from studies.fig03_calibration.rows import PAPER, PRINTED, VARIANTS, VARIED, plot, table, unchanged, variant
+from demheat import referee
+from studies.fig03_calibration.variants import PAPER, PRINTED, VARIANTS, VARIED, unchanged, variant
 from studies.harness.pick import pick, present
-
-__all__ = ["CASES", "PAPER", "QUICK", "claims", "plot", "run", "table", "warm_up"]
 
 SEEDS = (0, 1, 2, 3)
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000, 1_000_000)
@@ -28,7 +27,7 @@ CURES = (
     ("isothermal", {"margin": 4.0, "wall": "surface"}),
     ("across", {"wall": "center"}),
 )
-POLICIES = ({"poor": "keep"}, {"poor": "drop"}, {"poor": "drop", "count": "rest"})
+POLICIES = ({"sparse": "keep"}, {"sparse": "drop"}, {"sparse": "drop", "count": "rest"})
 TIMEOUT = 3600.0
 
 
@@ -51,9 +50,9 @@ def _cases():
     for change in POLICIES:
         yield _case("periodic", "relaxed", 3_000, 0, **change)
         yield from (_case("periodic", "lsa", 10_000, seed, **change) for seed in SEEDS)
-    yield _case("flux", "lsa", 10_000, 0, poor="drop")
+    yield _case("flux", "lsa", 10_000, 0, sparse="drop")
     yield _case("periodic", "relaxed", 80_000, 0)
-    yield from (_case("periodic", "tiled", number, 0, tiles=2) for number in (80_000, 8_000_000))
+    yield from (_case("periodic", "replicated", number, 0, replicas=2) for number in (80_000, 8_000_000))
 
 
 CASES = list(_cases())
@@ -62,28 +61,32 @@ CASES = list(_cases())
 def QUICK(case):
     """One relaxed packing of 3000 for each load that the claims compare, and a smaller one for the drift."""
     small = case["packing"] == "relaxed" and case["seed"] == 0 and case.get("count") is None
-    if not small or case["particles"] > 3_000 or case["loading"] == "isothermal" or case.get("poor") == "keep":
+    if not small or case["particles"] > 3_000 or case["loading"] == "isothermal" or case.get("sparse") == "keep":
         return False
     return case["particles"] == 3_000 or (case["loading"], case["domain"]) == ("flux", "cube")
 
 
-def run(loading, domain, packing, particles, seed, method, *, spread=0.3, tiles=1, **knobs):
+def run(loading, domain, packing, particles, seed, method, *, spread=0.3, replicas=1, **knobs):
     """C_t of one packing under one load."""
-    from studies.fig03_calibration.homogeneous import calibrated, packed
+    from studies.fig03_calibration.rows import calibrated, packed
 
-    sample = packed(loading, domain, packing, particles, seed, spread=spread, tiles=tiles)
+    sample = packed(loading, domain, packing, particles, seed, spread=spread, replicas=replicas)
     return calibrated(sample, loading, **knobs)
 
 
 def warm_up(loading, domain, packing, particles, seed, **more):
     """Load the solver; the packing, kept or made anew, is not part of what is compared."""
-    from studies.fig03_calibration.homogeneous import calibrated, packed
+    from studies.fig03_calibration.rows import calibrated, packed
 
     calibrated(packed("periodic", "cube", "relaxed", 1_000, 0), "periodic")
 
 
 def claims(df):
-    """What issue 3 asks for, and what is found on the paper's numbers."""
+    """C_t does not drift without walls or with links at them; with the paper's walls it does.
+
+    Where walls do not matter C_t is held to 1 % from 3000 particles on and 0.3 % from 1e5; with the paper's walls the
+    printed range, 0.806 at 1e5 and a scatter within the printed one are the yardsticks.
+    """
     plain = df[unchanged(df)]
     yield from present([*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)])
 
@@ -96,13 +99,13 @@ def _means(rows, **where):
 def _wall_claims(plain):
     for packing in ("relaxed", "lsa"):
         walls, cell = (_means(plain, packing=packing, loading=loading) for loading in ("across", "periodic"))
-        off = (100 * (walls / cell - 1).abs()).dropna()
+        off = (100 * referee.value_error(walls, cell).abs()).dropna()
         for least, most, limit in ((3_000, 30_000, 1.0), (100_000, 1e9, 0.3)):
             text = f"{packing} packings, walls along the load, {least} particles and more"
             here = off[(off.index >= least) & (off.index <= most)]
             yield f"{text}: C_t off that of the periodic cell, %", here.max() if len(here) else None, limit
         cell = cell[cell.index >= 3_000]
-        drift = 100 * (cell.max() / cell.min() - 1) if len(cell) > 1 else None
+        drift = 100 * referee.value_error(cell.max(), cell.min()) if len(cell) > 1 else None
         yield f"{packing} packings, periodic cell, 3000 particles and more: range of C_t, %", drift, 1.0
 
 
@@ -111,7 +114,7 @@ def _paper_claims(plain):
         cube, drum = (_means(plain, packing=packing, loading="flux", domain=d) for d in ("cube", "cylinder"))
         text = f"{packing} packings, as in the paper: least rise of C_t from one number to the next"
         yield text, cube.diff().min() if len(cube) > 1 else None, "> 0"
-        alike = (100 * (drum / cube - 1).abs()).dropna()
+        alike = (100 * referee.value_error(drum, cube).abs()).dropna()
         alike = alike[alike.index >= 3_000]
         text = f"{packing} packings, as in the paper: cylinder against cube from 3000 particles, %"
         # At equal number a cylinder is 8 % wider: its walls, which take 8 % off C_t at 1e4, take 0.6 % less.
@@ -138,19 +141,19 @@ def _level_claims(df):
 def _other_claims(df, plain):
     cell = pick(df, loading="periodic")
     yield "Periodic cell: least C_t over its affine bound", (cell["ct"] / cell["bound"]).min(), ">= 1"
-    joined, kept, dropped = (_by_packing(rows) for rows in (plain, pick(df, poor="keep"), pick(df, poor="drop")))
+    joined, kept, dropped = (_by_packing(rows) for rows in (plain, pick(df, sparse="keep"), pick(df, sparse="drop")))
     if len(kept):
         yield "Poorly linked particles dropped or kept: difference of C_t", _differ(kept, dropped), 1e-6
     text = "Poorly linked particles dropped or joined to the nearest: difference of C_t, %"
     yield text, 100 * _differ(joined, dropped), 0.5
-    tiles, one, true = (
+    replicas, one, true = (
         pick(df, loading="periodic", packing=packing, particles=number, seed=0)["ct"].to_numpy()
-        for packing, number in (("tiled", 80_000), ("relaxed", 10_000), ("relaxed", 80_000))
+        for packing, number in (("replicated", 80_000), ("relaxed", 10_000), ("relaxed", 80_000))
     )
-    if len(tiles) == len(one) == len(true) == 1:
-        text = "Periodic cell of 8 tiles of 1e4: C_t off that of"
-        yield f"{text} one tile", abs(tiles / one - 1)[0], 1e-6
-        yield f"{text} a packing of 8e4, %", 100 * abs(tiles / true - 1)[0], 1.0
+    if len(replicas) == len(one) == len(true) == 1:
+        text = "Periodic cell of 8 replicas of 1e4: C_t off that of"
+        yield f"{text} one replica", abs(referee.value_error(replicas, one))[0], 1e-6
+        yield f"{text} a packing of 8e4, %", 100 * abs(referee.value_error(replicas, true))[0], 1.0
 
 
 def _by_packing(rows):
@@ -160,4 +163,22 @@ def _by_packing(rows):
 
 def _differ(one, other):
     """Largest relative difference of what is in both."""
-    return float((one / other - 1).abs().max())
+    return float(referee.value_error(one, other).abs().max())
+
+
+def table(df):
+    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
+
+    Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
+    C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.
+    """
+    from studies.fig03_calibration.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """C_t over the number of particles by load, and at 1e5 by what else is changed."""
+    from studies.fig03_calibration.figure import draw
+
+    return draw(df)

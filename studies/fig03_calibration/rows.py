@@ -1,120 +1,152 @@
-"""What the calibration's rows are, and how they are shown: unchanged or with a change, a table and a figure."""
+"""Packings and homogeneous solves of the calibration: what one C_t costs and says."""
 
 from __future__ import annotations
 
-from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK
-from studies.harness.pick import pick
-from studies.harness.store import printed
+import numpy as np
 
-# What else the level depends on, one change at a time; on the paper's load and in the periodic cell.
-VARIANTS = {
-    "as in the paper": {},
-    "harmonic mean radius": {"mean": "harmonic"},
-    "geometric mean radius": {"mean": "geometric"},
-    "one gap for all pairs": {"additive": True},
-    "one gap, harmonic": {"additive": True, "mean": "harmonic"},
-    "7 links": {"wanted": 7.0},
-    "6.5 links": {"wanted": 6.5},
-    "spread 0.15": {"spread": 0.15},
-    "equal spheres": {"spread": 0.0},
-}
-VARIED = 100_000
-PAPER = printed("fig03_calibration")
-PRINTED = {100_000: PAPER["ct_1e5"], 1_000_000: PAPER["ct_1e6"]}
-# What a case may change.
-KNOBS = ("mean", "additive", "wanted", "spread", "margin", "wall", "poor", "count", "tiles")
-LINES = {
-    ("flux", "cube"): ("flux on top, as in the paper, cube", PINK, "s"),
-    ("flux", "cylinder"): ("the same, cylinder", ORANGE, "v"),
-    ("isothermal", "cube"): ("two isothermal ends, cube", GREY, "D"),
-    ("across", "cube"): ("periodic across, temperatures at the wall", BLUE, "^"),
-    ("periodic", "cube"): ("periodic cell", GREEN, "o"),
-}
+from demheat.build import network_of
+from demheat.calibration import calibration
+from demheat.laws import Calibrated
+from demheat.packing.cache import grown, relaxed
+from demheat.packing.domain import replicate
+from demheat.packing.neighbours import contacts
+from demheat.packing.radii import Gaussian
+from demheat.packing.statistics import coordination
+from demheat.scene import Material, Scene
+
+# A flat wall keeps the bulk as many mean radii away on average (relaxed packings, found at 3e3 to 1e5 particles and
+# spread 0.3, +-0.03): the packing fraction over the whole sample is lower by as much, that of the bulk as asked for.
+DEPLETED = 0.27
+# Reduced pressure at which the algorithm of Lubachevsky and Stillinger stops, with walls or without: phi = 0.641 in a
+# periodic cell, and the same state of the bulk between walls.
+PRESSURE = 120.0
+# Which axes are periodic: walls everywhere; along the load (y) only; nowhere.
+PERIODIC = {"flux": False, "isothermal": False, "across": (True, False, True), "periodic": True}
 
 
-def unchanged(df):
-    """Rows without a change, default in everything."""
-    return df.reindex(columns=list(KNOBS)).isna().all(axis=1)
+def packed(loading, domain, packing, particles, seed, *, spread=0.3, replicas=1):
+    """Packing of unit size for a load, kept in the cache; replicas is the number of repeats along each axis.
 
+    Parameters
+    ----------
+    loading : {"flux", "isothermal", "across", "periodic"}
+    domain : {"cube", "cylinder"}
+    packing : {"lsa", "relaxed"}
+    particles, seed : int
+    spread : float
+        Of the radii: standard deviation over mean of the Gaussian before it is cut.
+    replicas : int
 
-def variant(df, loading, change, column="ct"):
-    """Value of the one row with exactly this change; None without it."""
-    rows = pick(df, loading=loading, domain="cube", packing="lsa", particles=VARIED, seed=0)
-    rows = pick(rows, **{name: change.get(name) for name in KNOBS})
-    return float(rows[column].iloc[0]) if len(rows) == 1 else None
-
-
-def table(df):
-    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
-
-    Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
-    C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.
+    Returns
+    -------
+    Packing
     """
-    import pandas as pd
-
-    rows = []
-    changes = [name for name in KNOBS if name in df]
-    numbers = sorted(df["particles"].unique())
-    for (loading, domain, packing, *change), group in df.groupby(
-        ["loading", "domain", "packing", *changes], dropna=False, sort=False
-    ):
-        row = {"load": loading, "domain": domain, "packing": packing}
-        row["change"] = ", ".join(f"{n} {v}" for n, v in zip(changes, change, strict=True) if v == v)
-        mean = group.groupby("particles")["ct"].mean()
-        row |= {f"{n:.0e}".replace("e+0", "e"): f"{mean[n]:.4f}" if n in mean else "" for n in numbers}
-        here = group[group["particles"] == VARIED]["ct"]
-        row["scatter"] = float(100 * here.std() / here.mean()) if len(here) > 1 else float("nan")
-        largest = group[group["particles"] == group["particles"].max()]
-        names = {"bound": "bound", "formula": "formula", "gap": "gap", "under_2": "under 2 links"}
-        rows.append(row | {new: float(largest[old].mean()) for old, new in names.items()})
-    return pd.DataFrame(rows)
+    if replicas > 1:
+        whole = packed(loading, domain, packing, particles // replicas**3, seed, spread=spread)
+        return replicate(whole, (replicas, replicas, replicas)).scaled(1 / replicas)
+    kind = {"periodic": PERIODIC[loading], "domain": "box" if domain == "cube" else "cylinder-y", "seed": seed}
+    radii = Gaussian(spread)
+    if packing == "lsa":
+        return grown(particles, pressure=PRESSURE, radii=radii, **kind)
+    # Equal spheres jam at 0.64.
+    phi = _bulk_to_whole(0.64 if spread > 0.2 else 0.63, particles, kind, radii)
+    return relaxed(particles, phi=phi, radii=radii, **kind)
 
 
-def plot(df):
-    """C_t over the number of particles by load, and at 1e5 by what else is changed."""
-    from matplotlib import pyplot
-
-    found = {loading: _levels(df, loading) for loading in ("flux", "periodic")}
-    # A quick run has no rows for the second panel.
-    panels = 2 if any(found.values()) else 1
-    figure, axes = pyplot.subplots(1, panels, figsize=(12, 5.2), width_ratios=(1.5, 1)[:panels], squeeze=False)
-    left = axes[0, 0]
-    plain = df[unchanged(df)]
-    for (loading, domain), (label, colour, marker) in LINES.items():
-        for packing, fill, dashes in (("lsa", colour, "-"), ("relaxed", "white", "--")):
-            rows = pick(plain, loading=loading, domain=domain, packing=packing)
-            mean = rows.groupby("particles")["ct"].mean()
-            style = {"color": colour, "marker": marker, "markerfacecolor": fill, "linestyle": dashes}
-            if len(mean):
-                left.plot(mean.index, mean, label=label, **style)
-                label = None
-    tiled = pick(df, packing="tiled")
-    left.plot(tiled["particles"], tiled["ct"], "*", color=GREEN, markersize=11, label="periodic cell of 8 tiles")
-    left.axhspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15, label="range that the paper prints")
-    left.plot(list(PRINTED), list(PRINTED.values()), "x", color=BLACK, markersize=9, label="paper")
-    left.set(xscale="log", xlabel="particles", ylabel="C_t")
-    left.set_title("With the paper's walls C_t drifts; without walls,\nor with links at the wall, it does not")
-    note = "full: hard spheres (LSA), open: relaxed"
-    left.annotate(note, (0.99, 0.02), xycoords="axes fraction", fontsize=8, color=GREY, ha="right")
-    if panels == 2:
-        _draw_levels(axes[0, 1], found)
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
-    return figure
+def _bulk_to_whole(phi, particles, kind, radii):
+    """Packing fraction of the whole sample for one of the bulk."""
+    cube = radii.draw(100_000, np.random.default_rng(0)) ** 3
+    volume = 1.0 if kind["domain"] == "box" else np.pi / 4
+    radius = np.cbrt(phi * volume / (particles * 4 / 3 * np.pi * cube.mean()))
+    # Between two walls a length 1 - 2 depth is left; across a cylinder of diameter 1 the same, twice.
+    walls = 3 - int(np.sum(np.broadcast_to(kind["periodic"], 3)))
+    return float(phi * (1 - 2 * DEPLETED * radius) ** walls)
 
 
-def _levels(df, loading):
-    """C_t of each variant that has a row, as (C_t, position from below)."""
-    values = [variant(df, loading, change) for change in VARIANTS.values()]
-    return [(value, len(values) - k) for k, value in enumerate(values) if value is not None]
+def calibrated(
+    packing,
+    loading,
+    *,
+    wall=None,
+    sparse="nearest",
+    mean="arithmetic",
+    additive=False,
+    margin=None,
+    wanted=7.5,
+    count="all",
+):
+    """C_t of a packing under a load, with what it depends on.
+
+    Parameters
+    ----------
+    packing : Packing
+        Of unit size.
+    loading : {"flux", "isothermal", "across", "periodic"}
+    wall, sparse, mean
+        As in `demheat.Calibrated`; the default is "center" with walls all round, as in the papers, and else "surface".
+    additive, margin
+        As in `contacts`; the default is no margin with walls all round, as in the papers.
+    wanted : float
+        Mean coordination number.
+    count : {"all", "rest"}
+        Over all particles, or over those that sparse = "drop" leaves.
+
+    Returns
+    -------
+    dict
+        ct; bound, 1 over the conductivity under a linear field, below which C_t cannot lie in a periodic cell;
+        formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap; links (mean number), least, under_2, under_4, islands as in
+        `coordination`; phi; linked (mean number after sparse particles are dealt with); left (particles then).
+    """
+    as_papers = loading in ("flux", "isothermal")
+    wall = wall or ("center" if as_papers else "surface")
+    margin = (0.0 if as_papers else 4.0) if margin is None else margin
+    load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
+    scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
+    target = wanted
+    for _ in range(4 if count == "rest" else 1):
+        links = contacts(packing, coordination=target, margin=margin, additive=additive)
+        law = Calibrated(gap=links[2], additive=additive, mean=mean, sparse=sparse, wall=wall, factor=1.0)
+        network = network_of(scene, packing, law)
+        left = len(network.radii)
+        reached = len(network.indices) / left
+        target += wanted - reached
+    found, gap = coordination(packing, *links[:2]), links[2]
+    report = {"gap": gap, "links": found.mean, "least": found.least, "under_2": found.under_2, "under_4": found.under_4}
+    report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": left}
+    del links
+    how = "flux" if loading == "flux" else "isothermal"
+    # Replicas of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.
+    solver = "cg" if packing.provenance.get("algorithm") == "replicate" else "auto"
+    ct = calibration(network, scene, loading=how, solver=solver)
+    return {"ct": float(ct)} | affine(packing, network) | report
 
 
-def _draw_levels(axes, found):
-    for loading, points in found.items():
-        _, colour, marker = LINES[loading, "cube"]
-        if points:
-            axes.plot(*zip(*points, strict=True), linestyle="", marker=marker, color=colour)
-    axes.axvspan(PAPER["ct_least"], PAPER["ct_most"], color=GREY, alpha=0.15)
-    axes.axvline(PRINTED[VARIED], color=BLACK, linewidth=1)
-    positions = range(len(VARIANTS), 0, -1)
-    axes.set(yticks=positions, yticklabels=VARIANTS, ylim=(0.4, len(VARIANTS) + 0.6), xlabel="C_t, 1e5 particles (LSA)")
-    axes.set_title("Fewer links or a narrower spread of radii\nreach the paper's 0.806 (line)")
+def affine(packing, network):
+    """C_t under a linear temperature field.
+
+    A linear field is a trial field of the periodic cell: the conductivity with C_t = 1 is at most
+    sum over links of S d cos^2 / V, the angle being that to the load, hence C_t at least its inverse (`bound`). For
+    isotropic links that touch, d = 2 R_m, and the sum is (N Z / 2)(1/3) 2 pi <R_m^3> / V with N / V = phi / <4/3 pi
+    R^3>: C_t >= 4 <R^3> / (Z phi <R_m^3>) (`formula`), with <R^3> over particles and <R_m^3> over links.
+
+    Parameters
+    ----------
+    packing : Packing
+    network : Network
+        Of it or of a part of its particles, with C_t = 1 and conductivity 1.
+
+    Returns
+    -------
+    dict of float
+    """
+    rest = packing._replace(centers=network.centers, radii=network.radii)
+    here = np.repeat(rest.radii, np.diff(network.indptr))
+    there = rest.radii[network.indices]
+    length = network.distance * (here + there) / here
+    y = rest.centers[:, 1]
+    step = y[network.indices] - np.repeat(y, np.diff(network.indptr))
+    step -= np.where(rest.periodic[1], np.round(step / rest.size[1]) * rest.size[1], 0.0)
+    slope = 0.5 * (network.area / length) @ step**2 / rest.volume
+    z, cubes = len(here) / rest.number, np.mean((network.area / np.pi) ** 1.5)
+    return {"bound": 1 / slope, "formula": 4 * np.mean(rest.radii**3) / (z * rest.phi * cubes)}

@@ -11,14 +11,13 @@ wall than the halo's radius (and 2 mean radii, where particles touch the wall) a
 "periodic" is a cell without walls. Costs are those of the halos of 11 radii; for "laguerre", of its fluxes.
 """
 
-from studies.fig10_halo.figure import BINS, DENSITIES, PAPER, RATIOS, SEEDS, STATISTICS, long, plot
+from demheat import referee
+from studies.fig10_halo.statistics import PAPER, long
 from studies.harness.pick import pick, present
 
-__all__ = ["CASES", "PAPER", "QUICK", "claims", "plot", "run", "table", "warm_up"]
-
 SPLITS = ("half", "radii")
-COSTED, TOUCHING = 11.0, 2.0
-LENGTH, CONDUCTIVITY, COLD, HOT = 0.1, 33.0, 25.0, 35.0
+# Numbers of particles, and their packings.
+SEEDS = {3_000: (0,), 10_000: (0, 1, 2), 100_000: (0,), 500_000: (0,)}
 TIMEOUT = 3600.0
 
 
@@ -47,116 +46,24 @@ def QUICK(case):
 
 def run(law, split, walls, particles, seed, method):
     """Statistics of the flux by halo radius, each a list in one cell, and density functions."""
-    from demheat.sampling.halo import halo_flux
-    from studies.harness.cost import measured
+    from studies.fig10_halo.rows import flux_row
 
-    packing = _packing(walls, particles, seed)
-    if law == "laguerre":
-        field, row = _laguerre(packing)
-        _, cost = measured(lambda: field.samples)
-        return row | _statistics(field, {0.0: field.samples.flux}) | cost
-    field, row = _calibrated(packing, walls, split)
-    # Halos no wider than the periodic cell.
-    most = LENGTH / 2 if walls == "periodic" else LENGTH
-    fluxes, cost = {0.0: field.samples.flux}, {}
-    for ratio in RATIOS[1:]:
-        if ratio * field.stats["mean_radius"] <= most:
-            fluxes[ratio], spent = measured(halo_flux, field, ratio=ratio)
-            cost = spent if ratio == COSTED else cost
-    return row | _statistics(field, fluxes) | cost
-
-
-def _scene(walls):
-    from demheat.scene import Material, Scene
-
-    gradient = (0.0, (HOT - COLD) / LENGTH, 0.0)
-    load = {"gradient": gradient} if walls == "periodic" else {"walls": {"y-": COLD, "y+": HOT}}
-    return Scene(size=(LENGTH,) * 3, matrix=Material(CONDUCTIVITY), **load)
-
-
-def _packing(walls, particles, seed):
-    from demheat.packing.cache import relaxed
-
-    return relaxed(particles, size=(LENGTH,) * 3, periodic=walls == "periodic", seed=seed)
-
-
-def _laguerre(packing):
-    from demheat.dem import solve
-
-    field = solve(_scene("held"), packing=packing)
-    return field, {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
-
-
-def _calibrated(packing, walls, split):
-    """Field of the paper's network, with the flux of each particle by one of the two splits."""
-    from dataclasses import replace
-
-    import numpy as np
-
-    from demheat.calibration import calibration
-    from demheat.conduction.steady import solve_steady
-    from demheat.field import Samples
-    from demheat.network.calibrated import contact_facets
-    from demheat.network.interface import connect
-    from demheat.network.laguerre import without_hidden
-    from demheat.packing.neighbours import contacts
-    from demheat.sampling.field_of import field_of
-    from demheat.sampling.particle_flux import particle_flux
-
-    scene = _scene(walls)
-    packing, facets = without_hidden(packing, contact_facets(packing, links=contacts(packing)))
-    ct = calibration(facets, packing, scene)
-    facets = facets._replace(area=ct * facets.area, wall_distance=facets.wall_distance / ct)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
-    solution = solve_steady(network, scene)
-    field = field_of(scene, packing, facets, network, solution, law="calibrated", stats={"law": "calibrated"})
-    flux = particle_flux(packing, facets, network, solution, split=split)
-    samples = Samples(packing.centers, network.volumes, solution.fluctuation, phase, flux)
-    row = {"ct": ct} | {name: field.stats[name] for name in ("unknowns", "iterations", "residual")}
-    return replace(field, sampler=lambda: samples), row
-
-
-def _statistics(field, fluxes):
-    """Lists of each statistic over all particles and over the bulk, and histograms."""
-    import numpy as np
-
-    points, volumes = field.samples.points, field.samples.volumes
-    radius = field.stats["mean_radius"]
-    depth = np.inf if field.scene.periodic else np.minimum(points, LENGTH - points).min(axis=1)
-    row = {f"{part}{name}": [] for part in ("", "bulk_") for name in STATISTICS}
-    for ratio in RATIOS:
-        for part, least in (("", -1.0), ("bulk_", max(ratio, TOUCHING) * radius)):
-            inside = np.broadcast_to(depth > least, len(points))
-            # In a bulk narrower than a halo all means are of nearly the same particles.
-            known = ratio in fluxes and (part == "" or field.scene.periodic or 2 * (least + ratio * radius) <= LENGTH)
-            y = -fluxes[ratio][inside, 1] / PAPER["flux"] if known else np.empty(0)
-            for name, value in zip(STATISTICS, _of(y, volumes[inside]), strict=True):
-                row[part + name].append(value)
-            if ratio in DENSITIES and len(y) and field.stats["law"] == "calibrated":
-                row[f"{part}density_{ratio:g}"] = np.histogram(y, BINS, DENSITIES[ratio])[0] / len(y)
-    return {name: " ".join(f"{value:.12g}" for value in values) for name, values in row.items()}
-
-
-def _of(y, volumes):
-    """Number of particles, CoV by number and by volume in per cent, smallest, mean by volume and largest."""
-    import numpy as np
-
-    if len(y) < 2:
-        return (len(y), *[np.nan] * 5)
-    mean = np.average(y, weights=volumes)
-    spread = np.sqrt(np.average((y - mean) ** 2, weights=volumes))
-    return len(y), 100 * y.std() / y.mean(), 100 * spread / mean, y.min(), mean, y.max()
+    return flux_row(law, split, walls, particles, seed)
 
 
 def warm_up(law, split, walls, particles, seed, method):
     """Load and compile; make and keep the packing, which is not part of what is compared."""
-    _packing(walls, particles, seed)
+    from studies.fig10_halo.rows import packing_of
+
+    packing_of(walls, particles, seed)
     run(law, split, walls, 500, 99, method)
 
 
 def claims(df):
-    """What issue 5 asks for."""
+    """No scatter with Laguerre's facets; the paper's 27, 5 and 2 % with its network; splits, sizes and costs.
+
+    Printed coefficients are met within a quarter. Laguerre's facets have none but the solver's tolerance.
+    """
     rows = long(df)
     yield from present([*_exact(rows), *_paper(rows), *_splits(rows), *_size(rows), *_cost(df)])
 
@@ -165,7 +72,8 @@ def _exact(rows):
     own = pick(rows, law="laguerre", ratio=0.0)
     yield "Laguerre, no halo: largest CoV of any packing, %", own[["cov", "cov_volume"]].max().max(), 1e-6
     text = "Laguerre, no halo: any particle's flux off 3300 W/m2, relative"
-    yield text, max(own["most"].max() - 1, 1 - own["least"].min()), 1e-8
+    most, least = (referee.value_error(value, 1.0) for value in (own["most"].max(), own["least"].min()))
+    yield text, max(most, -least), 1e-8
 
 
 def _means(rows, column, **where):
@@ -201,10 +109,11 @@ def _splits(rows):
     half, radii = (_means(rows, "bulk_cov", ratio=0.0, split=split, **held) for split in SPLITS)
     yield "Own part of each link instead of one half: CoV by number, bulk, over that", (radii / half).max(), 0.7
     half, radii = (_means(rows, "bulk_cov", ratio=4.0, split=split, **held) for split in SPLITS)
-    yield "The same in halos of 4: relative change of the CoV", abs(radii / half - 1).max(), 0.03
+    yield "The same in halos of 4: relative change of the CoV", abs(referee.value_error(radii, half)).max(), 0.03
     # The first moment of heat flows gives C_t its value: the solver's tolerance.
-    cell = pick(rows, walls="periodic", ratio=0.0)
-    yield "Periodic cell: mean flux off 3300 W/m2, relative", abs(cell["mean"] - 1).max(), 1e-6
+    means = pick(rows, walls="periodic", ratio=0.0)
+    off = abs(referee.value_error(means["mean"], 1.0)).max()
+    yield "Periodic cell: mean flux off 3300 W/m2, relative", off, 1e-6
 
 
 def _size(rows):
@@ -240,19 +149,13 @@ def table(df):
     `cov_volume_0` and `cov_0` are without halo; least and most are over all particles at halos of 11 (without halo for
     Laguerre); CPU seconds are those of all halos of radius 11, on however many threads.
     """
-    import pandas as pd
+    from studies.fig10_halo.tables import lines
 
-    shown = []
-    key = ["law", "split", "walls", "particles"]
-    for names, rows in long(df).fillna({"split": ""}).groupby(key, sort=False):
-        means = rows.groupby("ratio")[["cov_volume", "cov", "bulk_cov_volume", "bulk_cov"]].mean()
-        row = dict(zip(key, names, strict=True))
-        row |= {f"{name}_0": means.loc[0.0, name] for name in ("cov_volume", "cov", "bulk_cov_volume", "bulk_cov")}
-        row |= {f"{part}_{ratio:g}": means.loc[ratio, part] for ratio in (4.0, 11.0) for part in ("cov", "bulk_cov")}
-        last = rows[rows["ratio"] == (0.0 if row["law"] == "laguerre" else COSTED)]
-        row |= {"least": last["least"].min(), "most": last["most"].max()}
-        same = pick(df, law=row["law"], split=row["split"] or None, walls=row["walls"], particles=row["particles"])
-        shown.append(row | {"cpu_s": same["cpu_s"].mean(), "peak_mib": same["peak_mib"].mean()})
-    paper = {"law": "paper", "split": "half", "walls": "held"}
-    shown.append(paper | {"cov_0": PAPER["cov_0"], "cov_4": PAPER["cov_4"], "cov_11": PAPER["cov_11"]})
-    return pd.DataFrame(shown).fillna({"split": "", "walls": ""})
+    return lines(df)
+
+
+def plot(df):
+    """CoV, and smallest and largest flux, against the halo's radius; density functions; CoV against N."""
+    from studies.fig10_halo.figure import draw
+
+    return draw(df)

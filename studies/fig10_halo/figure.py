@@ -1,37 +1,19 @@
-"""Figure of the study `fig10_halo`, and its rows by halo radius."""
+"""Figure of the study of halos."""
 
+from __future__ import annotations
+
+import numpy as np
+
+from studies.fig10_halo.statistics import BINS, DENSITIES, PAPER, long
+from studies.harness.cells import numbers
+from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED
 from studies.harness.pick import pick
-from studies.harness.store import printed
 
-# Halo radii in mean radii; 0 is no halo.
-RATIOS = (0.0, 1.5, 2.0, 3.0, 4.0, 5.5, 7.0, 9.0, 11.0, 13.0, 15.0)
-# Numbers of particles, and their packings.
-SEEDS = {3_000: (0,), 10_000: (0, 1, 2), 100_000: (0,), 500_000: (0,)}
-STATISTICS = ("number", "cov", "cov_volume", "least", "mean", "most")
-# Halo radii whose density functions are kept, and their range in units of the flux, in equal bins.
-DENSITIES = {0.0: (0.0, 3.0), 2.0: (0.0, 3.0), 4.0: (0.6, 1.4), 11.0: (0.8, 1.2)}
-BINS = 80
-PAPER = printed("fig10_halo")
+# Numbers of particles, few to many.
+COLOURS = (ORANGE, GREEN, BLUE, RED)
 
 
-def long(df):
-    """One row per halo radius."""
-    import pandas as pd
-
-    rows = []
-    for row in df[df["status"] == "ok"].to_dict("records"):
-        lists = [_numbers(row[f"{part}{name}"]) for part in ("", "bulk_") for name in STATISTICS]
-        names = [f"{part}{name}" for part in ("", "bulk_") for name in STATISTICS]
-        case = {name: row[name] for name in ("law", "split", "walls", "particles", "seed")}
-        rows += [case | {"ratio": r} | dict(zip(names, v, strict=True)) for r, *v in zip(RATIOS, *lists, strict=True)]
-    return pd.DataFrame(rows)
-
-
-def _numbers(cell):
-    return [float(word) for word in cell.split()]
-
-
-def plot(df):
+def draw(df):
     """CoV, and smallest and largest flux, against the halo's radius; density functions; CoV against N."""
     from matplotlib import pyplot
 
@@ -43,16 +25,13 @@ def plot(df):
     return figure
 
 
-def _looks():
-    from studies.harness.figures import BLUE, GREEN, ORANGE, RED
-
-    return dict(zip(SEEDS, (ORANGE, GREEN, BLUE, RED), strict=True))
+def _looks(rows):
+    """Colour of each number of particles."""
+    return dict(zip(sorted(rows["particles"].unique()), COLOURS, strict=False))
 
 
 def _cov(axes, rows):
-    from studies.harness.figures import BLACK, GREY
-
-    for number, colour in _looks().items():
+    for number, colour in _looks(rows).items():
         here = pick(rows, law="calibrated", particles=number)
         for split, walls, column, style, what in (
             ("half", "held", "bulk_cov", "o-", "bulk"),
@@ -78,7 +57,7 @@ def _cov(axes, rows):
 
 
 def _extremes(axes, rows):
-    for number, colour in _looks().items():
+    for number, colour in _looks(rows).items():
         here = pick(rows, law="calibrated", split="half", walls="held", particles=number)
         for column, style in (("bulk_least", "v-"), ("bulk_mean", "o-"), ("bulk_most", "^-"), ("least", "v:")):
             means = here.groupby("ratio")[column].mean().dropna()
@@ -92,10 +71,6 @@ def _extremes(axes, rows):
 
 
 def _densities(raw, halos, df):
-    import numpy as np
-
-    from studies.harness.figures import BLUE, GREY, ORANGE, PINK, RED
-
     rows = pick(df, law="calibrated", walls="held", seed=0)
     if len(rows) == 0:
         return
@@ -114,7 +89,7 @@ def _densities(raw, halos, df):
         for part, style in (("bulk_", "-"), ("", ":")):
             for cell in pick(rows, split=split)[f"{part}density_{ratio:g}"].dropna():
                 label = f"{'no halo' if ratio == 0 else f'halo of {ratio:g}'}, {split}, {part.strip('_') or 'all'}"
-                density = np.array(_numbers(cell)) * BINS / (high - low)
+                density = numbers(cell) * BINS / (high - low)
                 axes.plot(middle, density, style, color=colour, label=label)
     number = int(rows["particles"].max())
     for axes, what in ((raw, "no halo, and a narrow one"), (halos, "halos")):

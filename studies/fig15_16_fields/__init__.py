@@ -11,7 +11,9 @@ faces, the same for all methods; the band is the rest. The paper's network is sa
 particles (eq. 20) averaged over halos of 4 or 11 mean radii (eqs. 22-23), which do not stop at the interface.
 """
 
+from demheat import referee
 from demheat.gallery import sphere_in_cube
+from studies.fig15_16_fields.tables import error_columns, largest
 from studies.harness import methods
 from studies.harness.pick import order, pick, present
 from studies.harness.store import printed
@@ -69,7 +71,9 @@ def run(name, ratio=None, *, method, **knobs):
     row |= field_errors.over_plane(*looked, PLANE, GRID, widths) | field_errors.at_points(*looked, POINTS)
     row |= field_errors.at_own_points(field, reference)
     row |= {key: field.stats.get(key) for key in ("elements", "calibration", "mean_radius")}
-    return row | (field_errors.pictures(*looked, PLANE, PICTURE) if _is_pictured(name, **knobs) else {})
+    if name == "exact":
+        return row | field_errors.field_pictures(field, PLANE, PICTURE)
+    return row | (field_errors.error_pictures(*looked, PLANE, PICTURE) if _is_pictured(name, **knobs) else {})
 
 
 def warm_up(name, ratio=None, *, method, **knobs):
@@ -85,7 +89,7 @@ def warm_up(name, ratio=None, *, method, **knobs):
 
     scene = sphere_in_cube()
     relaxed(knobs["particles"], size=scene.size, periodic=False, seed=knobs["seed"])
-    small = dem.solve(scene, **{**knobs, **methods.SMALL[method]})
+    small = dem.solve(scene, **{**knobs, **methods.small(method)})
     middle = np.array([scene.size]) / 2
     small.temperature_at(middle), _flux_at(small, ratio)(middle)
 
@@ -101,8 +105,6 @@ def _flux_at(field, ratio):
 
 def _is_pictured(name, particles=None, seed=0, size=None, voxels=None, **_):
     """One row of each method per figure: at quick size, and with as many elements as the paper."""
-    if name == "exact":
-        return True
     fine = {"fem": SIZES["fem"][2], "fem-p1": SIZES["fem-p1"][1]}.get(name)
     sizes = (SIZES["fem"][0], fine)
     return (
@@ -117,17 +119,13 @@ def _is_pictured(name, particles=None, seed=0, size=None, voxels=None, **_):
 
 
 def claims(df):
-    """What issue 5 asks for, and its like for the quick rows."""
+    """Laguerre beside the exact field, the paper's network and printed values; FEM and FFT; orders.
+
+    Laguerre is held to 0.5 % of the flux and 0.02 K at Table 2's points with the paper's 1.5e5 elements, where the
+    printed flux at C is 3.8 % and more low, and to a tenth of the errors of the paper's network; quick rows to some
+    twice as much at the points.
+    """
     yield from present([*_exact(df), *_laguerre(df), *_orders(df), *_network(df), *_others(df)])
-
-
-def _largest(rows, columns):
-    """Largest size in some columns of rows; None without rows."""
-    return rows[columns].abs().max(axis=1, skipna=False).max(skipna=False) if len(rows) else None
-
-
-def _errors(kind):
-    return [f"{kind}_{letter}_error" for letter in POINTS]
 
 
 def _exact(df):
@@ -135,7 +133,7 @@ def _exact(df):
     off = max(abs(row[key] - value) * 10**digits for key, (value, digits) in RAYLEIGH.items())
     # Half a unit of the last digit, and the rounding of that half.
     yield "Exact field: off the known values of Table 2's points, in units of their last digits", off, 0.51
-    few, many = (100 * (1 - PAPER[f"q_C_{number}"] / row["q_C"]) for number in ("150k", "500k"))
+    few, many = (-100 * referee.value_error(PAPER[f"q_C_{number}"], row["q_C"]) for number in ("150k", "500k"))
     yield "Printed flux at C, 1.5e5 elements: below the exact one by, %", few, ">= 3.8"
     yield (
         "Printed flux at C: its error with 5e5 elements over that with 1.5e5, so that it is no noise",
@@ -148,12 +146,12 @@ def _laguerre(df):
     for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.03, 1.5, 15.0), (PAPERS, 0.5, 0.02, 0.6, 3.0)):
         rows = pick(df, name="dem", particles=number)
         text = f"DEM, Laguerre, {number} particles: "
-        yield text + "largest error of a flux of Table 2, %", _largest(rows, _errors("q")), flux
-        yield text + "largest error of a temperature of Table 2, K", _largest(rows, _errors("T")), warm
-        yield text + "flux away from interface and insulated faces, rms, %", _largest(rows, ["flux_rms"]), rms
-        yield text + "the same, largest, %", _largest(rows, ["flux_max"]), most
+        yield text + "largest error of a flux of Table 2, %", largest(rows, error_columns("q", POINTS)), flux
+        yield text + "largest error of a temperature of Table 2, K", largest(rows, error_columns("T", POINTS)), warm
+        yield text + "flux away from interface and insulated faces, rms, %", largest(rows, ["flux_rms"]), rms
+        yield text + "the same, largest, %", largest(rows, ["flux_max"]), most
         # Found 1.5 and 0.32 %; fits that do not know the interface have 6.2 and 1.8 %.
-        yield text + "flux in the band beside them, rms, %", _largest(rows, ["flux_rms_band"]), 2.0 * rms
+        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 2.0 * rms
     balance = pick(df, method="dem")["heat_imbalance"].abs().max(skipna=False)
     yield "DEM, all laws: heat in minus heat out over the heat that passes", balance, 1e-6
 
@@ -191,10 +189,10 @@ def _network(df):
 
 def _others(df):
     for size, rms in ((SIZES["fem"][0], 3.0), (SIZES["fem"][2], 0.5)):
-        found = _largest(pick(df, name="fem", size=size), ["flux_rms"])
+        found = largest(pick(df, name="fem", size=size), ["flux_rms"])
         yield f"FEM, P2, edges of {1e3 * size:g} mm: flux away, rms, %", found, rms
     for voxels, rms in ((VOXELS[0], 3.0), (VOXELS[-1], 0.5)):
-        found = _largest(pick(df, name="fft", voxels=voxels), ["flux_rms"])
+        found = largest(pick(df, name="fft", voxels=voxels), ["flux_rms"])
         yield f"FFT, {voxels}^3 laminate voxels: flux away, rms, %", found, rms
 
 
@@ -207,58 +205,13 @@ def table(df):
     the processor time of 40 000 points. Temperatures of the paper's network between particles are that of the nearest,
     carried on by its raw flux; `T own points` has none of this: rms at the particles, quadrature points or voxels.
     """
-    import pandas as pd
+    from studies.fig15_16_fields.tables import lines
 
-    exact = pick(df, name="exact").iloc[0]
-    rows = [_line(label(group.iloc[0]), group) for _, group in _grouped(df)]
-    rows += [_printed(f"paper's {what}", key, exact) for what, key in PRINTED.items()]
-    return pd.DataFrame(rows)
-
-
-PRINTED = {"DE, 1.5e5": "150k", "DE, 5e5": "500k", "FE, 1e5 tetrahedra": "fe"}
-SHOWN = {"flux_rms": "flux rms", "flux_max": "max", "flux_rms_band": "band rms", "flux_max_band": "band max",
-         "flux_rms_own": "own rms", "flux_max_own": "own max", "temperature_rms": "T rms", "temperature_max": "T max",
-         "own_temperature_rms": "T own points",
-         "unknowns": "unknowns", "cpu_s": "cpu_s", "sample_cpu_s": "look", "peak_mib": "peak_mib"}  # fmt: skip
-
-
-def _grouped(df):
-    return df[df["status"] == "ok"].groupby(["name", "ratio", "particles", "size", "voxels"], dropna=False, sort=False)
-
-
-def label(row):
-    """What a row is, without its resolution."""
-    names = {
-        "dem": "DEM, Laguerre",
-        "dem-plain": "DEM, Laguerre, not conforming",
-        "fem": "FEM, P2",
-        "fem-p1": "FEM, P1",
-    }
-    names |= {"fft": "FFT", "exact": "exact"}
-    return names.get(row["name"]) or f"DEM as in the paper, halo of {row['ratio']:.0f} radii"
-
-
-def _line(name, group):
-    from studies.harness.figures import resolution
-
-    mean = group.mean(numeric_only=True)
-    line = {"method": name, "resolution": resolution(*(mean[key] for key in ("particles", "size", "voxels")))}
-    line |= {f"T_{letter}": f"{mean[f'T_{letter}']:.3f}" for letter in POINTS}
-    line |= {f"q_{letter}": mean[f"q_{letter}"] for letter in POINTS}
-    line["worst q, %"] = _largest(group, _errors("q"))
-    return line | {title: mean.get(column, float("nan")) for column, title in SHOWN.items()}
-
-
-def _printed(name, key, exact):
-    line = {"method": name, "resolution": ""}
-    line |= {f"T_{letter}": f"{PAPER[k]:g}" if (k := f"T_{letter}_{key}") in PAPER else "" for letter in POINTS}
-    line |= {f"q_{letter}": PAPER[f"q_{letter}_{key}"] for letter in POINTS}
-    off = (100 * abs(PAPER[f"q_{letter}_{key}"] / exact[f"q_{letter}"] - 1) for letter in POINTS)
-    return line | {"worst q, %": max(off)} | dict.fromkeys(SHOWN.values(), float("nan"))
+    return lines(df, PAPER, POINTS)
 
 
 def plot(df):
     """Fields and their errors side by side on shared scales; errors at the points and against unknowns."""
     from studies.fig15_16_fields.figure import draw
 
-    return draw(df[df["status"] == "ok"], PAPER, PRINTED, POINTS, label)
+    return draw(df[df["status"] == "ok"], PAPER, POINTS)

@@ -7,15 +7,19 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
-from studies.harness.figures import LOOK, resolution
+from demheat import referee
+from studies.fig15_16_fields.tables import PRINTED, label
+from studies.harness.cells import picture
+from studies.harness.figures import LOOK
+from studies.harness.methods import resolution
+from studies.harness.pick import with_size
 
 # Errors are coloured linearly up to the first, in %, then by decades, and beyond the second in the colour of the end.
 REACH = {"temperature": (0.1, 10.0), "flux": (1.0, 100.0)}
 UNITS = {"temperature": "(T - 25 C) / 10 K, %", "flux": "flux down the load / exact mean flux, %"}
 
 
-def draw(df, paper, printed, points, label):
+def draw(df, paper, points):
     """Figure of a study's rows.
 
     Parameters
@@ -24,12 +28,8 @@ def draw(df, paper, printed, points, label):
         With columns `slice_temperature` and `slice_flux`, cells of pictures in %, where a row is pictured.
     paper : dict
         Printed numbers.
-    printed : dict of str to str
-        Name of a printed row and the ending of its keys.
     points : dict of str to (3,) tuple
         Points that are marked, in edges of the box.
-    label : callable (row) -> str
-        A row's name.
     """
     from matplotlib import pyplot
 
@@ -47,9 +47,9 @@ def draw(df, paper, printed, points, label):
             _hide_repeated(axes[:2, column])
     _mark(axes[2][0], points)
     left, middle, right = bottom.subplots(1, 3, gridspec_kw={"width_ratios": [1.15, 1.0, 1.0]})
-    _errors_at_points(left, df, paper, printed, points, label)
-    _errors_by_size(middle, df, "flux_rms", "flux, rms away from interface and insulated faces", label)
-    _errors_by_size(right, df, "temperature_rms", "temperature, rms over the plane", label)
+    _errors_at_points(left, df, paper, points)
+    _errors_by_size(middle, df, "flux_rms", "flux, rms away from interface and insulated faces")
+    _errors_by_size(right, df, "temperature_rms", "temperature, rms over the plane")
     middle.set_ylabel("error, % of the mean flux")
     right.set_ylabel("error, % of the span")
     entries = {}
@@ -68,7 +68,7 @@ def _pictured(df):
 
 
 def _title(name, row):
-    words = resolution(*(row[key] for key in ("particles", "size", "voxels")))
+    words = resolution(row)
     # A column is some 25 letters wide.
     return (name if len(name) < 25 else name.replace(", ", ",\n", 1)) + (f",\n{words}" if words else "")
 
@@ -123,13 +123,13 @@ def _looks(row):
     return {"color": colour, "marker": marker, "linestyle": style}
 
 
-def _errors_at_points(axis, df, paper, printed, points, label):
+def _errors_at_points(axis, df, paper, points):
     """|error| of the flux at the marked points, of pictured rows and of printed ones."""
     exact, others = _pictured(df)
     bars = [(label(row), [abs(row[f"q_{letter}_error"]) for letter in points], _looks(row)) for row in others]
-    for (name, key), marker in zip(printed.items(), "PX*", strict=True):
-        off = [100 * abs(paper[f"q_{letter}_{key}"] / exact[f"q_{letter}"] - 1) for letter in points]
-        bars.append((f"printed: {name}", off, {"color": "black", "marker": marker}))
+    for (name, key), marker in zip(PRINTED.items(), "PX*", strict=True):
+        off = [referee.value_error(paper[f"q_{letter}_{key}"], exact[f"q_{letter}"]) for letter in points]
+        bars.append((f"printed: {name}", 100 * np.abs(off), {"color": "black", "marker": marker}))
     for number, (name, values, look) in enumerate(bars):
         place = np.arange(len(points)) + 0.8 * ((number + 0.5) / len(bars) - 0.5)
         axis.plot(place, values, **look | {"linestyle": ""}, label=name)
@@ -139,10 +139,10 @@ def _errors_at_points(axis, df, paper, printed, points, label):
     axis.grid(False, axis="x")
 
 
-def _errors_by_size(axis, df, column, title, label):
+def _errors_by_size(axis, df, column, title):
     rows = df[df["name"] != "exact"]
     for _, group in rows.groupby(["name", "ratio"], dropna=False, sort=False):
-        means = group.groupby(["particles", "size", "voxels"], dropna=False)[["unknowns", column]].mean()
+        means = with_size(group).groupby("h", dropna=False)[["unknowns", column]].mean()
         means = means.sort_values("unknowns")
         axis.plot(means["unknowns"], means[column], **_looks(group.iloc[0]), label=label(group.iloc[0]))
     _whole_decades(axis.set_xlim, rows["unknowns"])

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat import referee
 from references import bounds
 from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, of_walls, witness
-from studies.harness.converged import TERMS, converged
+from studies.harness import methods
+from studies.harness.converged import converged
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
-from studies.harness.pick import pick
+from studies.harness.pick import pick, with_size
 
 HERE = {"kind": "periodic", "boundary": "gradient", "realisation": 0, "axes": "y"}
 FLOOR = 1e-4  # per cent; what is below is drawn there
@@ -86,23 +88,17 @@ def _once(ax, label):
 
 def _errors(ax, df):
     """On the first cell: the finest row of each method open, its converged value filled."""
-    for name in ("dem-calibrated", *TERMS):
-        rows = pick(df, name=name, **HERE)
+    for method in (methods.found()["dem-calibrated"], *methods.compared()):
+        name, rows = method.name, with_size(pick(df, name=method.name, **HERE)).fillna({"h": 0.0})
         if not len(rows):
             continue
-        knob = TERMS.get(name, ("particles",))[0]
-        fine = rows.loc[
-            rows.groupby("fraction")[knob].idxmin() if knob == "size" else rows.groupby("fraction")[knob].idxmax()
-        ]
-        errors = [
-            100 * abs(k / witness(df, "periodic", f) - 1)
-            for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)
-        ]
+        fine = rows.loc[rows.groupby("fraction")["h"].idxmin()]
+        errors = [_percent_off(df, f, k) for f, k in zip(fine["fraction"], fine["k_ratio"], strict=True)]
         style = look(name)
         ax.plot(fine["fraction"], np.maximum(errors, FLOOR), **style | {"markerfacecolor": "none", "linestyle": ":"})
-        if name in TERMS and TERMS[name][1]:
+        if method.terms:
             limits = {f: converged(df, name, fraction=f, **HERE) for f in fine["fraction"]}
-            errors = [100 * abs(k / witness(df, "periodic", f) - 1) if k else np.nan for f, k in limits.items()]
+            errors = [_percent_off(df, f, k) if k else np.nan for f, k in limits.items()]
             ax.plot(
                 list(limits),
                 np.maximum(errors, FLOOR),
@@ -112,6 +108,10 @@ def _errors(ax, df):
     ax.set_title("One cell, all methods on the same spheres")
     ax.set_ylim(top=30 * ax.get_ylim()[1])  # room for the legend
     ax.legend(fontsize=7, loc="upper left")
+
+
+def _percent_off(df, fraction, k):
+    return 100 * abs(referee.value_error(k, witness(df, "periodic", fraction)))
 
 
 def _spreads(ax, df):
@@ -138,6 +138,6 @@ def _spreads(ax, df):
 
 def _between(df, fraction):
     """Largest difference of two methods' converged values on the first cell, %; None with fewer than two."""
-    k = [converged(df, name, fraction=fraction, **HERE) for name in TERMS]
+    k = [converged(df, name, fraction=fraction, **HERE) for name in (method.name for method in methods.compared())]
     k = [each for each in k if each]
-    return 100 * (max(k) / min(k) - 1) if len(k) > 1 else None
+    return 100 * referee.value_error(max(k), min(k)) if len(k) > 1 else None

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 
+from demheat import referee
 from references import bounds
+from studies.common import silica_epoxy
 from studies.fig17_etc.means import (
     CONTRAST,
     along_one_axis,
@@ -15,9 +17,9 @@ from studies.fig17_etc.means import (
     walls_less_gradient,
     witness,
 )
-from studies.harness.converged import TERMS, TITLES, converged
-from studies.harness.figures import EDGE, LOOK
-from studies.harness.pick import pick
+from studies.harness import methods
+from studies.harness.converged import converged
+from studies.harness.pick import pick, with_size
 
 COSTS_AT = 0.4
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
@@ -94,44 +96,44 @@ def _errors(df, fractions, kind, boundary):
     if not any(exact.values()):
         return
     what = f"error, %, {kind}"
-    for name in ("dem", "dem-calibrated", "fem", "fft", "fft-em"):
-        for resolution, rows in _ladder(pick(df, name=name, **here)):
+    for method in methods.compared("dem-calibrated"):
+        for resolution, rows in _ladder(pick(df, name=method.name, **here)):
             k = dict(zip(rows["fraction"], rows["k_ratio"], strict=True))
-            values = {f: 100 * (k[f] / exact[f] - 1) if f in k and exact[f] else None for f in fractions}
-            yield _line(what, f"{LOOK[name][0]}, {resolution}", values, **_costs(rows))
-        if name in TERMS:
-            limits = {f: converged(df, name, fraction=f, **here) for f in fractions}
-            values = {f: 100 * (k / exact[f] - 1) if k and exact[f] else None for f, k in limits.items()}
-            yield _line(what, f"{LOOK[name][0]}, converged", values)
+            values = {f: _percent_off(k.get(f), exact[f]) for f in fractions}
+            yield _line(what, f"{method.label}, {resolution}", values, **_costs(rows))
+        if method.role == "main":
+            limits = {f: converged(df, method.name, fraction=f, **here) for f in fractions}
+            values = {f: _percent_off(k, exact[f]) for f, k in limits.items()}
+            yield _line(what, f"{method.label}, converged", values)
     yield _nearest(df, exact, kind, here)
     rows = pick(df, name="multipole", **here)
     left = {row["fraction"]: 100 * row["truncation"] for _, row in rows.iterrows()}
     yield _line(what, "multipoles, by their own estimate", {f: left.get(f) for f in fractions}, **_costs(rows))
 
 
+def _percent_off(k, exact):
+    """Error, %; None if one of the two is missing."""
+    return 100 * referee.value_error(k, exact) if k and exact else None
+
+
 def _nearest(df, exact, kind, here):
     """Which converged value is nearest to the witness, and what its finest row cost."""
     line = {"quantity": f"nearest, {kind}", "of": "converged values; processor seconds of the finest row"}
     for fraction, right in exact.items():
-        limits = {name: converged(df, name, fraction=fraction, **here) for name in TERMS}
-        off = {name: abs(k / right - 1) for name, k in limits.items() if right and k}
-        if len(off) == len(TERMS):
+        limits = {method: converged(df, method.name, fraction=fraction, **here) for method in methods.compared()}
+        off = {method: abs(referee.value_error(k, right)) for method, k in limits.items() if right and k}
+        if len(off) == len(limits):
             best = min(off, key=off.get)
-            spent = pick(df, name=best, fraction=fraction, **here)["cpu_s"].max()
-            line[f"f = {fraction:g}"] = f"{TITLES[best]}, {spent:.0f} s"
+            spent = pick(df, name=best.name, fraction=fraction, **here)["cpu_s"].max()
+            line[f"f = {fraction:g}"] = f"{best.title}, {spent:.0f} s"
     return line | dict.fromkeys(COSTS, math.nan)
 
 
 def _ladder(rows):
     """Rows of one method at each of its resolutions, coarse to fine, with its name."""
-    for knob, ascending, name in (
-        ("particles", True, "{:.0f} particles"),
-        ("voxels", True, "{:.0f}^3"),
-        ("size", False, "h = L/{:.0f}"),
-    ):
-        if knob in rows:
-            for value, group in sorted(rows.groupby(knob), key=lambda pair: pair[0], reverse=not ascending):
-                yield name.format(EDGE / value if knob == "size" else value), group
+    groups = with_size(rows).fillna({"h": 0.0}).groupby("h")
+    for _, group in sorted(groups, key=lambda pair: pair[0], reverse=True):
+        yield silica_epoxy.words(group.iloc[0]), group
 
 
 def _costs(rows):
@@ -142,9 +144,9 @@ def _costs(rows):
 
 def _walls(df, fractions):
     """Isothermal walls less mean gradient, on the same spheres, by the converged values of each method."""
-    for name in TERMS:
-        values = {f: walls_less_gradient(df, name, f) for f in fractions}
-        yield _line("walls less gradient, %", LOOK[name][0], values)
+    for method in methods.compared():
+        values = {f: walls_less_gradient(df, method.name, f) for f in fractions}
+        yield _line("walls less gradient, %", method.label, values)
     cells = {f: of_walls(df, f) for f in fractions}
     yield _line("walls less gradient, %", "FFT, mean over cells", {f: v.mean() for f, v in cells.items()})
     yield _line("walls less gradient, %", "FFT, deviation between cells", {f: v.std() for f, v in cells.items()})

@@ -4,15 +4,26 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
+from demheat import referee
 from studies.fig18_fields.rows import POINTS, SPAN
+from studies.harness.cells import picture
 from studies.harness.pick import pick
 
 BOUNDARIES = {"gradient": "periodic cell, mean gradient", "walls": "isothermal and insulated walls"}
 
 
 def witness(df, boundary):
-    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM."""
+    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM.
+
+    Parameters
+    ----------
+    df : data frame
+    boundary : {"gradient", "walls"}
+
+    Returns
+    -------
+    row of the data frame, or None without any
+    """
     rows = pick(df, boundary=boundary)
     exact = pick(rows, name="multipole")
     if len(exact):
@@ -41,27 +52,49 @@ def with_errors(df):
         truth = witness(df, boundary)
         for _, row in pick(df, boundary=boundary).iterrows():
             if truth is not None:
-                rows.append(dict(row) | _at_points(row, truth) | _over_plane(row, truth, _away(place, boundary)))
+                rows.append(dict(row) | at_points(row, truth) | _over_plane(row, truth, _away(place, boundary)))
     return pd.DataFrame(rows)
 
 
-def _at_points(row, truth):
+def at_points(row, truth):
+    """Errors of one row at the points, and the worst of each kind.
+
+    Parameters
+    ----------
+    row, truth : rows of a data frame
+        With the temperatures, C, and the fluxes, W/m2, at the points.
+
+    Returns
+    -------
+    dict
+    """
     found = {}
     for letter in POINTS:
-        found[f"T_{letter}_error"] = 100 * (row[f"T_{letter}"] - truth[f"T_{letter}"]) / SPAN
-        found[f"q_{letter}_error"] = 100 * (row[f"q_{letter}"] / truth[f"q_{letter}"] - 1)
-        vector = [row[f"q{axis}_{letter}"] - truth[f"q{axis}_{letter}"] for axis in "xyz"]
-        found[f"vector_{letter}_error"] = 100 * float(np.linalg.norm(vector)) / truth["mean_flux"]
+        found[f"T_{letter}_error"] = 100 * referee.value_error(row[f"T_{letter}"], truth[f"T_{letter}"], scale=SPAN)
+        found[f"q_{letter}_error"] = 100 * referee.value_error(row[f"q_{letter}"], truth[f"q_{letter}"])
+        pair = ([each[f"q{axis}_{letter}"] for axis in "xyz"] for each in (row, truth))
+        found[f"vector_{letter}_error"] = 100 * float(referee.vector_error(*pair, scale=truth["mean_flux"]))
     for kind in ("T", "q", "vector"):
         found[f"worst_{kind}"] = max(abs(found[f"{kind}_{letter}_error"]) for letter in POINTS)
     return found
 
 
 def error_pictures(row, truth):
-    """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux."""
-    warm = picture(row["slice_temperature"]) - picture(truth["slice_temperature"])
-    parts = [picture(row[f"slice_{axis}"]) - picture(truth[f"slice_{axis}"]) for axis in "xyz"]
-    return warm, 100 * np.sqrt(sum(part**2 for part in parts)) / truth["mean_flux"]
+    """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux.
+
+    Parameters
+    ----------
+    row, truth : rows of a data frame
+        With pictures of the plane.
+
+    Returns
+    -------
+    temperature, flux : (n, n) float array, %
+    """
+    # The pictures of temperature are in % of the span.
+    warm = referee.value_error(*(picture(each["slice_temperature"]) for each in (row, truth)), scale=1.0)
+    pair = (np.stack([picture(each[f"slice_{axis}"]) for axis in "xyz"], axis=-1) for each in (row, truth))
+    return warm, 100 * referee.vector_error(*pair, scale=truth["mean_flux"])
 
 
 def _away(place, boundary):
@@ -76,8 +109,8 @@ def _away(place, boundary):
 
 def _over_plane(row, truth, away):
     warm, flux = error_pictures(row, truth)
-    found = {"temperature_rms": float(np.sqrt(np.mean(warm**2))), "temperature_max": float(np.abs(warm).max())}
+    found = {"temperature_rms": referee.rms(warm), "temperature_max": float(np.abs(warm).max())}
     for ending, here in (("", away), ("_band", None if away is None else ~away)):
         part = flux if here is None else flux[here]
-        found |= {f"flux_rms{ending}": float(np.sqrt(np.mean(part**2))), f"flux_max{ending}": float(part.max())}
+        found |= {f"flux_rms{ending}": referee.rms(part), f"flux_max{ending}": float(part.max())}
     return found

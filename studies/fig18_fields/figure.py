@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.common.field_errors import picture
+from demheat import referee
 from studies.fig18_fields.errors import BOUNDARIES, error_pictures, with_errors, witness
 from studies.fig18_fields.rows import POINTS
-from studies.fig18_fields.tables import label, words
+from studies.fig18_fields.tables import COMPARED, label
+from studies.harness.cells import picture
 from studies.harness.figures import BLACK, LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
-PICTURED = ("dem", "fem", "fft")
 LOGARITHMIC = {"temperature": (1e-3, 1.0), "flux": (0.1, 100.0)}
 
 
@@ -45,7 +46,7 @@ def _pictures(figure, df):
 
     boundary = "walls" if witness(df, "walls") is not None else "gradient"
     truth, rows = witness(df, boundary), pick(df, boundary=boundary)
-    others = [pick(rows, name=name) for name in PICTURED]
+    others = [pick(rows, name=name) for name in COMPARED]
     others = [group.loc[group["unknowns"].idxmax()] for group in others if len(group)]
     others = [row for row in others if row["case"] != truth["case"]]
     axes = figure.subplots(2, len(others) + 1, squeeze=False)
@@ -61,12 +62,12 @@ def _pictures(figure, df):
         for axis, row in zip(axes[line][1:], others, strict=True):
             error = np.abs(error_pictures(row, truth)[line])
             shown = axis.imshow(np.maximum(error, low), **look, norm=LogNorm(low, high), cmap="magma")
-            axis.set_xlabel(f"rms {np.sqrt(np.mean(error**2)):.2g} %, largest {error.max():.2g} %", fontsize=9)
-            axis.set_title(f"{label(row)},\n{words(row)}", fontsize=9)
+            axis.set_xlabel(f"rms {referee.rms(error):.2g} %, largest {error.max():.2g} %", fontsize=9)
+            axis.set_title(f"{label(row)},\n{resolution(row)}", fontsize=9)
         if others:
             figure.colorbar(shown, ax=axes[line], shrink=0.8, label=errors[kind])
         _dress(axes[line], df)
-        axes[line][0].set_title(f"{kind}: {label(truth)}, {words(truth)}\n({BOUNDARIES[boundary]})", fontsize=9)
+        axes[line][0].set_title(f"{kind}: {label(truth)}, {resolution(truth)}\n({BOUNDARIES[boundary]})", fontsize=9)
     _mark(axes[0][0])
 
 
@@ -92,7 +93,7 @@ def _points(axis, found, paper):
     """Errors of the flux at the points, of the finest row of each method and load, and what the paper prints."""
     series = []
     for boundary, full in (("walls", True), ("gradient", False)):
-        for name in PICTURED:
+        for name in COMPARED:
             rows = pick(found, name=name, boundary=boundary)
             rows = rows[rows["worst_q"] > 0]
             if len(rows):
@@ -101,7 +102,7 @@ def _points(axis, found, paper):
                 values = [abs(row[f"q_{x}_error"]) for x in POINTS]
                 style = {"color": colour, "marker": marker, "mfc": colour if full else "white"}
                 series.append((f"{name.upper()}, {boundary}", values, style))
-    printed = [100 * abs(paper[f"q_{x}_de"] / paper[f"q_{x}_fe"] - 1) for x in POINTS]
+    printed = [100 * abs(referee.value_error(paper[f"q_{x}_de"], paper[f"q_{x}_fe"])) for x in POINTS]
     # 0 at C: printed to three digits, both are 20.3.
     series.append(("printed DE against printed FE", printed, {"color": BLACK, "marker": "P"}))
     for number, (name, values, style) in enumerate(series):
@@ -117,7 +118,7 @@ def _points(axis, found, paper):
 
 def _by_size(axis, found, column, title, unit):
     for boundary, full in (("walls", True), ("gradient", False)):
-        for name in (*PICTURED, "fem-p1"):
+        for name in (*COMPARED, "fem-p1"):
             rows = pick(found, name=name, boundary=boundary).sort_values("unknowns")
             rows = rows[rows[column] > 0]
             if len(rows):

@@ -1,20 +1,16 @@
-"""Rows of the study of fields among many spheres: the arrangement, its exact witnesses, and every method on it.
-
-A box with two isothermal and four insulated walls is one of eight mirror images in a periodic cell of twice its edge
-under a mean gradient: so multipoles are exact between walls as well.
-"""
+"""Rows of the study of fields among many spheres: the arrangement, its exact witnesses, and every method on it."""
 
 from __future__ import annotations
 
 from dataclasses import replace
-from itertools import product
 
 import numpy as np
 
-from demheat.scene import Scene, Sphere
 from demheat.slices import filled, plane
 from studies.common import silica_epoxy
-from studies.common.field_errors import cell, mean_diameter
+from studies.common.field_errors import mean_diameter
+from studies.harness import methods
+from studies.harness.cells import cell
 from studies.harness.cost import measured
 
 # Table 3 of the paper, in edges of the cube; all four lie on the plane x = L/2.
@@ -30,22 +26,6 @@ def spheres_in(boundary):
     return silica_epoxy.scene("walled", 0.2, seed=0, boundary=boundary)
 
 
-def mirrored(scene):
-    """Periodic cell of the eight mirror images of a box between two isothermal walls, the others insulated.
-
-    Heat does not cross a mirror along the load, and temperatures are odd about the ones across it: both walls' loads.
-    """
-    size = np.array(scene.size)
-    images = []
-    for mirror in product((False, True), repeat=3):
-        for sphere in scene.inclusions:
-            center = np.where(mirror, 2 * size - sphere.center, sphere.center)
-            images.append(Sphere(tuple(center), sphere.radius, sphere.material))
-    walls, axis = scene.wall_temperatures, scene.axis
-    gradient = (walls["xyz"[axis] + "+"] - walls["xyz"[axis] + "-"]) / size[axis] * np.eye(3)[axis]
-    return Scene(tuple(2 * size), scene.matrix, images, gradient=gradient)
-
-
 def arrangement_row():
     """Where the points lie, and how far the plane's points are from the nearest surface."""
     scene = spheres_in("walls")
@@ -57,12 +37,23 @@ def arrangement_row():
     points, _ = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
-    row["slice_face"] = cell(face / scene.size[0], 4)
-    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], 4)}
+    row["slice_face"] = cell(face / scene.size[0], decimals=4)
+    return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], decimals=4)}
 
 
 def distance(scene, points):
-    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m."""
+    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m.
+
+    Parameters
+    ----------
+    scene : Scene
+        With disjoint spheres.
+    points : (n, 3) float array, m
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     centers = np.array([sphere.center for sphere in scene.inclusions])
     radii = np.array([sphere.radius for sphere in scene.inclusions])
     # Spheres are disjoint: the least signed distance is that of the sphere around the point, if there is one.
@@ -73,37 +64,42 @@ def field_row(boundary, *, method, **knobs):
     """Solve, and keep temperature and flux at the points and over the plane.
 
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
+
+    Parameters
+    ----------
+    boundary : {"gradient", "walls"}
+    method : str
+    knobs : keywords of its `solve`
+
+    Returns
+    -------
+    dict
     """
     scene = spheres_in(boundary)
-    exact = method == "multipole"
-    solve_this = mirrored(scene) if exact and boundary == "walls" else scene
-    field, row = silica_epoxy.solved(solve_this, method=method, **knobs)
+    field, row = silica_epoxy.solved(scene, method=method, **knobs)
     points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
     both = np.vstack([np.array(list(POINTS.values())) * scene.size, points])
     (temperature, flux), cost = measured(lambda: (field.temperature_at(both), field.flux_at(both)))
     if boundary == "gradient":
         temperature = temperature + LOW + SPAN / 2 - temperature[len(POINTS) :].mean()
-    elif exact:
-        temperature = temperature + LOW
     row |= {"mean_flux": float(np.linalg.norm(field.mean_flux)), "sample_cpu_s": cost["cpu_s"]}
     for letter, t, q in zip(POINTS, temperature, flux, strict=False):
         row |= {f"T_{letter}": t, f"q_{letter}": float(np.linalg.norm(q))}
         row |= {f"q{axis}_{letter}": part for axis, part in zip("xyz", q, strict=True)}
     warm, flux = filled(mask, temperature[len(POINTS) :]), filled(mask, flux[len(POINTS) :])
     # Two digits behind the point: 0.02 % of the mean flux of 29 W/m2; three: 0.0005 % of the span.
-    row |= {f"slice_{axis}": cell(flux[..., k], 2) for k, axis in enumerate("xyz")}
-    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, 3)}
+    row |= {f"slice_{axis}": cell(flux[..., k], decimals=2) for k, axis in enumerate("xyz")}
+    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, decimals=3)}
 
 
 def warm_up(boundary, *, method, **knobs):
     """Make the dispersion and the packing, load and compile, also what looks at the field."""
     scene = spheres_in(boundary)
-    silica_epoxy.warm_up(method, **knobs)
+    methods.warm_up(method, **knobs)
     if "particles" in knobs:
         from demheat import dem
         from demheat.packing.cache import relaxed
-        from studies.harness.methods import SMALL
 
         relaxed(knobs["particles"], size=scene.size, periodic=scene.periodic, seed=knobs["seed"])
-        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **SMALL[method]})
+        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **methods.small(method)})
         small.temperature_at(np.array([scene.size]) / 2), small.flux_at(np.array([scene.size]) / 2)

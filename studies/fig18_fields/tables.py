@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from studies.fig18_fields.errors import BOUNDARIES, witness
-from studies.harness.figures import LOOK, resolution
+from studies.harness import methods
+from studies.harness.figures import LOOK
+from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
+# Eyre and Milton's scheme has the voxels of the scalar one, whose fields stand for both.
+COMPARED = tuple(method.name for method in methods.compared() if method.name != "fft-em")
 SHOWN = {"T off": "worst_T", "q off": "worst_q", "T rms": "temperature_rms", "T max": "temperature_max",
          "flux rms": "flux_rms", "flux max": "flux_max", "band rms": "flux_rms_band", "band max": "flux_max_band",
          "unknowns": "unknowns", "elements": "elements", "cpu_s": "cpu_s", "peak_mib": "peak_mib"}  # fmt: skip
@@ -13,18 +17,24 @@ SHOWN = {"T off": "worst_T", "q off": "worst_q", "T rms": "temperature_rms", "T 
 
 def label(row):
     """Name of a row's method."""
-    return "multipoles" if row["name"] == "multipole" else LOOK[row["name"]][0]
-
-
-def words(row):
-    """Resolution of a row."""
-    if row["name"] == "multipole":
-        return f"degree {row['degree']:.0f}"
-    return resolution(*(row.get(key, float("nan")) for key in ("particles", "size", "voxels")))
+    return LOOK[row["name"]][0]
 
 
 def lines(df, found, paper):
-    """Where the points lie; rows of each load, its witness first; what the paper prints."""
+    """Where the points lie; rows of each load, its witness first; what the paper prints.
+
+    Parameters
+    ----------
+    df : data frame
+    found : data frame
+        With errors, from `errors.with_errors`.
+    paper : dict
+        Printed numbers.
+
+    Returns
+    -------
+    list of dict
+    """
     place = pick(df, name="arrangement").iloc[0]
     blank = {"load": "", "method": "where the points lie", "resolution": ""}
     where = {f"T_{x}": place[f"phase_{x}"] for x in "ABCD"}
@@ -43,6 +53,6 @@ def lines(df, found, paper):
 
 
 def _line(boundary, row):
-    line = {"load": boundary, "method": label(row), "resolution": words(row)}
+    line = {"load": boundary, "method": label(row), "resolution": resolution(row)}
     line |= {f"T_{x}": f"{row[f'T_{x}']:.3f}" for x in "ABCD"} | {f"q_{x}": f"{row[f'q_{x}']:.2f}" for x in "ABCD"}
     return line | {title: row[column] for title, column in SHOWN.items()}

@@ -16,6 +16,12 @@ MIB = 2**20
 def measured(function, /, *args, **knobs):
     """Call a function and say what the call cost.
 
+    Parameters
+    ----------
+    function : callable
+    args, knobs
+        What it is called with.
+
     Returns
     -------
     value : whatever `function` returns

@@ -1,49 +1,141 @@
-"""The methods that the studies compare, by name, and one solve of one scene by one of them as a row.
+"""The methods that the studies compare, found where their modules declare them, and one solve by one of them as a row.
 
-A method is the name of its module and what it fixes; a case adds the scene and the resolution.
+A row names its method and, as `method`, its module; a case adds what the method fixes, the scene and the resolution.
 """
 
 from __future__ import annotations
 
 import math
 import os
+import pkgutil
+import re
 import tempfile
 from contextlib import contextmanager
+from dataclasses import replace
+from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
+from pathlib import Path
 
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
-from demheat.referee import conductivity_error, heat_balance
+from demheat.referee import conductivity_error, heat_balance, value_error
 from studies.harness.cost import measured
 
 MATRIX = HADDAD.conductivity
 THIRD, HALF = 4 * math.pi / 81, 0.5  # volume fractions of the two sphere scenes: radius L/3, and half of the cube
 
 # Packages whose modules are the methods: rows keep a method's name, so that its files may move.
-HOMES = ("references", "demheat")
+HOMES = ("demheat", "references")
 
-METHODS = {
-    "dem": {"method": "dem", "law": "laguerre", "conforming": True, "interface": "harmonic"},
-    "dem-plain": {"method": "dem", "law": "laguerre", "conforming": False, "interface": "harmonic"},
-    "dem-mean": {"method": "dem", "law": "laguerre", "conforming": False, "interface": "arithmetic"},
-    "dem-calibrated": {"method": "dem", "law": "calibrated", "conforming": False, "interface": "harmonic"},
-    "dem-arithmetic": {"method": "dem", "law": "calibrated", "conforming": False, "interface": "arithmetic"},
-    "fem": {"method": "fem", "order": 2, "curved": True},
-    "fem-straight": {"method": "fem", "order": 2, "curved": False},
-    "fem-p1": {"method": "fem", "order": 1, "curved": False},
-    "fft": {"method": "fft", "scheme": "cg", "rule": "laminate"},
-    "fft-plain": {"method": "fft", "scheme": "cg", "rule": "plain"},
-    "fft-em": {"method": "fft", "scheme": "eyre-milton", "rule": "laminate"},
-    "fft-em-plain": {"method": "fft", "scheme": "eyre-milton", "rule": "plain"},
-    "maxwell": {"method": "bounds"},
-    "exact": {"method": "exact"},
-}
-# What a warm-up solves: the same code at a size that costs next to nothing.
-SMALL = {
-    "dem": {"particles": 1000, "seed": 99},
-    "fem": {"size": EDGE / 4},
-    "fft": {"voxels": 16},
-}
+
+@cache
+def found():
+    """All methods by name: those that compute fields, then formulas, then witnesses, each by home and module.
+
+    Only modules whose source declares `METHODS` are loaded.
+
+    Returns
+    -------
+    dict of str to Method
+
+    Raises
+    ------
+    ValueError
+        If two methods have one name.
+    """
+    methods = []
+    for home in HOMES:
+        for module in sorted(each.name for each in pkgutil.iter_modules(import_module(home).__path__)):
+            if _declares(f"{home}.{module}"):
+                declared = import_module(f"{home}.{module}").METHODS
+                methods += [replace(method, module=module) for method in declared]
+    # The sort is stable.
+    methods.sort(key=lambda method: 2 if method.role == "witness" else method.call == "estimate")
+    names = [method.name for method in methods]
+    if len(set(names)) < len(names):
+        raise ValueError(f"methods {sorted(name for name in names if names.count(name) > 1)}: declared more than once")
+    return dict(zip(names, methods, strict=True))
+
+
+def _declares(path):
+    return bool(re.search(r"^METHODS\b", Path(find_spec(path).origin).read_text(encoding="utf-8"), re.MULTILINE))
+
+
+def compared(*beside):
+    """Methods that every study compares, and those named besides, in the order of `found`."""
+    return [method for method in found().values() if method.role == "main" or method.name in beside]
+
+
+def spent(method, resolutions):
+    """Values of its knob that a study spends on a method.
+
+    Parameters
+    ----------
+    method : Method
+    resolutions : dict of str to sequence
+        The study's, by the method's name, or else by its knob: lengths in edges of the cube. On a knob that it does not
+        know the coarsest and the finest value of the method's own.
+
+    Returns
+    -------
+    tuple of float
+        (None,) if nothing refines the method.
+    """
+    if method.resolution is None:
+        return (None,)
+    own = method.orders.values if method.orders else (method.small, method.coarse)
+    usual = resolutions.get(method.resolution.knob, (own[0], own[-1]))
+    return tuple(resolutions.get(method.name, usual))
+
+
+def value_of(row):
+    """Value of the knob that refines a row's method, not-a-number if there is none.
+
+    Parameters
+    ----------
+    row : mapping
+        With the method's `name`.
+    """
+    method = found().get(row["name"])
+    refined = method.resolution if method else None
+    value = row.get(refined.column or refined.knob) if refined else None
+    return math.nan if value is None else value
+
+
+def resolution(row):
+    """Resolution of a row, by its method's name, in words; empty if nothing refines the method."""
+    value = value_of(row)
+    if value != value:
+        return ""
+    refined = found()[row["name"]].resolution
+    return refined.words.format(value / EDGE if refined.metric else value)
+
+
+def size_of(row):
+    """Size of an element of a row, in edges of the cube; not-a-number if nothing refines its method."""
+    value = value_of(row)
+    if value != value:
+        return math.nan
+    refined = found()[row["name"]].resolution
+    return refined.size(value / EDGE if refined.metric else value)
+
+
+def at(method, value, seed=0):
+    """What a case says of the resolution of a method: its knob and, where elements lie at random, the seed.
+
+    Parameters
+    ----------
+    method : Method
+    value : float or None
+        Of the knob; a length in edges of the cube.
+    seed : int
+
+    Returns
+    -------
+    dict
+    """
+    seeded = {"seed": seed} if method.resolution and method.resolution.seeded else {}
+    return method.at(value, EDGE) | seeded
 
 
 def path_of(method):
@@ -66,8 +158,8 @@ def load(method):
 
 
 def case(name, **more):
-    """Case of one method: its name, what is given here, and what the method fixes."""
-    return {"name": name, **more, **METHODS[name]}
+    """Case of one method: its name, what is given here, its module, and what the method fixes."""
+    return {"name": name, **more, "method": found()[name].module, **found()[name].knobs}
 
 
 def exact_ratio(fraction, contrast):
@@ -78,9 +170,9 @@ def exact_ratio(fraction, contrast):
 
 
 def solve_row(scene, ratio, *, method, **knobs):
-    """Row of one solve, or of Maxwell's formula. Arguments as `solved`."""
-    if method == "bounds":
-        return _maxwell_row(scene, ratio)
+    """Row of one solve, or of a formula. Arguments as `solved`."""
+    if not hasattr(load(method), "solve"):
+        return _estimated_row(scene, ratio, load(method).estimate, knobs)
     return solved(scene, ratio, method=method, **knobs)[1]
 
 
@@ -113,23 +205,29 @@ def solved(scene, ratio, *, method, **knobs):
     return field, row | {name: field.stats.get(name) for name in names} | cost
 
 
-def _maxwell_row(scene, ratio):
-    from references.bounds import maxwell
+def _estimated_row(scene, ratio, estimate, knobs):
+    k, cost = measured(estimate, scene, **knobs)
+    error = 100 * value_error(k / MATRIX, ratio)
+    return {"k_ratio": k / MATRIX, "exact_ratio": ratio, "error_percent": error, **cost}
 
-    sphere = scene.inclusions[0]
-    fraction = 4 / 3 * math.pi * sphere.radius**3 / scene.volume
-    found, cost = measured(maxwell, MATRIX, sphere.material.conductivity, fraction)
-    found = float(found) / MATRIX
-    return {"k_ratio": found, "exact_ratio": ratio, "error_percent": 100 * (found / ratio - 1), **cost}
+
+def declared(module):
+    """The methods that a module declares; none of what is a solver of something else."""
+    return [method for method in found().values() if method.module == module]
+
+
+def small(module):
+    """Knobs with which a module's methods cost next to nothing."""
+    return next((method.at(method.small, EDGE) for method in declared(module)), {})
 
 
 def warm_up(method, **knobs):
     """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk."""
-    if method not in SMALL:
-        return
-    with tempfile.TemporaryDirectory() as folder, packings_in(folder):
-        # A cached packing would leave the packing's kernels unloaded.
-        load(method).solve(sphere_in_cube(2.0, fraction=0.1), **{**knobs, **SMALL[method]})
+    for first in declared(method)[:1]:
+        scene = sphere_in_cube(2.0, fraction=0.1, periodic="walls" in first.refuses)
+        with tempfile.TemporaryDirectory() as folder, packings_in(folder):
+            # A cached packing would leave the packing's kernels unloaded.
+            solve_row(scene, 1.0, method=method, **{**knobs, **small(method)})
 
 
 @contextmanager

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from studies.harness import methods
+
 CONFIDENCE = 0.95
 
 
@@ -19,7 +21,14 @@ class Interval(NamedTuple):
 
 
 def pick(df, **where):
-    """Rows whose columns have the given values; None means empty, a missing column is empty everywhere."""
+    """Rows whose columns have the given values; None means empty, a missing column is empty everywhere.
+
+    Parameters
+    ----------
+    df : data frame
+    where
+        Column = value.
+    """
     mask = np.ones(len(df), dtype=bool)
     for column, value in where.items():
         if column not in df:
@@ -29,20 +38,40 @@ def pick(df, **where):
     return df[mask]
 
 
+def with_size(df):
+    """The rows with a column `h`, the size of an element over the cube's edge; not-a-number if nothing refines them."""
+    return df.assign(h=np.array([methods.size_of(row) for row in df.to_dict("records")], dtype=float))
+
+
 def finest(rows):
-    """Rows of the finest resolution among them: most particles or voxels, or smallest elements."""
-    fineness = rows["particles"].fillna(0) + rows["voxels"].fillna(0) - rows["size"].fillna(0)
-    return rows[fineness == fineness.max()]
+    """Rows of the finest resolution among them, whatever the knob; all of them if there is none."""
+    size = with_size(rows)["h"]
+    return rows if size.isna().all() else rows[size == size.min()]
 
 
 def mean_errors(df, by="contrast", **where):
-    """Mean error over packings for each value of a column, %, as a Series; not-a-number if a row has none."""
+    """Mean error over packings for each value of a column, %, as a Series; not-a-number if a row has none.
+
+    Parameters
+    ----------
+    df : data frame
+        With `error_percent`.
+    by : str
+    where
+        As those of `pick`.
+    """
     groups = pick(df, **where).groupby(by)["error_percent"]
     return groups.agg(lambda errors: errors.mean(skipna=False))
 
 
 def worst(df, **where):
-    """Largest |mean error over packings| of any contrast, %; None if there are no such rows."""
+    """Largest |mean error over packings| of any contrast, %; None if there are no such rows.
+
+    Parameters
+    ----------
+    df, where
+        As those of `mean_errors`.
+    """
     errors = mean_errors(df, **where)
     return abs(errors).max(skipna=False) if len(errors) else None
 
@@ -51,6 +80,13 @@ def extrapolated(df, coarse, fine, **where):
     """Largest |error| of any contrast after extrapolating two particle numbers at second order, %; None without rows.
 
     The error falls with the square of the particle size, that is with N^(-2/3).
+
+    Parameters
+    ----------
+    df, where
+        As those of `mean_errors`.
+    coarse, fine : int
+        Numbers of particles.
     """
     errors = [mean_errors(df, particles=number, **where) for number in (coarse, fine)]
     if not len(errors[0]) or not len(errors[1]):
@@ -69,12 +105,29 @@ def student(values):
 
 
 def largest(rows, column):
-    """Largest size in a column; None without rows, not-a-number if one is missing."""
+    """Largest size in a column; None without rows, not-a-number if one is missing.
+
+    Parameters
+    ----------
+    rows : data frame
+    column : str
+    """
     return rows[column].abs().max(skipna=False) if len(rows) else None
 
 
 def order(sizes, errors):
-    """Slope of log |error| over log size by least squares."""
+    """Slope of log |error| over log size by least squares.
+
+    Parameters
+    ----------
+    sizes : (n,) float array, any unit
+        Of elements; of numbers of particles the slope is minus a third of the order in the spacing.
+    errors : (n,) float array, any unit
+
+    Returns
+    -------
+    float
+    """
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
 
 

@@ -8,6 +8,7 @@ import hashlib
 import os
 import platform
 import subprocess
+import sys
 from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
@@ -20,8 +21,9 @@ PACKAGES = ("demheat", "references", "studies")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
 # What must agree for a stored row to stand for a new one.
 SAME = ("code", "machine", "threads", "versions")
-# Names of a module that no number depends on.
+# Names of a module that no number depends on, and a module of such.
 DESCRIBING = {"__all__", "__version__", "METHODS"}
+DECLARING = "demheat.method"
 
 
 def provenance(study, case):
@@ -144,13 +146,16 @@ def code_hash(study_file, module=""):
     module : str
         Path of the module that the case names, if any.
     """
-    used = _reached(_parse(Path(study_file)).body, ("run", "warm_up"))
+    study_file = Path(study_file)
+    used = _reached(_parse(study_file).body, ("run", "warm_up"))
     texts, seen = {_text(used)}, set()
     queue = [*_imported(used), (module, True)]
     while queue:
         name, deep = queue.pop()
         path = _file_of(name)
-        if path is None or (name, deep) in seen:
+        # Of a study that is a package its own parts import no more than `_reached` found.
+        own = path == study_file and not deep
+        if path is None or name == DECLARING or own or (name, deep) in seen:
             continue
         seen.add((name, deep))
         tree = _parse(path)
@@ -171,8 +176,20 @@ def _parse(path):
 
 def _text(nodes):
     """Statements as text, without imports of ours and what only describes a module (`__all__`, `METHODS`)."""
-    kept = [_Moved().visit(copy.deepcopy(node)) for node in nodes if not _bound(node) & DESCRIBING]
-    return "\n".join(ast.dump(node) for node in kept if node is not None)
+    return "\n".join(filter(None, (_dump(node) for node in nodes if not _bound(node) & DESCRIBING)))
+
+
+@cache
+def _dump(node):
+    """One statement as text; empty if it is an import of ours. A module's statements count in many hashes."""
+    kept = _Moved().visit(copy.deepcopy(node)) if _imports_in(node) else node
+    return "" if kept is None else ast.dump(kept)
+
+
+@cache
+def _imports_in(node):
+    """Import statements inside another one."""
+    return [part for part in ast.walk(node) if isinstance(part, ast.Import | ast.ImportFrom)]
 
 
 class _Moved(ast.NodeTransformer):
@@ -209,10 +226,10 @@ def _bound(node):
 def _imported(nodes):
     """Pairs (module name, whether all of it counts) of the imports of ours inside some statements."""
     names = []
-    for node in (part for top in nodes for part in ast.walk(top)):
+    for node in (part for top in nodes for part in _imports_in(top)):
         if isinstance(node, ast.Import):
             names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom):
+        else:
             inner = [f"{node.module}.{alias.name}" for alias in node.names]
             names += [name if _file_of(name) else node.module for name in inner]
     names = [name for name in names if name.split(".")[0] in PACKAGES]
@@ -221,8 +238,8 @@ def _imported(nodes):
 
 
 def _file_of(name):
-    """Path of a module of ours, None for any other name."""
+    """Path of a module of ours, None for any other name; a method may lie elsewhere on Python's path."""
     if name.split(".")[0] not in PACKAGES:
         return None
-    base = ROOT.joinpath(*name.split("."))
-    return next((p for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)
+    bases = (Path(folder).joinpath(*name.split(".")) for folder in (ROOT, *sys.path))
+    return next((p for base in bases for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)

@@ -15,6 +15,17 @@ MARKED = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DO
 def filled(text, folder):
     """Page with each marked table written anew from folder/NAME.csv.
 
+    Parameters
+    ----------
+    text : str
+        Of a page in Markdown.
+    folder : path
+        Of the studies' results.
+
+    Returns
+    -------
+    str
+
     Raises
     ------
     ValueError
@@ -32,7 +43,14 @@ def filled(text, folder):
 
 
 def fill(page, folder):
-    """Write the marked tables of a page anew."""
+    """Write the marked tables of a page anew.
+
+    Parameters
+    ----------
+    page : path
+    folder : path
+        Of the studies' results.
+    """
     page = Path(page)
     text = filled(page.read_text(encoding="utf-8"), folder)
     with replaced(page) as temporary:

@@ -10,6 +10,10 @@ A study is a module with
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
   seconds per row.
+
+One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
+made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
+`demheat.referee` alone.
 """
 
 from __future__ import annotations
@@ -27,7 +31,7 @@ import traceback
 from pathlib import Path
 
 from studies.harness.cost import measured, triad_gbs
-from studies.harness.provenance import SAME, provenance
+from studies.harness.provenance import SAME, code_hash, module_of, provenance
 from studies.harness.store import TAIL, case_key, read_rows, write_rows
 
 TIMEOUT = 1800.0
@@ -62,7 +66,17 @@ def load(name):
 
 
 def find_case(study, case):
-    """Case of a study by its key, or by its number in CASES."""
+    """Case of a study by its key, or by its number in CASES.
+
+    Parameters
+    ----------
+    study : module
+    case : str
+
+    Returns
+    -------
+    dict
+    """
     cases = {case_key(each): each for each in study.CASES}
     if case.isdecimal() and int(case) < len(study.CASES):
         return study.CASES[int(case)]
@@ -108,6 +122,31 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
     return path
 
 
+def state(study, rows):
+    """How many of a study's cases have a stored row that the code beside it would give again.
+
+    Only the code counts here: rows that were measured on another machine are no less its own, though `run_study` would
+    repeat them.
+
+    Parameters
+    ----------
+    study : module
+    rows : dict of str to dict
+        From `store.read_rows`.
+
+    Returns
+    -------
+    dict of str to int
+        "held", "stale" (made by other code) and "missing".
+    """
+    found = dict.fromkeys(("held", "stale", "missing"), 0)
+    for case in study.CASES:
+        row = rows.get(case_key(case))
+        code = code_hash(study.__file__, module_of(study, case.get("method", "")))
+        found["missing" if row is None else "held" if row["code"] == code else "stale"] += 1
+    return found
+
+
 def _holds(row, study, case):
     if row is None or row["status"] not in KEPT:
         return False
@@ -126,7 +165,20 @@ def _progress(number, total, row, elapsed):
 
 
 def spawn_row(name, study, case):
-    """Compute a row in a fresh process; whatever happens to that process, a row comes back."""
+    """Compute a row in a fresh process; whatever happens to that process, a row comes back.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    study : module
+    case : dict
+
+    Returns
+    -------
+    dict
+        Its status says what happened: "ok", "unsupported", "failed" or "timeout".
+    """
     key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
@@ -199,7 +251,13 @@ def compute_row(study, case, *, warm=True):
 
 
 def write_json(row, path):
-    """Hand a row over to the process that asked for it."""
+    """Hand a row over to the process that asked for it.
+
+    Parameters
+    ----------
+    row : dict
+    path : path
+    """
     Path(path).write_text(json.dumps(row, default=lambda value: value.item()))
 
 

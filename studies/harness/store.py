@@ -32,7 +32,14 @@ def read_rows(path):
 
 
 def write_rows(path, rows):
-    """Write rows, an iterable of dicts, whole or not at all."""
+    """Write rows, an iterable of dicts, whole or not at all.
+
+    Parameters
+    ----------
+    path : path
+    rows : iterable of dict
+        One for each case.
+    """
     rows = list(rows)
     seen = list(dict.fromkeys(name for row in rows for name in row))
     columns = [name for name in seen if name not in TAIL] + [name for name in TAIL if name in seen]

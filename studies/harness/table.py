@@ -26,6 +26,16 @@ def render(study, csv_path):
     """Write NAME.md and NAME.png beside NAME.csv and return (claims, text of the Markdown file).
 
     What cannot be judged or drawn is a claim that failed, with the reason as its sentence.
+
+    Parameters
+    ----------
+    study : module
+    csv_path : path
+
+    Returns
+    -------
+    claims : list of Claim
+    text : str
     """
     csv_path = Path(csv_path)
     df = read_frame(study, csv_path)
@@ -44,7 +54,17 @@ def render(study, csv_path):
 
 
 def read_frame(study, csv_path):
-    """Rows of the study's present cases as a data frame."""
+    """Rows of the study's present cases as a data frame.
+
+    Parameters
+    ----------
+    study : module
+    csv_path : path
+
+    Returns
+    -------
+    data frame
+    """
     import pandas as pd
 
     df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
@@ -53,7 +73,18 @@ def read_frame(study, csv_path):
 
 
 def judged(study, df):
-    """Claims of a study on its rows; first, that none failed."""
+    """Claims of a study on its rows; first, that none failed.
+
+    Parameters
+    ----------
+    study : module
+    df : data frame
+        Of `read_frame`.
+
+    Returns
+    -------
+    list of Claim
+    """
     bad = df[df["status"].isin(("failed", "timeout"))]
     claims = [claim("Rows that failed or ran out of time", float(len(bad)), "= 0")]
     try:
@@ -65,7 +96,18 @@ def judged(study, df):
 
 
 def claim(sentence, value, limit):
-    """Judge a value by a limit: a number (at most), or text such as ">= 1.7"; not-a-number never holds."""
+    """Judge a value by a limit: a number (at most), or text such as ">= 1.7"; not-a-number never holds.
+
+    Parameters
+    ----------
+    sentence : str
+    value : float
+    limit : float or str
+
+    Returns
+    -------
+    Claim
+    """
     limit = f"<= {limit:g}" if isinstance(limit, int | float) else limit
     match = re.fullmatch(r"(<=|>=|<|>|=)\s*(\S+)", limit)
     if match is None:

@@ -9,18 +9,20 @@ FEM also meets cells of 124 spheres whose least gap is down to a thousandth of a
 
 import tempfile
 
+from demheat import referee
 from studies.common import silica_epoxy
 from studies.harness import methods
-from studies.harness.converged import TITLES, converged
+from studies.harness.converged import converged
 from studies.harness.pick import largest, pick, present
 from studies.harness.store import printed
 
 FRACTION, CLOSE = 0.2, 0.3
 PARTICLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 8_000_000)
-NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # tiles along an edge, and particles, of the paper's law
+NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # replicas along an edge, and particles, of the paper's law
 VOXELS = (64, 128, 256, 512)
 SINGLE = (128, 512)  # voxels in float32
 SIZES = {"fem": (1 / 24, 1 / 34, 1 / 48), "fem-p1": (1 / 20, 1 / 40, 0.012)}  # in edges of the cube
+RESOLUTIONS = {"particles": PARTICLES, "voxels": VOXELS, "size": SIZES["fem"], "fem-p1": SIZES["fem-p1"]}
 DEGREES = (4, 6, 8, 10, 12, 14, 16)
 GAPS = (0.003, 0.001)
 SOLVED = 1_000_000  # particles of the matrix that pyamg solves too
@@ -29,17 +31,16 @@ TIMEOUT = 7200.0
 
 
 def _cases():
-    yield from (silica_epoxy.case("multipole", highest=degree) for degree in DEGREES)
-    yield from (silica_epoxy.case("dem", particles=number, seed=0) for number in PARTICLES)
-    # Tiles of the same size: what is repeated does not matter for errors of some per cent.
-    for tiles, number in NETWORKS.items():
-        yield silica_epoxy.case("dem-calibrated", particles=number, seed=0, tiles=tiles)
-    for name, sizes in SIZES.items():
-        yield from (silica_epoxy.case(name, size=size * methods.EDGE) for size in sizes)
-    for name in ("fft", "fft-em"):
-        yield from (silica_epoxy.case(name, voxels=voxels) for voxels in VOXELS)
-    yield from (silica_epoxy.case("fft", voxels=voxels, precision="float32") for voxels in SINGLE)
-    yield from (silica_epoxy.case("fem", gap=gap, size=methods.EDGE / 24) for gap in GAPS)
+    yield from (methods.case("multipole", highest=degree) for degree in DEGREES)
+    for method in methods.compared("dem-calibrated", "fem-p1"):
+        if method.name == "dem-calibrated":
+            # Replicas of the same size: what is repeated does not matter for errors of some per cent.
+            knobs = [methods.at(method, number) | {"replicas": replicas} for replicas, number in NETWORKS.items()]
+        else:
+            knobs = [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
+        yield from (methods.case(method.name, **each) for each in knobs)
+    yield from (methods.case("fft", voxels=voxels, precision="float32") for voxels in SINGLE)
+    yield from (methods.case("fem", gap=gap, size=methods.EDGE / 24) for gap in GAPS)
     yield {"name": "steady", "particles": PARTICLES[0], "seed": 0, "method": "dem"}
     yield {"name": "steady", "particles": SOLVED, "seed": 0, "method": "dem"}
 
@@ -51,9 +52,11 @@ def QUICK(case):
     """Coarse rows of the one cell, without quadratic elements, which spheres make fine."""
     if case["name"] == "multipole":
         return case["highest"] in DEGREES[:3]
-    small = case.get("particles", 0) <= PARTICLES[0] and case.get("voxels", 0) <= VOXELS[0] and "gap" not in case
-    size = SIZES.get(case["name"], (0,))[0] * methods.EDGE
-    return small and case.get("size", size) == size and case["name"] != "fem"
+    if case["name"] == "steady":
+        return case["particles"] == PARTICLES[0]
+    method = methods.found()[case["name"]]
+    coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
+    return coarsest.items() <= case.items() and method.name != "fem" and "gap" not in case
 
 
 def run(name, gap=None, highest=None, *, method, **knobs):
@@ -70,10 +73,10 @@ def run(name, gap=None, highest=None, *, method, **knobs):
         return silica_epoxy.solved(made, method=method, **knobs)[1]
 
 
-def warm_up(name, gap=None, highest=None, tiles=None, *, method, **knobs):
-    """Make the dispersion, load and compile; what is solved for that is between walls and needs no tiles."""
+def warm_up(name, gap=None, highest=None, replicas=None, *, method, **knobs):
+    """Make the dispersion, load and compile; what is solved for that is between walls and needs no replicas."""
     _scene(gap)
-    silica_epoxy.warm_up(method, **knobs)
+    methods.warm_up(method, **knobs)
 
 
 def _scene(gap):
@@ -83,7 +86,11 @@ def _scene(gap):
 
 
 def claims(df):
-    """What issue 6 asks for at full size, and its like for the quick rows."""
+    """Every method against the multipoles at full size, and what it costs.
+
+    With a million and with 8 million elements the DEM is held to 0.05 and 0.02 %, far below the 0.5 % between DEM and
+    FFT in the paper, and to 20 GiB; voxels to 0.05 %, quadratic elements too. Quick rows are coarse.
+    """
     df = errors(df)
     yield from present([*_witness(df), *_dem(df), *_others(df)])
 
@@ -93,7 +100,7 @@ def errors(df):
     spheres = pick(df, name="multipole")
     exact = spheres.loc[spheres["highest"].idxmax(), "k_ratio"]  # not-a-number, and all errors with it, if it failed
     of_cell = df["k_ratio"].notna() & (df["gap"].isna() if "gap" in df else True)
-    df = df.assign(error_percent=(100 * (df["k_ratio"] / exact - 1)).where(of_cell))
+    df = df.assign(error_percent=(100 * referee.value_error(df["k_ratio"], exact)).where(of_cell))
     # Spheres hold a fifth of the cell, and of its elements.
     return df.assign(per_inclusion=df["particles"] * FRACTION / df["number"])
 
@@ -123,22 +130,21 @@ def _dem(df):
 
 def _others(df):
     for name in ("fft", "fft-em"):
-        title = TITLES[name]
+        title = methods.found()[name].title
         for voxels, limit in ((VOXELS[0], 1.0), (VOXELS[-1], 0.05)):
             rows = pick(df, name=name, voxels=voxels)
             yield f"{title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
         limit = converged(df[df["precision"].isna()] if "precision" in df else df, name)
         exact = pick(df, name="multipole").sort_values("highest")["k_ratio"].iloc[-1]
-        off = None if limit is None else 100 * abs(limit / exact - 1)
+        off = None if limit is None else 100 * abs(referee.value_error(limit, exact))
         # Quick rows have one grid of the three that are asked for.
         yield f"{title}, extrapolated: error, %", off, 0.02
     double, single = (pick(df, name="fft", voxels=VOXELS[-1], precision=p) for p in (None, "float32"))
     if len(double) and len(single):
-        lost = 100 * abs(float(single["k_ratio"].iloc[0]) / float(double["k_ratio"].iloc[0]) - 1)
-        yield f"FFT, scalar, {VOXELS[-1]}^3: what float32 changes, %", lost, 0.001
-    for name, limit in (("fem", 0.05), ("fem-p1", 0.5)):
+        lost = referee.value_error(*(float(rows["k_ratio"].iloc[0]) for rows in (single, double)))
+        yield f"FFT, scalar, {VOXELS[-1]}^3: what float32 changes, %", 100 * abs(lost), 0.001
+    for name, title, limit in (("fem", "FEM, P2", 0.05), ("fem-p1", "FEM, P1", 0.5)):
         rows = pick(df, name=name, size=SIZES[name][-1] * methods.EDGE, gap=None)
-        title = {"fem": "FEM, P2", "fem-p1": "FEM, P1"}[name]
         yield f"{title}, finest elements: error, %", largest(rows, "error_percent"), limit
     rows = pick(df, name="fem-p1")
     if len(rows) == len(SIZES["fem-p1"]):
@@ -152,13 +158,13 @@ def table(df):
     of it that the transforms take. `steady` is one solve of the spheres between walls, beside plain pyamg's
     Ruge-Stueben and smoothed aggregation on the same matrix (CPU seconds).
     """
-    from studies.many_inclusions.page import lines
+    from studies.many_inclusions.tables import lines
 
     return lines(errors(df))
 
 
 def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
-    from studies.many_inclusions.page import draw
+    from studies.many_inclusions.figure import draw
 
-    return draw(errors(df[df["status"] == "ok"]))
+    return draw(errors(df[df["status"] == "ok"]), PAPER)

@@ -2,15 +2,23 @@
 
 import numpy as np
 
+from studies.harness.cells import numbers
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from studies.harness.pick import pick
-from studies.packings.packers import GAPS, numbers
+from studies.packings.rows import GAPS
 
 OURS = {"lsa": ("ours", RED, "o"), "spheropack": ("spheropack", BLUE, "s")}
 
 
 def draw(df, large):
-    """Six panels from the rows; the polar plot and S2(r) of the packing of `large` spheres, if it is there."""
+    """Six panels from the rows; the polar plot and S2(r) of the packing of `large` spheres, if it is there.
+
+    Parameters
+    ----------
+    df : data frame
+    large : int
+        Number of spheres.
+    """
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=(13, 8))

@@ -123,6 +123,13 @@ def conductances(bed, indptr, indices):
     LAMMPS manual, `pair_style granular`: heat model `radius`, contact radius of the models `hooke` and `hertz`; a
     circular contact of two half-spaces (Batchelor and O'Brien, Proc. R. Soc. A 355, 1977).
 
+    Parameters
+    ----------
+    bed : Packing
+        With radii that overlap.
+    indptr, indices : int array
+        Its links, as from `contacts`.
+
     Returns
     -------
     (m,) float array
@@ -241,7 +248,17 @@ def _conduction(step, contact):
 
 
 def temperatures(program, particles):
-    """Temperatures in the order of the packing; LAMMPS sorts its particles."""
+    """Temperatures in the order of the packing; LAMMPS sorts its particles.
+
+    Parameters
+    ----------
+    program : lammps
+    particles : int
+
+    Returns
+    -------
+    (n,) float array, degrees Celsius
+    """
     out = np.empty(particles)
     place = program.numpy.extract_atom("id")[:particles] - 1
     out[place] = program.numpy.extract_atom("temperature")[:particles]

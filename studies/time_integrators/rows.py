@@ -10,12 +10,13 @@ import time
 
 import numpy as np
 
+from demheat import referee
+from demheat.build import network_of
 from demheat.conduction import transient
-from demheat.conduction.integrators import control, euler
+from demheat.conduction.integrators import control, euler, march
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre
+from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 from demheat.scene import Material, Scene
 from studies.common.slab import packing_of, slab
@@ -30,22 +31,44 @@ SAMPLE, MOST_STEPS = 400, 12_000
 
 
 def system_of(body, particles):
-    """Balance of a body's Laguerre network, and its temperatures at time 0."""
+    """Balance of a body's Laguerre network, and its temperatures at time 0.
+
+    Parameters
+    ----------
+    body : {"slab", "sphere"}
+    particles : int
+
+    Returns
+    -------
+    system : System
+    start : (n,) float array, degrees Celsius
+    """
     if body == "slab":
         scene, packing = slab(), packing_of(particles)
     else:
         metal = Material(185.0, density=2700.0, heat_capacity=900.0)
         scene = Scene(size=(0.1,) * 3, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
         packing = relaxed(particles, size=scene.size, periodic=False, domain="sphere", seed=0)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain=packing.domain)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, scene.conductivities)
+    network = network_of(scene, packing, Laguerre())
     start = transient.initial_temperature(scene, network.centers)
     return semi_discrete(network, scene, transient.capacities(network, scene), level=float(start.mean())), start
 
 
 def marched(body, particles, integrator, accuracy):
-    """Run one integrator to the end and say what it cost and how far off it is."""
+    """Run one integrator to the end and say what it cost and how far off it is.
+
+    Parameters
+    ----------
+    body : {"slab", "sphere"}
+    particles : int
+    integrator : str
+    accuracy : float or None
+        Of the whole march, over the span; None for explicit Euler.
+
+    Returns
+    -------
+    dict
+    """
     system, start = system_of(body, particles)
     if integrator == "euler":
         return _euler(system, start, ENDS[body])
@@ -54,7 +77,7 @@ def marched(body, particles, integrator, accuracy):
 
 
 def _integrated(system, start, end, integrator, accuracy):
-    return list(transient.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
+    return list(march.integrate(system, start, [end], integrator=integrator, accuracy=accuracy))[-1]
 
 
 def _described(system, start, end, state, accuracy):
@@ -63,7 +86,7 @@ def _described(system, start, end, state, accuracy):
     span = float(np.ptp(np.append(start - system.level, system.held_at(end))))
     names = ("steps", "rejected", "stages", "iterations", "residual", "unknowns", "energy_error", "spectral_ratio")
     row = {name: state.stats[name] for name in names} | {"taken": state.stats["integrator"]}
-    error = float(np.sqrt(np.mean((state.temperature - right) ** 2))) / span
+    error = referee.rms(referee.value_error(state.temperature, right, scale=1.0)) / span
     return row | {"error_percent": 100 * error, "reference": finest, "extrapolated": False}
 
 
@@ -95,7 +118,7 @@ def _kernel_speed(system, start, limit):
         best = min(best, (time.perf_counter() - begin) / steps)
         triad = max(triad, triad_gbs(threads=threads(), repeats=2))
     # Each link: conductance and index; each node: row pointer, temperature old and new, inverse capacity, heat.
-    moved = 12 * len(system.indices) + 40 * len(x)
+    moved = 12 * len(system.links.indices) + 40 * len(x)
     return {
         "million_particle_steps": 1e-6 * system.particles / best,
         "bandwidth_gbs": 1e-9 * moved / best,

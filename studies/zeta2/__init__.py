@@ -11,8 +11,11 @@ its slope at 0 is minus a quarter of the specific surface, 3 f/R.
 
 import math
 
+import numpy as np
+
+from demheat import referee
 from studies.harness.pick import largest, pick, present
-from studies.zeta2.pool import below, pooled, with_bounds
+from studies.zeta2.means import below, pooled, with_bounds
 
 MULTIPOLE, VOXELS, S2 = "multipole", "zeta", "statistics"
 MODULES = {S2: "demheat.packing.statistics"}
@@ -93,18 +96,22 @@ def warm_up(part, method, first=0, cells=1, **where):
 
 
 def claims(df):
-    """What issue 6 asks for."""
+    """Multipoles and voxels on arrays and cells; what equilibrium and a gap change; bounds; S2's slope.
+
+    Voxels are held to 1 to 1.5 % on arrays half full and to 2 % on random cells; means of cells are judged in their
+    standard errors, three of which pass once in 370 times by chance.
+    """
     yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
 
 
 def _arrays(df):
     rows = pick(df, part="array")
     off = [
-        (pick(rows, array=array, fraction=fraction)["exact"] - value).abs().max() * 10**digits
+        referee.value_error(pick(rows, array=array, fraction=fraction)["exact"], value, scale=10.0**-digits).abs().max()
         for (array, fraction), (value, digits) in KNOWN.items()
     ]
     yield "Multipoles on SC arrays: off the known digits, in units of the last", max(off), 0.51
-    lattice = (rows["exact"] / rows["lattice"] - 1).abs().max()
+    lattice = referee.value_error(rows["exact"], rows["lattice"]).abs().max()
     # zeta_2 comes from a_3 with an amplification of up to 200; 1e-12 is what truncation leaves there.
     yield "Multipoles on cubic arrays: relative difference from Rayleigh's lattice sums", lattice, 1e-8
     for voxels in GRIDS[1:]:
@@ -117,7 +124,7 @@ def _arrays(df):
 
 
 def _random(df):
-    # Issue 6 asks for 2 %; 128^3 is 21 to 22 voxels across a sphere, where the projector is not there yet.
+    # 2 % on the finest grid; 128^3 is 21 to 22 voxels across a sphere, where the projector is not there yet.
     for voxels, limit in zip(ON_RANDOM, (4.0, 2.0), strict=True):
         rows = pick(df, part="voxels", voxels=voxels)
         text = f"Random cells, {voxels}^3 voxels, extrapolated: worst error against multipoles, %"
@@ -131,7 +138,7 @@ def _statistics(df):
     text = "LSA without gap against the polynomial, worst deviation of a mean: "
     # Beyond 0.4 the polynomial itself lies 1.7 % low, by simulations of our own: two standard errors there.
     dilute = free[free["fraction"] < 0.45]
-    off = (dilute["zeta2"] - dilute["polynomial"]).abs() / dilute["se"]
+    off = referee.value_error(dilute["zeta2"], dilute["polynomial"], scale=dilute["se"]).abs()
     yield text + "f <= 0.4, in standard errors", off.max(), 3.0
     # 95 % of means of twenty cells lie within 3 % at f = 0.2, within 1 % at f = 0.5, where the fit may be 1.7 % low.
     dense = free[(free["cells"] == REALISATIONS) & (free["fraction"] > 0.15)]
@@ -156,8 +163,8 @@ def _bounds(df):
     if not len(rows):
         return
     k, text = rows["conductivity"], "Silica in epoxy by multipoles, mean of three axes: "
-    outside = (rows["lower"] / k - 1).clip(lower=0) + (k / rows["upper"] - 1).clip(lower=0)
-    yield text + "outside the third-order bounds of its own cell by, relative", outside.max(skipna=False), 0.0
+    outside = [abs(referee.bound_violation(*each)) for each in zip(k, rows["lower"], rows["upper"], strict=True)]
+    yield text + "outside the third-order bounds of its own cell by, relative", np.max(outside), 0.0
     # Found at degree 10: 1e-4 at f = 0.5, with surfaces 0.02 D apart.
     yield text + "truncation left, relative", rows["truncation"].max(skipna=False), 3e-4
     width = (rows["hs_upper"] - rows["hs_lower"]) / (rows["upper"] - rows["lower"])
@@ -166,7 +173,7 @@ def _bounds(df):
         width.min(skipna=False),
         ">= 2",
     )
-    off = 100 * (rows["torquato"] / k - 1).abs().max(skipna=False)
+    off = 100 * referee.value_error(rows["torquato"], k).abs().max(skipna=False)
     yield text + "Torquato's estimate with the cell's own zeta_2 is off by at most, %", off, 1.0
 
 
@@ -191,7 +198,7 @@ def table(df):
     """
     import pandas as pd
 
-    from studies.zeta2.pool import lines
+    from studies.zeta2.tables import lines
 
     return pd.DataFrame(lines(df))
 

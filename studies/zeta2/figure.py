@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat import referee
+from studies.harness.cells import numbers
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, RED, SKY
 from studies.harness.pick import pick
-from studies.zeta2.pool import pooled, with_bounds
+from studies.zeta2.means import pooled, with_bounds
 
 # How placed and gap -> label, colour, marker, filled.
 LOOKS = {
@@ -76,7 +78,7 @@ def _bounds(axis, rows):
     unit = rows["conductivity"]
 
     def off(name):
-        return 100 * (rows[name] / unit - 1)
+        return 100 * referee.value_error(rows[name], unit)
 
     f = rows["fraction"]
     more = {"marker": "_"} if len(rows) == 1 else {}
@@ -102,7 +104,7 @@ def _two_point(axis, rows):
     shown = rows[rows["fraction"] == (0.3 if (rows["fraction"] == 0.3).any() else rows["fraction"].max())]
     for row in shown.itertuples():
         text, colour, _, full = LOOKS[row.placed, row.gap]
-        r, s2 = (np.array([float(word) for word in cell.split()]) for cell in (row.r, row.s2))
+        r, s2 = numbers(row.r), numbers(row.s2)
         style = "-" if full else "--"
         axis.plot(r, (s2 - row.fraction**2) / (row.fraction * (1 - row.fraction)), style, color=colour, label=text)
     f = shown["fraction"].iloc[0]

@@ -6,12 +6,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from demheat import gallery
+from demheat import gallery, referee
 from demheat.packing.base import make_packing
 from demheat.packing.dispersion import dispersion, dispersion_scene
 from demheat.packing.statistics import two_point
 from references import multipole, zeta
 from references.exact import lattice
+from studies.harness.cells import cell
 from studies.harness.cost import measured
 
 ARRAYS = {"sc": gallery.simple_cubic, "bcc": gallery.body_centred, "fcc": gallery.face_centred}
@@ -26,7 +27,15 @@ REACH, LAGS, LINES = 2.5, 51, 10_000
 
 
 def array_row(array, fraction, voxels):
-    """Voxels on a cubic array at three places; errors are the worst of them, signed, %."""
+    """Voxels on a cubic array at three places; errors are the worst of them, signed, %.
+
+    Parameters
+    ----------
+    array : {"sc", "bcc", "fcc"}
+    fraction : float
+    voxels : int
+        Along each edge of the cell.
+    """
     scene = ARRAYS[array](fraction=fraction)
     exact = multipole.zeta2(scene)
     places = [_moved(scene, place) for place in PLACES]
@@ -44,8 +53,7 @@ def _moved(scene, place):
 
 
 def _worst(values, exact):
-    errors = 100 * (np.array(values) / exact - 1)
-    return float(errors[np.argmax(np.abs(errors))])
+    return referee.worst(100 * referee.value_error(np.array(values), exact))[1]
 
 
 def _per_diameter(scene, voxels):
@@ -53,32 +61,76 @@ def _per_diameter(scene, voxels):
 
 
 def random_cell(placed, gap, fraction, ratio, seed, axis=1):
-    """Periodic cell of silica spheres in epoxy."""
+    """Periodic cell of silica spheres in epoxy.
+
+    Parameters
+    ----------
+    placed : {"lsa", "rsa"}
+    gap : float
+        Least distance of two surfaces, in diameters.
+    fraction : float
+    ratio : float
+        Edge of the cell over the diameter.
+    seed : int
+    axis : {0, 1, 2}
+        Of the load.
+
+    Returns
+    -------
+    Scene
+    """
     materials = {"matrix": gallery.EPOXY, "inclusion": gallery.SILICA, "size": (gallery.EDGE,) * 3}
     knobs = {"fraction": fraction, "ratio": ratio, "gap": gap, "method": placed, "seed": seed}
     return dispersion_scene(axis=axis, **materials, **knobs)
 
 
 def cells_row(placed, gap, fraction, ratio, first, cells):
-    """zeta_2 of some random cells by multipoles; their values are kept as text."""
+    """zeta_2 of some random cells by multipoles; their values are kept as text.
+
+    Parameters
+    ----------
+    placed, gap, fraction, ratio
+        As those of `random_cell`.
+    first, cells : int
+        First seed, and their number.
+    """
     scenes = [random_cell(placed, gap, fraction, ratio, seed) for seed in range(first, first + cells)]
     values, cost = measured(lambda: [multipole.zeta2(scene, order=ORDER) for scene in scenes])
-    row = {"zeta2": float(np.mean(values)), "values": " ".join(f"{value:.7f}" for value in values)}
+    row = {"zeta2": float(np.mean(values)), "values": cell(values, ".7f")}
     return row | {"spheres": len(scenes[0].inclusions), **cost}
 
 
 def voxels_row(placed, gap, fraction, ratio, first, voxels):
-    """Voxels on a random cell against its multipoles."""
+    """Voxels on a random cell against its multipoles.
+
+    Parameters
+    ----------
+    placed, gap, fraction, ratio
+        As those of `random_cell`.
+    first : int
+        Seed.
+    voxels : int
+        Along each edge of the cell.
+    """
     scene = random_cell(placed, gap, fraction, ratio, first)
     exact = multipole.zeta2(scene, order=ORDER)
     found, cost = measured(zeta.zeta2, scene, voxels=voxels)
-    row = {"exact": exact, "zeta2": found.value, "error_percent": 100 * (found.value / exact - 1)}
-    row |= {"raw_percent": 100 * (found.stats["values"][-1] / exact - 1), "spheres": len(scene.inclusions)}
+    row = {"exact": exact, "zeta2": found.value, "error_percent": 100 * referee.value_error(found.value, exact)}
+    row |= {"raw_percent": 100 * referee.value_error(found.stats["values"][-1], exact)}
+    row |= {"spheres": len(scene.inclusions)}
     return row | {"per_diameter": _per_diameter(scene, voxels), **cost}
 
 
 def conductivity_row(placed, gap, fraction, ratio, first):
-    """Conductivity of a random cell by multipoles, mean of three axes, beside its zeta_2."""
+    """Conductivity of a random cell by multipoles, mean of three axes, beside its zeta_2.
+
+    Parameters
+    ----------
+    placed, gap, fraction, ratio
+        As those of `random_cell`.
+    first : int
+        Seed.
+    """
     scenes = [random_cell(placed, gap, fraction, ratio, first, axis) for axis in range(3)]
     fields, cost = measured(lambda: [multipole.solve(scene, order=SOLVED) for scene in scenes])
     found = [field.conductivity for field in fields]
@@ -89,7 +141,13 @@ def conductivity_row(placed, gap, fraction, ratio, first):
 
 
 def surface_row(placed, gap, fraction, ratio, first, cells):
-    """S2 of some random cells, mean of directions and cells, and the surface that its slope gives, against 3 f/R."""
+    """S2 of some random cells, mean of directions and cells, and the surface that its slope gives, against 3 f/R.
+
+    Parameters
+    ----------
+    placed, gap, fraction, ratio, first, cells
+        As those of `cells_row`.
+    """
     knobs = {"fraction": fraction, "ratio": ratio, "gap": gap, "method": placed}
     made = [dispersion(seed=seed, **knobs) for seed in range(first, first + cells)]
     packings = [make_packing(centers, radii, (1.0, 1.0, 1.0), True, {}) for centers, radii in made]
@@ -98,11 +156,8 @@ def surface_row(placed, gap, fraction, ratio, first, cells):
     surface = -4 * np.array([one.slope for one in found])
     error = 4 * np.array([one.slope_error for one in found])
     exact = 6 * fraction
-    row = {"surface": float(surface.mean()), "exact": exact, "error_percent": float(100 * (surface.mean() / exact - 1))}
+    row = {"surface": float(surface.mean()), "exact": exact}
+    row |= {"error_percent": float(100 * referee.value_error(surface.mean(), exact))}
     row |= {"error_se": float(100 * np.sqrt(np.sum(error**2)) / error.size / exact)}
     s2 = np.mean([one.s2 for one in found], axis=(0, 1))
-    return row | {"r": _text(found[0].r), "s2": _text(s2), "spheres": packings[0].number, **cost}
-
-
-def _text(values):
-    return " ".join(f"{value:.5f}" for value in values)
+    return row | {"r": cell(found[0].r, ".5f"), "s2": cell(s2, ".5f"), "spheres": packings[0].number, **cost}

@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere
+from demheat.build import network_of
 from demheat.calibration import LOADINGS, calibration
-from demheat.network.calibrated import contact_facets
-from demheat.network.laguerre import laguerre, without_hidden
+from demheat.laws import Calibrated, Laguerre
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 from references import exact
@@ -86,7 +86,7 @@ def test_calibrated_and_laguerre_agree_where_homogeneous(law):
     assert field.stats["calibration"] == 1.0 or 0.5 < field.stats["calibration"] < 0.9
 
 
-@pytest.mark.parametrize("knobs", [{"poor": "keep"}, {"poor": "drop"}, {"wall": "surface"}])
+@pytest.mark.parametrize("knobs", [{"sparse": "keep"}, {"sparse": "drop"}, {"wall": "surface"}])
 def test_calibrated_law_is_exact_where_homogeneous_with_every_choice(knobs):
     scene = Scene(size=(1, 1, 1), matrix=TEN, walls={"z-": 0.0, "z+": 1.0})
     field = demheat.solve(scene, particles=3000, law="calibrated", **knobs)
@@ -94,7 +94,7 @@ def test_calibrated_law_is_exact_where_homogeneous_with_every_choice(knobs):
     assert_allclose(field.conductivity, 10.0, rtol=1e-4)
     own = field.samples
     assert_allclose(own.volumes.sum(), 1.0, rtol=1e-12)
-    if knobs.get("poor") == "drop":
+    if knobs.get("sparse") == "drop":
         assert 2900 < len(own.volumes) < 3000
         assert np.isfinite(own.temperature).all()
 
@@ -110,10 +110,15 @@ def homogeneous(packing):
     return Scene(size=tuple(packing.size), matrix=ONE, **load)
 
 
+def uncalibrated(packing, **knobs):
+    """The contact network with C_t = 1 of a packing."""
+    return network_of(homogeneous(packing), packing, Calibrated(factor=1.0, **knobs))
+
+
 def test_calibration_with_links_at_the_wall_is_that_of_the_periodic_cell(between_walls):
     found = {}
     for wall in ("center", "surface"):
-        found[wall] = [calibration(contact_facets(p, wall=wall), p, homogeneous(p)) for p in between_walls]
+        found[wall] = [calibration(uncalibrated(p, wall=wall), homogeneous(p)) for p in between_walls]
     periodic, surface = found["surface"]
     # The two packings differ by their sampling: 0.3 % between seeds at 1e4 particles. Centres held at the walls'
     # temperatures take two radii off the length, 5 %.
@@ -122,8 +127,8 @@ def test_calibration_with_links_at_the_wall_is_that_of_the_periodic_cell(between
 
 
 def test_calibration_by_a_flux_is_that_by_temperatures_up_to_the_ends(between_walls):
-    facets, scene = contact_facets(between_walls[1], wall="surface"), homogeneous(between_walls[1])
-    held, heated = (calibration(facets, between_walls[1], scene, loading=loading) for loading in LOADINGS)
+    network, scene = uncalibrated(between_walls[1], wall="surface"), homogeneous(between_walls[1])
+    held, heated = (calibration(network, scene, loading=loading) for loading in LOADINGS)
     # Two loads of one resistor differ by how they share the heat among the particles at the wall.
     assert held != heated
     assert_allclose(held, heated, rtol=0.03)
@@ -134,25 +139,23 @@ def test_calibration_by_a_flux_is_that_by_temperatures_up_to_the_ends(between_wa
 def test_kept_particles_carry_no_steady_heat(between_walls):
     """Dead ends and islands conduct nothing between periodic images: without them C_t is the same."""
     packing = between_walls[0]
-    kept, dropped, joined = (contact_facets(packing, poor=poor) for poor in ("keep", "drop", "nearest"))
-    values = [calibration(kept, packing, homogeneous(packing))]
-    rest, facets = without_hidden(packing, dropped)
-    values.append(calibration(facets, rest, homogeneous(packing)))
+    networks = (uncalibrated(packing, sparse=sparse) for sparse in ("keep", "drop", "nearest"))
+    kept, dropped, joined = (calibration(network, homogeneous(packing)) for network in networks)
     # Solver tolerance, 1e-8 on each particle's balance.
-    assert_allclose(*values, rtol=1e-6)
-    assert calibration(joined, packing, homogeneous(packing)) < values[0] * (1 - 1e-4)
+    assert_allclose(kept, dropped, rtol=1e-6)
+    assert joined < kept * (1 - 1e-4)
 
 
 def test_bad_loading(between_walls):
     with pytest.raises(ValueError, match="loading = 'radiation'"):
-        calibration(None, between_walls[0], homogeneous(between_walls[0]), loading="radiation")
+        calibration(None, homogeneous(between_walls[0]), loading="radiation")
 
 
 def test_walls_that_nobody_touches(between_walls):
     packing = between_walls[1]
     hollow = packing._replace(centers=packing.centers * [1, 0.8, 1] + [0, 0.1, 0])
     with pytest.raises(ValueError, match="no heat passes"):
-        calibration(contact_facets(hollow), hollow, homogeneous(packing))
+        calibration(uncalibrated(hollow), homogeneous(packing))
 
 
 def test_calibrated_law_overestimates_with_the_arithmetic_mean():
@@ -269,9 +272,9 @@ def _python(code, env):
         ({"particles": float("nan")}, "nan"),
         ({"interface": "median"}, "interface = 'median'"),
         ({"solver": "lu"}, "solver = 'lu'"),
-        ({"poor": "drop"}, "poor = 'drop'"),
+        ({"sparse": "drop"}, "sparse = 'drop'"),
         ({"wall": "surface"}, "wall = 'surface'"),
-        ({"law": "calibrated", "poor": "join"}, "poor = 'join'"),
+        ({"law": "calibrated", "sparse": "join"}, "sparse = 'join'"),
         ({"law": "calibrated", "wall": "face"}, "wall = 'face'"),
         ({"tolerance": -1.0}, "tolerance"),
         ({"seed": -1}, "seed"),
@@ -281,7 +284,7 @@ def test_bad_input_before_heavy_work(change, words, monkeypatch):
     def heavy(*args, **kwargs):
         raise AssertionError("heavy work was begun")
 
-    monkeypatch.setattr("demheat.dem.solver.laguerre", heavy)
+    monkeypatch.setattr("demheat.dem.solver.network_of", heavy)
     with pytest.raises(ValueError, match=words):
         demheat.solve(ball(), **{"particles": 200} | change)
 
@@ -356,7 +359,6 @@ def test_gaps_that_make_no_sense(knobs, words):
 def test_calibration_in_a_round_body():
     """The tessellation of a cylinder conducts exactly between its ends; its round wall is insulated."""
     packing = relaxed(300, size=(2.0, 1.0, 1.0), periodic=False, domain="cylinder-x", seed=0)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False, domain="cylinder-x")
     ends = Scene(size=(2, 1, 1), matrix=ONE, walls={"x-": 0.0, "x+": 1.0})
     # What is compared with has the area of the packing's own ends; the solver leaves 1e-8.
-    assert_allclose(calibration(facets, packing, ends), 1.0, rtol=1e-7)
+    assert_allclose(calibration(network_of(ends, packing, Laguerre()), ends), 1.0, rtol=1e-7)

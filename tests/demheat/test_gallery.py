@@ -161,7 +161,7 @@ def test_bad_arguments(call, match):
 
 
 def test_dispersion_without_room_gives_up(monkeypatch):
-    monkeypatch.setattr(gallery, "TRIALS_PER_SPHERE", 2000)
+    monkeypatch.setattr("demheat.addition.TRIALS", 2000)
     # Centres stay in a cube of 0.35 edges, whose diagonal is 0.61: two cannot be 0.65 apart.
     with pytest.raises(RuntimeError, match="no room for sphere 2 of 2"):
         gallery.random_dispersion(2, diameter=0.65, gap=0.0, periodic=False)

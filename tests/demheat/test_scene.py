@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from demheat import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 
 A, B = Material(1.0), Material(2.0)
 BOX = (1.0, 1.0, 1.0)
@@ -271,8 +271,8 @@ def test_bodies_inscribed_in_the_box():
 def test_a_moving_source():
     source = MovingCylinder(axis=2, diameter=0.008, power_density=1e11, start=(0.02, 0.015), velocity=(0.0033, 0.0))
     assert source.position(2.0) == pytest.approx((0.0266, 0.015), rel=1e-14)
-    made = transient(sources=[source, Heating(5.0)])
-    assert made.sources == (source, Heating(5.0))
+    made = transient(sources=[source, UniformSource(5.0)])
+    assert made.sources == (source, UniformSource(5.0))
     with pytest.raises(NotImplementedError, match="heat sources"):
         made.require(steady=True)
 
@@ -286,7 +286,7 @@ def test_a_moving_source():
         (lambda: transient(domain="cone"), "Scene.domain"),
         (lambda: transient(domain="sphere"), "must be equal"),
         (lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), domain="sphere"), "only a box"),
-        (lambda: Heating(-1.0), "power_density"),
+        (lambda: UniformSource(-1.0), "power_density"),
         (lambda: MovingCylinder(2, 0.1, -1e9, (0, 0)), "power_density"),
         (lambda: MovingCylinder(3, 0.1, 1e9, (0, 0)), "axis"),
         (lambda: MovingCylinder(2, 0.0, 1e9, (0, 0)), "diameter"),

@@ -56,6 +56,20 @@ def test_cases_are_sound(name):
         assert runner.find_case(study, store.case_key(case)) is case
 
 
+@pytest.mark.parametrize("name", NAMES)
+def test_a_new_drawing_repeats_no_row(name, monkeypatch):
+    """Neither what draws nor what judges is part of a row's code; what looks at its fields is."""
+    study, parse, seen = runner.load(name), provenance._parse, set()
+    monkeypatch.setattr(provenance, "_parse", lambda path: seen.add(path.relative_to(provenance.ROOT)) or parse(path))
+    provenance.code_hash.cache_clear()
+    for method in sorted({case["method"] for case in study.CASES}):
+        provenance.code_hash(study.__file__, provenance.module_of(study, method))
+    provenance.code_hash.cache_clear()
+    names = {path.stem for path in seen}
+    assert not names & {"figures", "figure", "sphere_looks", "tables", "table", "pick"}
+    assert name != "fig15_16_fields" or {"field_errors", "slices", "halo"} <= names
+
+
 def test_code_of_a_row_is_that_of_its_method(monkeypatch):
     study = runner.load("fig14_single_inclusion")
     codes = {
@@ -67,7 +81,7 @@ def test_code_of_a_row_is_that_of_its_method(monkeypatch):
 
     @functools.cache
     def changed(path):
-        return parse(path) if path.name != "laguerre_kernels.py" else parse(provenance.ROOT / "studies/cost.py")
+        return parse(path) if path.name != "laguerre_kernels.py" else parse(provenance.ROOT / "studies/harness/cost.py")
 
     monkeypatch.setattr(provenance, "_parse", changed)
     provenance.code_hash.cache_clear()

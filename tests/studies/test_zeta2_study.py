@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 
 from references.bounds import zeta2_hard_spheres
 from studies import zeta2 as study
-from studies.zeta2 import pool as zeta2_pool
+from studies.harness.cells import numbers
+from studies.zeta2 import means as zeta2_means
 from studies.zeta2 import rows as zeta2_rows
 
 HERE = {"part": "cells", "placed": "lsa", "gap": 0.0, "ratio": 6.0, "fraction": 0.2, "spheres": 83}
@@ -19,7 +20,7 @@ def cells(*values, **where):
 
 def test_rows_of_one_kind_are_pooled():
     df = pd.DataFrame([cells(0.04, 0.05), cells(0.06, 0.07), cells(0.1, 0.2, placed="rsa")])
-    means = zeta2_pool.pooled(df).set_index("placed")
+    means = zeta2_means.pooled(df).set_index("placed")
     assert means["cells"].tolist() == [4, 2]
     lsa = means.loc["lsa"]
     scatter = np.std([0.04, 0.05, 0.06, 0.07], ddof=1)
@@ -32,12 +33,12 @@ def test_rows_of_one_kind_are_pooled():
 def test_differences_are_weighted_by_their_variance():
     upper = [cells(0.099, 0.101), cells(0.18, 0.22, fraction=0.3)]
     lower = [cells(0.089, 0.091, placed="rsa"), cells(0.09, 0.11, fraction=0.3, placed="rsa")]
-    means = zeta2_pool.pooled(pd.DataFrame(upper + lower))
-    found, se = zeta2_pool.below(means, {"placed": "rsa"}, {"placed": "lsa"})
+    means = zeta2_means.pooled(pd.DataFrame(upper + lower))
+    found, se = zeta2_means.below(means, {"placed": "rsa"}, {"placed": "lsa"})
     # 10 +- sqrt(2) % and 50 +- sqrt(5^2 + 10^2) %: half of the difference of two values is their standard error.
     weights = np.array([1 / 2, 1 / 125])
     assert_allclose([found, se], [weights @ [10.0, 50.0] / weights.sum(), weights.sum() ** -0.5])
-    assert zeta2_pool.below(means, {"placed": "rsa"}, {"placed": "none"}) == (None, None)
+    assert zeta2_means.below(means, {"placed": "rsa"}, {"placed": "none"}) == (None, None)
 
 
 def test_claims_see_cells_off_the_polynomial_and_additions_that_are_not_below():
@@ -83,6 +84,6 @@ def test_surface_of_a_few_cells():
     row = zeta2_rows.surface_row("rsa", 0.0, 0.1, 6.0, first=0, cells=1)
     assert row["exact"] == pytest.approx(0.6)  # 6 f/D in units of D
     assert abs(row["error_percent"]) < 4 * row["error_se"] < 4.0
-    s2 = [float(word) for word in row["s2"].split()]
+    s2 = numbers(row["s2"])
     assert s2[0] == pytest.approx(0.1, rel=0.02)  # seven directions of 10 000 lines: 0.3 %
     assert s2[-1] == pytest.approx(0.01, rel=0.2)

@@ -50,6 +50,18 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False):
 
     Explicit Euler takes its stable steps, or those between outputs, whatever the error: they must be enough. It is left
     out where loads change in time.
+
+    Parameters
+    ----------
+    spectrum, interval, accuracy, outputs
+        As in `costs`.
+    moving : bool
+        Whether loads change in time.
+
+    Returns
+    -------
+    str
+        One of `INTEGRATORS`.
     """
     work = costs(spectrum, interval, accuracy, outputs)
     if moving or max(interval / spectrum.limit, outputs) < 0.5 / accuracy:

@@ -11,12 +11,13 @@ import numpy as np
 from demheat.conduction.integrators.pace import ANY
 from demheat.conduction.integrators.system import ACCOUNTS
 
-# Local errors of third order add up to a final error of second: for a final error in proportion to the accuracy they
-# must go with its power 3/2. And what a step cannot resolve it damps, as does the rest of the way, so that an error
-# made early is worth less at the asked time: allowed is more by the power `DAMPED` of the number of such steps to go,
-# which the power of the accuracy makes up for. Found with accuracies 1e-2 to 1e-4 on slabs heated from one wall at once
-# (Laguerre, spheres of size ratio 10, contacts; 600 to 1e5 particles) and under swinging loads: final errors are 0.1 to
-# 0.8 of the accuracy asked for.
+# How large the estimated error of a step may be, for an accuracy eps at the asked time and n more steps of this size:
+#     SAFETY eps (eps / USUAL)^((1 + DAMPED) / 2) n^DAMPED, in units of the temperature span.
+# Errors of third order add up to one of second order, so n goes as eps^(-1/2), and eps / n as eps^(3/2). But heat
+# conduction damps on the rest of the way what a step did not resolve: an early error counts less than a late one, by
+# the last factor, and DAMPED / 2 in the power of eps takes that factor's own growth out again. Found with accuracies
+# 1e-2 to 1e-4 on slabs heated from one wall at once (Laguerre, spheres of size ratio 10, contacts; 600 to 1e5
+# particles) and under swinging loads: final errors are 0.1 to 0.8 of the accuracy asked for.
 SAFETY, DAMPED, USUAL = 0.3, 0.5, 1e-3
 # Step factors: cautious, and at most and least from one step to the next.
 CAUTION, GROW, CUT = 0.9, 4.0, 0.2
@@ -41,7 +42,16 @@ class Ledger:
     through: np.ndarray = field(default_factory=lambda: np.zeros(ACCOUNTS))
 
     def add(self, done, step, accepted):
-        """Count a step."""
+        """Count a step.
+
+        Parameters
+        ----------
+        done : Step
+        step : float, s
+            Its size.
+        accepted : bool
+            Heat of a step that is not accepted does not count.
+        """
         self.stages += done.stages
         self.iterations += done.iterations
         if accepted:
@@ -74,29 +84,48 @@ class Span:
 
 
 def span_of(system, x):
-    """Range of temperatures of a state, over particles and walls with a temperature."""
+    """Range of temperatures of a state, over particles and walls with a temperature.
+
+    Parameters
+    ----------
+    system : System
+    x : (N,) float array, K
+
+    Returns
+    -------
+    Span
+    """
     used = np.zeros(len(x), dtype=bool)
     used[: system.particles] = True
     used[system.held] = True
     return Span(x, used)
 
 
-def fixed_steps(advance, system, x, times, *, step, span, start=0.0, pace=ANY):
-    """Equal steps of at most `step` between the asked times and breaks; yields (time, x, Ledger) at each asked one.
+def fixed_steps(advance, system, x, times, *, step, span, pace=ANY):
+    """Equal steps of at most `step` between the asked times and breaks, from time 0.
 
     Parameters
     ----------
     advance : callable (x, time, step, memory, estimate) -> Step
     system : System
     x : (N,) float array, K
+        At time 0; may be overwritten.
     times : sequence of float, s
+        Increasing.
     step : float, s
     span : Span
-    start : float, s
+        Not widened.
     pace : Pace
         Breaks of the loads, and what they ask of steps between them.
+
+    Yields
+    ------
+    time : float, s
+        Each asked one.
+    x : (N,) float array, K
+    ledger : Ledger
     """
-    ledger, memory, now = Ledger(), None, start
+    ledger, memory, now = Ledger(), None, 0.0
     for end, asked in pace.stops(times):
         count = max(0, math.ceil((end - now) / min(step, pace.least(now, end)) * (1 - 1e-12)))
         first = now
@@ -113,24 +142,31 @@ def fixed_steps(advance, system, x, times, *, step, span, start=0.0, pace=ANY):
             memory = None
 
 
-def adaptive_steps(advance, system, x, times, *, accuracy, span, start=0.0, first=None, pace=ANY):
+def adaptive_steps(advance, system, x, times, *, accuracy, span, first, pace=ANY):
     """Steps whose estimated error, rms over the heat capacity in units of the span, meets the accuracy at the times.
 
     Parameters
     ----------
-    advance, system, x, times, span, start, pace
+    advance, system, x, times, pace
         As in `fixed_steps`.
     accuracy : float
         Of the temperature span.
+    span : Span
+        Widened on the way.
     first : float, s
         First step to try, also after breaks.
+
+    Yields
+    ------
+    time, x, ledger
+        As in `fixed_steps`.
 
     Raises
     ------
     RuntimeError
         If no step is small enough.
     """
-    ledger, memory, now, wanted = Ledger(), None, start, first
+    ledger, memory, now, wanted = Ledger(), None, 0.0, first
     allowed = SAFETY * accuracy * (accuracy / USUAL) ** (0.5 * (1.0 + DAMPED))
     for end, asked in pace.stops(times):
         goal = next(time for time in times if time >= end)

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 
 ORDER = 1
@@ -10,12 +10,25 @@ ESTIMATES = False
 
 
 def stepper(system, spectrum):
-    """A function (x, time, step, memory, estimate) -> Step."""
+    """Explicit Euler on a system.
+
+    Parameters
+    ----------
+    system : System
+    spectrum : Spectrum
+        Not needed: `largest_step` says what is stable.
+
+    Returns
+    -------
+    callable (x, time, step, memory, estimate) -> Step
+        From a state x, (N,) float array, K, at a time, s, one step, s, ahead. `memory` is that of the step before, or
+        None; `estimate` asks for the error. The array of x may be used again once the step after this one is taken.
+    """
 
     def advance(x, time, step, memory, estimate):
         heat, totals = system.heat_at(time)
         new = np.empty_like(x) if memory is None else memory
-        kernels.forward(*system.links, heat, step, x, new)
+        kernels.forward(system.links, system.inverse, heat, step, x, new)
         inflow = step * system.inflow(x, totals)
         system.hold(new, time + step)
         # Two arrays take turns: the old state is free once this one is accepted.

@@ -7,7 +7,9 @@ from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse.linalg import LinearOperator, cg
 
-from demheat.conduction import steady_kernels, transient_kernels
+from demheat.conduction import steady_kernels
+from demheat.conduction.integrators import transient_kernels
+from demheat.conduction.multigrid import CYCLE
 from demheat.network.base import row_numbers
 
 MOST = 5000
@@ -38,7 +40,8 @@ def solver(system, preconditioner):
     total = float(system.capacity.sum())
     cluster = _clusters(system)
     capacities = np.bincount(cluster, system.capacity)
-    ties = np.bincount(cluster[system.tie_row], system.tie_conductance, minlength=len(capacities))
+    tied = system.ties.row
+    ties = np.bincount(cluster[tied], system.ties.conductance, minlength=len(capacities))
     stiffness = math.sqrt(float(np.einsum("i,i,i->", system.inverse, system.diagonal, system.diagonal)) / total)
     kept = {}
 
@@ -48,7 +51,7 @@ def solver(system, preconditioner):
 
     def residual(g, known, heat, y):
         r = np.empty_like(y)
-        transient_kernels.rates(*system.links, heat, y, r)
+        transient_kernels.rates(system.links, system.inverse, heat, y, r)
         r += (known - y) / g
         r *= system.capacity
         return r
@@ -60,7 +63,7 @@ def solver(system, preconditioner):
         shift = np.divide(heat, whole, out=np.zeros_like(heat), where=whole > 0)[cluster] * free
         y += shift
         r -= shift / g * system.capacity
-        np.subtract.at(r, system.tie_row, shift[system.tie_row] * system.tie_conductance)
+        np.subtract.at(r, tied, shift[tied] * system.ties.conductance)
 
     def size(g, r):
         # A is positive semidefinite: |error| <= g |C^-1 r| in the norm weighted by capacity.
@@ -90,9 +93,9 @@ def solver(system, preconditioner):
 
 def _clusters(system):
     """Number of the cluster of particles that each node belongs to; held nodes join none."""
-    row = row_numbers(system.indptr)
-    inside = system.capacity[system.indices] > 0
-    pair = (row[inside], system.indices[inside].astype(np.int64))
+    indptr, indices, _ = system.links
+    inside = system.capacity[indices] > 0
+    pair = (row_numbers(indptr)[inside], indices[inside].astype(np.int64))
     n = len(system.capacity)
     graph = sparse.csr_matrix((np.ones(len(pair[0]), np.int8), pair), shape=(n, n))
     return csgraph.connected_components(graph, directed=False)[1]
@@ -101,8 +104,7 @@ def _clusters(system):
 def _jacobi(system):
     def iterate(g, r, y, limit):
         diagonal = system.diagonal + system.capacity / g
-        links = system.indptr, system.indices, system.conductance
-        return abs(steady_kernels.conjugate_gradients(*links, diagonal, r, y, limit, MOST))
+        return abs(steady_kernels.conjugate_gradients(system.links, diagonal, r, y, limit, MOST))
 
     return iterate
 
@@ -134,11 +136,11 @@ def _multigrid(system, free, kept, g):
 def _matrix(system, free, g):
     """C / g + A of the free nodes as a SciPy matrix."""
     number = np.cumsum(free) - 1
-    rows = row_numbers(system.indptr)
-    inside = free[system.indices]
+    indptr, indices, conductance = system.links
+    inside = free[indices]
     n = int(free.sum())
-    pair = (number[rows[inside]], number[system.indices[inside]])
-    off = sparse.csr_matrix((-system.conductance[inside], pair), shape=(n, n))
+    pair = (number[row_numbers(indptr)[inside]], number[indices[inside]])
+    off = sparse.csr_matrix((-conductance[inside], pair), shape=(n, n))
     return (off + sparse.diags((system.diagonal + system.capacity / g)[free])).tocsr()
 
 
@@ -148,9 +150,5 @@ def _hierarchy(a) -> LinearOperator:
 
     # BLAS threads only spin here: its share is short dot products between compiled sweeps.
     with threadpool_limits(1, "blas"):
-        sweeps = {
-            "presmoother": ("gauss_seidel", {"sweep": "forward"}),
-            "postsmoother": ("gauss_seidel", {"sweep": "backward"}),
-        }
-        levels = pyamg.smoothed_aggregation_solver(a, max_coarse=500, improve_candidates=None, **sweeps)
+        levels = pyamg.smoothed_aggregation_solver(a, improve_candidates=None, **CYCLE)
         return levels.aspreconditioner(cycle="V")

@@ -44,7 +44,16 @@ class Pace(NamedTuple):
         return float(np.min(np.maximum(self.start - now, self.longest)[ahead], initial=math.inf))
 
     def least(self, now, end):
-        """Longest step that suits all windows that begin before a time and end after another, s."""
+        """Longest step that suits all windows between two times.
+
+        Parameters
+        ----------
+        now, end : float, s
+
+        Returns
+        -------
+        float, s
+        """
         met = (self.stop > now) & (self.start < end)
         return float(np.min(self.longest[met], initial=math.inf))
 
@@ -64,13 +73,13 @@ class Pace(NamedTuple):
 ANY = Pace()
 
 
-def pace_of(functions, passes, end, accuracy):
+def pace_of(functions, transits, end, accuracy):
     """What functions of time and moving sources ask of steps.
 
     Parameters
     ----------
     functions : sequence of callable (time, s) -> float
-    passes : sequence of (start, s, stop, s, crossing, s)
+    transits : sequence of (start, s, stop, s, crossing, s)
         When each source meets and leaves the body, and the time in which it crosses its own diameter.
     end : float, s
         Of the run, from time 0.
@@ -81,7 +90,7 @@ def pace_of(functions, passes, end, accuracy):
     Pace
     """
     breaks, windows = [], []
-    for start, stop, crossing in passes:
+    for start, stop, crossing in transits:
         breaks += [start, stop]
         part = min(LONGEST, CROSSING * math.sqrt(accuracy / 1e-3))
         windows.append([(start, stop, part * crossing)] if math.isfinite(crossing) else [])

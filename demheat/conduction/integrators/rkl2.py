@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 
 ORDER = 2
@@ -18,7 +18,20 @@ LEAST, LEAST_ESTIMATED = 3, 5
 
 
 def stages_of(step, radius, least=LEAST):
-    """Least odd number of stages that is stable: step <= (s^2 + s - 2) / (2 radius); odd ones damp more."""
+    """Least odd number of stages s that is stable: step <= (s^2 + s - 2) / (2 radius); odd ones damp more.
+
+    Parameters
+    ----------
+    step : float, s
+    radius : float, 1/s
+        Spectral radius.
+    least : int
+        Never fewer than this.
+
+    Returns
+    -------
+    int
+    """
     s = math.ceil(0.5 * (math.sqrt(9.0 + 8.0 * step * radius) - 1.0) - 1e-12)
     return max(least, s + 1 - s % 2)
 
@@ -29,7 +42,18 @@ def largest_step(spectrum):
 
 
 def stepper(system, spectrum):
-    """A function (x, time, step, memory, estimate) -> Step."""
+    """Super-steps on a system, each with as few stages as are stable.
+
+    Parameters
+    ----------
+    system : System
+    spectrum : Spectrum
+
+    Returns
+    -------
+    callable (x, time, step, memory, estimate) -> Step
+        As that of `euler.stepper`.
+    """
 
     def advance(x, time, step, memory, estimate):
         s = stages_of(step, spectrum.radius, LEAST_ESTIMATED if estimate else LEAST)
@@ -44,7 +68,7 @@ def _stages(system, x, time, step, s, marks):
     """Last stage, heat that came in, and copies of the marked stages."""
     heat, totals = system.heat_at(time)
     first, before, last = np.empty_like(x), x.copy(), None
-    kernels.rates(*system.links, heat, x, first)
+    kernels.rates(system.links, system.inverse, heat, x, first)
     flow = system.inflow(x, totals)
     a = step * _b(1) * _w(s)
     last = x + a * first
@@ -58,7 +82,7 @@ def _stages(system, x, time, step, s, marks):
         heat, totals = system.heat_at(now)
         mu, nu, a, b = _weights(j + 1, s, step)
         came = mu * heat_last + nu * heat_before + a * system.inflow(last, totals) + b * flow
-        kernels.stage(*system.links, heat, (mu, nu, a, b), x, first, last, before)
+        kernels.stage(system.links, system.inverse, heat, (mu, nu, a, b), x, first, last, before)
         before, last = last, before
         heat_before, heat_last = heat_last, came
     system.hold(last, time + step)

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 
 # Passes at most, and how many are looked back on. Found within 1e-3 of the last after 10 on packings of 3e3 to 1e6.
 MOST, LOOK = 60, 5
@@ -63,7 +63,7 @@ def spectrum(system, *, tolerance=1e-3):
     Spectrum
     """
     own = system.diagonal * system.inverse
-    between = system.diagonal - np.bincount(system.tie_row, system.tie_conductance, minlength=len(own))
+    between = system.diagonal - np.bincount(system.ties.row, system.ties.conductance, minlength=len(own))
     rows = float(np.max((system.diagonal + between) * system.inverse))
     if not rows > 0:
         return Spectrum(0.0, 0.0, np.inf, 0.0, 0)
@@ -78,7 +78,7 @@ def _from_above(system, own, tolerance):
     x, image, nothing = free.astype(float), np.empty(len(own)), np.zeros(len(own))
     bounds = []
     for _ in range(MOST):
-        kernels.rates(*system.links, nothing, x, image)
+        kernels.rates(system.links, system.inverse, nothing, x, image)
         # Rates are C^-1 (H x - sum H x); held nodes are zero in x, so that their links count in the diagonal only.
         image += 2.0 * own * x
         bounds.append(float(np.max(image[free] / x[free])))

@@ -11,8 +11,9 @@ from typing import NamedTuple
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.network.base import SIDES, row_numbers
+from demheat.network.links_kernels import Links
 from demheat.parts import finite
 from demheat.scene import ROUND_AXES, Flux
 
@@ -27,8 +28,8 @@ class System(NamedTuple):
 
     Attributes
     ----------
-    indptr, indices, conductance
-        Compressed rows: int64, uint32, W/K; rows of held nodes are empty, their columns are not.
+    links : Links
+        Rows of held nodes are empty, their columns are not.
     capacity : (N,) float array, J/K
         Zero for held nodes.
     inverse : (N,) float array, K/J
@@ -37,8 +38,8 @@ class System(NamedTuple):
         Sum of each row's conductances.
     held, held_side : (k,) int arrays
         Nodes with imposed temperatures, and the side that imposes each.
-    tie_row, tie_node, tie_conductance, tie_side : (m,) arrays
-        Links from free particles to held nodes.
+    ties : Ties
+        The links from free particles to held nodes once more.
     held_at : callable (time, s) -> (k,) float array, K
     heat_at : callable (time, s) -> (N,) float array, W, and (8,) float array, W
         Imposed fluxes and sources: into each node, and their totals by side, sources last.
@@ -46,40 +47,48 @@ class System(NamedTuple):
     particles : int
     """
 
-    indptr: np.ndarray
-    indices: np.ndarray
-    conductance: np.ndarray
+    links: Links
     capacity: np.ndarray
     inverse: np.ndarray
     diagonal: np.ndarray
     held: np.ndarray
     held_side: np.ndarray
-    tie_row: np.ndarray
-    tie_node: np.ndarray
-    tie_conductance: np.ndarray
-    tie_side: np.ndarray
+    ties: kernels.Ties
     held_at: Callable
     heat_at: Callable
     level: float
     particles: int
 
-    @property
-    def links(self):
-        """What a kernel needs of the network."""
-        return self.indptr, self.indices, self.conductance, self.inverse
-
     def hold(self, x, time):
-        """Set held nodes to their temperatures at a time, in place."""
+        """Set held nodes to their temperatures at a time.
+
+        Parameters
+        ----------
+        x : (N,) float array, K, in and out
+        time : float, s
+        """
         x[self.held] = self.held_at(time)
 
     def inflow(self, x, totals):
-        """Heat flow into the free particles by side, sources last, (8,) float array, W; totals are those of heat_at."""
+        """Heat flow into the free particles.
+
+        Parameters
+        ----------
+        x : (N,) float array, K
+        totals : (8,) float array, W
+            Those of `heat_at`.
+
+        Returns
+        -------
+        (8,) float array, W
+            By side, sources last.
+        """
         out = totals.copy()
-        kernels.received(self.tie_row, self.tie_node, self.tie_conductance, self.tie_side, x, out)
+        kernels.received(self.ties, x, out)
         return out
 
 
-def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.0):
+def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, level=0.0):
     """Balance of a network under a scene's loads.
 
     Parameters
@@ -90,7 +99,7 @@ def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.
     capacity : (n,) float array, J/K
     power : callable (time, s) -> (n,) float array, W, optional
         Heat sources.
-    pinned : (n,) bool array, optional
+    held_centers : (n,) bool array, optional
         Particles held at the temperature of the wall that they touch (the papers' way), where that is imposed.
     level : float
         Temperatures are solved for relative to it.
@@ -107,55 +116,62 @@ def semi_discrete(network, scene, capacity, *, power=None, pinned=None, level=0.
     n = len(capacity)
     if not np.all(np.isfinite(capacity) & (capacity > 0)):
         raise ValueError(f"capacity: {np.sum(~(capacity > 0))} of {n} are not > 0; all must be finite and > 0 J/K")
-    held, sides = _held(network, scene, pinned, n)
-    rows = _rows(network, scene, np.isin(np.arange(n), held), n)
+    held, sides = _held(network, scene, held_centers, n)
+    links = _links(network, scene, np.isin(np.arange(n), held), n)
     capacity = np.concatenate([capacity, np.zeros(len(SIDES))])
     capacity[held] = 0.0
     inverse = np.divide(1.0, capacity, out=np.zeros_like(capacity), where=capacity > 0)
-    indptr, indices, conductance = rows
-    row = row_numbers(indptr)
     side_of = np.full(n + len(SIDES), -1)
     side_of[held] = sides
-    ties = np.flatnonzero(side_of[indices] >= 0)
     return System(
-        *rows,
-        capacity,
-        inverse,
-        np.bincount(row, conductance, minlength=len(capacity)),
-        held,
-        sides,
-        row[ties],
-        indices[ties].astype(np.int64),
-        conductance[ties],
-        side_of[indices[ties]],
-        _held_at(scene, sides, level),
-        _heat_at(network, scene, capacity > 0, power),
-        level,
-        n,
+        links=links,
+        capacity=capacity,
+        inverse=inverse,
+        diagonal=np.bincount(row_numbers(links.indptr), links.conductance, minlength=len(capacity)),
+        held=held,
+        held_side=sides,
+        ties=_ties(links, side_of),
+        held_at=_held_at(scene, sides, level),
+        heat_at=_heat_at(network, scene, capacity > 0, power),
+        level=level,
+        particles=n,
     )
 
 
 def initial_state(system, temperature, time):
-    """State of the system: (n,) temperatures of the particles -> (N,) float array relative to the level."""
+    """State of a system.
+
+    Parameters
+    ----------
+    system : System
+    temperature : (n,) float array, K
+        Of the particles.
+    time : float, s
+
+    Returns
+    -------
+    (N,) float array, K
+        Relative to the level; held nodes have their temperatures at that time.
+    """
     x = np.zeros(len(system.capacity))
     x[: system.particles] = temperature - system.level
     system.hold(x, time)
     return x
 
 
-def _held(network, scene, pinned, n):
+def _held(network, scene, held_centers, n):
     """Held nodes and their sides."""
     imposed = [SIDES.index(name) for name in scene.wall_temperatures]
     nodes, sides = [n + np.array(imposed, dtype=np.int64)], [np.array(imposed, dtype=np.int64)]
-    if pinned is not None:
-        here = pinned[network.wall_particle] & np.isin(network.wall_side, imposed)
+    if held_centers is not None:
+        here = held_centers[network.wall_particle] & np.isin(network.wall_side, imposed)
         nodes.append(network.wall_particle[here].astype(np.int64))
         sides.append(network.wall_side[here].astype(np.int64))
     return np.concatenate(nodes), np.concatenate(sides)
 
 
-def _rows(network, scene, empty, n):
-    """Compressed rows with links to the wall nodes at their ends, rows of held particles emptied."""
+def _links(network, scene, empty, n):
+    """Links of the network with links to the wall nodes at their ends, rows of held particles emptied."""
     imposed = np.isin(network.wall_side, [SIDES.index(name) for name in scene.wall_temperatures])
     tied = imposed & ~empty[network.wall_particle] & (network.wall_conductance > 0)
     order = np.flatnonzero(tied)[np.argsort(network.wall_particle[tied], kind="stable")]
@@ -166,11 +182,36 @@ def _rows(network, scene, empty, n):
     indices = np.insert(network.indices[kept].astype(np.int64), ends, n + network.wall_side[order])
     conductance = np.insert(network.conductance[kept], ends, network.wall_conductance[order])
     number = np.concatenate([number + np.bincount(particle, minlength=n), np.zeros(len(SIDES), dtype=np.int64)])
-    return np.concatenate([[0], np.cumsum(number)]), indices.astype(np.uint32), conductance
+    return Links(np.concatenate([[0], np.cumsum(number)]), indices.astype(np.uint32), conductance)
+
+
+def _ties(links, side_of):
+    """Links to held nodes, from the side that holds each node, -1 where none does."""
+    ties = np.flatnonzero(side_of[links.indices] >= 0)
+    node = links.indices[ties].astype(np.int64)
+    return kernels.Ties(row_numbers(links.indptr)[ties], node, links.conductance[ties], side_of[node])
 
 
 def load_at(name, load, time):
-    """Value of a wall's load at a time in seconds."""
+    """Value of a wall's load.
+
+    Parameters
+    ----------
+    name : str
+        Of the wall.
+    load : float, Flux or callable (time, s) -> float
+        Temperature, K, or flux density, W/m2.
+    time : float, s
+
+    Returns
+    -------
+    float, K or W/m2
+
+    Raises
+    ------
+    ValueError
+        If a function gives no finite number.
+    """
     value = load.value if isinstance(load, Flux) else load
     if not callable(value):
         return float(value)
@@ -207,10 +248,21 @@ def _heat_at(network, scene, free, power):
 
 
 def loaded_areas(network, scene, name):
-    """Areas of a wall's facets, summing to the body's own surface there, m2.
+    """Areas of a wall's facets, summing to the body's own surface there.
 
     Planes that stand for a round wall enclose the exact volume with a few parts in 10^4 more of area: a flux density
     would bring in so much more heat.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    name : str
+        Of the wall.
+
+    Returns
+    -------
+    (facets of the wall,) float array, m2
     """
     areas = network.wall_area[network.wall_side == SIDES.index(name)]
     if name != "round":

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.conduction import transient_kernels as kernels
+from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.integrators.base import Step
 from demheat.conduction.integrators.linear import solver
 
@@ -36,13 +36,21 @@ def largest_step(spectrum):
 
 
 def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
-    """A function (x, time, step, memory, estimate) -> Step.
+    """Implicit steps on a system.
 
     Parameters
     ----------
+    system : System
+    spectrum : Spectrum
+        Not needed: no step is too large.
     limit : callable () -> float, K
         Error that each implicit solve may leave.
     preconditioner : {"jacobi", "multigrid"}
+
+    Returns
+    -------
+    callable (x, time, step, memory, estimate) -> Step
+        As that of `euler.stepper`.
     """
     solve = solver(system, preconditioner)
 
@@ -51,14 +59,16 @@ def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
         heat, totals = system.heat_at(time)
         rate = _rate(system, heat, x) if memory is None else memory.rate
         start_flow = system.inflow(x, totals)
-        known, y = x + g * rate, x.copy() if memory is None else _extrapolated(*memory[1:], middle)
+        known, y = x + g * rate, x.copy() if memory is None else _extrapolated(memory.times, memory.values, middle)
         middle_flow, count, left = _stage(system, solve, g, known, y, middle, limit())
         known = x + W * step * (rate + (y - known) / g)
-        before = ((), ()) if memory is None else (memory.times[:1], memory.values[:1])
-        z = _extrapolated((*before[0], time, middle), (*before[1], x, y), end)
+        # The start of the step before, if there was one, then this step's own times.
+        times, values = ((), ()) if memory is None else (memory.times[:1], memory.values[:1])
+        times, values = (*times, time, middle), (*values, x, y)
+        z = _extrapolated(times, values, end)
         end_flow, more, still = _stage(system, solve, g, known, z, end, limit())
         inflow = step * (W * start_flow + W * middle_flow + D * end_flow)
-        error = _error((*before[0], time, middle, end), (*before[1], x, y, z), step) if estimate else None
+        error = _error((*times, end), (*values, z), step) if estimate else None
         kept = _Memory((z - known) / g, (time, middle, end), (x, y, z))
         return Step(z, inflow, error, 3, count + more, kept, max(left, still))
 
@@ -67,7 +77,7 @@ def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
 
 def _rate(system, heat, x):
     rate = np.empty_like(x)
-    kernels.rates(*system.links, heat, x, rate)
+    kernels.rates(system.links, system.inverse, heat, x, rate)
     return rate
 
 

@@ -23,14 +23,15 @@ import gzip
 import io
 import os
 import zlib
+from collections.abc import Sequence
 from numbers import Integral
 from pathlib import Path
 
+from demheat.bodies import check_name
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
 from demheat.packing.io.text import Lines, broken
-from demheat.scene import ROUND_AXES
 
 __all__ = ["read", "write"]
 
@@ -45,7 +46,7 @@ SUFFIXES = {
 }
 
 
-def write(packing, path, *, format=None, network=None, temperature=None) -> None:
+def write(packing: Packing, path, *, format: str | None = None, network=None, temperature=None) -> None:
     """Write a packing into a file; an interrupted write leaves no file, and an old one as it was.
 
     Parameters
@@ -88,7 +89,16 @@ def write(packing, path, *, format=None, network=None, temperature=None) -> None
         part.unlink(missing_ok=True)
 
 
-def read(path, *, format=None, size=None, periodic=None, domain=None, step=None, order="given") -> Packing:
+def read(
+    path: str | os.PathLike,
+    *,
+    format: str | None = None,
+    size: Sequence[float] | None = None,
+    periodic: bool | Sequence[bool] | None = None,
+    domain: str | None = None,
+    step: int | None = None,
+    order: str = "given",
+) -> Packing:
     """Read a packing from a file.
 
     Parameters
@@ -153,8 +163,8 @@ def _format(path, format):
 
 def _check_knobs(name, size, periodic, domain, step, order):
     check_box((1.0, 1.0, 1.0) if size is None else size, False if periodic is None else periodic)
-    if domain is not None and domain not in ROUND_AXES:
-        raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
+    if domain is not None:
+        check_name("domain", domain)
     if step is not None and name not in ("lammps-dump", "extxyz"):
         raise ValueError(f"step = {step!r}: a file of format {name} has one packing; must be None")
     if step is not None and (not isinstance(step, Integral) or isinstance(step, bool)):

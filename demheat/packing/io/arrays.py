@@ -7,14 +7,25 @@ import zipfile
 
 import numpy as np
 
-from demheat.packing.base import check_box
+from demheat.packing.base import Packing, check_box
 from demheat.packing.io.found import Found
 
 NAMES = ("centers", "radii", "size", "periodic", "provenance", "domain")
 
 
-def write(packing, stream):
-    """Write a packing; its provenance as JSON."""
+def write(packing: Packing, stream) -> None:
+    """Write a packing; its provenance as JSON.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : binary stream
+
+    Raises
+    ------
+    ValueError
+        If the provenance is not what JSON can hold.
+    """
     try:
         provenance = json.dumps(packing.provenance, default=_plain)
     except TypeError as error:

@@ -6,28 +6,50 @@ import re
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES
+from demheat.packing.base import Packing
 from demheat.packing.io.found import Found
-from demheat.packing.io.text import floats, read_table, whole, write_rows
-from demheat.scene import ROUND_AXES
+from demheat.packing.io.text import Lines, flags, floats, numerals, read_table, whole, write_rows
 
 PAIR = re.compile(r"""([\w-]+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"']+))""")
 TRUE, FALSE = ("T", "TRUE", "1"), ("F", "FALSE", "0")
 
 
-def write(packing, stream):
-    """Write a packing: species X, ids from 1; the key `domain` is ours, readers pass over it."""
-    lattice = " ".join(map(repr, np.diag(packing.size).ravel().tolist()))
-    flags = " ".join("T" if flag else "F" for flag in packing.periodic)
+def write(packing: Packing, stream) -> None:
+    """Write a packing: species X, ids from 1; the key `domain` is ours, readers pass over it.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : text stream
+    """
+    lattice = numerals(np.diag(packing.size))
     stream.write(
         f'{packing.number}\nLattice="{lattice}" Origin="0.0 0.0 0.0" Properties=species:S:1:pos:R:3:radius:R:1:id:I:1 '
-        f'pbc="{flags}" domain={packing.domain}\n'
+        f'pbc="{flags(packing.periodic)}" domain={packing.domain}\n'
     )
     ids = np.arange(1, packing.number + 1)
     write_rows(stream, "X %r %r %r %r %d\n", *packing.centers.T, packing.radii, ids)
 
 
-def read(lines, step) -> Found:
-    """Read frame `step`, counted from 0, or the last one if None."""
+def read(lines: Lines, step: int | None) -> Found:
+    """Read one frame.
+
+    Parameters
+    ----------
+    lines : Lines
+    step : int or None
+        Number of the frame, from 0; the last one if None
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ValueError
+        For the first line that is not as the format wants it.
+    """
     last, frame = None, 0
     while (line := lines.take()) is not None:
         if not line and frame:
@@ -91,7 +113,7 @@ def _cell(lines, keys):
     if np.any(size <= 0) or np.any(lattice != np.diag(size)):
         raise lines.broken(f'Lattice="{keys["lattice"]}"', expected)
     origin = floats(lines, keys.get("origin", "0 0 0").split(), 3, "Origin of three numbers")
-    flags = [flag.upper() for flag in keys.get("pbc", "T T T").split()]
-    if len(flags) != 3 or set(flags) - {*TRUE, *FALSE}:
+    words = [word.upper() for word in keys.get("pbc", "T T T").split()]
+    if len(words) != 3 or set(words) - {*TRUE, *FALSE}:
         raise lines.broken(f'pbc="{keys["pbc"]}"', 'pbc of three flags, such as "T T F"')
-    return size, origin, np.array([flag in TRUE for flag in flags])
+    return size, origin, np.array([word in TRUE for word in words])

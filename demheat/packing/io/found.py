@@ -43,7 +43,25 @@ class Found(NamedTuple):
 
 
 def to_packing(found: Found, path, *, size, periodic, domain, order) -> Packing:
-    """Check what was found and make the packing of it; parameters as in `demheat.packing.io.read`."""
+    """Check what was found and make the packing of it.
+
+    Parameters
+    ----------
+    found : Found
+    path : path
+        For the messages.
+    size, periodic, domain, order
+        As in `demheat.packing.io.read`.
+
+    Returns
+    -------
+    Packing
+
+    Raises
+    ------
+    ValueError
+        If what was found and what was given do not make one; the message names the sphere's line.
+    """
     _check_spheres(found, path)
     origin, sides, flags, source = _box(found, path, size, periodic)
     centers = _centers(found, path, origin, sides, flags)

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.packing.base import Packing
 from demheat.packing.io.found import Found
-from demheat.packing.io.text import floats, mark, marked, read_table, whole, write_rows
+from demheat.packing.io.text import Lines, floats, mark, marked, numerals, read_table, whole, write_rows
 
 COLUMNS = ("id", "type", "diameter", "density", "x", "y", "z")
 WANTED = {"x": 4, "y": 5, "z": 6, "diameter": 2, "id": 0}
@@ -14,18 +15,40 @@ IMAGES = ("ix", "iy", "iz")
 STYLES = ("sphere", "granular")
 
 
-def write(packing, stream):
-    """Write a packing: one type, density 1, ids from 1; the first line says what the format cannot hold."""
+def write(packing: Packing, stream) -> None:
+    """Write a packing: one type, density 1, ids from 1; the first line says what the format cannot hold.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : text stream
+    """
     stream.write(f"LAMMPS data file, {mark(packing)}\n\n{packing.number} atoms\n1 atom types\n\n")
-    for axis, side in zip("xyz", packing.size.tolist(), strict=True):
-        stream.write(f"0.0 {side!r} {axis}lo {axis}hi\n")
+    for axis, side in zip("xyz", packing.size, strict=True):
+        stream.write(f"{numerals([0.0, side])} {axis}lo {axis}hi\n")
     stream.write("\nAtoms # sphere\n\n")
     ids = np.arange(1, packing.number + 1)
     write_rows(stream, "%d 1 %r 1.0 %r %r %r\n", ids, 2 * packing.radii, *packing.centers.T)
 
 
-def read(lines, step) -> Found:
-    """Read the Atoms section; all other sections are passed over."""
+def read(lines: Lines, step: None) -> Found:
+    """Read the Atoms section; all other sections are passed over.
+
+    Parameters
+    ----------
+    lines : Lines
+    step : None
+        There is one packing only
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ValueError
+        For the first line that is not as the format wants it.
+    """
     own = marked(lines.take() or "")
     count, bounds = _header(lines)
     values, numbers = read_table(lines, lines.take_rows(count), WANTED, COLUMNS, extra=IMAGES)

@@ -4,25 +4,48 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.packing.base import Packing
 from demheat.packing.io.found import Found
-from demheat.packing.io.text import floats, read_table, whole, write_rows
+from demheat.packing.io.text import Lines, flags, floats, numerals, read_table, whole, write_rows
 
 # Kinds of coordinates, best first: plain, unwrapped, scaled by the box, scaled and unwrapped.
 KINDS = ("", "u", "s", "su")
 
 
-def write(packing, stream):
-    """Write a packing as one timestep, 0, with ids from 1; the domain is lost."""
-    flags = " ".join("pp" if flag else "ff" for flag in packing.periodic)
-    stream.write(f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{packing.number}\nITEM: BOX BOUNDS {flags}\n")
-    stream.write("".join(f"0.0 {side!r}\n" for side in packing.size.tolist()))
+def write(packing: Packing, stream) -> None:
+    """Write a packing as one timestep, 0, with ids from 1; the domain is lost.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : text stream
+    """
+    ends = flags(packing.periodic, "pp", "ff")
+    stream.write(f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{packing.number}\nITEM: BOX BOUNDS {ends}\n")
+    stream.write("".join(f"{numerals([0.0, side])}\n" for side in packing.size))
     stream.write("ITEM: ATOMS id type x y z radius\n")
     ids = np.arange(1, packing.number + 1)
     write_rows(stream, "%d 1 %r %r %r %r\n", ids, *packing.centers.T, packing.radii)
 
 
-def read(lines, step) -> Found:
-    """Read the timestep `step`, or the last one if None."""
+def read(lines: Lines, step: int | None) -> Found:
+    """Read one timestep.
+
+    Parameters
+    ----------
+    lines : Lines
+    step : int or None
+        The last one if None
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ValueError
+        For the first line that is not as the format wants it.
+    """
     last, seen = None, []
     while (header := _header(lines)) is not None:
         rows = lines.take_rows(header["NUMBER OF ATOMS"])
@@ -80,8 +103,8 @@ def _bounds(lines, words):
         if tilted and row[2]:
             raise lines.broken(repr(line), "a tilt of 0: triclinic boxes are not read")
         rows.append(row[:2])
-    flags = words[3:] if tilted else words
-    periodic = np.array([flag.startswith("p") for flag in flags]) if len(flags) == 3 else None
+    ends = words[3:] if tilted else words
+    periodic = np.array([end.startswith("p") for end in ends]) if len(ends) == 3 else None
     return np.array(rows), periodic
 
 

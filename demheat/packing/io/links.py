@@ -34,7 +34,24 @@ class Drawn(NamedTuple):
 
 
 def drawn(packing, network, temperature) -> Drawn | None:
-    """Check what `demheat.packing.io.write` was given and choose the lines; None without a network and temperatures."""
+    """Check what `demheat.packing.io.write` was given and choose the lines.
+
+    Parameters
+    ----------
+    packing : Packing
+    network : Network or None
+    temperature : (n,) array_like, K or degrees Celsius, or None
+
+    Returns
+    -------
+    Drawn or None
+        None without a network and temperatures.
+
+    Raises
+    ------
+    ValueError
+        If they are not those of this packing.
+    """
     if temperature is not None:
         temperature = _temperatures(temperature, packing.number)
     if network is None:

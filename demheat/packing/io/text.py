@@ -72,20 +72,52 @@ class Lines:
         return rows
 
     def broken(self, found, expected, *, number=None) -> ValueError:
-        """The error to raise for a line, by default the one last taken; None is found at the end of the file."""
+        """The error to raise for a line.
+
+        Parameters
+        ----------
+        found : str or None
+            None is found at the end of the file.
+        expected : str
+        number : int, optional
+            Of the line, by default the one last taken.
+        """
         if found is None:
             return broken(self.path, self.number + 1, "the end of the file", expected)
         return broken(self.path, number or self.number, found, expected)
 
 
 def broken(path, number, found, expected) -> ValueError:
-    """The one form of error of a broken file."""
+    """The one form of error of a broken file.
+
+    Parameters
+    ----------
+    path : path
+    number : int
+        Of the line.
+    found, expected : str
+    """
     found = found if len(found) <= 100 else found[:100] + "..."
     return ValueError(f"{path}, line {number}: found {found}; expected {expected}")
 
 
 def floats(lines, words, count, expected):
-    """Cast the first words of the line last taken, or raise the error of a broken file; (count,) float array."""
+    """Cast the first words of the line last taken, or raise the error of a broken file.
+
+    Parameters
+    ----------
+    lines : Lines
+    words : sequence of str
+    count : int
+        How many of them.
+    expected : str
+        For the message.
+
+    Returns
+    -------
+    (count,) float array
+        Finite.
+    """
     try:
         values = np.array([float(word) for word in words[:count]])
     except ValueError:
@@ -96,7 +128,16 @@ def floats(lines, words, count, expected):
 
 
 def whole(lines, word, expected, *, least=None) -> int:
-    """Cast a word of the line last taken to an integer, or raise the error of a broken file."""
+    """Cast a word of the line last taken to an integer, or raise the error of a broken file.
+
+    Parameters
+    ----------
+    lines : Lines
+    word : str
+    expected : str
+        For the message.
+    least : int, optional
+    """
     try:
         value = int(word)
     except (TypeError, ValueError):
@@ -150,17 +191,40 @@ def read_table(lines, rows, columns, names, *, extra=()):
 
 
 def write_rows(stream, template, *columns):
-    """Write one line per row: a %-template, its columns as (n,) arrays; %r gives the shortest exact floats."""
+    """Write one line per row.
+
+    Parameters
+    ----------
+    stream : text stream
+    template : str
+        Of a line, with % for each column; %r gives the shortest exact floats.
+    columns : (n,) arrays
+    """
     for start in range(0, len(columns[0]), CHUNK):
         rows = zip(*(column[start : start + CHUNK].tolist() for column in columns), strict=True)
         stream.write("".join([template % row for row in rows]))
 
 
+def numerals(values) -> str:
+    """Floats as the shortest text that reads back to the same bits, blanks between them."""
+    return " ".join(map(repr, np.ravel(values).tolist()))
+
+
+def flags(periodic, true="T", false="F") -> str:
+    """Periodic and walled axes as words.
+
+    Parameters
+    ----------
+    periodic : (3,) bool array
+    true, false : str
+    """
+    return " ".join(true if flag else false for flag in periodic)
+
+
 def mark(packing) -> str:
     """What a comment must say for `marked` to know the box of a packing."""
-    size = " ".join(map(repr, packing.size.tolist()))
-    flags = " ".join("T" if flag else "F" for flag in packing.periodic)
-    return f"demheat packing: size {size}, periodic {flags}, domain {packing.domain}"
+    box = f"size {numerals(packing.size)}, periodic {flags(packing.periodic)}, domain {packing.domain}"
+    return f"demheat packing: {box}"
 
 
 def marked(line):
@@ -168,8 +232,8 @@ def marked(line):
     found = MARK.search(line)
     if found is None:
         return None
-    size, flags = np.array(found.groups()[:3], dtype=float), np.array([flag == "T" for flag in found.groups()[3:6]])
-    return size, flags, found.group(7)
+    *numbers, domain = found.groups()
+    return np.array(numbers[:3], dtype=float), np.array([flag == "T" for flag in numbers[3:]]), domain
 
 
 def _check_widths(lines, texts, numbers, widths, names, count):

@@ -9,11 +9,21 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.packing.base import Packing
+from demheat.packing.io.links import Drawn
+
 TYPES = {"<f8": "Float64", "<i4": "Int32", "<i8": "Int64", "|u1": "UInt8"}
 
 
-def write(packing, stream, drawn):
-    """Write a packing and what is drawn of its network (a `links.Drawn` or None)."""
+def write(packing: Packing, stream, drawn: Drawn | None) -> None:
+    """Write a packing and what is drawn of its network.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : binary stream
+    drawn : Drawn or None
+    """
     blocks = _Blocks()
     field = blocks.add("size", packing.size, tuples=3) + blocks.add("periodic", _bytes(packing.periodic), tuples=3)
     point = blocks.add("radius", packing.radii)
@@ -35,10 +45,15 @@ def write(packing, stream, drawn):
         f"<Verts>{_cells(blocks, verts)}</Verts>",
         f"<Lines>{_cells(blocks, lines)}</Lines>",
     ]
+    _put_down(stream, "\n".join(parts), blocks.arrays)
+
+
+def _put_down(stream, parts, arrays):
+    """Write the XML, and behind it the bytes of the arrays."""
     head = '<VTKFile type="PolyData" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
-    text = '<?xml version="1.0"?>\n' + head + "\n<PolyData>\n" + "\n".join(parts) + "\n</Piece>\n</PolyData>\n"
+    text = '<?xml version="1.0"?>\n' + head + "\n<PolyData>\n" + parts + "\n</Piece>\n</PolyData>\n"
     stream.write((text + '<AppendedData encoding="raw">\n_').encode())
-    for array in blocks.arrays:
+    for array in arrays:
         stream.write(np.uint64(array.nbytes).astype("<u8").tobytes())
         stream.write(array.tobytes())
     stream.write(b"\n</AppendedData>\n</VTKFile>\n")
@@ -51,7 +66,20 @@ class _Blocks:
         self.arrays, self.offset = [], 0
 
     def add(self, name, array, tuples=None):
-        """Put an array in and return the XML that names it; nothing for None."""
+        """Put an array in.
+
+        Parameters
+        ----------
+        name : str
+        array : (n,) or (n, k) array, or None
+        tuples : int, optional
+            Number of tuples, which field data must say; without it the number of components is said.
+
+        Returns
+        -------
+        str
+            XML that names it; nothing for None.
+        """
         if array is None:
             return ""
         kind = "<f8" if array.dtype.kind == "f" else "|u1" if array.dtype.itemsize == 1 else "<i8"

@@ -9,9 +9,9 @@ import zlib
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES
 from demheat.packing.io.found import Found
 from demheat.packing.io.text import broken
-from demheat.scene import ROUND_AXES
 
 TYPES = {"Float64": "f8", "Float32": "f4", "UInt8": "u1", "Int8": "i1", "String": "u1"}
 HEADERS = {"UInt32": "u4", "UInt64": "u8"}
@@ -68,7 +68,14 @@ class _File:
             raise ValueError(f"found the compressor {self.packed}; expected none or vtkZLibDataCompressor")
 
     def array(self, element, count=None):
-        """Values of a DataArray, (count,) float array."""
+        """Values of a DataArray, (count,) float array.
+
+        Parameters
+        ----------
+        element : xml.etree.ElementTree.Element
+        count : int, optional
+            How many there must be.
+        """
         name, kind, format = element.get("Name"), element.get("type"), element.get("format")
         if kind not in TYPES:
             raise ValueError(f"found the array {name} of type {kind}; expected one of {', '.join(TYPES)}")

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.packing.base import Packing
 from demheat.packing.io.found import Found
-from demheat.packing.io.text import mark, marked, read_table, write_rows
+from demheat.packing.io.text import Lines, mark, marked, read_table, write_rows
 
 LAYOUTS = {
     "x_y_z_r": ("x", "y", "z", "r"),
@@ -16,14 +17,36 @@ LAYOUTS = {
 }
 
 
-def write(packing, stream):
-    """Write a packing; a comment that YADE passes over holds the box."""
+def write(packing: Packing, stream) -> None:
+    """Write a packing; a comment that YADE passes over holds the box.
+
+    Parameters
+    ----------
+    packing : Packing
+    stream : text stream
+    """
     stream.write(f"#format x_y_z_r\n# {mark(packing)}\n")
     write_rows(stream, "%r\t%r\t%r\t%r\n", *packing.centers.T, packing.radii)
 
 
-def read(lines, step) -> Found:
-    """Read spheres; the box is known only where `write` has noted it."""
+def read(lines: Lines, step: None) -> Found:
+    """Read spheres; the box is known only where `write` has noted it.
+
+    Parameters
+    ----------
+    lines : Lines
+    step : None
+        There is one packing only
+
+    Returns
+    -------
+    Found
+
+    Raises
+    ------
+    ValueError
+        For the first line that is not as the format wants it.
+    """
     layout, own, extra = "x_y_z_r", None, ()
     while (line := lines.take()) is not None and (not line or line.startswith("#")):
         own = own or marked(line)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.packing import statistics_kernels as kernels
-from demheat.packing.base import Packing, wrap
-from demheat.packing.neighbours import build_grid
-from demheat.packing.statistics.regions import check_margin, core_volume, inscribed_box, spheres_in_box, wall_distances
+from demheat.packing.base import Packing
+from demheat.packing.cells_kernels import Reach
+from demheat.packing.neighbours import build_grid, wrapped
+from demheat.packing.statistics import correlations_kernels as kernels
+from demheat.packing.statistics.regions import core_volume, inscribed_box, spheres_in_box
+from demheat.packing.walls import check_margin, wall_distances
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
@@ -77,7 +80,9 @@ class TwoPoint(NamedTuple):
     exact_slope: float
 
 
-def radial_distribution(packing: Packing, *, r_max=4.0, bins=200, scaled=False) -> RadialDistribution:
+def radial_distribution(
+    packing: Packing, *, r_max: float = 4.0, bins: int = 200, scaled: bool = False
+) -> RadialDistribution:
     """Radial distribution function g(r) of the centres.
 
     In a periodic packing all centres are origins and the density is (n - 1)/V, so that g of random points is 1 at any
@@ -111,9 +116,9 @@ def radial_distribution(packing: Packing, *, r_max=4.0, bins=200, scaled=False) 
         raise ValueError(f"r_max = {r_max!r}: no centre lies that far, {r_max * unit:.6g} m, from all walls")
     walled = not np.all(packing.periodic)
     density = len(origins) / core_volume(packing, r_max * unit) if walled else (len(radii) - 1) / packing.volume
-    points = np.column_stack((wrap(packing.centers, packing.size, packing.periodic), radii))
-    reach = np.array([0.0, r_max]) if scaled else np.array([r_max * unit, 0.0])
-    grid = build_grid(points, packing.size, packing.periodic, scale=reach[1], skin=reach[0])
+    points = wrapped(np.column_stack((packing.centers, radii)), packing.size, packing.periodic)
+    reach = Reach(float(r_max), 0.0) if scaled else Reach(0.0, r_max * unit)
+    grid = build_grid(points, packing.size, packing.periodic, reach)
     counts = np.empty((kernels.TASKS, 2, bins), dtype=np.int64)
     kernels.pair_counts(points, grid, origins, is_origin, reach, counts)
     single, double = counts.sum(axis=0)
@@ -125,7 +130,16 @@ def radial_distribution(packing: Packing, *, r_max=4.0, bins=200, scaled=False) 
     return RadialDistribution((edges[1:] + edges[:-1]) / 2, (single + double) / expected, error, len(origins), density)
 
 
-def two_point(packing: Packing, *, along=ALONG, r_max=4.0, points=101, lines=20_000, margin=0.0, seed=0) -> TwoPoint:
+def two_point(
+    packing: Packing,
+    *,
+    along: Sequence[Sequence[float]] = ALONG,
+    r_max: float = 4.0,
+    points: int = 101,
+    lines: int = 20_000,
+    margin: float = 0.0,
+    seed: int = 0,
+) -> TwoPoint:
     """Two-point probability S2(r) of the union of the spheres, along given directions.
 
     Random lines are cut exactly by the spheres; along each, the overlap of the spans inside with themselves shifted by
@@ -189,11 +203,11 @@ def two_point(packing: Packing, *, along=ALONG, r_max=4.0, points=101, lines=20_
 
 def _line_means(packing, along, lags, bounds, lines, rng):
     """Means over random lines, and their standard errors, of S2 at each lag and (last column) of its start slope."""
-    cloud = np.column_stack((wrap(packing.centers, packing.size, packing.periodic), packing.radii))
+    cloud = wrapped(np.column_stack((packing.centers, packing.radii)), packing.size, packing.periodic)
     length = 2 * lags[-1]
     # One search per mean diameter.
     steps = math.ceil(length / (2 * np.mean(packing.radii)))
-    grid = build_grid(cloud, packing.size, packing.periodic, scale=1.0, skin=length / steps / 2)
+    grid = build_grid(cloud, packing.size, packing.periodic, Reach(1.0, length / steps / 2))
     values, errors = np.empty((2, len(along), len(lags) + 1))
     for k, direction in enumerate(along):
         # Both ends keep inside the walls.
@@ -201,7 +215,7 @@ def _line_means(packing, along, lags, bounds, lines, rng):
         first, last = bounds[0] - np.minimum(span, 0.0), bounds[1] - np.maximum(span, 0.0)
         starts = first + rng.random((lines, 3)) * (last - first)
         sums = np.empty((kernels.TASKS, 2, len(lags) + 1))
-        kernels.line_correlations(cloud, grid, starts, direction, lags, steps, sums)
+        kernels.line_correlations(cloud, grid, kernels.Lines(starts, direction, lags, steps), sums)
         values[k], square = sums.sum(axis=0) / lines
         errors[k] = np.sqrt(np.maximum(square - values[k] ** 2, 0.0) / (lines - 1))
     return values, errors

@@ -9,11 +9,10 @@ import numpy as np
 from scipy.sparse.csgraph import connected_components
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.packing import statistics_kernels as kernels
 from demheat.packing.base import Packing
 from demheat.packing.neighbours import as_graph
-from demheat.packing.statistics.regions import check_margin, wall_distances
-from demheat.scene import ROUND_AXES
+from demheat.packing.statistics import links_kernels as kernels
+from demheat.packing.walls import bulk, outward, wall_distance, walls
 
 
 class Coordination(NamedTuple):
@@ -115,7 +114,7 @@ class Directions(NamedTuple):
     error: np.ndarray
 
 
-def coordination(packing: Packing, indptr, indices, *, margin=0.0) -> Coordination:
+def coordination(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, margin: float = 0.0) -> Coordination:
     """Count the contacts of each particle.
 
     Parameters
@@ -133,7 +132,7 @@ def coordination(packing: Packing, indptr, indices, *, margin=0.0) -> Coordinati
         If the rows are not as described, margin is negative, or no particle is that deep.
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
-    numbers = np.diff(indptr)[_bulk(packing, margin)]
+    numbers = np.diff(indptr)[bulk(packing, margin)]
     islands, label = connected_components(as_graph(indptr, indices), directed=False)
     return Coordination(
         mean=float(numbers.mean()),
@@ -147,7 +146,9 @@ def coordination(packing: Packing, indptr, indices, *, margin=0.0) -> Coordinati
     )
 
 
-def backbone(packing: Packing, indptr, indices, *, gap=0.0, rule="count") -> Backbone:
+def backbone(
+    packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, gap: float = 0.0, rule: str = "count"
+) -> Backbone:
     """Take out rattlers, particles that their contacts cannot hold, until none is left.
 
     Walls hold as contacts do. The result does not depend on the order of removal.
@@ -177,19 +178,19 @@ def backbone(packing: Packing, indptr, indices, *, gap=0.0, rule="count") -> Bac
     if rule not in ("count", "half-space"):
         raise ValueError(f"rule = {rule!r}: must be 'count' or 'half-space'")
     vectors = _unit_vectors(packing, indptr, indices)
-    wall_indptr, wall_vectors = _wall_contacts(packing, gap)
+    touching = kernels.Contacts(indptr, indices, vectors, *_wall_contacts(packing, gap))
     held, before, rounds = np.ones(packing.number, dtype=bool), packing.number + 1, 0
     while held.sum() < before:
         before, now = int(held.sum()), np.empty_like(held)
-        kernels.held(indptr, indices, vectors, wall_indptr, wall_vectors, rule == "half-space", held, now)
+        kernels.held(touching, rule == "half-space", held, now)
         held, rounds = now, rounds + 1
     pairs = np.count_nonzero(held[indices] & np.repeat(held, np.diff(indptr))) / 2
-    walls = int(np.diff(wall_indptr)[held].sum())
+    at_walls = int(np.diff(touching.wall_indptr)[held].sum())
     left = before if before else math.nan
-    return Backbone(~held, float(2 * pairs / left), float((pairs + walls) / (3 * left)), rounds)
+    return Backbone(~held, float(2 * pairs / left), float((pairs + at_walls) / (3 * left)), rounds)
 
 
-def fabric(packing: Packing, indptr, indices, *, margin=0.0) -> Fabric:
+def fabric(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, margin: float = 0.0) -> Fabric:
     """Fabric tensor F = <n n> of the links, their fourth moments, and how far both are from isotropy.
 
     The sampling errors take links as independent; those of one particle are not (they repel each other), so the
@@ -221,7 +222,9 @@ def fabric(packing: Packing, indptr, indices, *, margin=0.0) -> Fabric:
     return Fabric(tensor, fourth, links, diagonal, off_diagonal, error, deviation, fourth_deviation)
 
 
-def directions(packing: Packing, indptr, indices, *, bins=72, margin=0.0) -> Directions:
+def directions(
+    packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, bins: int = 72, margin: float = 0.0
+) -> Directions:
     """Histogram of the directions of the links, projected on the three coordinate planes.
 
     Parameters
@@ -272,18 +275,6 @@ def _checked_rows(packing, indptr, indices):
     return indptr, indices
 
 
-def _bulk(packing, margin):
-    """Which particles lie at least `margin` mean radii away from every wall."""
-    depth = check_margin(packing, margin)
-    bulk = wall_distances(packing) >= depth
-    if depth == 0:
-        # Rounding may put the centre of a particle at a curved wall beyond it.
-        bulk[:] = True
-    if not bulk.any():
-        raise ValueError(f"margin = {margin!r}: no particle is that many mean radii away from all walls")
-    return bulk
-
-
 def _unit_vectors(packing, indptr, indices):
     """Unit vector along each link, from the particle of the row to the nearest image of the other, (nnz, 3) array."""
     vectors = np.empty((len(indices), 3))
@@ -299,8 +290,8 @@ def _unit_vectors(packing, indptr, indices):
 def _links(packing, indptr, indices, margin):
     """Unit vector of each link, once, and its weight: the number of its ends that are in the bulk."""
     indptr, indices = _checked_rows(packing, indptr, indices)
-    bulk, rows = _bulk(packing, margin), np.repeat(np.arange(packing.number), np.diff(indptr))
-    weights = bulk[rows] + bulk[indices].astype(float)
+    deep, rows = bulk(packing, margin), np.repeat(np.arange(packing.number), np.diff(indptr))
+    weights = deep[rows] + deep[indices].astype(float)
     kept = (rows < indices) & (weights > 0)
     if not kept.any():
         raise ValueError(f"indices: no links among the particles {margin} mean radii from walls; must be at least one")
@@ -309,21 +300,15 @@ def _links(packing, indptr, indices, margin):
 
 def _wall_contacts(packing, gap):
     """Contacts with walls as compressed rows of unit vectors towards the wall: (n + 1,) int and (m, 3) float arrays."""
-    reach = (1.0 + gap) * packing.radii
-    round_axes = list(ROUND_AXES[packing.domain])
-    who, vectors = [], []
-    for axis in set(np.flatnonzero(~packing.periodic)) - set(round_axes):
-        for side, depth in ((-1, packing.centers[:, axis]), (1, packing.size[axis] - packing.centers[:, axis])):
-            who.append(np.flatnonzero(depth <= reach))
-            vectors.append(np.broadcast_to(side * np.eye(3)[axis], (len(who[-1]), 3)))
-    if round_axes:
-        offsets = np.zeros_like(packing.centers)
-        offsets[:, round_axes] = packing.centers[:, round_axes] - packing.size[round_axes] / 2
-        distance = np.linalg.norm(offsets, axis=1)
-        # A sphere on the axis that touches the round wall fills the domain: no direction is special, none is counted.
-        who.append(np.flatnonzero((packing.size[round_axes[0]] / 2 - distance <= reach) & (distance > 0)))
-        vectors.append(offsets[who[-1]] / distance[who[-1], None])
-    rows = np.concatenate(who) if who else np.empty(0, dtype=np.int64)
+    who, vectors = [np.empty(0, dtype=np.int64)], [np.empty((0, 3))]
+    for wall in walls(packing):
+        near = np.flatnonzero(wall_distance(packing, wall) <= (1.0 + gap) * packing.radii)
+        normals = outward(packing, wall)[near]
+        # A sphere in the middle that touches the round wall fills the domain: no direction is special, none is counted.
+        special = ~np.isnan(normals[:, 0])
+        who.append(near[special])
+        vectors.append(normals[special])
+    rows = np.concatenate(who)
     order = np.argsort(rows, kind="stable")
     indptr = np.concatenate(([0], np.cumsum(np.bincount(rows, minlength=packing.number))))
-    return indptr, np.ascontiguousarray(np.concatenate(vectors)[order] if who else np.empty((0, 3)))
+    return indptr, np.ascontiguousarray(np.concatenate(vectors)[order])

@@ -7,15 +7,16 @@ from itertools import product
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES, from_middle
 from demheat.packing.base import Packing
-from demheat.scene import ROUND_AXES
+from demheat.packing.walls import check_margin
 
 # Nodes along the axis of a cylinder, per sphere. Largest error of 2000 spheres cut at random, against 1000 nodes: 6e-11
 # of a sphere up to half as wide as the core, 8e-5 of wider ones.
 NODES = 32
 
 
-def packing_fraction(packing: Packing, *, margin=0.0) -> float:
+def packing_fraction(packing: Packing, *, margin: float = 0.0) -> float:
     """Sphere volume over volume, in the part of the domain at least `margin` mean radii away from every wall.
 
     The core of a walled packing is what compares with a periodic one: walls push spheres apart. Spheres are cut by the
@@ -44,8 +45,7 @@ def packing_fraction(packing: Packing, *, margin=0.0) -> float:
     low, high = core_bounds(packing, depth)
     if not axes:
         return float(math.fsum(spheres_in_box(packing.centers, packing.radii, low, high)[0]) / volume)
-    offsets = packing.centers - packing.size / 2
-    distance, reach = np.linalg.norm(offsets[:, axes], axis=1), core[axes[0]] / 2
+    distance, reach = from_middle(packing.centers, packing.domain, packing.size), core[axes[0]] / 2
     if packing.domain == "sphere":
         return float(math.fsum(_lens_volumes(distance, packing.radii, reach)) / volume)
     axis = "xyz".index(packing.domain[-1])
@@ -53,52 +53,53 @@ def packing_fraction(packing: Packing, *, margin=0.0) -> float:
     return float(math.fsum(_spheres_in_cylinder(distance, packing.radii, reach, *ends)) / volume)
 
 
-def check_margin(packing, margin, name="margin"):
-    """Depth of the core in metres for a margin in mean radii, or a ValueError that names the largest valid one."""
-    try:
-        good = math.isfinite(margin) and margin >= 0
-    except TypeError:
-        good = False
-    if not good:
-        raise ValueError(f"{name} = {margin!r}: must be a finite number of mean radii >= 0")
-    mean = float(np.mean(packing.radii))
-    largest = float(np.min(np.where(packing.periodic, np.inf, packing.size / 2)))
-    if margin * mean >= largest:
-        raise ValueError(f"{name} = {margin!r}: must be < {largest / mean:.6g} mean radii, where no core is left")
-    return float(margin) * mean
-
-
 def core_volume(packing, depth):
-    """Volume of the domain at least `depth` metres away from every wall, m^3: the same shape, smaller."""
+    """Volume of the domain at least so far away from every wall, m^3: the same shape, smaller.
+
+    Parameters
+    ----------
+    packing : Packing
+    depth : float, m
+    """
     return packing._replace(size=packing.size - 2 * depth * ~packing.periodic).volume
 
 
 def core_bounds(packing, depth):
-    """Lower and upper bounds of the core's box, (3,) float arrays, m; infinite along periodic axes."""
+    """Bounds of the core's box.
+
+    Parameters
+    ----------
+    packing : Packing
+    depth : float, m
+        Of the core below the walls.
+
+    Returns
+    -------
+    low, high : (3,) float arrays, m
+        Infinite along periodic axes.
+    """
     low = np.where(packing.periodic, -np.inf, depth)
     return low, np.where(packing.periodic, np.inf, packing.size - depth)
 
 
 def inscribed_box(packing, depth):
-    """Bounds of the largest box (along the axes, square across round ones) in the core, (3,) float arrays, m."""
+    """Bounds of the largest box (along the axes, square across round ones) in the core.
+
+    Parameters
+    ----------
+    packing : Packing
+    depth : float, m
+        Of the core below the walls.
+
+    Returns
+    -------
+    low, high : (3,) float arrays, m
+    """
     axes = list(ROUND_AXES[packing.domain])
     half = packing.size / 2 - depth * ~packing.periodic
     if axes:
         half[axes] /= math.sqrt(len(axes))
     return packing.size / 2 - half, packing.size / 2 + half
-
-
-def wall_distances(packing):
-    """Distance of each centre from the nearest wall, (n,) float array, m; infinite where there is none."""
-    axes = list(ROUND_AXES[packing.domain])
-    flat = ~packing.periodic
-    flat[axes] = False
-    centers, size = packing.centers[:, flat], packing.size[flat]
-    depth = np.minimum(centers, size - centers).min(axis=1, initial=np.inf)
-    if axes:
-        offsets = packing.centers[:, axes] - packing.size[axes] / 2
-        depth = np.minimum(depth, packing.size[axes[0]] / 2 - np.linalg.norm(offsets, axis=1))
-    return depth
 
 
 def spheres_in_box(centers, radii, low, high):

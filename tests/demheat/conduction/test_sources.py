@@ -5,11 +5,11 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat.conduction import sources
-from demheat.conduction.sources import check_sources, lost_power, passes, source_power, total_power
+from demheat.conduction.sources import check_sources, lost_power, source_power, total_power, transits
 from demheat.network.laguerre import laguerre
 from demheat.packing.radii import Uniform
 from demheat.packing.relax import relax
-from demheat.scene import Heating, Material, MovingCylinder, Scene
+from demheat.scene import Material, MovingCylinder, Scene, UniformSource
 
 METAL = Material(134.0, density=2790.0, heat_capacity=880.0)
 
@@ -37,7 +37,7 @@ def cells():
 
 def test_uniform_heating(cells):
     centers, _, volumes = cells
-    scene = sheet(Heating(5e6))
+    scene = sheet(UniformSource(5e6))
     assert_allclose(source_power(scene, centers, volumes)(3.0), 5e6 * volumes, rtol=1e-12)
     # Volumes sum to the body's to 1e-12.
     assert_allclose(source_power(scene, centers, volumes)(3.0).sum(), total_power(scene, 3.0), rtol=1e-12)
@@ -51,7 +51,7 @@ def test_power_is_conserved_at_every_time(cells):
     for time in np.linspace(0.0, 7.878, 41):
         # One scaling and a sum of some hundred terms: rounding.
         assert_allclose(power(time).sum(), FULL, rtol=1e-14)
-    clipped = sheet(laser(clip=True), Heating(1e8))
+    clipped = sheet(laser(clip=True), UniformSource(1e8))
     power = source_power(clipped, centers, volumes)
     for time in np.linspace(0.0, 12.0, 41):
         assert_allclose(power(time).sum(), total_power(clipped, time), rtol=1e-12)
@@ -96,7 +96,7 @@ def test_a_source_that_leaves():
     """Rim at the far edge after (50 - 20 - 4)/3.3 s = 7.8788 s."""
     check_sources(sheet(laser()), 7.8787)
     with pytest.raises(ValueError, match=r"sources\[1\].*at 7\.8787\d s.*x and y = \[0\.046"):
-        check_sources(sheet(Heating(1.0), laser()), 8.0)
+        check_sources(sheet(UniformSource(1.0), laser()), 8.0)
     with pytest.raises(ValueError, match="at 0 s"):
         check_sources(sheet(laser(start=(0.003, 0.015))), 1.0)
     check_sources(sheet(laser(clip=True)), 100.0)
@@ -176,7 +176,7 @@ def test_ways_that_are_not_straight_through(domain, axis):
 def test_volumes_that_do_not_fill_the_body_get_its_power(cells):
     """The Platonic law's volumes carry the heat capacity and sum to more than the body."""
     centers, _, volumes = cells
-    scene = sheet(Heating(5e6))
+    scene = sheet(UniformSource(5e6))
     given = source_power(scene, centers, 1.1 * volumes)(0.0)
     # A quotient of sums.
     assert_allclose(given.sum(), 5e6 * scene.volume, rtol=1e-14)
@@ -190,7 +190,7 @@ def test_volumes_that_do_not_fill_the_body_get_its_power(cells):
 def test_times_at_which_a_source_meets_and_leaves_the_body(domain, start, velocity):
     source = laser(diameter=0.02, start=start, velocity=velocity, clip=True)
     scene = sheet(source, size=(0.05, 0.05, 0.002), domain=domain)
-    ((first, last, crossing),) = passes(scene)
+    ((first, last, crossing),) = transits(scene)
     assert crossing == pytest.approx(0.02 / math.hypot(*velocity))
     assert total_power(scene, first - 1e-6) == total_power(scene, last + 1e-6) == 0.0
     # From a thousandth of its own length on, well above the part of 1e-9 that counts as touching.
@@ -198,9 +198,9 @@ def test_times_at_which_a_source_meets_and_leaves_the_body(domain, start, veloci
 
 
 def test_sources_that_stand_still_or_pass_by():
-    assert passes(sheet(Heating(1.0), laser(velocity=(0.0, 0.0)))) == [(-math.inf, math.inf, math.inf)]
-    assert passes(sheet(laser(start=(0.02, 0.0341), clip=True))) == []
+    assert transits(sheet(UniformSource(1.0), laser(velocity=(0.0, 0.0)))) == [(-math.inf, math.inf, math.inf)]
+    assert transits(sheet(laser(start=(0.02, 0.0341), clip=True))) == []
     # Past the corner, by the diagonal: 0.1 mm less and more than the radius of 4 mm.
     for gap, count in ((0.0039, 1), (0.0041, 0)):
         start = np.array([0.05, 0.03]) + gap / math.sqrt(2) + np.array([-1.0, 1.0])
-        assert len(passes(sheet(laser(start=start, velocity=(1.0, -1.0), clip=True)))) == count
+        assert len(transits(sheet(laser(start=start, velocity=(1.0, -1.0), clip=True)))) == count

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Flux, Heating, Material, MovingCylinder, Scene, Sphere, evolve
+from demheat import Flux, Material, MovingCylinder, Scene, Sphere, UniformSource, evolve
 from demheat.packing.cache import relaxed
 from references import series
 
@@ -76,7 +76,7 @@ def test_contact_laws(law, wall):
 
 @pytest.mark.parametrize("integrator", INTEGRATORS)
 def test_uniform_heating_of_an_insulated_body(integrator):
-    scene = Scene(size=BOX, matrix=METAL, initial=20.0, sources=[Heating(7020.0)])
+    scene = Scene(size=BOX, matrix=METAL, initial=20.0, sources=[UniformSource(7020.0)])
     for field in evolve(scene, [0.5, 2.0], particles=300, integrator=integrator):
         # 7020 W/m3 over 7020 J/(m3 K) is 1 K/s, the same everywhere; rounding, and the linear solver's tolerance.
         assert_allclose(field.samples.temperature, 20.0 + field.time, atol=3e-4 if "bdf2" in integrator else 1e-10)
@@ -114,7 +114,7 @@ def test_implicit_steps_of_a_body_at_rest(integrator):
     # Half a second after the jump 22.87 at the far end by the series; a cell's middle is 3 mm off it, where it is 22.9.
     assert_allclose(field.samples.temperature.min(), 22.87, atol=0.1)
     assert field.samples.temperature.max() < 30.0
-    heated = Scene(size=BOX, matrix=METAL, initial=20.0, sources=[Heating(7020.0)])
+    heated = Scene(size=BOX, matrix=METAL, initial=20.0, sources=[UniformSource(7020.0)])
     field = last(heated, [5.0], particles=300, integrator=integrator, accuracy=1e-5)
     # 1 K/s; the solver's 0.2e-6 of 5 K in each step.
     assert_allclose(field.samples.temperature, 25.0, atol=1e-5)
@@ -222,7 +222,9 @@ def test_pores_keep_their_temperature():
 
 def test_pores_keep_what_sources_put_into_them():
     pore = Sphere((0.05, 0.05, 0.05), 0.03, Material(0.0, density=1.0, heat_capacity=1.0))
-    scene = Scene(size=BOX, matrix=METAL, inclusions=[pore], walls={"y+": 25.0}, initial=25.0, sources=[Heating(10.0)])
+    scene = Scene(
+        size=BOX, matrix=METAL, inclusions=[pore], walls={"y+": 25.0}, initial=25.0, sources=[UniformSource(10.0)]
+    )
     field = last(scene, [10.0])
     # 10 W/m3 for 10 s over 1 J/(m3 K); the metal gives its own to the wall, all but 10 L^2 / (2 k) = 1.5 mK of it.
     inside = field.samples.phase == 1
@@ -307,7 +309,7 @@ BAD = [
     ({"step": float("inf")}, "step = inf"),
     ({"law": "magic"}, "law = 'magic'"),
     ({"law": "calibrated", "conforming": True}, "conforming = True"),
-    ({"poor": "drop"}, "poor = 'drop'"),
+    ({"sparse": "drop"}, "sparse = 'drop'"),
     ({"interface": "magic"}, "interface = 'magic'"),
     ({"particles": 50}, "particles = 50"),
     ({"packing": relaxed(100, size=(0.1, 0.1, 0.2), periodic=False)}, "packing of size"),

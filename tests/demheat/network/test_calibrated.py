@@ -2,10 +2,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
+from demheat.laws import MEANS as NAMED
+from demheat.laws import Calibrated
 from demheat.network.base import SIDES, branches, row_numbers, wall_normals
 from demheat.network.calibrated import MEANS, _joined, contact_facets
 from demheat.network.interface import connect
-from demheat.network.laguerre import without_hidden
+from demheat.network.laguerre import drop_empty_cells
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
 from demheat.packing.relax import relax
@@ -33,16 +35,16 @@ def pairs_of(facets):
 )
 def test_links_are_symmetric_and_carry_the_papers_surface(packing, mean, formula):
     formula = formula or (lambda a, b: np.exp((np.log(a) + np.log(b)) / 2))
-    pairs = pairs_of(contact_facets(packing, mean=mean))
+    pairs = pairs_of(contact_facets(packing, Calibrated(mean=mean)))
     for (p, q), area in pairs.items():
         assert pairs[q, p] == area
         # Rounding of a few operations, the logarithms of 3 or so worst: found 1.4e-15.
         assert_allclose(area, np.pi * formula(packing.radii[p], packing.radii[q]) ** 2, rtol=1e-14)
-    assert set(MEANS) == {"arithmetic", "harmonic", "geometric"}
+    assert set(MEANS) == set(NAMED) == {"arithmetic", "harmonic", "geometric"}
 
 
 def test_branches_are_nearest_images(packing):
-    facets = contact_facets(packing, poor="keep")
+    facets = contact_facets(packing, Calibrated(sparse="keep"))
     length = np.linalg.norm(
         branches(packing.centers, packing.size, facets.indptr, facets.indices, facets.image), axis=1
     )
@@ -54,7 +56,9 @@ def test_branches_are_nearest_images(packing):
 
 
 def test_mean_coordination_and_policies(packing):
-    kept, joined = (np.diff(contact_facets(packing, poor=poor).indptr) for poor in ("keep", "nearest"))
+    kept, joined = (
+        np.diff(contact_facets(packing, Calibrated(sparse=sparse)).indptr) for sparse in ("keep", "nearest")
+    )
     # The gap is the midpoint between two pair distances: Z is met to one pair, 2/n.
     assert_allclose(kept.mean(), 7.5, atol=2 / 1000 + 1e-12)
     assert kept.min() < 2 <= joined.min()
@@ -83,11 +87,11 @@ def test_dropping_peels_chains_and_islands():
     triangle, lone = [(15, 15), (17, 15), (16, 16.7)], [(3, 17)]
     centers = np.array([(x, y, 10.0) for x, y in square + tail + triangle + lone])
     packing = make_packing(centers, np.full(len(centers), 1.0), (20, 20, 20), True, {})
-    facets = contact_facets(packing, links=contacts(packing, gap=0.02), poor="drop")
+    facets = contact_facets(packing, Calibrated(gap=0.02, sparse="drop"))
     alive = np.isin(packing.centers[:, :2], (3, 5)).all(axis=1)
     assert_array_equal(facets.volumes > 0, alive)
     assert_array_equal(np.diff(facets.indptr), np.where(alive, 2, 0))
-    rest, facets = without_hidden(packing, facets)
+    rest, facets = drop_empty_cells(packing, facets)
     assert rest.number == 4 and facets.indices.max() < 4
     assert_allclose(facets.volumes.sum(), packing.volume, rtol=1e-12)  # rounding
 
@@ -95,25 +99,25 @@ def test_dropping_peels_chains_and_islands():
 def test_a_column_between_two_walls_is_not_dropped():
     centers = np.array([(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.0, 1.0, 1.0)])
     packing = make_packing(centers, np.full(6, 1.0), (10, 10, 10), (True, False, True), {})
-    facets = contact_facets(packing, links=contacts(packing, gap=0.02), poor="drop")
+    facets = contact_facets(packing, Calibrated(gap=0.02, sparse="drop"))
     assert_array_equal(facets.volumes > 0, packing.centers[:, 0] == 5.0)
     assert len(facets.wall_particle) == 2  # that of the lone sphere is gone
 
 
 def test_volumes_fill_the_domain(packing):
-    for poor in ("keep", "drop"):
-        assert_allclose(contact_facets(packing, poor=poor).volumes.sum(), 1.0, rtol=1e-12)
+    for sparse in ("keep", "drop"):
+        assert_allclose(contact_facets(packing, Calibrated(sparse=sparse)).volumes.sum(), 1.0, rtol=1e-12)
     inside = np.linalg.norm(packing.centers[:, [0, 2]] - 0.5, axis=1) < 0.5
     drum = make_packing(
         packing.centers[inside], packing.radii[inside], (1, 1, 1), (False, True, False), {}, domain="cylinder-y"
     )
-    assert_allclose(contact_facets(drum).volumes.sum(), np.pi / 4, rtol=1e-12)
+    assert_allclose(contact_facets(drum, Calibrated()).volumes.sum(), np.pi / 4, rtol=1e-12)
 
 
 def test_wall_contacts():
     packing = relax(1000, periodic=False, seed=3)
     links = contacts(packing)
-    facets = contact_facets(packing, links=links)
+    facets = contact_facets(packing, Calibrated())
     assert set(facets.wall_side) == set(range(6))
     # A wall is met within the gap of the pairs, by every particle that is so near to it.
     for side in range(6):
@@ -128,7 +132,7 @@ def test_walls_of_a_drum_have_their_area():
     centers = rng.uniform(0.05, 0.95, (3000, 3))
     centers = centers[np.linalg.norm(centers[:, [0, 2]] - 0.5, axis=1) < 0.45]
     drum = make_packing(centers, np.full(len(centers), 0.05), (1, 1, 1), False, {}, domain="cylinder-y")
-    facets = contact_facets(drum, links=contacts(drum, gap=0.05))
+    facets = contact_facets(drum, Calibrated(gap=0.05))
     assert set(facets.wall_side) == {2, 3, 6}
     for side, area in ((3, np.pi / 4), (6, np.pi)):
         assert_allclose(facets.wall_area[facets.wall_side == side].sum(), area, rtol=1e-12)  # rounding
@@ -136,7 +140,7 @@ def test_walls_of_a_drum_have_their_area():
 
 def linear_flow(packing, facets, axis):
     """First moment of the flows of a unit gradient along an axis, walls included, over the volume."""
-    network = connect(facets, packing.centers, packing.size, np.zeros(packing.number, int), np.ones(1))
+    network = connect(packing, facets, np.zeros(packing.number, int), np.ones(1))
     step = branches(packing.centers, packing.size, facets.indptr, facets.indices, facets.image)[:, axis]
     x = packing.centers[facets.wall_particle, axis]
     height = np.where(facets.wall_side % 2, packing.size[axis] - x, x)
@@ -147,7 +151,7 @@ def linear_flow(packing, facets, axis):
 def test_surface_links_make_up_for_what_the_layer_at_the_wall_lacks(between_walls):
     """The sum over the whole sample of a linear field's flow is that of its bulk, brute force over thin slices."""
     packing = between_walls
-    facets = contact_facets(packing, wall="surface")
+    facets = contact_facets(packing, Calibrated(wall="surface"))
     links, walls = linear_flow(packing, facets, 1)
     depth = 6 * packing.radii.mean()
     rows, low = row_numbers(facets.indptr), packing.centers[:, 1]
@@ -161,32 +165,36 @@ def test_surface_links_make_up_for_what_the_layer_at_the_wall_lacks(between_wall
 
 
 def test_center_links_hold_the_centres(between_walls):
-    facets = contact_facets(between_walls, wall="center")
+    facets = contact_facets(between_walls, Calibrated(wall="center"))
     assert_allclose(facets.wall_distance, 1e-4 * between_walls.radii[facets.wall_particle], rtol=1e-14)
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
-    [({"mean": "median"}, "mean = 'median'"), ({"poor": "join"}, "poor = 'join'"), ({"wall": "face"}, "wall = 'face'")],
+    [
+        ({"mean": "median"}, "mean = 'median'"),
+        ({"sparse": "join"}, "sparse = 'join'"),
+        ({"wall": "face"}, "wall = 'face'"),
+    ],
 )
 def test_bad_choices(packing, change, words):
     with pytest.raises(ValueError, match=words):
-        contact_facets(packing, **change)
+        contact_facets(packing, Calibrated(**change))
 
 
 def test_surface_links_need_bulk_and_hard_walls(packing, between_walls):
     with pytest.raises(ValueError, match="no bulk 6 mean radii"):
-        contact_facets(relax(300, periodic=(True, False, True), phi=0.5, seed=0), wall="surface")
+        contact_facets(relax(300, periodic=(True, False, True), phi=0.5, seed=0), Calibrated(wall="surface"))
     # A periodic packing merely declared walled: nobody touches its walls as a rule.
     hollow = between_walls._replace(centers=between_walls.centers * [1, 0.8, 1] + [0, 0.1, 0])
     with pytest.raises(ValueError, match="hard walls"):
-        contact_facets(hollow, links=contacts(hollow, gap=0.05), wall="surface")
+        contact_facets(hollow, Calibrated(gap=0.05, wall="surface"))
 
 
 @pytest.mark.parametrize(("domain", "surface"), [("sphere", np.pi), ("cylinder-z", np.pi)])
 def test_links_to_a_round_wall(domain, surface):
     packing = relax(500, periodic=False, domain=domain, seed=1)
-    facets = contact_facets(packing)
+    facets = contact_facets(packing, Calibrated())
     here = facets.wall_side == SIDES.index("round")
     # Shares of the wall fill it: pi d^2 of the sphere, pi d h of the cylinder; rounding.
     assert_allclose(facets.wall_area[here].sum(), surface, rtol=1e-13)

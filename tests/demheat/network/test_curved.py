@@ -55,7 +55,7 @@ def network(packing_of):
 
 def assembled(packing):
     facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic, domain=packing.domain)
-    made = connect(facets, packing.centers, packing.size, np.zeros(packing.number, dtype=int), np.ones(1))
+    made = connect(packing, facets, np.zeros(packing.number, dtype=int), np.ones(1))
     diagonal = np.bincount(row_numbers(made.indptr), made.conductance, minlength=packing.number)
     diagonal += np.bincount(made.wall_particle, made.wall_conductance, minlength=packing.number)
     return facets, made, matrix(made, diagonal), diagonal
@@ -263,7 +263,7 @@ def test_linear_fields_at_points(domain, size):
     here = packing.centers @ gradient
     heat = made.wall_conductance * (there - here[facets.wall_particle])
     solution = Solution(here, np.zeros(3), there, heat, {})
-    field = field_of(scene, packing, facets, made, solution, law="laguerre", stats={})
+    field = field_of(scene, made, solution, stats={})
     axes, rng = list(ROUND_AXES[domain]), np.random.default_rng(4)
     points = rng.random((500, 3)) * size
     points = points[np.linalg.norm((points - np.array(size) / 2)[:, axes], axis=1) < size[axes[0]] / 2]

@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
 
 from demheat.network.base import branches, row_numbers
-from demheat.network.laguerre import laguerre, without_hidden
+from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.packing.base import make_packing
 
 
@@ -83,7 +83,7 @@ def test_hidden_points_are_dropped():
     weights = np.append(weights, weights[:2] - 0.01)
     packing = make_packing(centers, np.sqrt(weights + 0.02), (1, 1, 1), True, {})
     facets = laguerre(packing.centers, packing.radii**2, packing.size)
-    seen, kept = without_hidden(packing, facets)
+    seen, kept = drop_empty_cells(packing, facets)
     assert 2 <= packing.number - seen.number == np.sum(facets.volumes == 0)
     assert kept.volumes.min() > 0 and kept.indices.max() < seen.number == len(kept.indptr) - 1
     assert_allclose(closure(kept, seen.centers, seen.size), 0.0, atol=1e-10 * 300 ** (-2 / 3))

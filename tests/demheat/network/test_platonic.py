@@ -6,8 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import demheat
 from demheat import Flux, Material, Scene
+from demheat.laws import Platonic
 from demheat.network.base import branches, row_numbers
-from demheat.network.laguerre import without_hidden
+from demheat.network.laguerre import drop_empty_cells
 from demheat.network.platonic import (
     CRYSTALS,
     count_neighbours,
@@ -102,8 +103,7 @@ def test_lines_beyond_the_solids_and_where_they_end():
 
 
 def test_links_and_volumes_are_the_papers(packing):
-    links = contacts(packing)
-    facets = platonic_facets(packing, links=links, poor="keep")
+    facets = platonic_facets(packing, Platonic(coordination=7.5, sparse="keep"))
     number = np.diff(facets.indptr)
     assert number.min() < 2 and number.max() > 12
     for p in range(0, 1000, 50):
@@ -122,8 +122,8 @@ def test_links_and_volumes_are_the_papers(packing):
 
 def test_default_coordination_and_the_knob(packing):
     for wanted, facets in (
-        (7.2, platonic_facets(packing, poor="keep")),
-        (6.0, platonic_facets(packing, coordination=6.0, poor="keep")),
+        (7.2, platonic_facets(packing, Platonic(sparse="keep"))),
+        (6.0, platonic_facets(packing, Platonic(coordination=6.0, sparse="keep"))),
     ):
         # The gap is the midpoint between two pair distances: Z is met to one pair, 2/n.
         assert_allclose(np.diff(facets.indptr).mean(), wanted, atol=2 / 1000 + 1e-12)
@@ -133,7 +133,7 @@ def test_lone_particles_take_no_part():
     """A chain from wall to wall, a lone sphere inside and one that touches only a wall, its neighbour."""
     centers = [(5.0, y, 5.0) for y in (1, 3, 5, 7, 9)] + [(1.5, 5.0, 1.5), (8.0, 1.0, 8.0)]
     packing = make_packing(centers, np.ones(7), (10, 10, 10), (True, False, True), {})
-    facets = platonic_facets(packing, links=contacts(packing, gap=0.02), poor="keep")
+    facets = platonic_facets(packing, Platonic(gap=0.02, sparse="keep"))
     lone = packing.centers[:, 0] == 1.5
     assert_array_equal(facets.volumes == 0, lone)
     number = np.where(packing.centers[:, 0] == 5.0, 2, 1)[~lone]
@@ -141,7 +141,7 @@ def test_lone_particles_take_no_part():
     assert_allclose(facets.volumes[~lone], 4 / 3 * np.pi / fraction_factors(number), rtol=1e-14)
     assert_allclose(facets.area, surface_factors(np.array([2]))[0], rtol=1e-14)
     assert_array_equal(np.sort(facets.wall_side), (2, 2, 3))
-    rest, facets = without_hidden(packing, facets)
+    rest, facets = drop_empty_cells(packing, facets)
     assert rest.number == 6 and facets.wall_particle.max() < 6
 
 
@@ -160,7 +160,7 @@ def test_walls_are_neighbours():
 
 def test_the_simple_cubic_crystal_is_the_difference_stencil():
     packing = crystal((10, 11, 12), periodic=False, edge=0.5)
-    facets = platonic_facets(packing, links=contacts(packing, gap=1e-6), wall="surface")
+    facets = platonic_facets(packing, Platonic(gap=1e-6, wall="surface"))
     # Area of a cell's face for six neighbours, walls included, and its volume; rounding.
     assert_allclose(facets.area, 0.25, rtol=1e-14)
     assert_allclose(facets.volumes, 0.125, rtol=1e-14)
@@ -213,7 +213,7 @@ def test_walls_and_balance():
 def test_links_at_the_wall_make_up_for_the_layer_there():
     """Under a linear field the whole sample conducts on average as planes through its bulk do, brute force."""
     packing = relax(3000, periodic=(True, False, True), phi=0.628, seed=1)
-    facets = platonic_facets(packing, wall="surface")
+    facets = platonic_facets(packing, Platonic(wall="surface"))
     rows, y = row_numbers(facets.indptr), packing.centers[:, 1]
     step = branches(packing.centers, packing.size, facets.indptr, facets.indices, facets.image)
     flow, low = facets.area / np.linalg.norm(step, axis=1) * step[:, 1], y[rows]
@@ -228,14 +228,14 @@ def test_links_at_the_wall_make_up_for_the_layer_there():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"poor": "join"}, "poor = 'join'"),
+        ({"sparse": "join"}, "sparse = 'join'"),
         ({"wall": "face"}, "wall = 'face'"),
         ({"coordination": -1.0}, "coordination = -1.0"),
     ],
 )
 def test_bad_choices(packing, change, words):
     with pytest.raises(ValueError, match=words):
-        platonic_facets(packing, **change)
+        platonic_facets(packing, Platonic(**change))
     with pytest.raises(ValueError, match=words):
         demheat.solve(Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", **change)
 

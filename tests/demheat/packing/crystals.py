@@ -4,12 +4,12 @@ from itertools import product
 
 import numpy as np
 
+from demheat.bodies import ROUND_AXES
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
-from demheat.scene import ROUND_AXES
 
 # Crystals touch to rounding, 1e-15; their second neighbours are 1.41 away.
-TOUCH = 1e-6
+CONTACT_GAP = 1e-6
 
 
 def crystal(cells, basis, radius, *, periodic=True, size=None):
@@ -40,4 +40,13 @@ def random_packing(seed, number=400, *, periodic=True, domain="box", size=(1.0, 
 
 
 def touching(packing):
-    return contacts(packing, gap=TOUCH)[:2]
+    return contacts(packing, gap=CONTACT_GAP)[:2]
+
+
+def distances(packing):
+    """All nearest-image distances, (n, n) float array; infinite from a particle to itself."""
+    offsets = packing.centers[None] - packing.centers[:, None]
+    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
+    result = np.sqrt((offsets**2).sum(axis=-1))
+    np.fill_diagonal(result, np.inf)
+    return result

@@ -3,7 +3,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import make_packing, morton_order
-from demheat.packing.domain import cut, tile
+from demheat.packing.domain import cut, replicate
 from demheat.packing.neighbours import contacts, neighbours
 from demheat.packing.relax import relax
 
@@ -89,7 +89,7 @@ def test_everything_is_kept_by_a_cut_of_the_whole_box(block):
 
 def test_provenance_tells_where_it_comes_from(block):
     assert cut(block, "sphere").provenance["of"] == block.provenance
-    assert tile(block, (1, 2, 1)).provenance["of"] == block.provenance
+    assert replicate(block, (1, 2, 1)).provenance["of"] == block.provenance
 
 
 @pytest.mark.parametrize(
@@ -119,7 +119,7 @@ def test_cuts_that_walls_forbid(block):
 
 
 def test_tiles_are_images(block):
-    big = tile(block, (2, 1, 3))
+    big = replicate(block, (2, 1, 3))
     assert_allclose(big.size, [2.0, 1.3, 2.7], rtol=1e-15)
     shifts = [np.array([i, 0, k]) * block.size for i in range(2) for k in range(3)]
     expected = np.concatenate([np.column_stack((block.centers + s, block.radii)) for s in shifts])
@@ -132,7 +132,7 @@ def test_tiles_are_images(block):
 
 def test_tiles_of_a_cube_are_in_morton_order():
     cube = relax(1000, seed=0)
-    big = tile(cube, (2, 2, 2))
+    big = replicate(cube, (2, 2, 2))
     order = morton_order(big.centers, big.size)
     # 21 bits of the small box are 20 of the large one: only spheres in one cell of 2**-20 may change places.
     assert np.mean(order == np.arange(8000)) > 0.99
@@ -141,15 +141,15 @@ def test_tiles_of_a_cube_are_in_morton_order():
 def test_a_centre_that_rounds_to_the_far_face_is_wrapped():
     size = (0.1, 0.3, 0.7)
     packing = make_packing([np.nextafter(size, 0)], [0.01], size, True, {})
-    big = tile(packing, (3, 5, 7))
+    big = replicate(packing, (3, 5, 7))
     assert np.all(big.centers < big.size)
 
 
 def test_walls_are_not_repeated(block):
     walled = block._replace(periodic=np.array([True, False, True]))
-    assert tile(walled, (2, 1, 2)).number == 8000
+    assert replicate(walled, (2, 1, 2)).number == 8000
     with pytest.raises(ValueError, match="must be 1 along axes with walls"):
-        tile(walled, (1, 2, 1))
+        replicate(walled, (1, 2, 1))
     for repeats in ((2, 2), (2, 0, 1), (1.5, 1, 1), "abc"):
         with pytest.raises(ValueError, match="three integers"):
-            tile(block, repeats)
+            replicate(block, repeats)

@@ -1,10 +1,12 @@
 import numba
 import numpy as np
 import pytest
+from crystals import distances
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.neighbours import contacts, neighbours
+from demheat.packing.cells_kernels import Reach
+from demheat.packing.neighbours import build_grid, contacts, neighbours
 from demheat.packing.relax import relax
 
 
@@ -14,15 +16,6 @@ def random_packing(seed, *, most=300, ratio=10.0):
     number, size, periodic = int(rng.integers(1, most)), rng.uniform(0.2, 2.0, 3), rng.random(3) < 0.5
     radii = 0.1 * np.exp(-rng.uniform(0, np.log(ratio), number))
     return make_packing(rng.random((number, 3)) * size, radii, size, periodic, {})
-
-
-def distances(packing):
-    """All nearest-image distances, (n, n): the slow twin."""
-    offsets = packing.centers[None] - packing.centers[:, None]
-    offsets -= np.where(packing.periodic, packing.size * np.rint(offsets / packing.size), 0.0)
-    result = np.sqrt((offsets**2).sum(axis=-1))
-    np.fill_diagonal(result, np.inf)
-    return result
 
 
 def rows(near):
@@ -55,13 +48,11 @@ def test_size_ratio_1000_and_centres_beyond_a_wall():
 
 def test_a_wide_distribution_costs_few_candidates():
     """Cells visited must follow the size of each level: one large sphere must not coarsen the grid of the others."""
-    from demheat.packing.neighbours import build_grid
-
     rng = np.random.default_rng(0)
     points = np.column_stack((rng.random((5000, 3)), np.full(5000, 0.01)))
     points[0, 3] = 0.2
     box = np.ones(3)
-    grid = build_grid(points, box, np.ones(3, dtype=bool), scale=1.0, skin=0.0)
+    grid = build_grid(points, box, np.ones(3, dtype=bool), Reach(1.0, 0.0))
     # 4 particles per cell of the small level; with one grid the cells would be as large as the large sphere.
     assert grid.dims[1:].prod() >= 5000 / 8
 
@@ -83,37 +74,43 @@ def test_bits_do_not_depend_on_threads():
 
 @pytest.fixture(scope="module")
 def relaxed():
-    return relax(2000, seed=1)
+    return relax(1000, seed=1)
+
+
+@pytest.fixture(scope="module")
+def apart(relaxed):
+    """All distances of the relaxed packing, (n, n)."""
+    return distances(relaxed)
 
 
 @pytest.mark.parametrize("coordination", [4.0, 7.5, 14.0])
-def test_coordination_is_met(relaxed, coordination):
+def test_coordination_is_met(relaxed, apart, coordination):
     indptr, indices, gap = contacts(relaxed, coordination=coordination)
-    # Exact: one pair more or less changes the mean by 2/2000.
-    assert_allclose(len(indices) / 2000, coordination, atol=2 / 2000)
-    ratio = distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii)
+    # Exact: one pair more or less changes the mean by 2/1000.
+    assert_allclose(len(indices) / 1000, coordination, atol=2 / 1000)
+    ratio = apart / (relaxed.radii[:, None] + relaxed.radii)
     expected = rows(ratio <= 1 + gap)
     assert_array_equal(indptr, expected[0])
     assert_array_equal(indices, expected[1])
-    matrix = np.zeros((2000, 2000), dtype=bool)
-    matrix[np.repeat(np.arange(2000), np.diff(indptr)), indices] = True
+    matrix = np.zeros((1000, 1000), dtype=bool)
+    matrix[np.repeat(np.arange(1000), np.diff(indptr)), indices] = True
     assert_array_equal(matrix, matrix.T)
 
 
-@pytest.mark.parametrize("links", [7000, 7001, 7002])
-def test_the_gap_parts_no_pair(relaxed, links):
+@pytest.mark.parametrize("links", [3500, 3501, 3502])
+def test_the_gap_parts_no_pair(relaxed, apart, links):
     """Each pair stands in two rows: midway to the next must lie between pairs, not on one."""
-    _, indices, gap = contacts(relaxed, coordination=2 * links / 2000 + 1e-6)
-    ratio = (distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(2000, 1)]
+    _, indices, gap = contacts(relaxed, coordination=2 * links / 1000 + 1e-6)
+    ratio = (apart / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(1000, 1)]
     assert len(indices) == 2 * links
     # Pairs are some 1e-5 apart here; rounding is 1e-16.
     assert np.abs(ratio - (1 + gap)).min() > 1e-9
 
 
-@pytest.mark.parametrize("ends", [14001, 14003])
-def test_an_odd_number_of_ends_is_rounded(relaxed, ends):
-    _, indices, gap = contacts(relaxed, coordination=ends / 2000)
-    ratio = (distances(relaxed) / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(2000, 1)]
+@pytest.mark.parametrize("ends", [7001, 7003])
+def test_an_odd_number_of_ends_is_rounded(relaxed, apart, ends):
+    _, indices, gap = contacts(relaxed, coordination=ends / 1000)
+    ratio = (apart / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(1000, 1)]
     assert abs(len(indices) - ends) == 1
     assert np.abs(ratio - (1 + gap)).min() > 1e-9
 
@@ -145,7 +142,7 @@ def test_bad_input(relaxed):
         lambda: neighbours(relaxed, scale=-1.0),
         lambda: neighbours(relaxed, skin=np.nan),
         lambda: contacts(relaxed, coordination=0),
-        lambda: contacts(relaxed, coordination=2000),
+        lambda: contacts(relaxed, coordination=1000),
         lambda: contacts(relaxed, coordination=np.nan),
         lambda: contacts(relaxed, gap=-1.0),
         lambda: contacts(relaxed, margin=-1.0),
@@ -162,14 +159,14 @@ def test_all_others_may_be_asked_for():
 
 
 @pytest.mark.parametrize("wanted", [3.0, 7.5])
-def test_additive_gap_is_one_length_for_all_pairs(relaxed, wanted):
+def test_additive_gap_is_one_length_for_all_pairs(relaxed, apart, wanted):
     indptr, indices, gap = contacts(relaxed, coordination=wanted, additive=True)
-    surface = distances(relaxed) - relaxed.radii[:, None] - relaxed.radii
+    surface = apart - relaxed.radii[:, None] - relaxed.radii
     expected = rows(surface <= gap * 2 * relaxed.radii.mean())
     assert_array_equal(indptr, expected[0])
     assert_array_equal(indices, expected[1])
-    # One pair more or less changes the mean by 2/2000.
-    assert_allclose(len(indices) / 2000, wanted, atol=2 / 2000)
+    # One pair more or less changes the mean by 2/1000.
+    assert_allclose(len(indices) / 1000, wanted, atol=2 / 1000)
     again = contacts(relaxed, gap=gap, additive=True)
     assert_array_equal(again[1], indices)
 

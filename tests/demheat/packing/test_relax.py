@@ -13,7 +13,6 @@ from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts, neighbours
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal
 from demheat.packing.relax import relax, settle
-from demheat.packing.relax_kernels import forces, move
 
 module = importlib.import_module("demheat.packing.relax")
 
@@ -145,60 +144,6 @@ def test_bits_do_not_depend_on_the_compiler():
     compiled = relax(30, steps=3, allow_few=True, phi=0.3).centers
     # Rounding only: a compiler may fuse a product and a sum.
     assert_allclose(np.array(json.loads(plain.stdout)), compiled, rtol=0, atol=1e-13)
-
-
-def energy(points, size, period, across):
-    """Half the squared overlaps of all pairs and walls: the slow twin."""
-    offsets = points[None, :, :3] - points[:, None, :3]
-    offsets -= np.where(period > 0, period * np.rint(offsets / np.where(period > 0, period, 1.0)), 0.0)
-    gaps = points[:, 3] + points[:, None, 3] - np.linalg.norm(offsets, axis=-1)
-    np.fill_diagonal(gaps, 0.0)
-    low, high = points[:, 3:] - points[:, :3], points[:, :3] + points[:, 3:] - size
-    walls = (np.maximum(low, 0) ** 2 + np.maximum(high, 0) ** 2)[:, (period == 0) & (across == 0)]
-    if across.any():
-        away = np.linalg.norm((points[:, :3] - size / 2)[:, across > 0], axis=1)
-        walls = np.append(walls, np.maximum(0, away + points[:, 3] - size[across > 0][0] / 2) ** 2)
-    return np.sum(np.maximum(gaps, 0) ** 2) / 4 + np.sum(walls) / 2
-
-
-@pytest.mark.parametrize("across", [(0, 0, 0), (0, 1, 1), (1, 1, 1)])
-def test_forces_are_the_slope_of_the_energy(across):
-    rng = np.random.default_rng(0)
-    across = np.array(across, dtype=float)
-    n, size = 40, np.array([4.0, 5.0, 6.0]) if not across.any() else np.full(3, 5.0)
-    period = size * (1 - np.maximum(across, (0, 1, 0)))
-    points = np.column_stack((rng.random((n, 3)) * size, rng.uniform(0.3, 1.0, n)))
-    near = ~np.eye(n, dtype=bool)
-    indptr, indices = np.arange(0, n * n, n - 1)[: n + 1], np.nonzero(near)[1].astype(np.uint32)
-    velocity, mobility = rng.standard_normal((n, 3)), rng.uniform(0.5, 2.0, n)
-    mobility[:5] = 0.0
-    force, sums = np.empty((n, 3)), np.empty((1, 6))
-    forces(points, velocity, mobility, indptr, indices, size, period, across, force, sums)
-    h, slope = 1e-6, np.empty((n, 3))
-    for i in range(n):
-        for axis in range(3):
-            up, down = points.copy(), points.copy()
-            up[i, axis] += h
-            down[i, axis] -= h
-            slope[i, axis] = (energy(up, size, period, across) - energy(down, size, period, across)) / (2 * h)
-    # Central differences of an energy of about 10: rounding 1e-15 * 10 / h.
-    assert_allclose(force, -slope * mobility[:, None], atol=1e-7)
-    free = mobility > 0
-    mass = 1 / mobility[free, None]
-    work = (mass * force[free] * velocity[free], mass * force[free] ** 2, mass * velocity[free] ** 2)
-    assert_allclose(sums[0, :3], [part.sum() for part in work], rtol=1e-12)  # order of summation
-
-
-def test_move_and_farthest():
-    rng = np.random.default_rng(1)
-    points, velocity, force = rng.random((600, 4)), rng.random((600, 3)), rng.random((600, 3))
-    start, expected = points[:, :3].copy(), 0.3 * velocity + 0.2 * force
-    farthest, moved = np.empty(3), points.copy()
-    move(moved, start, velocity, force, 0.3, 0.2, 0.5, farthest)
-    assert_allclose(velocity, expected, rtol=1e-14)
-    assert_allclose(moved[:, :3], start + 0.5 * expected, rtol=1e-14)
-    assert_allclose(farthest.max(), ((0.5 * expected) ** 2).sum(axis=1).max(), rtol=1e-12)
-    assert_array_equal(moved[:, 3], points[:, 3])
 
 
 def test_lists_are_renewed_in_time(monkeypatch):

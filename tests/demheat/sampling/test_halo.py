@@ -12,18 +12,17 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import demheat
 from demheat import Material, Scene, Sphere
-from demheat.calibration import calibration
+from demheat.build import network_of
+from demheat.calibration import calibration, calibration_scene
 from demheat.conduction.steady import solve_steady
 from demheat.field import Field, Samples
+from demheat.laws import Calibrated, Laguerre
 from demheat.network.base import branches, row_numbers
-from demheat.network.calibrated import contact_facets
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre, without_hidden
 from demheat.packing.base import make_packing
 from demheat.packing.cache import relaxed
-from demheat.packing.neighbours import contacts
 from demheat.sampling import halo
-from demheat.sampling.field_of import cell_fluxes, field_of
+from demheat.sampling.field_of import field_of
+from demheat.sampling.fluxes import cell_fluxes
 from demheat.sampling.halo import halo_average, halo_flux
 from demheat.sampling.particle_flux import SPLITS, particle_flux
 from demheat.scene import Flux, Layer
@@ -92,10 +91,10 @@ def test_only_the_same_phase():
     phase = (points[:, 0] > 0.5).astype(int) + 3
     at = np.random.default_rng(1).random((50, 3)) * SIZE
     for where, at_phase in ((None, None), (at, np.arange(50) % 3 + 2)):
-        means = halo_average(
-            points, values, volumes, radius=0.3, size=SIZE, periodic=False, at=where, phase=phase, at_phase=at_phase
-        )
         here, wanted = (points, phase) if where is None else (at, at_phase)
+        means = halo_average(
+            points, values, volumes, radius=0.3, size=SIZE, periodic=False, at=where, phases=(phase, wanted)
+        )
         right = twin(points, values, volumes, 0.3, SIZE, False, here, phase, wanted)
         assert_allclose(means, right, atol=1e-13)  # rounding, as above
     assert np.isnan(means[at_phase == 2]).all() and np.isfinite(means[at_phase == 3]).any()
@@ -136,10 +135,12 @@ def test_same_bits_for_one_and_two_threads():
         ({"volumes": [1.0, -1.0]}, "volumes of shape"),
         ({"volumes": [1.0]}, "volumes of shape"),
         ({"at": [[0.0, np.nan, 0.0]]}, "at of shape"),
-        ({"phase": [0]}, "phase = "),
-        ({"phase": [0.5, 1.5]}, "phase = "),
-        ({"phase": [0, 1], "at": [[0.0, 0.0, 0.0]]}, "at_phase = None"),
-        ({"at_phase": [0, 1]}, "phase = None"),
+        ({"phases": [0, 1, 2]}, "phases = .* a pair"),
+        ({"phases": ([0], [0, 1])}, r"phases\[0\] = "),
+        ({"phases": ([0.5, 1.5], [0, 1])}, r"phases\[0\] = "),
+        ({"phases": ([0, 1], [0, 1]), "at": [[0.0, 0.0, 0.0]]}, r"phases\[1\] = .* 1 whole"),
+        ({"phases": ([0, 1], None)}, r"phases\[1\] = None"),
+        ({"phases": (None, [0, 1])}, r"phases\[0\] = None"),
     ],
 )
 def test_bad_input(change, words):
@@ -274,17 +275,15 @@ def test_round_bodies_have_no_mirrors():
 
 
 def solved(packing, scene, law):
-    """Packing, facets, network and solution of a law."""
-    if law == "laguerre":
-        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic)
-    else:
-        facets = contact_facets(packing, links=contacts(packing, gap=0.07))
-    packing, facets = without_hidden(packing, facets)
+    """Network and solution of a law."""
     if law == "calibrated":
-        factor = calibration(facets, packing, scene, tolerance=1e-12)
-        facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
-    network = connect(facets, packing.centers, packing.size, scene.phase_at(packing.centers), scene.conductivities)
-    return packing, facets, network, solve_steady(network, scene, tolerance=1e-12)
+        flat = calibration_scene(scene)
+        unit = network_of(flat, packing, Calibrated(gap=0.07, factor=1.0))
+        made = Calibrated(gap=0.07, factor=calibration(unit, flat, tolerance=1e-12))
+    else:
+        made = Laguerre(conforming=False)
+    network = network_of(scene, packing, made)
+    return network, solve_steady(network, scene, tolerance=1e-12)
 
 
 def crystal(periodic, edge=6):
@@ -315,7 +314,7 @@ def test_cells_at_walls_count_their_walls():
     # where on their facet the heat passes, and at a wall not for the component across it.
     packing = relaxed(300, periodic=False, seed=0)
     parts = solved(packing, scene, "laguerre")
-    mean = parts[2].volumes @ particle_flux(*parts, split="cell")
+    mean = parts[0].volumes @ particle_flux(*parts, split="cell")
     assert_allclose(mean[1], -6.0, atol=1e-9)  # the solver's 1e-12 on each of 300 balances
 
 
@@ -324,26 +323,28 @@ def test_every_split_conserves_the_flux_of_a_periodic_cell(law):
     ball = [Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0))]
     scene = Scene(size=(1, 1, 1), matrix=Material(3.0), inclusions=ball, gradient=(0.3, 1.0, 0.0))
     parts = solved(relaxed(500, seed=0), scene, law)
-    packing, facets, network, solution = parts
+    network, solution = parts
     here, there = row_numbers(network.indptr), network.indices
     step = branches(network.centers, network.size, network.indptr, network.indices, network.image)
-    heat = network.conductance * (solution.fluctuation[there] - solution.fluctuation[here] + step @ solution.gradient)
+    heat = network.conductance * (
+        solution.temperature[there] - solution.temperature[here] + step @ solution.mean_gradient
+    )
     first = -0.5 * heat @ step
     shares = {
         "half": np.full(len(here), 0.5),
-        "radii": packing.radii[here] / (packing.radii[here] + packing.radii[there]),
-        "cell": facets.distance / np.linalg.norm(step, axis=1),
+        "radii": network.radii[here] / (network.radii[here] + network.radii[there]),
+        "cell": network.distance / np.linalg.norm(step, axis=1),
     }
     for split, share in shares.items():
         found = particle_flux(*parts, split=split)
-        right = np.zeros((packing.number, 3))
+        right = np.zeros((len(network.volumes), 3))
         np.add.at(right, here, -(share * heat)[:, None] * step)
         # Rounding; fluxes are of order 10.
         assert_allclose(found, right / network.volumes[:, None], atol=1e-11)
         assert_allclose(network.volumes @ found, first, atol=1e-12)
-    field = field_of(scene, *parts, law=law, stats={})
+    field = field_of(scene, *parts, stats={})
     assert_allclose(first, field.mean_flux, atol=1e-12)
-    assert_array_equal(particle_flux(*parts), cell_fluxes(facets, network, solution, law="calibrated"))
+    assert_array_equal(particle_flux(*parts), cell_fluxes(network._replace(cells=False), solution))
     # Contacts part a link by the radii: the two are one there, and not for radical facets.
     off = abs(particle_flux(*parts, split="cell") - particle_flux(*parts, split="radii")).max()
     assert off < 1e-12 if law == "calibrated" else off > 0.1
@@ -351,11 +352,12 @@ def test_every_split_conserves_the_flux_of_a_periodic_cell(law):
 
 def test_bad_split_and_arrays_of_another_packing():
     scene = Scene(size=(1, 1, 1), matrix=Material(3.0), gradient=(1.0, 0.0, 0.0))
-    packing, facets, network, solution = solved(crystal(True), scene, "laguerre")
+    network, solution = solved(crystal(True), scene, "laguerre")
+    other, _ = solved(crystal(True, 5), scene, "laguerre")
     with pytest.raises(ValueError, match="split = 'third'"):
-        particle_flux(packing, facets, network, solution, split="third")
+        particle_flux(network, solution, split="third")
     with pytest.raises(ValueError, match="same particles"):
-        particle_flux(crystal(True, 5), facets, network, solution)
+        particle_flux(other, solution)
 
 
 def test_halo_of_the_solver():

@@ -1,4 +1,4 @@
-"""Lattice sums, conductivities and fields of cubic arrays, against printed numbers and against the equations."""
+"""Conductivities and fields of cubic arrays, against printed numbers and against the equations."""
 
 import functools
 import math
@@ -6,10 +6,8 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.special import lpmv
 
-from references.exact import harmonics as multipoles
-from references.exact import lattice, lattice_field
+from references.exact import harmonics, lattice, lattice_field
 
 THIRD = 4 * math.pi / 81
 KINDS = ("sc", "bcc", "fcc")
@@ -20,59 +18,20 @@ def sphere_points(count, seed):
     return normals / np.linalg.norm(normals, axis=1)[:, None]
 
 
-@pytest.mark.parametrize(("degree", "m"), [(0, 0), (1, 0), (3, 1), (7, 4), (12, 12), (25, 8)])
-def test_legendre_against_scipy(degree, m):
-    z = np.linspace(-1, 1, 9)
-    values = list(multipoles.legendre(z, np.ones_like(z), degree, m))[-1] * (1 - z**2) ** (m / 2)
-    expected = math.sqrt(math.factorial(degree - m) / math.factorial(degree + m)) * lpmv(m, degree, z)
-    # Rounding of some 25 recurrence steps on numbers up to 1.
-    assert_allclose(values, expected, atol=1e-13)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_lattice_sums_do_not_depend_on_the_splitting(kind):
-    sums = multipoles.lattice_sums(kind, 20).total
-    unit = multipoles.NEAREST[kind]
-    cell = 1 / len(multipoles.SITES[kind]) / unit**3
-    sites, waves = multipoles._sites(kind, 8.0 * unit) / unit, multipoles._waves(kind, 12) * (2 * np.pi * unit)
-    for eta in (0.7, 1.5):
-        other = multipoles._ewald(sites, waves, cell, 20, eta * np.pi / cell ** (2 / 3))
-        # Rounding: sums of terms up to about 10.
-        assert_allclose(other[4::2], sums[4::2], atol=3e-14)
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_lattice_sums_against_plain_summation(kind):
-    unit = multipoles.NEAREST[kind]
-    sums = multipoles.lattice_sums(kind, 40)
-    x, y, z = (multipoles._sites(kind, 9.0) / unit).T
-    r = np.sqrt(x**2 + y**2 + z**2)
-    for degree, m in ((12, 0), (12, 8), (16, 4), (30, 12), (40, 40)):
-        values = list(multipoles.legendre(z / r, np.ones_like(z), degree, m))[-1]
-        plain = np.sum(values * (((x + 1j * y) / r) ** m).real / r ** (degree + 1))
-        # The sites left out, beyond nine edges, add less than about 4 pi 9^-10.
-        assert_allclose(sums.total[degree, m // 4], plain, atol=4e-9)
-
-
-def test_lattice_sums_of_rayleigh():
-    # 3.108, 0.5733 and 3.259: McPhedran and McKenzie (1978), Table 1, to the digits quoted since Rayleigh (1892).
-    assert_allclose(multipoles.lattice_sums("sc", 8).total[[4, 6, 8], 0], [3.108, 0.5733, 3.259], atol=5e-4)
-
-
 @pytest.mark.parametrize(
-    ("contrast", "fraction", "printed", "digits"),
+    ("contrast", "fraction", "printed", "digits", "order"),
     [
-        (0.01, THIRD, 0.786847280, 9),
-        (0.1, THIRD, 0.812845293, 9),
-        (10, THIRD, 1.395734838, 9),
-        (100, THIRD, 1.533386809, 9),
-        (1e6, THIRD, 1.552615028, 9),
-        (10, 0.1, 1.2433385463, 10),
-        (10, 0.5, 3.1445580197, 10),
+        (0.01, THIRD, 0.786847280, 9, None),
+        (0.1, THIRD, 0.812845293, 9, None),
+        (10, THIRD, 1.395734838, 9, None),
+        (100, THIRD, 1.533386809, 9, None),
+        (1e6, THIRD, 1.552615028, 9, None),
+        (10, 0.1, 1.2433385463, 10, None),
+        (10, 0.5, 3.1445580197, 10, 79),
     ],
 )
-def test_printed_conductivities(contrast, fraction, printed, digits):
-    found = lattice.solve("sc", contrast, fraction)
+def test_printed_conductivities(contrast, fraction, printed, digits, order):
+    found = lattice.solve("sc", contrast, fraction, order=order)
     # Half a unit of the last digit printed.
     assert_allclose(found.conductivity, printed, atol=0.5 * 10.0**-digits, rtol=0)
     assert found.digits >= 9
@@ -96,7 +55,7 @@ def test_dilute_limit_is_the_published_series(kind, coefficient, contrast):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_limits_are_approached(kind):
-    f = 0.3
+    f = 0.2
     # The distance to a limit is of the order of the contrast (or its inverse) itself.
     assert_allclose(lattice.conductivity(kind, 1e-9, f), lattice.conductivity(kind, 0, f), rtol=1e-8)
     assert_allclose(lattice.conductivity(kind, 1e9, f), lattice.conductivity(kind, math.inf, f), rtol=1e-8)
@@ -169,7 +128,7 @@ def test_field_is_continuous_and_periodic(kind, fraction, contrast):
     array = solved(kind, contrast, fraction)
     points = np.random.default_rng(3).uniform(-0.5, 0.5, size=(60, 3))
     here = lattice_field.temperature(array, points, GRADIENT)
-    for shift in ([1, 0, 0], [0, -2, 1], np.array(multipoles.SITES[kind][-1])):
+    for shift in ([1, 0, 0], [0, -2, 1], np.array(harmonics.SITES[kind][-1])):
         there = lattice_field.temperature(array, points + shift, GRADIENT)
         assert_allclose(there - here, GRADIENT @ shift, atol=1e-12)  # rounding of coordinates
     # Across a plane between cells the two sides are summed from different sites.
@@ -201,8 +160,8 @@ def test_no_contrast_is_a_linear_field():
 
 @pytest.mark.parametrize(("fraction", "contrast"), [(0.5235, 100.0), (0.5235, 0.0), (0.52, math.inf)])
 def test_digits_are_honest_when_spheres_nearly_touch(fraction, contrast):
-    rough = lattice.solve("sc", contrast, fraction, order=39, digits=0)
-    better = lattice.solve("sc", contrast, fraction, order=79, digits=0)
+    rough = lattice.solve("sc", contrast, fraction, order=29, digits=0)
+    better = lattice.solve("sc", contrast, fraction, order=59, digits=0)
     assert abs(rough.conductivity / better.conductivity - 1) <= 10.0**-rough.digits
     assert rough.digits < better.digits < lattice.MOST_DIGITS
 

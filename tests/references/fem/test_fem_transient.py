@@ -7,9 +7,8 @@ import pytest
 from fem_scenes import KINDS, UNIT, cube, last
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Heating, Layer, Material, MovingCylinder, Scene, Sphere
+from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 from references import fem
-from references.fem import bricks, implicit, loads, separable, trbdf2
 
 STEEL = Material(33.0, 7800.0, 0.9)  # Haddad et al. 2021, table 1
 SIZE = {"hexahedra": 0.25, 1: 0.34, 2: 0.5}
@@ -80,10 +79,10 @@ def test_beam_of_terreros():
         initial=298.0,
         domain="cylinder-z",
     )
-    fields = fem.evolve(of, [0.01, 0.05, 0.1], size=radius / 2, accuracy=1e-4)
+    fields = fem.evolve(of, [0.01, 0.05, 0.1], size=2 * radius, accuracy=1e-4)
     end = [field.temperature_at(np.array([radius, radius, length]))[0] for field in fields]
-    # Of a span of 500 K: found .02 K off at a finer accuracy, and .1 K of error in time at this one.
-    assert_allclose(end, [334.582, 642.828, 760.178], atol=0.3)
+    # Of a span of 500 K: some .1 K of error in time at this accuracy and as much of the mesh; found .15 K off.
+    assert_allclose(end, [334.582, 642.828, 760.178], atol=0.25)
 
 
 # ---------------------------------------------------------------- orders
@@ -160,7 +159,7 @@ def test_heat_is_conserved(kind):
     """To ten times the linear tolerance, whatever loads it."""
     walls = {"x-": lambda t: 3 * t, "y-": 0.0, "z+": Flux(lambda t: 2 - t), "z-": 1.0}
     source = MovingCylinder(2, 0.3, 50.0, (0.3, 0.5), (3.0, 0.0))
-    of = cube(walls=walls, sources=(Heating(2.0), source), initial=lambda x: x[:, 0] - 0.5)
+    of = cube(walls=walls, sources=(UniformSource(2.0), source), initial=lambda x: x[:, 0] - 0.5)
     for tolerance in (1e-6, 1e-10):
         for field in fem.evolve(of, [0.05, 0.1], size=kind_size(kind), tolerance=tolerance, accuracy=1e-3, **kind):
             stats = field.stats
@@ -176,7 +175,7 @@ def test_heat_is_conserved(kind):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_uniform_heating_of_an_insulated_body_is_exact(kind):
-    of = cube(Material(2.0, 3.0, 4.0), sources=(Heating(24.0),), initial=7.0)
+    of = cube(Material(2.0, 3.0, 4.0), sources=(UniformSource(24.0),), initial=7.0)
     field = last(of, [0.0, 1.5], size=kind_size(kind), **kind)
     assert_allclose(field.samples.temperature, 7 + 24 / 12 * 1.5, rtol=1e-9)  # linear tolerance
     assert field.stats["steps"] < 20
@@ -294,73 +293,3 @@ def test_a_step_that_shrinks_to_nothing_is_an_error():
     of = cube(walls={"x-": Flux(lambda t: 1e3 * rng.standard_normal())})
     with pytest.raises(RuntimeError, match=r"after \d+ steps: the estimated error does not fall"):
         last(of, [1.0], elements="hexahedra", size=0.5, accuracy=1e-9, tolerance=1e-12)
-
-
-# ---------------------------------------------------------------- solvers and integrator
-
-
-def test_multigrid_and_factors_agree(monkeypatch):
-    ball = Sphere((0.5, 0.5, 0.5), 0.3, Material(9.0, 2.0, 1.0))
-    of, knobs = cube(walls={"x-": 1.0}, inclusions=(ball,)), {"size": 0.34, "order": 1}
-    field = last(of, [0.05], step=0.01, **knobs)
-    monkeypatch.setattr("references.fem.implicit.DIRECT", 0)
-    other = last(of, [0.05], step=0.01, **knobs)
-    # Residuals of 1e-9 times the condition number of the equations, at most some hundreds.
-    assert_allclose(other.samples.temperature, field.samples.temperature, atol=1e-6)
-    assert other.stats["iterations"] > field.stats["iterations"]
-
-
-def test_weights_of_the_integrator():
-    """Second and third order conditions of the two sets of weights (Hosea and Shampine 1996)."""
-    places = np.array([0, trbdf2.GAMMA, 1])
-    for weights, order in ((trbdf2.WEIGHTS, 2), (trbdf2.THIRD, 3)):
-        for power in range(order):
-            assert_allclose(weights @ places**power, 1 / (power + 1), rtol=1e-14)
-    assert abs(trbdf2.WEIGHTS @ places**2 - 1 / 3) > 0.01
-
-
-def test_rates_at_the_start():
-    of = cube(walls={"y-": lambda t: math.sin(5 * t)}, sources=(Heating(2.0),))
-    on = bricks.hexahedra(of, 0.34)
-    driven = loads.Loads(of, on, level=0.0)
-    free = np.setdiff1d(np.arange(len(on.points)), driven.held)
-    solver = implicit.Shifted(*(m[free][:, free] for m in (on.mass, on.stiffness)), None, 1e-12)
-    state = trbdf2.begin(trbdf2.Problem(driven, solver, free), np.zeros(len(on.points)), 0.0, 1e-3)
-    # Slope of the sine by differences of 1 ms, off by 2/3 of the third derivative times the square of that.
-    assert_allclose(state.rate[driven.held], 5, atol=125 * 1e-6)
-    assert_allclose(state.entering[free], 0, atol=1e-12)
-    assert_allclose(on.mass @ state.rate - state.entering, 2 * on.volumes, atol=1e-12)
-
-
-def test_where_held_walls_meet_nodes_take_the_mean_and_the_walls_share_the_heat():
-    knobs = {"elements": "hexahedra", "size": 0.25, "accuracy": 1e-3}
-    field = last(cube(walls={"x-": 1.0, "y-": 3.0}), [0.0, 0.1], **knobs)
-    assert_allclose(field.temperature_at(np.array([[0.0, 0.0, 0.3]])), 2.0, rtol=1e-12)
-    assert field.wall_temperature == {"x-": 1.0, "y-": 3.0}
-    heat = field.stats["heat_in"]
-    assert_allclose(heat["x-"] + heat["y-"], field.stats["heat_change"], rtol=1e-8)
-    even = last(cube(walls={"x-": 2.0, "y-": 2.0}), [0.1], **knobs).stats["heat_in"]
-    assert_allclose(even["x-"], even["y-"], rtol=1e-8)  # by symmetry, to the linear tolerance
-
-
-def test_separation_inverts_the_equations_of_a_grid():
-    of = Scene((1.0, 0.7, 0.5), Material(3.0, 2.0, 5.0), walls={"x-": 0.0, "z-": 0.0, "z+": 0.0}, initial=0.0)
-    on, uneven = bricks.hexahedra(of, 0.13), np.array([0.0, 0.1, 0.35, 0.5])
-    free = np.setdiff1d(np.arange(len(on.points)), np.concatenate([on.walls[name][0] for name in of.walls]))
-    solution = np.random.default_rng(1).random(len(free))
-    for tau in (1e-3, 0.1, 1e3):
-        A = (on.mass / tau + on.stiffness)[free][:, free]
-        assert_allclose(on.separable(free)(tau, A @ solution), solution, rtol=1e-9)
-    # On an uneven grid a solve undoes the products of the matrices of its axes.
-    mass, stiffness = (
-        sum(np.pad(block * w, (i, 2 - i)) for i, w in enumerate(widths))
-        for block, widths in ((separable.MASS, np.diff(uneven)), (separable.STIFFNESS, 1 / np.diff(uneven)))
-    )
-    M = np.kron(np.kron(mass, mass), mass)
-    K = sum(
-        np.kron(np.kron(*(stiffness if i == a else mass for i in (0, 1))), stiffness if a == 2 else mass)
-        for a in range(3)
-    )
-    x = np.random.default_rng(2).random(64)
-    solve = separable.separable((uneven,) * 3, 3.0, 10.0, np.arange(64))
-    assert_allclose(solve(0.1, (10.0 / 0.1 * M + 3.0 * K) @ x), x, rtol=1e-9)

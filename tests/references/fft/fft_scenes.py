@@ -1,8 +1,9 @@
-"""Scenes for the solvers on voxels."""
+"""Scenes for the solvers on voxels, and random values for their transforms."""
 
 import numpy as np
 
 from demheat.scene import Material, Scene, Sphere
+from references.fft.transforms import fourier
 
 SCHEMES = ("cg", "eyre-milton")
 RULES = [("cg", "plain"), ("cg", "laminate"), ("cg", "links"), ("eyre-milton", "plain"), ("eyre-milton", "laminate")]
@@ -26,3 +27,11 @@ def dispersion(gradient=None, walls=None):
         Sphere((0.77, 0.61, 0.70), 0.17, good),
     ]
     return Scene((1.0, 1.2, 0.9), Material(1.0), spheres, gradient=gradient, walls=walls)
+
+
+def filled(shape, dtype=np.float64, threads=2):
+    """A Fourier transform of two components, and the random values that it holds."""
+    transform = fourier(2, shape, dtype, threads)
+    values = np.random.default_rng(0).random((2, *shape)).astype(dtype)
+    transform.real[..., : shape[2]] = values
+    return transform, values

@@ -116,8 +116,9 @@ def test_just_too_few_iterations_raise(scheme, less):
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_what_rounding_forbids_raises(scheme):
+    knobs = {"voxels": 8, "scheme": scheme, "rule": "laminate", "precision": "float32"}
     with pytest.raises(RuntimeError, match="did not converge"):
-        fft.solve(sphere_cell(30.0), voxels=8, scheme=scheme, precision="float32", tolerance=1.3e-7, max_iterations=300)
+        fft.solve(sphere_cell(30.0), tolerance=1.3e-7, max_iterations=300, **knobs)
 
 
 @pytest.mark.parametrize("scheme", SCHEMES)
@@ -173,12 +174,3 @@ def test_other_loads_are_refused(walls):
 def test_a_load_that_fixes_no_temperature_is_bad_input():
     with pytest.raises(ValueError, match="at least one wall with a temperature"):
         fft.solve(Scene((1, 1, 1), Material(1.0), walls={"x-": Flux(1.0), "x+": Flux(-1.0)}), voxels=4)
-
-
-def test_bad_points():
-    field = fft.solve(sphere_cell(10.0, walls=True), voxels=4)
-    for ask in (field.temperature_at, field.flux_at):
-        with pytest.raises(ValueError, match="finite"):
-            ask([[0.1, np.nan, 0.2]])
-        with pytest.raises(ValueError, match="1 lie outside the box"):
-            ask([[0.1, 0.2, 0.2], [0.1, 1.2, 0.2]])

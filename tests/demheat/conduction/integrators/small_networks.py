@@ -5,12 +5,10 @@ from functools import cache
 import numpy as np
 
 from demheat import Flux, Material, Scene
-from demheat.calibration import calibration
+from demheat.build import network_of as built
 from demheat.conduction.integrators.system import semi_discrete
 from demheat.conduction.transient import capacities
-from demheat.network.calibrated import contact_facets
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre, without_hidden
+from demheat.laws import Calibrated, Laguerre
 from demheat.packing.cache import relaxed
 from demheat.packing.radii import Bidisperse, Gaussian
 
@@ -32,31 +30,22 @@ def network_of(kind, number=600, seed=1):
     """Network of a kind: Laguerre; the same with spheres of size ratio 10; contacts, some with two links only."""
     radii = Bidisperse(10.0, 0.003) if kind == "ten" else Gaussian()
     packing = relaxed(number, size=BOX, periodic=False, seed=seed, radii=radii)
-    if kind == "calibrated":
-        facets = contact_facets(packing)
-    else:
-        facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False)
-    packing, facets = without_hidden(packing, facets)
-    if kind == "calibrated":
-        factor = calibration(facets, packing, JUMP)
-        facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    return connect(facets, packing.centers, packing.size, phase, np.array([MATERIAL.conductivity]))
+    return built(JUMP, packing, Calibrated() if kind == "calibrated" else Laguerre())
 
 
 @cache
 def system_of(kind, number=600):
     """Balance of a network of a kind, heated at once; contacts have their wall particles held, as in the papers."""
     network = network_of(kind, number)
-    pinned = np.ones(len(network.volumes), dtype=bool) if kind == "calibrated" else None
-    return semi_discrete(network, JUMP, capacities(network, JUMP), pinned=pinned)
+    held_centers = np.ones(len(network.volumes), dtype=bool) if kind == "calibrated" else None
+    return semi_discrete(network, JUMP, capacities(network, JUMP), held_centers=held_centers)
 
 
 def dense(system):
     """Conductance matrix of all nodes, (N, N) float array, from the rows one by one."""
     a = np.zeros((len(system.capacity),) * 2)
     for i in range(len(a)):
-        for e in range(system.indptr[i], system.indptr[i + 1]):
-            a[i, system.indices[e]] -= system.conductance[e]
-            a[i, i] += system.conductance[e]
+        for e in range(system.links.indptr[i], system.links.indptr[i + 1]):
+            a[i, system.links.indices[e]] -= system.links.conductance[e]
+            a[i, i] += system.links.conductance[e]
     return a

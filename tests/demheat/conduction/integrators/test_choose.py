@@ -5,8 +5,8 @@ import pytest
 from small_networks import system_of
 
 from demheat.conduction.integrators import choose
+from demheat.conduction.integrators.march import integrate
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
-from demheat.conduction.transient import integrate
 
 
 def work(stats):

@@ -10,8 +10,8 @@ from numpy.testing import assert_allclose
 from demheat.conduction.integrators.pace import pace_of
 
 
-def pace(*functions, passes=(), accuracy=1e-3):
-    return pace_of(functions, passes, 100.0, accuracy)
+def pace(*functions, transits=(), accuracy=1e-3):
+    return pace_of(functions, transits, 100.0, accuracy)
 
 
 @pytest.mark.parametrize("width", [0.11, 0.5, 30.0])
@@ -45,15 +45,15 @@ def test_steps_grow_short_where_a_load_changes_fast(function):
 def test_steps_of_a_source_go_with_its_speed_and_the_accuracy():
     source = (20.0, 60.0, 2.0)
     for accuracy, part in ((1e-3, 0.1), (1e-5, 0.01), (0.1, 0.25)):
-        found = pace(passes=[source], accuracy=accuracy)
+        found = pace(transits=[source], accuracy=accuracy)
         assert found.breaks.tolist() == [20.0, 60.0]
         assert_allclose([found.allowed(20.0), found.allowed(59.9), found.least(0.0, 30.0)], part * 2.0, rtol=1e-12)
         assert found.allowed(5.0) == 15.0 and found.allowed(60.0) == found.least(0.0, 20.0) == math.inf
-    still = pace(passes=[(-math.inf, math.inf, math.inf)])
+    still = pace(transits=[(-math.inf, math.inf, math.inf)])
     assert not len(still.breaks) and still.allowed(0.0) == math.inf
 
 
 def test_stops_are_times_and_breaks():
-    found = pace(passes=[(20.0, 60.0, 2.0)])
+    found = pace(transits=[(20.0, 60.0, 2.0)])
     assert found.stops(np.array([10.0, 60.0])) == [(10.0, True), (20.0, False), (60.0, True)]
     assert found.stops([10.0]) == [(10.0, True)]

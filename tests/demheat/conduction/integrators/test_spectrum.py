@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 from small_networks import JUMP, KINDS, dense, network_of, system_of
 
+from demheat.build import network_of as built
 from demheat.conduction.integrators import spectrum as module
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import System, semi_discrete
+from demheat.conduction.integrators.transient_kernels import Ties
 from demheat.conduction.transient import capacities
-from demheat.network.interface import connect
-from demheat.network.laguerre import laguerre
+from demheat.laws import Laguerre
+from demheat.network.links_kernels import Links
 from demheat.packing.cache import relaxed
 
 
@@ -53,8 +55,19 @@ def chain(n):
     count = np.array([len(row) for row in rows])
     links = np.concatenate([[0], np.cumsum(count)]), np.concatenate(rows).astype(np.uint32), np.ones(count.sum())
     none = np.empty(0, dtype=np.int64)
-    ties = none, none, none, none, np.empty(0), none
-    return System(*links, np.ones(n), np.ones(n), count.astype(float), *ties, None, None, 0.0, n)
+    return System(
+        links=Links(*links),
+        capacity=np.ones(n),
+        inverse=np.ones(n),
+        diagonal=count.astype(float),
+        held=none,
+        held_side=none,
+        ties=Ties(none, none, np.empty(0), none),
+        held_at=None,
+        heat_at=None,
+        level=0.0,
+        particles=n,
+    )
 
 
 def test_cells_in_a_row():
@@ -67,7 +80,8 @@ def test_cells_in_a_row():
 
 def test_no_exchange_of_heat_is_no_limit():
     system = system_of("laguerre")
-    still = system._replace(diagonal=np.zeros_like(system.diagonal), tie_conductance=np.zeros_like(system.tie_row))
+    untied = system.ties._replace(conductance=np.zeros(len(system.ties.row)))
+    still = system._replace(diagonal=np.zeros_like(system.diagonal), ties=untied)
     found = spectrum(still)
     assert found.radius == 0 and found.limit == np.inf
 
@@ -75,9 +89,8 @@ def test_no_exchange_of_heat_is_no_limit():
 def ratio(periodic):
     """Spectral radius over the mean row of Laguerre cells between walls, from a packing made with walls or not."""
     packing = relaxed(3000, periodic=periodic, seed=0)
-    facets = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False)
-    phase = np.zeros(packing.number, dtype=np.int32)
-    network = connect(facets, packing.centers, packing.size, phase, np.array([2.0]))
+    # Walls all round, whatever the packing was made for.
+    network = built(JUMP, packing._replace(periodic=np.zeros(3, dtype=bool)), Laguerre())
     found = spectrum(semi_discrete(network, JUMP, capacities(network, JUMP)))
     return found.radius / found.mean_row
 

@@ -1,4 +1,4 @@
-"""Every integrator: its order, stability, heat balance and error estimate; kernels against plain loops."""
+"""Every integrator: its order, stability, heat balance and error estimate."""
 
 from functools import cache
 from itertools import pairwise
@@ -9,11 +9,13 @@ from numpy.testing import assert_allclose
 from scipy.integrate import solve_ivp
 from small_networks import JUMP, KINDS, SWINGING, dense, network_of, system_of
 
-from demheat.conduction import transient_kernels as kernels
 from demheat.conduction.integrators import control, euler, linear, rkl2, trbdf2
+from demheat.conduction.integrators.march import linear_tolerance
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
-from demheat.conduction.transient import capacities, initial_temperature, linear_tolerance
+from demheat.conduction.integrators.transient_kernels import Ties
+from demheat.conduction.transient import capacities, initial_temperature
+from demheat.network.links_kernels import Links
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 END = 1.0
@@ -143,18 +145,13 @@ def test_stages_are_as_few_as_are_stable(stages):
 def scalar(rate):
     """One particle of unit capacity tied to a wall at temperature 0, and one step of a method on it."""
     system = system_of("laguerre")._replace(
-        indptr=np.array([0, 1, 1]),
-        indices=np.array([1], dtype=np.uint32),
-        conductance=np.array([rate]),
+        links=Links(np.array([0, 1, 1]), np.array([1], dtype=np.uint32), np.array([rate])),
         capacity=np.array([1.0, 0.0]),
         inverse=np.array([1.0, 0.0]),
         diagonal=np.array([rate, 0.0]),
         held=np.array([1]),
         held_side=np.array([2]),
-        tie_row=np.array([0]),
-        tie_node=np.array([1]),
-        tie_conductance=np.array([rate]),
-        tie_side=np.array([2]),
+        ties=Ties(np.array([0]), np.array([1]), np.array([rate]), np.array([2])),
         held_at=lambda time: np.zeros(1),
         heat_at=lambda time: (np.zeros(2), np.zeros(8)),
         particles=1,
@@ -196,32 +193,6 @@ def test_implicit_step_damps_what_it_does_not_resolve():
     advance = trbdf2.stepper(system, found, limit=lambda: 1e-14)
     # R(z) tends to -5.2 / z for the method's weights (Bank et al. 1985); 1e6 times a step of 1.
     assert abs(advance(np.array([1.0, 0.0]), 0.0, 1.0, None, False).x[0]) < 1e-5
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_kernels_against_plain_loops(kind):
-    system = system_of(kind)
-    rng = np.random.default_rng(2)
-    x, heat, first, other = rng.standard_normal((4, len(system.capacity)))
-    rate = (heat - dense(system) @ x) * system.inverse
-    out = np.empty_like(x)
-    kernels.rates(*system.links, heat, x, out)
-    scale = np.abs(rate).max()
-    # Rounding of sums of some 20 terms.
-    assert_allclose(out, rate, atol=1e-13 * scale)
-    kernels.forward(*system.links, heat, 0.3, x, out)
-    assert_allclose(out, x + 0.3 * rate, atol=1e-13 * scale)
-    start = rng.standard_normal(len(x))
-    expected = start + 1.2 * (x - start) - 0.4 * (other - start) + 0.7 * rate + 0.2 * first
-    kernels.stage(*system.links, heat, (1.2, -0.4, 0.7, 0.2), start, first, x, other)
-    assert_allclose(other, expected, atol=1e-13 * scale)
-    flow = np.zeros(8)
-    for row, node, side, h in zip(
-        system.tie_row, system.tie_node, system.tie_side, system.tie_conductance, strict=True
-    ):
-        flow[side] += h * (x[node] - x[row])
-    assert_allclose(system.inflow(x, np.zeros(8)), flow, atol=1e-12 * np.abs(flow).max())
-    assert np.count_nonzero(flow) == 2
 
 
 @pytest.mark.parametrize("preconditioner", ["jacobi", "multigrid"])
@@ -335,5 +306,5 @@ def test_held_nodes_follow_the_load():
     assert_allclose(x[system.held], np.sin(3.0 * END), rtol=1e-14)
     pinned = system_of("calibrated")
     assert set(pinned.held_at(0.0)) == {25.0, 35.0} and len(pinned.held) > 20
-    assert np.all(np.diff(pinned.indptr)[pinned.held] == 0) and np.all(pinned.capacity[pinned.held] == 0)
+    assert np.all(np.diff(pinned.links.indptr)[pinned.held] == 0) and np.all(pinned.capacity[pinned.held] == 0)
     assert JUMP.wall_temperatures["y+"] == 35.0

@@ -1,0 +1,110 @@
+"""The one way from a packing to a network of conductances, whatever its law."""
+
+import time
+import warnings
+
+import numpy as np
+
+from demheat.calibration import calibration, calibration_scene, cube_like
+from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.network.base import Network
+from demheat.network.calibrated import contact_facets
+from demheat.network.interface import connect
+from demheat.network.laguerre import drop_empty_cells, laguerre
+from demheat.network.platonic import platonic_facets
+from demheat.packing.base import Packing
+from demheat.packing.conforming import conform
+from demheat.scene import Scene
+
+
+def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0) -> Network:
+    """The network of conductances that a law makes of a packing in a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its materials and, for what is calibrated, its load. `law.check(scene)` says what a law cannot do.
+    packing : Packing
+        In the scene's box and domain, periodic where the scene is.
+    law : Laguerre, Calibrated or Platonic
+    seed : int
+        Of the pattern of twins at interfaces, where the law has them.
+
+    Returns
+    -------
+    Network
+        Of the particles that take part: those without a cell or with too few links to be kept are left out, twins are
+        added. With all that `demheat.sampling.field_of.field_of` needs.
+
+    Raises
+    ------
+    ValueError
+        If the law is none of these; or does not suit the packing, which may have no bulk, or no particles that touch
+        its walls.
+
+    Warns
+    -----
+    UserWarning
+        If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
+        holds no particle.
+    """
+    if not isinstance(law, tuple(LAWS.values())):
+        raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
+    begun = time.perf_counter()
+    if law.conforming:
+        packing = conform(packing, scene, seed=seed)
+        _warn_of_gaps(packing)
+    packing, facets = _facets(packing, law)
+    cut = time.perf_counter()
+    factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
+    # Wall areas are those of the walls: what scales is the conductance of their links.
+    facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
+    phase = scene.phase_at(packing.centers)
+    _warn_of_lost_phases(scene, phase)
+    network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
+    spent = {"tessellation_s": cut - begun, "network_s": time.perf_counter() - cut}
+    said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
+    return network._replace(stats=said | spent)
+
+
+def _cells(packing, law):
+    return laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic, domain=packing.domain)
+
+
+_FACETS = {Laguerre: _cells, Calibrated: contact_facets, Platonic: platonic_facets}
+
+
+def _facets(packing, law):
+    """The particles that take part, and their facets before they are calibrated."""
+    return drop_empty_cells(packing, _FACETS[type(law)](packing, law))
+
+
+def _calibrated(scene, packing, facets, law):
+    """C_t of a packing under a load like the scene's; of a sphere's in a cube of the same volume."""
+    if scene.domain == "sphere":
+        packing = cube_like(packing)
+        packing, facets = _facets(packing, law)
+        scene = Scene(size=tuple(packing.size), matrix=scene.matrix, initial=0.0)
+    flat = calibration_scene(scene)
+    return calibration(connect(packing, facets, flat.phase_at(packing.centers), flat.conductivities), flat)
+
+
+def _warn_of_gaps(packing):
+    count = packing.provenance["pairs_left_out"]
+    if count:
+        warnings.warn(
+            f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
+            "cross the interfaces there: use more particles where the gaps matter",
+            stacklevel=4,
+        )
+
+
+def _warn_of_lost_phases(scene, phase):
+    lost = np.flatnonzero(np.bincount(phase, minlength=len(scene.materials)) == 0)
+    # A phase may rightly be absent where later ones cover it: only the matrix can be.
+    if np.any(lost > 0):
+        warnings.warn(
+            f"no particle lies in inclusions {(lost[lost > 0] - 1).tolist()}: they are thinner than a "
+            "particle and take no part; use more particles",
+            stacklevel=4,
+        )

@@ -1,0 +1,233 @@
+"""A march in time: which integrator takes which steps, and what is said of it."""
+
+import math
+from collections.abc import Sequence
+from numbers import Real
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
+from demheat.conduction.integrators.pace import ANY, Pace
+from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
+from demheat.conduction.integrators.system import System, initial_state
+from demheat.network.base import SIDES
+
+METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
+# An implicit solve may leave an error of this part of the accuracy asked for. What solves leave adds up over the steps,
+# and accuracies below `control.USUAL` take more of them: there the part falls with the root of the accuracy.
+LINEAR = 0.2
+# Loads that change in time may force more steps than the accuracy does. Beyond so many of them the part falls as their
+# number grows: where little heat flows, nothing damps what each solve has left.
+FEW = 4.0
+
+
+def linear_tolerance(accuracy, steps=1):
+    """Error that an implicit solve may leave, in units of the temperature span.
+
+    Parameters
+    ----------
+    accuracy : float
+        Of the temperature span.
+    steps : int
+        That loads ask for at least.
+
+    Returns
+    -------
+    float
+    """
+    return LINEAR * accuracy * min(1.0, math.sqrt(accuracy / control.USUAL), FEW / max(steps, 1))
+
+
+class State(NamedTuple):
+    """Temperatures at an asked time.
+
+    Attributes
+    ----------
+    time : float, s
+    temperature : (n,) float array, K
+    stats : dict
+        See `integrate`.
+    """
+
+    time: float
+    temperature: np.ndarray
+    stats: dict
+
+
+def check_request(times, integrator, accuracy, step):
+    """Check what is asked of a march.
+
+    Parameters
+    ----------
+    times : sequence of float, s
+        Increasing, >= 0.
+    integrator : str
+        One of `choose.INTEGRATORS`.
+    accuracy : float
+        Of the temperature span, between 1e-9 and 0.1.
+    step : float, s, or None
+
+    Returns
+    -------
+    (k,) float array, s
+        The times.
+
+    Raises
+    ------
+    ValueError
+        If one of them is not as described.
+    """
+    array = _numbers(times)
+    if array is None or not np.all(np.isfinite(array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
+        raise ValueError(f"times = {times!r}: must be a sequence of numbers, finite, >= 0 s and increasing")
+    if integrator not in choose.INTEGRATORS:
+        raise ValueError(f"integrator = {integrator!r}: must be one of {', '.join(choose.INTEGRATORS)}")
+    if not (_real(accuracy) and 1e-9 <= accuracy <= 0.1):
+        raise ValueError(f"accuracy = {accuracy!r}: must lie between 1e-9 and 0.1 of the temperature span")
+    if step is not None and not (_real(step) and math.isfinite(step) and step > 0):
+        raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
+    return array
+
+
+def _numbers(values):
+    """A sequence of numbers as a (k,) float array; None if it is anything else, or empty."""
+    try:
+        array = np.asarray(values)
+    except ValueError:
+        return None
+    return array.astype(float) if array.ndim == 1 and len(array) and array.dtype.kind in "iuf" else None
+
+
+def _real(value):
+    return isinstance(value, Real) and not isinstance(value, bool)
+
+
+def integrate(
+    system: System,
+    temperature: np.ndarray,
+    times: Sequence[float],
+    *,
+    integrator: str = "auto",
+    accuracy: float = 1e-3,
+    step: float | None = None,
+    pace: Pace = ANY,
+):
+    """March a system from time 0 to the asked times.
+
+    Parameters
+    ----------
+    system : System
+    temperature : (n,) float array, K
+        At time 0.
+    times : sequence of float, s
+    integrator : {"auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid"}
+    accuracy : float
+        Of the temperature span (the range met so far): steps are chosen so that the temporal error, rms over the heat
+        capacity, stays about below it. Explicit Euler, as in the papers, takes its largest stable step instead.
+    step : float, s, optional
+        Equal steps of at most this size instead.
+    pace : Pace
+        Times at which steps end as well, where loads jump, and the longest steps; equal steps heed the former only.
+
+    Yields
+    ------
+    State
+        With stats integrator, order, unknowns, steps, rejected, stages, iterations, residual (the largest error that a
+        linear solve left, by its recomputed residual, over the span), step (the last), step_limit (largest stable step
+        of explicit Euler), positivity_limit, spectral_radius, spectral_ratio (to the mean row), heat_change (J),
+        heat_in (J by side and "sources") and energy_error: heat change minus heat in, over the heat that came in, went
+        out or moved.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or `step` is above the stable limit of explicit Euler.
+    RuntimeError
+        If steps or linear solves do not converge.
+    """
+    times = check_request(times, integrator, accuracy, step)
+    return march(system, temperature, times, integrator=integrator, accuracy=accuracy, step=step, pace=pace)
+
+
+def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None, pace=ANY):
+    """The same as `integrate` of a request that was checked before.
+
+    Parameters
+    ----------
+    system, temperature, times, integrator, accuracy, step, pace
+        As in `integrate`; times as `check_request` gives them.
+
+    Returns
+    -------
+    iterator of State
+    """
+    accuracy, step = float(accuracy), None if step is None else float(step)
+    rates, needed = spectrum_of(system), pace.steps(times[-1])
+    if integrator == "auto":
+        moving, outputs = len(pace.longest) > 0, max(len(times), needed)
+        integrator = choose.chosen(rates, float(times[-1]), accuracy, outputs, moving=moving)
+    method = METHODS[integrator]
+    largest = method.largest_step(rates)
+    if step is not None and step > largest * (1 + 1e-12):
+        raise ValueError(f"step = {step!r}: explicit Euler is unstable above {largest:.6g} s on this network")
+    x = initial_state(system, temperature, 0.0)
+    span = control.span_of(system, x)
+    advance = _stepper(system, rates, integrator, linear_tolerance(accuracy, needed), span)
+    known = {"integrator": integrator, "order": method.ORDER} | _limits(rates)
+    # The state that was given is overwritten on the way.
+    start = x.copy()
+    if step is None and method.ESTIMATES:
+        # The first step changes temperatures by about what it may err.
+        first = min(times[-1] or 1.0, 2.0 / max(rates.radius, 1e-300))
+        chosen = {"accuracy": accuracy, "span": span, "first": first, "pace": pace}
+        states = control.adaptive_steps(advance, system, x, times, **chosen)
+    else:
+        size = min(step or math.inf, largest, times[-1] or 1.0)
+        heeded = pace if step is None else Pace(pace.breaks)
+        states = control.fixed_steps(advance, system, x, times, step=size, span=span, pace=heeded)
+    return _reported(system, start, states, span, known)
+
+
+def _stepper(system, rates, integrator, tolerance, span):
+    method = METHODS[integrator]
+    if method is not trbdf2:
+        return method.stepper(system, rates)
+    kind = "multigrid" if integrator.endswith("multigrid") else "jacobi"
+    return method.stepper(system, rates, limit=lambda: tolerance * span(), preconditioner=kind)
+
+
+def _reported(system, start, states, span, known):
+    """Each state with what is said of it; those of the march as a whole are known."""
+    for time, now, ledger in states:
+        stats = known | {"unknowns": int((system.capacity > 0).sum())} | _account(system, start, now, ledger)
+        stats["residual"] = ledger.residual / span()
+        yield State(float(time), now[: system.particles] + system.level, stats)
+
+
+def _account(system, start, now, ledger):
+    """Steps done and the balance of heat."""
+    moved = system.capacity * (now - start)
+    change, came = float(moved.sum()), ledger.inflow
+    scale = max(float(ledger.through.sum()), float(np.abs(moved).sum()))
+    names = (*SIDES, "sources")
+    return {
+        "steps": ledger.steps,
+        "rejected": ledger.rejected,
+        "stages": ledger.stages,
+        "iterations": ledger.iterations,
+        "step": ledger.step,
+        "heat_change": change,
+        "heat_in": {name: float(heat) for name, heat in zip(names, came, strict=True) if heat},
+        "energy_error": abs(change - float(came.sum())) / scale if scale > 0 else 0.0,
+    }
+
+
+def _limits(rates):
+    return {
+        "step_limit": rates.limit,
+        "positivity_limit": rates.positivity,
+        "spectral_radius": rates.radius,
+        "spectral_ratio": rates.radius / rates.mean_row if rates.mean_row > 0 else 1.0,
+        "spectral_iterations": rates.iterations,
+    }

@@ -1,0 +1,247 @@
+"""Laws of conductance, as plain objects: what each may be asked for, and which scenes it cannot take.
+
+They are declared here and at work in `demheat.build`, so that naming a law loads no engine.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+from numbers import Real
+from typing import ClassVar
+
+import numpy as np
+
+from demheat.scene import Scene
+
+RULES = ("harmonic", "arithmetic")
+MEANS = ("arithmetic", "harmonic", "geometric")
+POLICIES = ("nearest", "keep", "drop")
+WALL_RULES = ("center", "surface")
+# Short forms give the choices of all laws: those of the contact laws at these values ask nothing of another law.
+UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": None}
+
+
+@dataclass(frozen=True, kw_only=True)
+class Laguerre:
+    """Transmission surfaces are the facets of the radical tessellation: exact for linear fields, without calibration.
+
+    Parameters
+    ----------
+    conforming : bool
+        Mirror particles across every interface so that facets lie on it.
+    interface : {"harmonic", "arithmetic"}
+        Rule for links between materials (Haddad et al. 2021, eq. 24).
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these.
+    """
+
+    conforming: bool = True
+    interface: str = "harmonic"
+
+    name: ClassVar[str] = "laguerre"
+    # Facets bound cells that fill the body; no C_t; wall temperatures act at the wall.
+    cells: ClassVar[bool] = True
+    factor: ClassVar[float] = 1.0
+    holds_centers: ClassVar[bool] = False
+
+    def __post_init__(self):
+        _flag("conforming", self.conforming)
+        _choice("interface", self.interface, RULES)
+
+    @classmethod
+    def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
+        """The law from the keywords of `demheat.solve`, where None stands for the default.
+
+        Raises
+        ------
+        ValueError
+            If a choice is not valid, or is one that only other laws have.
+        TypeError
+            If no law knows a keyword.
+        """
+        odd = [f"{name} = {value!r}" for name, value in others.items() if value != UNASKED.get(name, value)]
+        if odd:
+            raise ValueError(
+                f"{', '.join(odd)} with law = 'laguerre': only the laws 'calibrated' and 'platonic' have these choices"
+            )
+        _known(cls, {name: value for name, value in others.items() if name not in UNASKED})
+        return cls(conforming=True if conforming is None else conforming, interface=interface)
+
+    def check(self, scene: Scene) -> None:
+        """Raise NotImplementedError if the law cannot do a scene."""
+        if self.conforming and scene.inclusions:
+            scene.require("inclusions there have no conforming packing; pass conforming=False", domain="box")
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Contacts:
+    """What the laws that know contacts only have in common."""
+
+    interface: str = "harmonic"
+    coordination: float | None = None
+    gap: float | None = None
+    sparse: str = "nearest"
+    wall: str = "center"
+
+    cells: ClassVar[bool] = False
+    conforming: ClassVar[bool] = False
+
+    def __post_init__(self):
+        _choice("interface", self.interface, RULES)
+        _choice("sparse", self.sparse, POLICIES)
+        _choice("wall", self.wall, WALL_RULES)
+        if self.coordination is not None:
+            _number("coordination", self.coordination, 0.0, "a finite number > 0")
+        if self.gap is not None:
+            _number("gap", self.gap, -1.0, "a finite part of r_i + r_j > -1")
+        if self.gap is not None and self.coordination is not None:
+            raise ValueError(
+                f"gap = {self.gap!r}, coordination = {self.coordination!r}: one gives the other; pass one of them"
+            )
+        if self.gap is None and self.coordination is None:
+            object.__setattr__(self, "coordination", self.usual)
+
+    @property
+    def holds_centers(self) -> bool:
+        """Whether centres of particles at a wall with a temperature are held at it, as in the papers."""
+        return self.wall == "center"
+
+    @classmethod
+    def short(cls, *, conforming: bool | None = None, **knobs: object) -> _Contacts:
+        """The law from the keywords of `demheat.solve`.
+
+        Raises
+        ------
+        ValueError
+            If a choice is not valid, or conforming is True.
+        TypeError
+            If the law does not know a keyword.
+        """
+        if conforming is not None:
+            _flag("conforming", conforming)
+        if conforming:
+            raise ValueError(
+                f"conforming = True with law = {cls.name!r}: twins need not touch; must be False, or law 'laguerre'"
+            )
+        _known(cls, knobs)
+        return cls(**knobs)
+
+    def check(self, scene: Scene) -> None:
+        """Raise NotImplementedError if the law cannot do a scene."""
+        if self.wall == "surface":
+            scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
+        else:
+            scene.require(
+                f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"
+                " where two held walls meet, one particle would join them; use wall 'surface'",
+                walls="isothermal ones apart",
+            )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Calibrated(_Contacts):
+    """Transmission surfaces C_t pi R_m^2 between touching particles (Haddad et al. 2021, eqs. 7-9).
+
+    Parameters
+    ----------
+    interface : {"harmonic", "arithmetic"}
+        Rule for links between materials (Haddad et al. 2021, eq. 24).
+    coordination : float, optional
+        Mean number of contacts of particles away from walls; 7.5, as in the paper, where no gap is given.
+    gap : float, optional
+        Contacts are within this part of r_i + r_j, instead of as many as `coordination` asks for. For bodies too thin
+        to have particles away from walls.
+    sparse : {"nearest", "keep", "drop"}
+        Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
+        that touch nobody become islands without heat); or take out, again and again until none is left, particles with
+        fewer than 2 links (walls count as one) and all clusters but the largest.
+    wall : {"center", "surface"}
+        Where a wall temperature acts: in the centres of the particles that touch the wall, a radius inside the body, as
+        in the papers; or at the wall, see `demheat.network.calibrated.surface_distances`.
+    mean : {"arithmetic", "harmonic", "geometric"}
+        R_m of the two radii; the papers' is the arithmetic one.
+    additive : bool
+        The gap is the same length for all pairs, as in `demheat.packing.neighbours.contacts`.
+    factor : float, optional
+        C_t. By default the one that gives a body of one material its conductivity, from a homogeneous steady solve:
+        between the walls along the scene's load; for a sphere in a cube of the same volume, packed anew.
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these, or both gap and coordination are given.
+    """
+
+    mean: str = "arithmetic"
+    additive: bool = False
+    factor: float | None = None
+
+    name: ClassVar[str] = "calibrated"
+    # Contacts of the papers' own law: Haddad et al. 2021.
+    usual: ClassVar[float] = 7.5
+
+    def __post_init__(self):
+        super().__post_init__()
+        _choice("mean", self.mean, MEANS)
+        _flag("additive", self.additive)
+        if self.factor is not None:
+            _number("factor", self.factor, 0.0, "a finite number > 0")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Platonic(_Contacts):
+    """Transmission surfaces and capacities of regular polyhedra, by the number of contacts of each particle.
+
+    Source: Terreros et al. 2013, section 4. Volumes, and with them the heat capacity, sum to the body's only by chance.
+
+    Parameters
+    ----------
+    interface, gap, wall : str, float, str
+        As in `Calibrated`.
+    coordination : float, optional
+        As in `Calibrated`, but 7.2 where no gap is given: the paper states no number.
+    sparse : {"nearest", "keep", "drop"}
+        As in `Calibrated`. A particle without any neighbour, whose capacity the paper's table would make infinite,
+        takes no part.
+
+    Raises
+    ------
+    ValueError
+        If an argument is none of these, or both gap and coordination are given.
+    """
+
+    name: ClassVar[str] = "platonic"
+    factor: ClassVar[float] = 1.0
+    # The paper does not say how many contacts its packings have. At so many the errors of conductance and capacity, 8 %
+    # too much each, were found to cancel in the diffusivity (see `studies.table1_platonic`), which the paper's tests
+    # measure.
+    usual: ClassVar[float] = 7.2
+
+
+LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}
+
+
+def _flag(name, value):
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} = {value!r}: must be True or False")
+
+
+def _choice(name, value, valid):
+    if value not in valid:
+        raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
+
+
+def _number(name, value, low, valid):
+    if not (isinstance(value, Real) and not isinstance(value, bool) and low < value < math.inf):
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+
+
+def _known(kind, knobs):
+    own = [field.name for field in fields(kind)]
+    odd = [name for name in knobs if name not in own]
+    if odd:
+        raise TypeError(f"{', '.join(odd)}: no keyword of solve and evolve, nor of law {kind.name!r}; it has {own}")

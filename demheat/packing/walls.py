@@ -1,0 +1,101 @@
+"""How far the spheres of a packing lie from its walls."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from demheat import bodies
+from demheat.packing.base import Packing
+
+
+def walls(packing: Packing) -> tuple[str, ...]:
+    """Names of the walls of a packing."""
+    return bodies.wall_names(packing.domain, packing.periodic)
+
+
+def wall_distance(packing: Packing, wall) -> np.ndarray:
+    """Distance of each centre from one wall, (n,) float array, m.
+
+    Parameters
+    ----------
+    packing : Packing
+    wall : str
+        One of `walls`.
+    """
+    return bodies.wall_distance(packing.centers, wall, packing.domain, packing.size)
+
+
+def wall_distances(packing: Packing) -> np.ndarray:
+    """Distance of each centre from the nearest wall, (n,) float array, m; infinite where there is none."""
+    return bodies.nearest_wall(packing.centers, walls(packing), packing.domain, packing.size)
+
+
+def outward(packing: Packing, wall) -> np.ndarray:
+    """Unit vector from each centre towards one wall, (n, 3) float array; NaN where no direction leads there first.
+
+    Parameters
+    ----------
+    packing : Packing
+    wall : str
+        One of `walls`.
+    """
+    return bodies.outward(packing.centers, wall, packing.domain, packing.size)
+
+
+def check_margin(packing: Packing, margin, name="margin") -> float:
+    """Depth of the core in metres for a margin in mean radii.
+
+    Parameters
+    ----------
+    packing : Packing
+    margin : float
+        In mean radii.
+    name : str
+        Of the argument, for the message.
+
+    Returns
+    -------
+    float, m
+
+    Raises
+    ------
+    ValueError
+        If the margin is not a number >= 0, or leaves no core; the message says the largest valid one.
+    """
+    try:
+        good = math.isfinite(margin) and margin >= 0
+    except TypeError:
+        good = False
+    if not good:
+        raise ValueError(f"{name} = {margin!r}: must be a finite number of mean radii >= 0")
+    mean = float(np.mean(packing.radii))
+    largest = float(np.min(np.where(packing.periodic, np.inf, packing.size / 2)))
+    if margin * mean >= largest:
+        raise ValueError(f"{name} = {margin!r}: must be < {largest / mean:.6g} mean radii, where no core is left")
+    return float(margin) * mean
+
+
+def bulk(packing: Packing, margin) -> np.ndarray:
+    """Which particles lie at least so far away from every wall, flat or round, (n,) bool array.
+
+    Parameters
+    ----------
+    packing : Packing
+    margin : float
+        In mean radii; 0 counts all particles.
+
+    Raises
+    ------
+    ValueError
+        As `check_margin`, or if no particle is that deep.
+    """
+    depth = check_margin(packing, margin)
+    deep = wall_distances(packing) >= depth
+    if depth == 0:
+        # Rounding may put the centre of a particle at a curved wall beyond it.
+        deep[:] = True
+    if not deep.any():
+        raise ValueError(f"margin = {margin!r}: no particle is that many mean radii away from all walls")
+    return deep

@@ -1,0 +1,56 @@
+"""What can be checked of one Field without another: heat in against heat out, conductivity against its bounds."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from demheat.field import Field
+
+
+def heat_balance(field: Field) -> float:
+    """Sum of the heat that enters through the walls over the largest of them; 0 in a perfect steady balance.
+
+    Raises
+    ------
+    ValueError
+        In a periodic cell, where heat crosses no wall.
+    """
+    if field.scene.periodic:
+        raise ValueError("field.scene is periodic: no heat enters through walls, there is no balance to check")
+    heats = np.array(list(field.wall_heat.values()))
+    largest = np.abs(heats).max(initial=0.0)
+    return float(heats.sum() / largest) if largest > 0 else 0.0
+
+
+def bound_violation(field: Field | float, lower: float, upper: float) -> float:
+    """How far the effective conductivity lies outside bounds, relative to the bound passed; 0 between them.
+
+    Parameters
+    ----------
+    field : Field or float
+        A Field, or a conductivity, W/(m K).
+    lower, upper : float, W/(m K)
+        Worked out with `field.fractions`, the method's own: with others a correct method may look wrong.
+
+    Returns
+    -------
+    float
+        Negative below the lower bound, positive above the upper one, not-a-number if the conductivity is.
+
+    Raises
+    ------
+    ValueError
+        Unless 0 <= lower <= upper.
+    """
+    if not 0 <= lower <= upper:
+        raise ValueError(f"lower = {lower!r}, upper = {upper!r}: must be 0 <= lower <= upper")
+    k = float(getattr(field, "conductivity", field))
+    if k < lower:
+        return k / lower - 1.0
+    if k > upper:
+        return k / upper - 1.0 if upper > 0 else math.inf
+    return 0.0 * k  # not-a-number stays one

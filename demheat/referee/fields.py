@@ -1,0 +1,210 @@
+"""Errors of one Field against another."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from demheat.referee.values import rms, value_error, vector_error, worst
+
+if TYPE_CHECKING:
+    from demheat.field import Field
+    from demheat.scene import Scene
+
+Mask = np.ndarray | Callable[[np.ndarray], np.ndarray]
+
+
+class Error(NamedTuple):
+    """A field error over many points.
+
+    Attributes
+    ----------
+    values : (n,) float array
+        Signed, or sizes of vectors.
+    points : (n, 3) float array, m
+    weights : (n,) float array, m3, or None
+        Volumes; None if all points weigh the same.
+    """
+
+    values: np.ndarray
+    points: np.ndarray
+    weights: np.ndarray | None
+
+    @property
+    def rms(self) -> float:
+        """Root of the weighted mean square."""
+        return rms(self.values, self.weights)
+
+    @property
+    def max(self) -> float:
+        """Largest size; not-a-number if one of the values is."""
+        return abs(worst(self.values)[1])
+
+    @property
+    def where(self) -> np.ndarray:
+        """Point of the largest error, (3,) float array, m."""
+        return self.points[worst(self.values)[0]]
+
+    def part(self, mask: np.ndarray) -> Error:
+        """The same over some of the points, those of a (n,) bool array."""
+        return Error(self.values[mask], self.points[mask], None if self.weights is None else self.weights[mask])
+
+
+def conductivity_error(field: Field, reference: Field | float) -> float:
+    """Signed relative error of the effective conductivity.
+
+    Parameters
+    ----------
+    field : Field
+    reference : Field or float
+        A Field, or a conductivity in W/(m K).
+
+    Raises
+    ------
+    ValueError
+        Unless the reference's conductivity is finite and positive.
+    """
+    exact = float(getattr(reference, "conductivity", reference))
+    if not (np.isfinite(exact) and exact > 0):
+        raise ValueError(f"reference conductivity = {exact}: must be finite and > 0, a relative error follows from it")
+    return value_error(field.conductivity, exact)
+
+
+def span(scene: Scene, reference: Field | None = None) -> float:
+    """Temperature difference that the load imposes, K.
+
+    The largest difference between walls, in time between them and the initial temperature; in a periodic cell that of
+    the mean gradient over the box, sum |g_i| L_i.
+
+    Parameters
+    ----------
+    scene : Scene
+    reference : Field, optional
+        One with a time says that the comparison is one in time. Where the scene has fewer than two temperatures, the
+        walls' mean temperatures of the reference count too.
+
+    Raises
+    ------
+    ValueError
+        If there is no difference: relative errors of temperature do not follow.
+    """
+    if scene.periodic:
+        return float(np.abs(scene.gradient) @ np.array(scene.size))
+    time = None if reference is None else reference.time
+    temperatures = list((scene if time is None else scene.at(time)).wall_temperatures.values())
+    if time is not None and not callable(scene.initial):
+        temperatures.append(float(scene.initial))
+    if len(temperatures) < 2 and reference is not None:
+        temperatures += reference.wall_temperature.values()
+    if not temperatures or max(temperatures) == min(temperatures):
+        raise ValueError(f"Scene.walls = {dict(scene.walls)}: no temperature difference, no relative error follows")
+    return float(max(temperatures) - min(temperatures))
+
+
+def temperature_error(
+    field: Field,
+    reference: Field,
+    points: np.ndarray | None = None,
+    *,
+    values: np.ndarray | None = None,
+    mask: Mask | None = None,
+    unit: str = "span",
+) -> Error:
+    """Signed error of temperature, of steady fields or of two at one time.
+
+    Parameters
+    ----------
+    field, reference : Field
+    points : (n, 3) float array, m, optional
+        Where to compare, all with the same weight; by default the field's own samples, weighted by volume.
+    values : (n,) float array, K, optional
+        The field's temperatures at the points, if they are at hand already.
+    mask : (n,) bool array or callable (n, 3) float array -> (n,) bool array, optional
+        Points to use, for instance those away from interfaces.
+    unit : {"span", "%", "K"}
+        Span that the load imposes, see `span`; a hundredth of it; kelvin.
+
+    Returns
+    -------
+    Error
+    """
+    _check_unit(unit, ("span", "%", "K"))
+    points, weights, values = _compared(field, points, values, mask, "temperature")
+    difference = values - reference.temperature_at(points)
+    if field.scene.periodic:
+        difference = difference - np.average(difference, weights=weights)
+    if unit != "K":
+        difference = (100 if unit == "%" else 1) * difference / span(field.scene, reference)
+    return Error(difference, points, weights)
+
+
+def flux_error(
+    field: Field,
+    reference: Field,
+    points: np.ndarray | None = None,
+    *,
+    values: np.ndarray | None = None,
+    mask: Mask | None = None,
+    unit: str = "mean",
+    along: bool = False,
+) -> Error:
+    """Error of the flux: size of the vector's, or signed of its component along the reference's mean flux.
+
+    Parameters
+    ----------
+    field, reference : Field
+    points, mask
+        As those of `temperature_error`.
+    values : (n, 3) float array, W/m2, optional
+        Fluxes at the points, if they are at hand already or are others than `field.flux_at` gives: a halo's.
+    unit : {"mean", "%"}
+        Magnitude of the reference's mean flux, or a hundredth of it.
+    along : bool
+        Compare the component along the reference's mean flux only.
+
+    Returns
+    -------
+    Error
+
+    Raises
+    ------
+    ValueError
+        If the reference has no mean flux.
+    """
+    _check_unit(unit, ("mean", "%"))
+    scale = np.linalg.norm(reference.mean_flux)
+    if scale == 0:
+        raise ValueError("reference.mean_flux = 0: no relative error of the flux follows")
+    points, weights, values = _compared(field, points, values, mask, "flux")
+    right, percent = reference.flux_at(points), 100 if unit == "%" else 1
+    if along:
+        return Error(percent * ((values - right) @ reference.mean_flux) / scale**2, points, weights)
+    return Error(vector_error(values, right) * (percent / scale), points, weights)
+
+
+def _check_unit(unit, valid):
+    if unit not in valid:
+        raise ValueError(f"unit = {unit!r}: must be one of {', '.join(map(repr, valid))}")
+
+
+def _compared(field, points, values, mask, name):
+    """Points, weights (None where all are the same) and the field's values there."""
+    weights = None
+    if points is None:
+        samples = field.samples
+        points, weights = samples.points, samples.volumes
+        values = getattr(samples, name) if values is None else values
+    points = np.asarray(points, dtype=float).reshape(-1, 3)
+    if values is not None and len(values) != len(points):
+        raise ValueError(f"values of length {len(values)}: must be one for each of {len(points)} points")
+    keep = mask(points) if callable(mask) else mask
+    if keep is not None:
+        keep = np.asarray(keep)
+        if keep.dtype != bool or keep.shape != (len(points),):
+            raise ValueError(f"mask of shape {keep.shape}, {keep.dtype}: must be {len(points)} booleans")
+        points, weights, values = (part if part is None else part[keep] for part in (points, weights, values))
+    if not len(points):
+        raise ValueError("points: none left to compare")
+    return points, weights, getattr(field, name + "_at")(points) if values is None else values

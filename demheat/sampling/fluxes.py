@@ -1,0 +1,65 @@
+"""Fluxes of a solved network: of each of its cells, and of the whole body."""
+
+import numpy as np
+
+from demheat.conduction import steady_kernels as kernels
+from demheat.network.base import wall_normals
+from demheat.network.links_kernels import links_of, places_of
+from demheat.sampling.particle_flux import particle_flux
+
+
+def mean_flux(network, scene, solution):
+    """Volume average of the flux density from the heat carried along links and wall links.
+
+    In a periodic cell the first moment of the heat flows. Exact for linear temperatures on a Laguerre network. Between
+    walls, unlike the mean of the heat that enters and leaves, it holds while heat is stored.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+        Its volume only.
+    solution : Solution
+
+    Returns
+    -------
+    (3,) float array, W/m2
+    """
+    first = np.empty((len(network.volumes), 3))
+    kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
+    towards = wall_normals(network) * network.wall_distance[:, None]
+    return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
+
+
+def cell_fluxes(network, solution):
+    """Flux density of each particle from the heat flows of its links.
+
+    With cells q = -(sum S e e)^-1 sum e W, with W the heat received through a facet of area S in direction e: exact for
+    linear fields, one-sided at facets on interfaces. With contacts the papers' q = -1/(2 V) sum W b, V the volume that
+    the particle stands for and b the branch vector (Haddad et al. 2021, eq. 20, with Fourier's sign).
+
+    Parameters
+    ----------
+    network : Network
+    solution : Solution
+
+    Returns
+    -------
+    (n, 3) float array, W/m2
+    """
+    if not network.cells:
+        return particle_flux(network, solution, split="half")
+    n = len(network.volumes)
+    shape, flow = np.empty((n, 3, 3)), np.empty((n, 3))
+    where = links_of(network), places_of(network)
+    kernels.reconstruct(*where, network.area, solution.mean_gradient, filled(solution), shape, flow)
+    normal = wall_normals(network)
+    outer = normal[:, :, None] * normal[:, None, :]
+    np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
+    np.add.at(flow, network.wall_particle, normal * solution.wall_heat[:, None])
+    return -np.linalg.solve(shape, flow[..., None])[..., 0]
+
+
+def filled(solution):
+    """Fluctuations with islands, which exchange no heat, set to zero, (n,) float array, K."""
+    return np.nan_to_num(solution.temperature)

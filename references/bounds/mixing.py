@@ -1,0 +1,176 @@
+"""What bounds and estimates of two phases share: checked arguments, and formulas with their limits at 0 and infinity.
+
+All bounds have one form (Hill; Milton 2002, ch. 26): with <k> = p1 k1 + p2 k2 and the exchanged <k~> = p2 k1 +
+p1 k2, k(X) = <k> - p1 p2 (k2 - k1)^2 / (<k~> + X) = (k1 k2 + X <k>) / (<k~> + X), rising with X. X = 2 k1 is Maxwell,
+X = 2 min(k1, k2) and 2 max(k1, k2) Hashin and Shtrikman. The last form loses no digits and has its limits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+# Fractions worked out by a method sum to 1 within this, by rounding of sums over millions of cells.
+SUM_TOLERANCE = 1e-8
+
+
+def checked_phases(conductivities, fractions):
+    """Conductivities and fractions of any number of phases as arrays, or ValueError.
+
+    Parameters
+    ----------
+    conductivities : (..., phases) array-like, W/(m K)
+    fractions : (..., phases) array-like
+
+    Returns
+    -------
+    tuple of two (..., phases) float arrays
+    """
+    k, p = np.broadcast_arrays(
+        _conductivity("conductivities", conductivities), checked_fraction("fractions", fractions)
+    )
+    if k.ndim == 0 or not np.all(np.abs(p.sum(axis=-1) - 1) <= SUM_TOLERANCE):
+        raise ValueError(f"fractions = {fractions!r}: must sum to 1 along the last axis, that of the phases")
+    return k, p
+
+
+def checked_pair(k_matrix, k_inclusion, fraction, zeta2=None):
+    """Arguments of a two-phase function as arrays, or ValueError.
+
+    Parameters
+    ----------
+    k_matrix, k_inclusion : (...) array-like, W/(m K)
+    fraction : (...) array-like
+    zeta2 : (...) array-like, optional
+
+    Returns
+    -------
+    tuple of three or four (...) float arrays
+    """
+    arrays = [
+        _conductivity("k_matrix", k_matrix),
+        _conductivity("k_inclusion", k_inclusion),
+        checked_fraction("fraction", fraction),
+    ]
+    if zeta2 is not None:
+        arrays.append(checked_fraction("zeta2", zeta2))
+    return np.broadcast_arrays(*arrays)
+
+
+def _conductivity(name, value):
+    array = np.asarray(value, dtype=float)
+    if not np.all(array >= 0):
+        raise ValueError(f"{name} = {value!r}: must be >= 0, infinity included")
+    return array
+
+
+def checked_fraction(name, value):
+    """A number of 0 to 1, or ValueError.
+
+    Parameters
+    ----------
+    name : str
+        As users know it.
+    value : (...) array-like
+
+    Returns
+    -------
+    (...) float array
+    """
+    array = np.asarray(value, dtype=float)
+    if not np.all((array >= 0) & (array <= 1)):
+        raise ValueError(f"{name} = {value!r}: must lie in 0 to 1")
+    return array
+
+
+def checked_positive(name, value):
+    """A finite number above 0, or ValueError.
+
+    Parameters
+    ----------
+    name : str
+        As users know it.
+    value : (...) array-like
+
+    Returns
+    -------
+    (...) float array
+    """
+    array = np.asarray(value, dtype=float)
+    if not np.all((array > 0) & np.isfinite(array)):
+        raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
+    return array
+
+
+def contrast(k1, k2, weight):
+    """(k2 - k1)/(k2 + weight k1) with its limits.
+
+    Parameters
+    ----------
+    k1, k2 : (...) float arrays, W/(m K)
+    weight : float
+
+    Returns
+    -------
+    (...) float array
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        value = np.where(np.isinf(k2), 1.0, (k2 - k1) / (k2 + weight * k1))
+    return np.where(k1 == k2, 0.0, np.where(np.isinf(k1), -1 / weight, value))
+
+
+def dispersed(k1, p2, beta, third):
+    """Maxwell's estimate with a term of third order in the contrast, k1 (1 + 2 p2 beta - t)/(1 - p2 beta - t).
+
+    Parameters
+    ----------
+    k1 : (...) float array, W/(m K)
+    p2, beta, third : (...) float arrays
+        Fraction, contrast and t.
+
+    Returns
+    -------
+    (...) float array, W/(m K)
+    """
+    # Rounding must not pass the pole.
+    above, below = 1 + 2 * p2 * beta - third, np.maximum(1 - p2 * beta - third, 0.0)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return np.where(above == 0, 0.0, k1 * above / below)
+
+
+def mixed(k1, k2, p2, x):
+    """k(X) of the module docstring, with its limits.
+
+    Parameters
+    ----------
+    k1, k2, x : (...) float arrays, W/(m K)
+    p2 : (...) float array
+        Fraction of the second phase.
+
+    Returns
+    -------
+    (...) float array, W/(m K)
+    """
+    p1 = 1 - p2
+    with np.errstate(invalid="ignore", divide="ignore"):
+        mean, exchanged = p1 * k1 + p2 * k2, p2 * k1 + p1 * k2
+        k = (k1 * k2 + x * mean) / (exchanged + x)
+        k = np.where(np.isinf(k2), np.where(np.isinf(x), np.inf, (k1 + x * p2) / p1), k)
+        k = np.where(np.isinf(k1), np.where(np.isinf(x), np.inf, (k2 + x * p1) / p2), k)
+    k = np.where((exchanged + x == 0) | (np.isinf(k1) & np.isinf(k2)), np.maximum(k1, k2), k)
+    return pure(k, k1, k2, p2)
+
+
+def pure(k, k1, k2, p2):
+    """The value of a mixture, or that of the phase where there is one alone.
+
+    Parameters
+    ----------
+    k, k1, k2 : (...) float arrays, W/(m K)
+    p2 : (...) float array
+        Fraction of the second phase.
+
+    Returns
+    -------
+    (...) float array, W/(m K)
+    """
+    return np.where(p2 == 0, k1, np.where(p2 == 1, k2, k))[()]

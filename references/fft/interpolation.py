@@ -1,0 +1,166 @@
+"""Temperatures and fluxes of a voxel solution at any point of the box."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.field import Samples
+from demheat.scene import Scene
+from references.voxels.paint import Voxels, centers
+
+# Flux and slope jump at an interface: a voxel of another phase, and a cut one, counts only where nothing is better.
+CUT, OTHER = 1e-2, 1e-6
+
+
+class Grid(NamedTuple):
+    """A solution at the voxel centres, its axes in the order of the box (the load first if there are walls).
+
+    Attributes
+    ----------
+    scene : Scene
+        In the order of the box.
+    order : tuple of int
+        Axes of the user's scene that are axes 0, 1, 2 of the box.
+    voxels : Voxels
+    slope : (3,) float array, K/m
+    level : float, K
+        Linear part: level + slope.x.
+    sharp : bool
+        The temperature of a cut voxel is that of its centre (links), not a mean over its phases.
+    temperature : (nx, ny, nz) float array, K
+        Less the linear part; as `flux`, None until it is solved for.
+    flux : (3, nx, ny, nz) float array, W/m2
+        Along Fourier's direction.
+    """
+
+    scene: Scene
+    order: tuple
+    voxels: Voxels
+    slope: np.ndarray
+    level: float
+    sharp: bool
+    temperature: np.ndarray | None = None
+    flux: np.ndarray | None = None
+
+
+def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Interpolation between the whole voxels of the point's own phase; exact for linear fields.
+
+    Each voxel tells its temperature T and slope g.  With weights w, offsets d from the voxels to the point and means
+    under w, the sum of w (T + g.d / 2) + mean(g).mean(d) / 2 is linear-exact for any weights, and the cubic Hermite
+    polynomial along each axis where all eight voxels count.
+
+    Parameters
+    ----------
+    grid : Grid
+    points : (n, 3) float array, m
+        In the user's axes; inside the box, which `demheat.field.Field` has seen to.
+
+    Returns
+    -------
+    (n,) float array, K
+    """
+    points = points[:, grid.order]
+    phase = grid.scene.phase_at(points)
+    value, weights = np.zeros(len(points)), np.zeros(len(points))
+    slope, offset = np.zeros((3, len(points))), np.zeros((3, len(points)))
+    for index, weight, away, mirrored in _neighbours(grid, points):
+        good, cut = _preference(grid.voxels, index, phase, trusted=grid.sharp)
+        weight = weight * good
+        conductivity = grid.voxels.conductivity[grid.voxels.phase[tuple(index)]]
+        known = ~cut & (conductivity > 0)
+        # What is less than linear vanishes on the isothermal walls, so it is mirrored there with its sign changed.
+        sign = np.where(mirrored[0], -1.0, 1.0)
+        value += weight * sign * grid.temperature[tuple(index)]
+        weights += weight
+        for axis in range(3):
+            rise = np.where(
+                known, -grid.flux[(axis, *index)] / np.where(known, conductivity, 1.0) - grid.slope[axis], 0
+            )
+            rise *= _sign(axis, mirrored)
+            value += 0.5 * weight * rise * away[axis]
+            slope[axis] += weight * rise
+            offset[axis] += weight * away[axis]
+    mean = value / weights + 0.5 * np.sum(slope * offset, axis=0) / weights**2
+    return grid.level + points @ grid.slope + mean
+
+
+def flux_at(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Trilinear interpolation between the whole voxels of the point's own phase.
+
+    Parameters
+    ----------
+    grid, points : see `temperature_at`
+
+    Returns
+    -------
+    (n, 3) float array, W/m2
+        Along Fourier's direction, in the user's axes.
+    """
+    points = points[:, grid.order]
+    phase = grid.scene.phase_at(points)
+    total, weights = np.zeros((len(points), 3)), np.zeros(len(points))
+    for index, weight, _, mirrored in _neighbours(grid, points):
+        weight = weight * _preference(grid.voxels, index, phase, trusted=False)[0]
+        weights += weight
+        for axis in range(3):
+            total[:, axis] += weight * _sign(axis, mirrored) * grid.flux[(axis, *index)]
+    result = np.empty_like(total)
+    result[:, grid.order] = total / weights[:, None]
+    return result
+
+
+def samples(grid: Grid) -> Samples:
+    """The voxels, in the order of the user's axes."""
+    spacing, shape = grid.voxels.spacing, grid.temperature.shape
+    back = np.argsort(grid.order)
+    x = np.meshgrid(*centers(shape, spacing), indexing="ij", sparse=True)
+    temperature = np.full(shape, float(grid.level))
+    for slope, coordinate in zip(grid.slope, x, strict=True):
+        temperature += slope * coordinate
+    temperature += grid.temperature
+    # Column by column: whole fields of three components are not made twice.
+    points, flux = np.empty((temperature.size, 3)), np.empty((temperature.size, 3))
+    for column, axis in enumerate(back):
+        points[:, column] = np.broadcast_to(x[axis], shape).transpose(back).ravel()
+        flux[:, column] = grid.flux[axis].transpose(back).ravel()
+    volumes = np.full(len(points), np.prod(spacing))
+    phase = grid.voxels.phase.transpose(back).ravel().astype(np.int32)
+    return Samples(points, volumes, temperature.transpose(back).ravel(), phase, flux)
+
+
+def _neighbours(grid, points):
+    """The eight voxel centres around each point: index, trilinear weight, offset to the point, axes of mirroring."""
+    shape, spacing = grid.temperature.shape, grid.voxels.spacing
+    place = points / spacing - 0.5
+    first = np.floor(place).astype(int)
+    part = place - first
+    for corner in product((0, 1), repeat=3):
+        index, away, mirrored, weight = [], [], [], 1.0
+        for axis, (n, side) in enumerate(zip(shape, corner, strict=True)):
+            number = first[:, axis] + side
+            index.append(number % n if grid.scene.periodic else np.clip(number, 0, n - 1))
+            mirrored.append(np.zeros(len(points), bool) if grid.scene.periodic else index[-1] != number)
+            away.append((part[:, axis] - side) * spacing[axis])
+            weight = weight * (part[:, axis] if side else 1.0 - part[:, axis])
+        yield index, weight, away, mirrored
+
+
+def _sign(component, mirrored):
+    """Sign of a mirrored flux: along an isothermal wall, and across an insulated one, it changes."""
+    flips = mirrored[0] ^ mirrored[component] if component else np.zeros_like(mirrored[0])
+    return np.where(flips, -1.0, 1.0)
+
+
+def _preference(voxels, index, phase, *, trusted):
+    """How much a voxel tells about a point of this phase, and whether it is cut and not trusted all the same."""
+    same = voxels.phase[tuple(index)] == phase
+    if trusted or not len(voxels.cut):
+        return np.where(same, 1.0, OTHER), np.zeros(len(phase), bool)
+    flat = np.ravel_multi_index(index, voxels.phase.shape)
+    place = np.minimum(np.searchsorted(voxels.cut, flat), len(voxels.cut) - 1)
+    cut = voxels.cut[place] == flat
+    return np.where(same, np.where(cut, CUT, 1.0), OTHER), cut

@@ -1,0 +1,31 @@
+"""Samples at the midpoints of equal cells, for methods that have no points of their own."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def check_points_per_axis(points_per_axis) -> None:
+    """Raise ValueError unless a number of points along each axis is an integer of 1 or more."""
+    integer = isinstance(points_per_axis, int | np.integer) and not isinstance(points_per_axis, bool)
+    if not integer or points_per_axis < 1:
+        raise ValueError(f"points_per_axis = {points_per_axis!r}: must be an integer >= 1")
+
+
+def midpoints(scene, points_per_axis):
+    """Midpoints of equal cells of a box, the last axis running fastest, and the volumes of the cells.
+
+    Parameters
+    ----------
+    scene : Scene
+        Its domain is a box.
+    points_per_axis : int
+
+    Returns
+    -------
+    points : (n, 3) float array, m
+    volumes : (n,) float array, m3
+    """
+    axes = [(np.arange(points_per_axis) + 0.5) * length / points_per_axis for length in scene.size]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    return points, np.full(len(points), scene.volume / len(points))

@@ -1,0 +1,145 @@
+"""From a scene to the spheres of a periodic cell: its own, and between walls their mirror images.
+
+In a box with two isothermal and four insulated walls all goes on beyond a wall as in a mirror: across an insulated one
+with the same temperature, across an isothermal one with its difference from the wall's reversed. So the box is a part,
+an eighth at most, of a periodic cell of its mirror images under a mean gradient.
+"""
+
+from __future__ import annotations
+
+import math
+from itertools import product
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Sphere
+from references.multipole.translations import Spheres, unmirrored
+
+# Of the box: rounding of coordinates that users type or work out.
+SAME = 1e-12
+
+
+class Arrangement(NamedTuple):
+    """What is solved, in its own unit of length.
+
+    Attributes
+    ----------
+    spheres : Spheres
+        The scene's, in its order, then their mirror images.
+    gradient : (3,) float array, K/unit
+        The mean one.
+    level : float, K
+        Temperature at the origin: that of the wall there; 0 in a periodic cell.
+    unit : float, m
+        The largest diameter.
+    """
+
+    spheres: Spheres
+    gradient: np.ndarray
+    level: float
+    unit: float
+
+
+def arrange(scene, *, any_matrix=False) -> Arrangement:
+    """Read a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    any_matrix : bool
+        Whether the matrix may be without conductivity; contrasts are then plain conductivities.
+
+    Returns
+    -------
+    Arrangement
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is neither a mean gradient nor one pair of isothermal walls; for layers, nested spheres, spheres
+        that a wall cuts (but not through the centre), a matrix of no conductivity.
+    """
+    gradient, level = _load(scene)
+    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False)
+    k = scene.matrix.conductivity
+    if k == 0 and not any_matrix:
+        raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")
+    centers = np.array([sphere.center for sphere in scene.inclusions]).reshape(-1, 3)
+    radii = np.array([sphere.radius for sphere in scene.inclusions]).reshape(-1)
+    contrasts = np.array([sphere.material.conductivity for sphere in scene.inclusions]) / (k if k > 0 else 1.0)
+    spheres = unmirrored(centers, radii, contrasts, np.array(scene.size))
+    if not scene.periodic:
+        spheres = _with_images(spheres)
+    unit = 2 * float(radii.max()) if len(radii) else max(scene.size) / 2
+    spheres = spheres._replace(centers=spheres.centers / unit, radii=spheres.radii / unit, size=spheres.size / unit)
+    return Arrangement(spheres, gradient * unit, level, unit)
+
+
+def smallest_gap(spheres) -> float:
+    """Least distance between two surfaces, images included, in the spheres' unit of length; infinite without any."""
+    gap = float(np.min(spheres.size)) - 2 * float(spheres.radii.max()) if len(spheres.radii) else math.inf
+    for i in range(min(spheres.count, len(spheres.radii) - 1)):
+        apart = spheres.centers[i + 1 :] - spheres.centers[i]
+        apart -= spheres.size * np.round(apart / spheres.size)
+        gap = min(gap, float(np.min(np.linalg.norm(apart, axis=1) - spheres.radii[i + 1 :])) - spheres.radii[i])
+    return float(gap)
+
+
+def _load(scene):
+    """Mean gradient, (3,) float array in K/m, and temperature at the origin."""
+    if scene.periodic:
+        return np.array(scene.gradient), 0.0
+    held = scene.wall_temperatures
+    flows = [name for name, flux in scene.wall_fluxes.items() if flux != 0]
+    axes = {"xyz".index(name[0]) for name in held}
+    if flows or len(held) != 2 or len(axes) != 1:
+        raise NotImplementedError(
+            f"multipole: walls {sorted(scene.walls)}; only two opposite isothermal ones, the others insulated, make a "
+            "periodic cell of mirror images"
+        )
+    axis = axes.pop()
+    low, high = (held["xyz"[axis] + side] for side in "-+")
+    return (high - low) / scene.size[axis] * np.eye(3)[axis], low
+
+
+def _with_images(spheres):
+    """The spheres of a box and those mirrored in its walls, in metres."""
+    size, centers = spheres.size, spheres.centers
+    slack = SAME * size.max()
+    centred = _centred_on_walls(spheres, slack)
+    # Where the arrangement mirrors itself, walls included, its images repeat it: it is periodic as it stands.
+    axes = [not _symmetric(spheres, axis, slack) or bool(centred[:, axis].any()) for axis in range(3)]
+    parts = []
+    for flip in product(*((False, True) if mirrored else (False,) for mirrored in axes)):
+        # A sphere centred on a mirror is its own image there.
+        kept = np.flatnonzero(~np.any(centred & flip, axis=1))
+        image = np.where(flip, 2 * size - centers[kept], centers[kept])
+        parts.append((image, spheres.radii[kept], spheres.contrasts[kept], kept, np.tile(flip, (len(kept), 1))))
+    centers, radii, contrasts, original, flips = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Spheres(centers, radii, contrasts, size * np.where(axes, 2, 1), original, flips)
+
+
+def _centred_on_walls(spheres, slack):
+    """Axes along which a sphere's centre lies on a wall, (n, 3) bool array; other cut spheres are refused."""
+    radii, centred = spheres.radii[:, None], np.zeros((len(spheres.radii), 3), dtype=bool)
+    for inward in (spheres.centers, spheres.size - spheres.centers):
+        on = np.abs(inward) <= slack
+        cut = np.any((inward < radii - slack) & ~on, axis=1)
+        if cut.any():
+            raise NotImplementedError(
+                f"multipole: inclusions[{np.argmax(cut)}] is cut by a wall, not through its centre; only whole or half "
+                "spheres and their mirror images are disjoint spheres"
+            )
+        centred |= on
+    return centred
+
+
+def _symmetric(spheres, axis, slack):
+    """Whether the spheres of a box are their own mirror image in its middle across an axis."""
+    mirrored = spheres.centers.copy()
+    mirrored[:, axis] = spheres.size[axis] - mirrored[:, axis]
+    same = np.abs(mirrored[:, None] - spheres.centers).max(axis=2) <= slack
+    same &= np.abs(spheres.radii[:, None] - spheres.radii) <= slack
+    same &= spheres.contrasts[:, None] == spheres.contrasts
+    return bool(same.any(axis=1).all())

@@ -1,0 +1,135 @@
+"""How many degrees are enough: solutions of rising order, and what their last changes say of the rest."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from references.multipole.arrangement import Arrangement, smallest_gap
+from references.multipole.sums import entries
+from references.multipole.system import homogeneous, solve_order
+from references.multipole.translations import translation
+
+FIRST_ORDER, HIGHEST_ORDER = 8, 40
+# Periodic sums are made for so many orders more than asked for at once.
+AHEAD = 6
+# What one product with the translations (in multiplications, some 1e9 a second) and their table (in bytes) may cost.
+MOST_WORK, MOST_BYTES = 2e10, 3e9
+# Bounds on the ratio of successive changes, of two degrees each, by which the rest is extrapolated.
+RATIOS = (0.2, 0.95)
+
+
+def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1):
+    """Solutions of rising order, two degrees apart; the last is the answer.
+
+    Parameters
+    ----------
+    arrangement : Arrangement
+    order : int or None
+        The last one; None raises it until the mean flux is known to the accuracy.
+    accuracy : float
+        Relative; for order = None.
+    tolerance : float
+        Relative residual of each.
+    threads : int
+
+    Returns
+    -------
+    list of Solved
+
+    Raises
+    ------
+    ValueError
+        If the order is beyond memory and time.
+    RuntimeError
+        If the accuracy asks for such an order, or a solve does not converge.
+    """
+    spheres = arrangement.spheres
+    highest = highest_order(spheres)
+    if order is not None and order > highest:
+        raise ValueError(f"order = {order}: must be <= {highest} for {len(spheres.radii)} spheres in memory and time")
+    wanted = FIRST_ORDER if order is None else order
+    orders = [n for n in (wanted - 6, wanted - 4, wanted - 2, wanted) if n >= 1]
+    history, table, reach = [homogeneous(spheres, arrangement.gradient)], None, 0
+    while spheres.count:
+        for n in orders:
+            if n > reach:
+                reach = wanted if order is not None else min(n + AHEAD, highest)
+                table = translation(spheres, 2 * reach)
+            options = {"tolerance": tolerance, "guess": history[-1], "threads": threads}
+            history.append(solve_order(spheres, table, arrangement.gradient, n, **options))
+        if order is not None or truncation(history) <= accuracy:
+            return history
+        _refuse_hopeless(history, accuracy, highest, smallest_gap(spheres) * arrangement.unit)
+        orders = [history[-1].order + 2]
+    return history
+
+
+def _refuse_hopeless(history, accuracy, highest, gap):
+    now, left = history[-1].order, truncation(history)
+    needed = now + 2 * math.ceil(math.log(accuracy / left) / math.log(_ratio(_changes(history))))
+    # The prediction at low orders is rough: half as much again is allowed for.
+    if now + 2 > highest or (now >= 10 and needed > 1.5 * highest):
+        raise RuntimeError(
+            f"multipole: smallest gap {gap:.3g} m needs order {needed} or so for accuracy = {accuracy:.1e}; at order "
+            f"{now} the mean flux is known to {left:.1e}, and {highest} is the highest order. Give order=... to accept "
+            "less, or a larger accuracy"
+        )
+
+
+def _changes(history):
+    """Relative changes of the mean flux, the last three at most, from order 0 on, that of the matrix alone."""
+    flux = [solved.mean_flux for solved in history]
+    scale = max(float(np.linalg.norm(flux[-1])), np.finfo(float).tiny)
+    return [float(np.linalg.norm(b - a)) / scale for a, b in pairwise(flux)][-3:]
+
+
+def _ratio(changes):
+    """Mean ratio of successive changes; a half where there is only one."""
+    if changes[0] == 0 or len(changes) == 1:
+        return 0.5 if changes[0] else RATIOS[0]
+    return float(np.clip((changes[-1] / changes[0]) ** (1 / (len(changes) - 1)), *RATIOS))
+
+
+def truncation(history) -> float:
+    """Relative error left in the mean flux: twice what it is if changes go on as a geometric series.
+
+    In a symmetric array some degrees hardly matter: the last change but one counts as well. Twice, as ratios rise
+    slowly with the order where gaps are small.
+    """
+    changes = _changes(history)
+    if not changes:
+        return 0.0
+    ratio = _ratio(changes)
+    before = changes[-2] * ratio if len(changes) > 2 else 0.0
+    return 2 * max(changes[-1], before) * ratio / (1 - ratio)
+
+
+def field_truncation(spheres, solved, gradient) -> float:
+    """Largest term of the last two degrees in the flux at an interface, over the mean gradient.
+
+    Parameters
+    ----------
+    spheres : Spheres
+    solved : Solved
+    gradient : (3,) float array, K/length
+        The mean one.
+
+    Returns
+    -------
+    float
+    """
+    n, _ = entries(solved.order)
+    last = np.abs(n * solved.source / spheres.radii[:, None])[:, :, n >= max(1, solved.order - 1)]
+    return float(last.max(initial=0.0) / (np.linalg.norm(gradient) or 1.0))
+
+
+def highest_order(spheres) -> int:
+    """Highest order that memory and time allow."""
+    count, everything = spheres.count, max(len(spheres.radii), 1)
+    pairs = count * everything - count * (count + 1) / 2
+    work = (MOST_WORK / (4 * max(count, 1) * everything)) ** 0.25 - 1
+    memory = math.sqrt(MOST_BYTES / (16 * (1 + pairs))) / math.sqrt(2) - 1
+    return max(1, min(HIGHEST_ORDER, int(work), int(memory)))

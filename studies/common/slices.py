@@ -1,0 +1,28 @@
+"""Means of a body's values in equal slices across one axis."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def slice_means(place, values, bins=20):
+    """Middles of the slices, and means of values in them.
+
+    Parameters
+    ----------
+    place : (n,) float array
+        Along the body, in its lengths.
+    values : (n,) float array, any unit
+    bins : int
+
+    Returns
+    -------
+    middle, mean : (bins,) float array
+        Not-a-number in empty slices.
+    """
+    edges = np.linspace(0.0, 1.0, bins + 1)
+    here = np.clip(np.digitize(place, edges) - 1, 0, bins - 1)
+    count = np.bincount(here, minlength=bins)
+    mean = np.full(bins, np.nan)
+    np.divide(np.bincount(here, values, bins), count, out=mean, where=count > 0)
+    return (edges[1:] + edges[:-1]) / 2, mean

@@ -1,0 +1,27 @@
+"""The table of the calibration."""
+
+from __future__ import annotations
+
+from studies.fig03_calibration.variants import KNOBS, VARIED
+
+
+def lines(df):
+    """Table as a data frame, a line for each load, packing and change."""
+    import pandas as pd
+
+    rows = []
+    changes = [name for name in KNOBS if name in df]
+    numbers = sorted(df["particles"].unique())
+    for (loading, domain, packing, *change), group in df.groupby(
+        ["loading", "domain", "packing", *changes], dropna=False, sort=False
+    ):
+        row = {"load": loading, "domain": domain, "packing": packing}
+        row["change"] = ", ".join(f"{n} {v}" for n, v in zip(changes, change, strict=True) if v == v)
+        mean = group.groupby("particles")["ct"].mean()
+        row |= {f"{n:.0e}".replace("e+0", "e"): f"{mean[n]:.4f}" if n in mean else "" for n in numbers}
+        here = group[group["particles"] == VARIED]["ct"]
+        row["scatter"] = float(100 * here.std() / here.mean()) if len(here) > 1 else float("nan")
+        largest = group[group["particles"] == group["particles"].max()]
+        names = {"bound": "bound", "formula": "formula", "gap": "gap", "under_2": "under 2 links"}
+        rows.append(row | {new: float(largest[old].mean()) for old, new in names.items()})
+    return pd.DataFrame(rows)

@@ -1,0 +1,71 @@
+"""What a row keeps of the fluxes of particles, by the halo's radius: written from fields, read from tables."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat import referee
+from studies.harness.cells import cell, numbers
+from studies.harness.store import printed
+
+COSTED = 11.0  # mean radii of the halo whose cost is a row's
+TOUCHING = 2.0  # mean radii from a wall within which particles may touch it
+# Halo radii in mean radii; 0 is no halo.
+RATIOS = (0.0, 1.5, 2.0, 3.0, 4.0, 5.5, 7.0, 9.0, 11.0, 13.0, 15.0)
+STATISTICS = ("number", "cov", "cov_volume", "least", "mean", "most")
+# Halo radii whose density functions are kept, and their range in units of the flux, in equal bins.
+DENSITIES = {0.0: (0.0, 3.0), 2.0: (0.0, 3.0), 4.0: (0.6, 1.4), 11.0: (0.8, 1.2)}
+BINS = 80
+PAPER = printed("fig10_halo")
+
+
+def by_radius(field, fluxes):
+    """Cells of each statistic over all particles and over the bulk, and of histograms.
+
+    Parameters
+    ----------
+    field : Field
+        Of a cube.
+    fluxes : dict of float to (n, 3) float array, W/m2
+        Fluxes of its particles by the halo's radius in mean radii.
+
+    Returns
+    -------
+    dict of str to str
+    """
+    points, volumes, length = field.samples.points, field.samples.volumes, field.scene.size[0]
+    radius = field.stats["mean_radius"]
+    depth = np.inf if field.scene.periodic else np.minimum(points, length - points).min(axis=1)
+    row = {f"{part}{name}": [] for part in ("", "bulk_") for name in STATISTICS}
+    for ratio in RATIOS:
+        for part, least in (("", -1.0), ("bulk_", max(ratio, TOUCHING) * radius)):
+            inside = np.broadcast_to(depth > least, len(points))
+            # In a bulk narrower than a halo all means are of nearly the same particles.
+            known = ratio in fluxes and (part == "" or field.scene.periodic or 2 * (least + ratio * radius) <= length)
+            y = -fluxes[ratio][inside, 1] / PAPER["flux"] if known else np.empty(0)
+            for name, value in zip(STATISTICS, _of(y, volumes[inside]), strict=True):
+                row[part + name].append(value)
+            if ratio in DENSITIES and len(y) and field.stats["law"] == "calibrated":
+                row[f"{part}density_{ratio:g}"] = np.histogram(y, BINS, DENSITIES[ratio])[0] / len(y)
+    return {name: cell(values, ".12g") for name, values in row.items()}
+
+
+def _of(y, volumes):
+    """Number of particles, CoV by number and by volume in per cent, smallest, mean by volume and largest."""
+    if len(y) < 2:
+        return (len(y), *[np.nan] * 5)
+    cov, cov_volume = (100 * referee.variation(y, weights) for weights in (None, volumes))
+    return len(y), cov, cov_volume, y.min(), np.average(y, weights=volumes), y.max()
+
+
+def long(df):
+    """One row per halo radius."""
+    import pandas as pd
+
+    rows = []
+    for row in df[df["status"] == "ok"].to_dict("records"):
+        lists = [numbers(row[f"{part}{name}"]) for part in ("", "bulk_") for name in STATISTICS]
+        names = [f"{part}{name}" for part in ("", "bulk_") for name in STATISTICS]
+        case = {name: row[name] for name in ("law", "split", "walls", "particles", "seed")}
+        rows += [case | {"ratio": r} | dict(zip(names, v, strict=True)) for r, *v in zip(RATIOS, *lists, strict=True)]
+    return pd.DataFrame(rows)

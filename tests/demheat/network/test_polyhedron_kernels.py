@@ -1,0 +1,67 @@
+import numpy as np
+import pytest
+from brute_polyhedron import corners, measured
+from numpy.testing import assert_allclose
+
+from demheat.network.polyhedron_kernels import cut, empty_polyhedron, measure, start_box
+
+LOW, HIGH = np.array([-1.0, -0.7, -1.2]), np.array([0.9, 1.1, 0.8])
+EPS = 1e-12
+
+
+def box():
+    cell = empty_polyhedron(40)
+    return cell, start_box(LOW, HIGH, cell)
+
+
+def check(cell, count, planes):
+    """Corners, the planes that meet in each, facet areas and the volume."""
+    normals, distances = cell.normal[:planes], cell.distance[:planes]
+    right = corners(normals, distances)
+    # Rounding of coordinates of order one; planes that meet at small angles magnify it.
+    apart = np.linalg.norm(cell.vertex[:count, None] - right, axis=2)
+    assert apart.min(axis=0).max() < 1e-12 and apart.min(axis=1).max() < 1e-12
+    for vertex, triple in zip(cell.vertex[:count], cell.triple[:count], strict=True):
+        assert_allclose(normals[triple] @ vertex, distances[triple], atol=1e-13)
+        assert np.linalg.det(normals[triple]) > 0  # counter-clockwise from outside
+    cell.area[:planes] = 0.0
+    areas, volume = measured(normals, distances)
+    assert_allclose(measure(cell, count), volume, rtol=1e-12)
+    assert_allclose(cell.area[:planes], areas, atol=1e-12)
+    return volume
+
+
+@pytest.mark.twin
+def test_a_box():
+    cell, count = box()
+    assert count == 8
+    assert_allclose(check(cell, count, 6), np.prod(HIGH - LOW), rtol=1e-14)
+    assert_allclose(cell.distance[:6], [1.0, 0.9, 0.7, 1.1, 1.2, 0.8])
+
+
+@pytest.mark.twin
+@pytest.mark.parametrize("seed", range(4))
+def test_cuts_leave_what_the_half_spaces_have_in_common(seed):
+    rng, (cell, count) = np.random.default_rng(seed), box()
+    planes, missed = 6, 0
+    for _ in range(12):
+        normal = rng.standard_normal(3)
+        cell.normal[planes], cell.distance[planes] = normal / np.linalg.norm(normal), rng.uniform(0.3, 1.2)
+        misses = np.all(cell.vertex[:count] @ cell.normal[planes] <= cell.distance[planes])
+        before, count = count, cut(cell, count, planes, EPS)
+        assert count > 0
+        if misses:
+            assert count == before and not np.any(cell.triple[:count] == planes)
+            missed += 1
+        else:
+            assert cell.triple[count - 1, 2] == planes
+            planes += 1
+    assert 0 < missed < 9
+    assert 0.0 < check(cell, count, planes) < np.prod(HIGH - LOW)
+
+
+@pytest.mark.twin
+def test_nothing_is_left_beyond_a_plane():
+    cell, count = box()
+    cell.normal[6], cell.distance[6] = [0.0, 1.0, 0.0], -0.8
+    assert cut(cell, count, 6, EPS) == 0

@@ -1,0 +1,62 @@
+"""Random sequential addition: no overlap, room at the faces, the same spheres for the same seed."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_array_equal
+
+from demheat import addition
+from demheat.addition import add_spheres
+
+
+def surface_distances(centers, radii, size, periodic):
+    offsets = centers[:, None] - centers
+    offsets -= np.where(periodic, size * np.rint(offsets / size), 0.0)
+    gaps = np.linalg.norm(offsets, axis=2) - radii - radii[:, None]
+    return gaps[np.triu_indices(len(radii), 1)]
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("reuse", [True, False])
+def test_spheres_do_not_overlap(periodic, reuse):
+    size, rng = np.array([1.0, 0.8, 1.2]), np.random.default_rng(0)
+    radii = np.full(60, 0.07) if reuse else rng.uniform(0.03, 0.09, 60)
+    centers = add_spheres(radii, size, rng, periodic=periodic, margin=0.0 if periodic else radii, reuse=reuse)
+    gaps = surface_distances(centers, radii, size, periodic)
+    assert -1e-15 <= gaps.min() < 0.02  # rounding; and they do come near each other
+    depth = np.minimum(centers, size - centers).min(axis=1)
+    assert np.any(depth < radii) == periodic  # spheres cross the faces of a periodic box only
+
+
+def test_reuse_draws_less_and_places_uniformly():
+    class Counting:
+        def __init__(self):
+            self.drawn, self.rng = 0, np.random.default_rng(1)
+
+        def random(self, shape):
+            self.drawn += shape[0]
+            return self.rng.random(shape)
+
+    sources, radii = (Counting(), Counting()), np.full(400, 0.03)
+    found = [
+        add_spheres(radii, np.ones(3), source, periodic=True, reuse=reuse)
+        for source, reuse in zip(sources, (True, False), strict=True)
+    ]
+    assert sources[0].drawn < sources[1].drawn / 10
+    for centers in found:
+        # 400 uniform numbers: their mean scatters by 0.29/20 = 0.014; four times that.
+        assert np.abs(centers.mean(axis=0) - 0.5).max() < 0.058
+
+
+def test_same_seed_same_spheres():
+    first, again, other = (
+        add_spheres(np.full(20, 0.1), np.ones(3), np.random.default_rng(seed), periodic=True) for seed in (3, 3, 4)
+    )
+    assert_array_equal(first, again)
+    assert np.abs(first - other).max() > 0.1
+
+
+def test_no_room_is_said(monkeypatch):
+    monkeypatch.setattr(addition, "TRIALS", 1000)
+    # Centres stay in a cube of 0.35, whose diagonal is 0.61: two cannot be 0.65 apart.
+    with pytest.raises(RuntimeError, match="no room for sphere 2 of 2 in 1000 trials"):
+        add_spheres(np.full(2, 0.325), np.ones(3), np.random.default_rng(0), periodic=False, margin=0.325)

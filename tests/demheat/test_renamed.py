@@ -1,0 +1,40 @@
+"""Old names that users have met still work, and say what they are called now."""
+
+import importlib
+import sys
+
+import pytest
+
+import demheat
+from demheat import gallery
+from demheat.packing import domain
+
+
+@pytest.mark.parametrize(("old", "new"), [({"poor": "keep"}, {"sparse": "keep"}), ({"tiles": 1}, {"replicas": 1})])
+def test_old_keywords(old, new):
+    scene, knobs = gallery.slab(periodic=True), {"particles": 200, "law": "calibrated"}
+    with pytest.warns(DeprecationWarning, match=f"{next(iter(old))}= is now {next(iter(new))}=") as caught:
+        before = demheat.solve(scene, **knobs, **old)
+    assert caught[0].filename == __file__
+    assert before.conductivity == demheat.solve(scene, **knobs, **new).conductivity
+
+
+def test_old_classes_and_functions():
+    with pytest.warns(DeprecationWarning, match="demheat.Heating is now demheat.UniformSource"):
+        assert demheat.Heating is demheat.UniformSource
+    with pytest.warns(DeprecationWarning, match="tile is now replicate"):
+        assert domain.tile is domain.replicate
+
+
+def test_old_modules():
+    sys.modules.pop("demheat.halo", None)
+    with pytest.warns(DeprecationWarning, match="demheat.halo is now demheat.sampling.halo"):
+        old = importlib.import_module("demheat.halo")
+    assert old.halo_flux is importlib.import_module("demheat.sampling.halo").halo_flux
+
+
+def test_unknown_names_are_no_attributes():
+    with pytest.raises(AttributeError, match="no attribute 'Heater'"):
+        _ = demheat.Heater
+    with pytest.raises(AttributeError, match="no attribute 'tiles'"):
+        _ = domain.tiles

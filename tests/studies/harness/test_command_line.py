@@ -1,0 +1,65 @@
+"""The command line of the studies, on a study small enough to break on purpose."""
+
+from studies.__main__ import main, study_names
+
+
+def test_run_writes_rows_page_and_figure(tiny, capsys):
+    assert tiny.run() == 0
+    row = tiny.rows()["name=plain,x=1.5"]
+    assert row["square"] == "2.25" and row["status"] == "ok" and row["note"] == ""
+    assert float(row["wall_s"]) >= 0 and float(row["cpu_s"]) >= 0 and float(row["peak_mib"]) >= 0
+    assert row["code"] and row["when"] and row["machine"] and row["threads"] and "numpy" in row["versions"]
+    # A warm process: the rows' own environment, not that of the tests.
+    assert (row["layer"], row["spin"]) == ("workqueue", "PASSIVE")
+    page = (tiny.out / f"{tiny.name}.md").read_text()
+    assert page.startswith("# A tiny study.\n\nText below") and "| ok  | squares are small " in page
+    assert (tiny.out / f"{tiny.name}.png").read_bytes().startswith(b"\x89PNG")
+    printed = capsys.readouterr().out
+    assert page in printed and f"{tiny.name}.png" in printed and "[2/2]" in printed
+    assert sorted(p.name for p in tiny.out.iterdir()) == [f"{tiny.name}.{end}" for end in ("csv", "md", "png")]
+
+
+def test_row_prints_one_row_and_finds_it_by_number_or_key(tiny, capsys):
+    assert main(["row", tiny.name, "1"]) == 0
+    assert "square               4.0" in capsys.readouterr().out
+    assert main(["row", tiny.name, "name=plain,x=1.5"]) == 0
+    assert main(["row", tiny.name, "name=none"]) == 2
+    assert "no case 'name=none'" in capsys.readouterr().err
+
+
+def test_render_needs_the_csv_alone(tiny, capsys):
+    assert main(["render", tiny.name, "--out", str(tiny.out)]) == 2
+    tiny.run()
+    pages = [tiny.out / f"{tiny.name}.{end}" for end in ("md", "png")]
+    before = pages[0].read_text()
+    for page in pages:
+        page.unlink()
+    (tiny.file.parent / "log").unlink()
+    assert main(["render", tiny.name, "--out", str(tiny.out)]) == 0
+    assert pages[0].read_text() == before and pages[1].exists() and not (tiny.file.parent / "log").exists()
+
+
+def test_unknown_study_and_equal_cases_are_refused(tiny, capsys):
+    assert main(["run", tiny.name, "no_such_study"]) == 2
+    assert "no study 'no_such_study'" in capsys.readouterr().err and not tiny.out.exists()
+    tiny.write('{"name": "plain", "x": 1.5}')
+    assert main(["run", tiny.name]) == 2
+
+
+def test_parameters_called_as_columns_of_every_row_are_refused(tiny, capsys):
+    tiny.write('{"name": "third", "load": 1.0}')
+    assert main(["run", tiny.name]) == 2
+    assert "parameters ['load']" in capsys.readouterr().err and not tiny.out.exists()
+
+
+def test_list_names_every_study(capsys):
+    assert main(["list"]) == 0
+    printed = capsys.readouterr().out
+    assert all(name in printed for name in study_names())
+
+
+def test_list_says_what_is_stored(tiny, capsys, monkeypatch):
+    tiny.run("--quick")
+    monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name])
+    assert main(["list", "--out", str(tiny.out)]) == 0
+    assert "2 rows,   1 quick;   1 held,   0 stale,   1 missing   A tiny study." in capsys.readouterr().out

@@ -1,0 +1,199 @@
+"""Rows are run, reused and resumed, on a study small enough to break on purpose."""
+
+import importlib
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from studies.harness import methods, provenance, runner, store
+
+
+def test_warm_up_comes_first_and_in_the_same_process(tiny, tmp_path):
+    tiny.ran()
+    assert (tmp_path / "log").read_text().split("\n")[:4] == ["warm plain", "run plain", "warm second", "run second"]
+
+
+def test_rows_are_reused_until_forced(tiny):
+    assert tiny.ran() == ["plain", "second"]
+    before = tiny.rows()
+    assert tiny.ran() == [] and tiny.rows() == before
+    assert tiny.ran(force=True) == ["plain", "second"]
+
+
+def test_quick_is_a_subset_and_full_adds_the_rest(tiny):
+    assert tiny.ran(quick=True) == ["plain"]
+    assert tiny.ran() == ["second"]
+    assert tiny.ran(quick=True) == [] and len(tiny.rows()) == 2
+
+
+def test_only_what_a_row_runs_invalidates_it(tiny):
+    tiny.ran()
+    tiny.write(**{"A tiny study": "A renamed study", "axes.plot": "axes.semilogy", "def _log": "# why\ndef _log"})
+    assert tiny.ran() == []
+    tiny.write(**{"x * x": "x * x + 0"})
+    assert len(tiny.ran()) == 2
+    tiny.write(**{"x * x": "x * x + 0", '"warm "': '"warmer "'})
+    assert len(tiny.ran()) == 2
+
+
+@pytest.mark.parametrize("column", provenance.SAME)
+def test_other_code_machine_threads_or_versions_invalidate(tiny, column):
+    tiny.ran()
+    path = tiny.out / f"{tiny.name}.csv"
+    rows = list(tiny.rows().values())
+    rows[0][column] = "another"
+    store.write_rows(path, rows)
+    assert tiny.ran() == ["plain"]
+
+
+MOVED = """
+from studies.harness import methods
+CASES = [{"x": 1.5, "method": "toy"}]
+QUICK = bool
+
+def run(x, method):
+    return {"square": methods.load(method).solve(x)}
+"""
+
+
+def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
+    """The method is a file with a helper; then a folder whose solver and helper have other names and places."""
+    home, name = tmp_path / f"home_{tmp_path.name}", f"moved_{tmp_path.name}"
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(provenance, "ROOT", tmp_path)
+    monkeypatch.setattr(provenance, "PACKAGES", (home.name,))
+    monkeypatch.setattr(methods, "HOMES", (home.name,))
+    monkeypatch.setattr(runner, "triad_gbs", lambda: 12.5)
+    solve, helper = "def solve(x):\n    return square(x)\n", "def square(x):\n    return x * x\n"
+
+    def rows(**files):
+        shutil.rmtree(home, ignore_errors=True)
+        for path, text in {"__init__": "", **files}.items():
+            (home / f"{path}.py").parent.mkdir(parents=True, exist_ok=True)
+            (home / f"{path}.py").write_text(text)
+        for cached in (provenance.code_hash, provenance._parse, importlib.invalidate_caches):
+            getattr(cached, "cache_clear", cached)()
+        for module in [each for each in sys.modules if each.startswith((home.name, name))]:
+            del sys.modules[module]
+        runner.run_study(name, tmp_path, say=lambda line: None, compute=lambda *a: made.append(1) or computed(*a))
+        return store.read_rows(tmp_path / f"{name}.csv"), len(made)
+
+    def computed(_, study, case):
+        return runner.compute_row(study, case, warm=False)
+
+    made = []
+    (tmp_path / f"{name}.py").write_text(MOVED)
+    before = rows(toy=f"from {home.name}.helper import square\n{solve}", helper=helper)
+    assert before[1] == 1 and before[0]["x=1.5,method=toy"]["square"] == "2.25"
+    files = {"toy/__init__": f"from {home.name}.toy.core import solve\n", "toy/deep/power": helper}
+    moved = files | {"toy/core": f"from {home.name}.toy.deep.power import square\n{solve}"}
+    assert rows(**moved) == before
+    # The check can fail: other code is another row.
+    other = moved | {"toy/deep/power": helper.replace("x * x", "x**2")}
+    assert rows(**other)[1] == 2
+
+
+def test_bad_rows_do_not_stop_the_run(tiny, capsys):
+    bad = ("refuses", "raises", "dies", "sleeps")
+    tiny.write(", ".join(f'{{"name": "{name}", "x": {k}.0}}' for k, name in enumerate(bad, start=3)))
+    status = tiny.run()
+    rows = {row["name"]: row for row in tiny.rows().values()}
+    assert [rows[n]["status"] for n in ("plain", "second")] == ["ok", "ok"]
+    assert [rows[n]["status"] for n in bad] == ["unsupported", "failed", "failed", "timeout"]
+    assert rows["refuses"]["note"] == "not for x = 3"
+    assert rows["raises"]["note"] == "RuntimeError in run: no convergence after 7 iterations"
+    assert "SIGABRT" in rows["dies"]["note"] and "1.5 s" in rows["sleeps"]["note"]
+    assert all(row["code"] for row in rows.values())
+    assert status == 1 and "FAIL: Rows that failed or ran out of time: 3" in capsys.readouterr().err
+    # Failed rows are tried again, refusals are not.
+    assert tiny.ran() == ["raises", "dies", "sleeps"]
+
+
+def test_a_refusal_fails_no_claim(tiny):
+    tiny.write('{"name": "refuses", "x": 3.0}')
+    assert tiny.run() == 0
+
+
+def test_a_killed_run_resumes(tiny):
+    tiny.write(", ".join(f'{{"name": "slow", "x": {k}.0}}' for k in range(3, 7)))
+    words = [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out)]
+    process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env={**os.environ, "COLUMNS": "80"})
+    for line in process.stdout:
+        if line.startswith("[3/"):
+            break
+    time.sleep(0.15)  # in the middle of row 4
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
+    stored = tiny.rows()
+    assert len(stored) >= 3 and all(row["status"] == "ok" for row in stored.values())
+    runs = tiny.ran()
+    assert len(runs) == 6 - len(stored) and len(tiny.rows()) == 6
+    assert {key: tiny.rows()[key] for key in stored} == stored
+
+
+def test_a_row_dies_with_its_run(tiny, tmp_path):
+    tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": "_log(f'pid {os.getpid()}'); time.sleep(60)"})
+    words = [sys.executable, "-m", "studies", "row", tiny.name, "2", "--json", str(tmp_path / "row.json"), "--parent"]
+    code = f"import os, subprocess, time; subprocess.Popen([*{words!r}, str(os.getpid())]); time.sleep(60)"
+    parent = subprocess.Popen([sys.executable, "-c", code])
+    pid = _wait_for(lambda: _logged_pid(tmp_path / "log"))
+    parent.kill()
+    parent.wait()
+    assert _wait_for(lambda: not _alive(pid))
+
+
+def test_a_row_whose_run_is_gone_computes_nothing(tiny, tmp_path):
+    words = [sys.executable, "-m", "studies", "row", tiny.name, "0", "--json", str(tmp_path / "row.json")]
+    assert subprocess.run([*words, "--parent", str(2**30)]).returncode == 1  # no process has this number
+    assert not (tmp_path / "row.json").exists() and not (tmp_path / "log").exists()
+
+
+def _wait_for(condition, seconds=20):
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"did not happen in {seconds} s")
+
+
+def _logged_pid(log):
+    words = log.read_text().split("pid ") if log.exists() else []
+    return int(words[1]) if len(words) > 1 else None
+
+
+def _alive(pid):
+    try:
+        state = open(f"/proc/{pid}/stat").read().rsplit(")", 1)[1].split()[0]
+    except OSError:
+        return False
+    return state not in "ZX"
+
+
+def test_metrics_must_not_replace_parameters(tiny):
+    tiny.write(**{'"square": x * x': '"square": x * x, "x": 0.0'})
+    assert tiny.run() == 1
+    assert "parameters of its case" in tiny.rows()["name=plain,x=1.5"]["note"]
+
+
+def test_state_tells_held_from_stale_from_missing(tiny):
+    def state():
+        return runner.state(runner.load(tiny.name), tiny.rows())
+
+    assert state() == {"held": 0, "stale": 0, "missing": 2}
+    tiny.ran(quick=True)
+    assert state() == {"held": 1, "stale": 0, "missing": 1}
+    tiny.write(**{"axes.plot": "axes.semilogy"})
+    assert state()["held"] == 1
+    tiny.write(**{"x * x": "x * x + 0"})
+    assert state() == {"held": 0, "stale": 1, "missing": 1}
+    # Rows of another machine are this code's all the same.
+    tiny.write()
+    store.write_rows(tiny.out / f"{tiny.name}.csv", [row | {"machine": "another"} for row in tiny.rows().values()])
+    assert state() == {"held": 1, "stale": 0, "missing": 1}

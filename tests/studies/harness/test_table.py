@@ -1,0 +1,42 @@
+"""Claims judged, tables written."""
+
+import pandas as pd
+import pytest
+
+from studies.harness import table
+
+
+@pytest.mark.parametrize("limit", [3, ">= 5", "= 0", ">= nan"])
+def test_a_failed_claim_gives_a_failing_status(tiny, limit, capsys):
+    tiny.write(limit=limit)
+    assert tiny.run() == 1
+    assert "FAIL: squares are small" in capsys.readouterr().err
+    assert "| FAIL | squares are small" in (tiny.out / f"{tiny.name}.md").read_text()
+
+
+@pytest.mark.parametrize("broken", ["df['square'].max()", "df['nothing']"])
+def test_what_cannot_be_judged_or_drawn_fails(tiny, broken, capsys):
+    if broken == "df['nothing']":
+        tiny.write(**{'df["square"].max()': broken})
+    else:
+        tiny.write(**{'axes.plot(df["x"]': 'axes.plot(df["nothing"]'})
+    assert tiny.run() == 1
+    assert "KeyError" in capsys.readouterr().err
+
+
+def test_claims():
+    assert table.claim("a", 0.06, 0.06).ok and not table.claim("a", 0.061, 0.06).ok
+    assert table.claim("a", 1.7, ">= 1.7").ok and not table.claim("a", 1.69, ">= 1.7").ok
+    assert table.claim("a", 0, "= 0").ok and not table.claim("a", float("nan"), "<= 1").ok
+    with pytest.raises(ValueError, match="limit = 'about 3'"):
+        table.claim("a", 3, "about 3")
+
+
+def test_markdown():
+    df = pd.DataFrame({"method": ["a|b", "c"], "error": [0.123456, float("nan")], "unknowns": [123456.0, 7.0]})
+    assert table.markdown(df).split("\n") == [
+        "| method | error | unknowns |",
+        "|--------|------:|---------:|",
+        "| a\\|b   | 0.123 |   123456 |",
+        "| c      |       |        7 |",
+    ]

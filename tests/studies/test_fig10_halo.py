@@ -1,0 +1,98 @@
+"""The study of halos: what its rows and claims are made of."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat.field import Field, Samples
+from studies import fig10_halo
+from studies.fig10_halo import rows as halo_rows
+from studies.fig10_halo import statistics
+from studies.fig10_halo.statistics import RATIOS, STATISTICS, long
+from studies.harness import table
+from studies.harness.cells import numbers
+
+LENGTH = halo_rows.LENGTH
+
+
+def test_statistics_of_a_few_numbers():
+    number, cov, cov_volume, least, mean, most = statistics._of(np.array([1.0, 2.0, 3.0]), np.array([1.0, 0.0, 3.0]))
+    assert (number, least, most) == (3, 1.0, 3.0)
+    assert_allclose([cov, mean], [100 * np.sqrt(2 / 3) / 2, 2.5], rtol=1e-14)
+    assert_allclose(cov_volume, 100 * np.sqrt((1.5**2 + 3 * 0.5**2) / 4) / 2.5, rtol=1e-14)
+    assert np.isnan(statistics._of(np.empty(0), np.empty(0))[1:]).all()
+
+
+@pytest.mark.parametrize("walls", ["held", "periodic"])
+def test_the_bulk_is_what_no_halo_reaches_a_wall_from(walls):
+    """Flux 2 beyond 4 mean radii from the walls, 1 at 2 to 4, 0 nearer: of 3300 W/m2, down the gradient."""
+    radius = LENGTH / 20
+    points = np.random.default_rng(0).random((4000, 3)) * LENGTH
+    depth = np.minimum(points, LENGTH - points).min(axis=1)
+    flux = np.zeros((4000, 3))
+    flux[:, 1] = -3300.0 * ((depth > 2 * radius).astype(float) + (depth > 4 * radius))
+    samples = Samples(points, np.ones(4000), np.zeros(4000), np.zeros(4000, int), flux)
+    scene, stats = halo_rows.scene_of(walls), {"mean_radius": radius, "law": "calibrated"}
+    field = Field(scene, np.zeros(3), np.ones(1), lambda: samples, None, None, stats=stats)
+    row = statistics.by_radius(field, {ratio: flux for ratio in (0.0, 4.0, 5.5)})
+    found = {name: numbers(cell) for name, cell in row.items()}
+    here = [RATIOS.index(ratio) for ratio in (0.0, 4.0, 5.5, 7.0)]
+    assert found["number"][here].tolist() == [4000, 4000, 4000, 0]
+    assert_allclose(found["least"][here], [0, 0, 0, np.nan])
+    if walls == "periodic":
+        assert_allclose(found["bulk_least"][here], [0, 0, 0, np.nan])
+    else:
+        # Of a box of 20 radii a halo of 5.5 leaves 9, less than its own width.
+        assert_allclose(found["bulk_least"][here], [1, 2, np.nan, np.nan])
+        assert found["bulk_number"][here].tolist() == [(depth > d * radius).sum() for d in (2, 4)] + [0, 0]
+    shares = [np.mean(flux[:, 1] == -3300.0 * k) for k in (0, 1, 2)]
+    assert_allclose(found["density_0"][[0, 26, 53]], shares, rtol=1e-11)  # printed with 12 digits
+    assert_allclose(found["density_0"].sum(), 1.0, rtol=1e-11)
+
+
+@pytest.fixture(scope="module")
+def rows():
+    """Rows of each kind with 1000 particles."""
+    kinds = [(case["law"], case["split"], case["walls"]) for case in fig10_halo.CASES]
+    made = []
+    for law, split, walls in dict.fromkeys(kinds):
+        case = {"law": law, "split": split, "walls": walls, "particles": 1_000, "seed": 0, "method": "dem"}
+        made.append({"case": str(case), **case, **fig10_halo.run(**case), "status": "ok", "note": ""})
+    return pd.DataFrame(made)
+
+
+def test_rows_by_halo_radius(rows):
+    table_ = long(rows)
+    assert len(table_) == 4 * len(RATIOS) and set(STATISTICS) <= set(table_.columns)
+    cell = table_[table_["walls"] == "periodic"].set_index("ratio")
+    # A cell of 1000 is 20.5 mean radii wide: halos up to 10 fit; more particles, less scatter.
+    assert cell["cov"].notna().sum() == (np.array(RATIOS) < 10.2).sum()
+    assert (cell["cov"].dropna().diff().dropna() < 0).all()
+    assert cell.loc[9.0, "least"] < 1.0 < cell.loc[9.0, "most"]
+    held = table_[(table_["walls"] == "held") & (table_["law"] == "calibrated")]
+    assert held["cov"].notna().all() and (held["cov"] >= held["bulk_cov"].fillna(0)).mean() > 0.9
+    laguerre = table_[table_["law"] == "laguerre"]
+    assert laguerre["cov"].notna().sum() == 1 and laguerre["cov"].min() < 1e-6
+
+
+def failing(rows):
+    return [claim.sentence for claim in table.judged(fig10_halo, rows) if not claim.ok]
+
+
+def test_claims_can_fail(rows):
+    good = rows.copy()
+    assert not [sentence for sentence in failing(good) if "Laguerre" in sentence or "Periodic" in sentence]
+    bad = rows.copy()
+    own = bad["law"] == "laguerre"
+    bad.loc[own, "cov"] = bad.loc[own, "cov"].str.replace(r"^\S+", "1e-5", regex=True)
+    assert [s for s in failing(bad) if s.startswith("Laguerre, no halo: largest CoV")]
+    bad = rows.copy()
+    bad.loc[own, "least"] = bad.loc[own, "least"].str.replace(r"^\S+", "0.9999999", regex=True)
+    assert [s for s in failing(bad) if s.startswith("Laguerre, no halo: any")]
+    bad = rows.copy()
+    bad["mean"] = bad["mean"].str.replace(r"^\S+", "1.00001", regex=True)
+    assert [s for s in failing(bad) if s.startswith("Periodic cell")]
+    bad = rows.copy()
+    bad["bulk_cov"] = bad["bulk_cov"].str.replace(r"^(\S+ \S+ \S+ \S+) \S+", r"\1 7.0", regex=True)
+    assert [s for s in failing(bad) if s.startswith("Halo of 4, bulk")]

@@ -1,0 +1,145 @@
+"""The referee scores everything: no study defines an error of temperature, flux or conductivity."""
+
+import ast
+from pathlib import Path
+
+import pytest
+
+STUDIES = Path(__file__).parents[2] / "studies"
+FIELDS = {"temperature_at", "flux_at"}
+QUANTITIES = {"temperature", "flux", "conductivity", "k_ratio", "mean_flux"}
+# Where the same arithmetic says something else, and what.
+EXCEPTIONS = {
+    ("common/field_errors.py", "field_pictures"): "temperature over that of the coldest wall",
+    ("crystal/rows.py", "_received"): "heat that flows along links",
+    ("fig18_fields/rows.py", "field_row"): "level of the temperature in a periodic cell",
+    ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
+    ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",
+}
+SCORING = ("temperature_error", "flux_error", "bound_violation", "conductivity_error", "value_error", "curve_error")
+
+
+def words(node):
+    """Names, attributes and keys in an expression."""
+    for part in ast.walk(node):
+        if isinstance(part, ast.Name):
+            yield part.id
+        elif isinstance(part, ast.Attribute):
+            yield part.attr
+        elif isinstance(part, ast.Constant) and isinstance(part.value, str):
+            yield part.value
+
+
+def is_one(node):
+    return isinstance(node, ast.Constant) and node.value in (1, 1.0) and not isinstance(node.value, bool)
+
+
+def is_quotient(node):
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Div)
+
+
+def is_relative_difference(node):
+    """`a / b - 1`, `1 - a / b`, `(a - b) / b`, and `value - 1` of a conductivity that is a ratio already."""
+    if not isinstance(node, ast.BinOp):
+        return False
+    left, right = node.left, node.right
+    if isinstance(node.op, ast.Sub):
+        ratio = (is_one(right) and left) or (is_one(left) and right)
+        return bool(ratio) and (is_quotient(ratio) or bool(QUANTITIES & set(words(ratio))))
+    if isinstance(node.op, ast.Div):
+        difference = isinstance(left, ast.BinOp) and isinstance(left.op, ast.Sub)
+        return difference and ast.dump(left.right) == ast.dump(right)
+    return False
+
+
+def is_difference_of_fields(node):
+    """What one field has less what another one has, or a table's column less another's."""
+    if not (isinstance(node, ast.BinOp) and isinstance(node.op, ast.Sub)):
+        return False
+    sides = [set(words(side)) for side in (node.left, node.right)]
+    either, both = sides[0] | sides[1], [bool(side & (QUANTITIES | FIELDS)) for side in sides]
+    return bool(either & FIELDS) or all(both)
+
+
+def is_root_mean_square(node):
+    """`sqrt` of a mean, or of a weighted sum, of squares."""
+    if not (isinstance(node, ast.Call) and "sqrt" in set(words(node.func))):
+        return False
+    parts = [part for argument in node.args for part in ast.walk(argument)]
+    squared = any(isinstance(part, ast.BinOp) and isinstance(part.op, ast.Pow) for part in parts)
+    dotted = any(isinstance(part, ast.BinOp) and isinstance(part.op, ast.MatMult) for part in parts)
+    return squared and (dotted or bool({"mean", "average"} & {word for a in node.args for word in words(a)}))
+
+
+RULES = (is_relative_difference, is_difference_of_fields, is_root_mean_square)
+
+
+def own_errors(source, exceptions=()):
+    """Lines of a study's source that work out an error by themselves."""
+    tree = ast.parse(source)
+    excused = {
+        id(part)
+        for function in ast.walk(tree)
+        if isinstance(function, ast.FunctionDef) and function.name in exceptions
+        for part in ast.walk(function)
+    }
+    nodes = (node for node in ast.walk(tree) if id(node) not in excused)
+    return [f"{node.lineno}: {ast.unparse(node)}" for node in nodes if any(rule(node) for rule in RULES)]
+
+
+@pytest.mark.parametrize("path", sorted(STUDIES.rglob("*.py")), ids=lambda path: str(path.relative_to(STUDIES)))
+def test_no_study_defines_an_error(path):
+    name = str(path.relative_to(STUDIES))
+    excused = {function for file, function in EXCEPTIONS if file == name}
+    assert own_errors(path.read_text(encoding="utf-8"), excused) == []
+
+
+def test_what_is_excused_is_there():
+    for file, function in EXCEPTIONS:
+        assert own_errors((STUDIES / file).read_text(encoding="utf-8")), (file, function)
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "e = 100 * (k / exact - 1)",
+        "e = abs(1.0 - found / right).max()",
+        "e = (found - right) / right",
+        "e = rows['conductivity'].min() - 1",
+        "e = field.temperature_at(x) - exact",
+        "e = temperature - reference.temperature_at(points)",
+        "e = dem['k_ratio'] - fem['k_ratio']",
+        "e = flux - reference.flux_at(points)",
+        "e = np.sqrt(np.mean(off**2))",
+        "e = math.sqrt(np.average(off**2, weights=v))",
+        "e = np.sqrt(volumes @ off**2 / volumes.sum())",
+    ],
+)
+def test_an_error_is_seen(source):
+    assert own_errors(source)
+    assert own_errors(f"def f():\n    {source}", {"f"}) == []
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "x = referee.value_error(a, b)",
+        "x = last[:-1]; y = n - 1; z = (fine / coarse) ** (2 / 3) - 1",
+        "x = np.sqrt(scatter.var() + other.var())",
+        "x = 100 * (warm - LOW) / SPAN",
+        "x = df['cpu_s'] / df['peer_cpu_s']",
+    ],
+)
+def test_what_is_no_error_is_left_alone(source):
+    assert own_errors(source) == []
+
+
+@pytest.mark.parametrize("function", SCORING)
+def test_the_referee_has_callers(function):
+    calls = [
+        path
+        for path in STUDIES.rglob("*.py")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Call) and function in (getattr(node.func, "attr", ""), getattr(node.func, "id", ""))
+    ]
+    assert calls
