@@ -19,8 +19,8 @@ METHODS = (
         refuses={
             "flux": "multipole: walls",
             "cut": "is cut by a wall",
-            "layers": "multipole: layers",
-            "nested": "multipole: nested spheres",
+            "layers": "multipole knows disjoint spheres",
+            "nested": "nested in",
         },
         look=("grey", "*", "-"),
     ),
