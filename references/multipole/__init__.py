@@ -19,7 +19,7 @@ METHODS = (
         refuses={
             "flux": "multipole: walls",
             "cut": "is cut by a wall",
-            "layers": "a layer",
+            "layers": "multipole knows disjoint spheres",
             "nested": "nested in",
         },
         look=("grey", "*", "-"),
