@@ -56,6 +56,13 @@ class Laguerre:
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
         """The law from the keywords of `demheat.solve`, where None stands for the default.
 
+        Parameters
+        ----------
+        conforming, interface
+            As in `Laguerre`.
+        **others
+            What only other laws have, refused unless it is their default.
+
         Raises
         ------
         ValueError

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -163,7 +162,8 @@ class Scene:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         phase = np.zeros(len(points), dtype=np.int32)
-        (centers, radii), period = self._balls, self.period
+        period, balls = self.period, [shape.ball() for shape in self.inclusions]
+        centers, radii = np.array([c for c, _ in balls]).reshape(-1, 3), np.array([r for _, r in balls])
         # Of each block of points, near in space where they are near in memory, only shapes that may hold one count.
         for start in range(0, len(points), BLOCK):
             block = slice(start, start + BLOCK)
@@ -191,12 +191,6 @@ class Scene:
     def only(self, *shapes: type[Shape]) -> bool:
         """Whether all inclusions are of these shapes; True if there is none."""
         return all(isinstance(shape, shapes) for shape in self.inclusions)
-
-    @cached_property
-    def _balls(self):
-        """Centres (n, 3) and radii (n,) of balls that hold the inclusions, m."""
-        balls = [shape.ball() for shape in self.inclusions]
-        return np.array([c for c, _ in balls]).reshape(-1, 3), np.array([r for _, r in balls])
 
     def at(self, time: float) -> Scene:
         """The same scene with the loads of its walls as they are at a time in seconds."""

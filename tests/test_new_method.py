@@ -36,7 +36,7 @@ METHODS = (
 
 
 def solve(scene, *, cells=30):
-    scene.check_steady()
+    scene.require(steady=True)
     walls = sorted(scene.walls or {})
     if walls and (scene.wall_fluxes or len(walls) != 2 or walls[0][0] != walls[1][0]):
         raise NotImplementedError("toy: walls other than one opposite pair with temperatures")

@@ -58,6 +58,11 @@ class Particles:
     def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
         """How many replicas the packing has along each axis, (3,) int array.
 
+        Parameters
+        ----------
+        scene : Scene
+        law : Laguerre, Calibrated or Platonic
+
         Raises
         ------
         ValueError
@@ -80,7 +85,14 @@ class Particles:
         return np.ones(3, dtype=int)
 
     def packed(self, scene: Scene, counts) -> Packing:
-        """The packing that was given, or a relaxed one in the scene's body, or (3,) replicas of one."""
+        """The packing that was given, or a relaxed one in the scene's body, or replicas of one.
+
+        Parameters
+        ----------
+        scene : Scene
+        counts : (3,) int array
+            Replicas along each axis.
+        """
         if self.packing is not None:
             return self.packing
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}

@@ -110,7 +110,18 @@ def wall_normals(walls):
 
 
 def image_shifts(image, size):
-    """Offsets of periodic images, (m,) uint8 codes and (3,) size in metres -> (m, 3) float array, m."""
+    """Offsets of periodic images.
+
+    Parameters
+    ----------
+    image : (m,) uint8 array
+        Codes, see `Facets`.
+    size : (3,) float array, m
+
+    Returns
+    -------
+    (m, 3) float array, m
+    """
     code = np.asarray(image, dtype=np.int16)
     return np.stack([code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1], axis=1) * np.asarray(size)
 
@@ -121,5 +132,17 @@ def row_numbers(indptr):
 
 
 def branches(centers, size, indptr, indices, image):
-    """Vectors from each row's centre to the centre (image) of its neighbour, (m, 3) float array, m."""
+    """Vectors from each row's centre to the centre (image) of its neighbour.
+
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    size : (3,) float array, m
+    indptr, indices, image
+        Of the links, see `Facets`.
+
+    Returns
+    -------
+    (m, 3) float array, m
+    """
     return centers[indices] + image_shifts(image, size) - np.repeat(centers, np.diff(indptr), axis=0)

@@ -144,7 +144,18 @@ def surface_distances(facets, packing):
 
 
 def heights(packing, side):
-    """Distance of every centre from a wall, (n,) float array, m; the wall by its number in `SIDES`."""
+    """Distance of every centre from a wall.
+
+    Parameters
+    ----------
+    packing : Packing
+    side : int
+        Number of the wall in `SIDES`.
+
+    Returns
+    -------
+    (n,) float array, m
+    """
     return wall_distance(packing, SIDES[side])
 
 

@@ -111,7 +111,13 @@ class PlaneSurface(NamedTuple):
         return np.zeros(3), np.inf
 
     def pattern(self, spacing, rng):
-        """Touch points on a jittered triangular pattern that fits the box, and normals, both (k, 3) float arrays."""
+        """Touch points on a jittered triangular pattern that fits the box, and normals, both (k, 3) float arrays.
+
+        Parameters
+        ----------
+        spacing : float, m
+        rng : numpy Generator
+        """
         size = self.scene.size
         u, v = (k for k in range(3) if k != self.axis)
         columns = max(4, round(size[u] / spacing))
@@ -129,11 +135,23 @@ class PlaneSurface(NamedTuple):
         return points, normals
 
     def touched(self, points, normals):
-        """The points themselves: a plane is its own tangent."""
+        """The points themselves: a plane is its own tangent.
+
+        Parameters
+        ----------
+        points, normals : (k, 3) float arrays, m and 1
+        """
         return points
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the plane, its periodic images included, (n,) float array, m."""
+        """Distance of points to the plane, its periodic images included, (n,) float array, m.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        skip_self : bool
+            The points are the plane's own: only its images count.
+        """
         if skip_self:
             return np.full(len(points), np.inf)
         offset = points[:, self.axis] - self.position

@@ -65,7 +65,7 @@ METHODS = (
             "errors": "its grid follows layers alone, and these are exact",
             "orders": "its grid follows layers alone, and these are exact",
         },
-        refuses={"spheres": "hexahedra do not follow a sphere", "gradient": "a transient needs walls"},
+        refuses={"spheres": "hexahedra follow boxes of layers only", "gradient": "a transient needs walls"},
         look=("sky", "s", "--"),
     ),
 )

@@ -19,8 +19,8 @@ METHODS = (
         refuses={
             "flux": "multipole: walls",
             "cut": "is cut by a wall",
-            "layers": "multipole: layers",
-            "nested": "multipole: nested spheres",
+            "layers": "a layer",
+            "nested": "nested in",
         },
         look=("grey", "*", "-"),
     ),

@@ -63,18 +63,7 @@ def _bulk_to_whole(phi, particles, kind, radii):
     return float(phi * (1 - 2 * DEPLETED * radius) ** walls)
 
 
-def calibrated(
-    packing,
-    loading,
-    *,
-    wall=None,
-    sparse="nearest",
-    mean="arithmetic",
-    additive=False,
-    margin=None,
-    wanted=7.5,
-    count="all",
-):
+def calibrated(packing, loading, *, margin=None, wanted=7.5, count="all", **choices):
     """C_t of a packing under a load, with what it depends on.
 
     Parameters
@@ -82,14 +71,15 @@ def calibrated(
     packing : Packing
         Of unit size.
     loading : {"flux", "isothermal", "across", "periodic"}
-    wall, sparse, mean
-        As in `demheat.Calibrated`; the default is "center" with walls all round, as in the papers, and else "surface".
-    additive, margin
-        As in `contacts`; the default is no margin with walls all round, as in the papers.
+    margin : float, optional
+        As in `contacts`; by default none with walls all round, as in the papers.
     wanted : float
         Mean coordination number.
     count : {"all", "rest"}
         Over all particles, or over those that sparse = "drop" leaves.
+    **choices
+        Of `demheat.Calibrated`; `wall` is by default "center" with walls all round, as in the papers, and else
+        "surface".
 
     Returns
     -------
@@ -99,14 +89,15 @@ def calibrated(
         `coordination`; phi; linked (mean number after sparse particles are dealt with); left (particles then).
     """
     as_papers = loading in ("flux", "isothermal")
-    wall = wall or ("center" if as_papers else "surface")
+    choices = {"wall": "center" if as_papers else "surface"} | choices
+    additive = choices.get("additive", False)
     margin = (0.0 if as_papers else 4.0) if margin is None else margin
     load = {"gradient": (0, 1, 0)} if loading == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
     scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
     target = wanted
     for _ in range(4 if count == "rest" else 1):
         links = contacts(packing, coordination=target, margin=margin, additive=additive)
-        law = Calibrated(gap=links[2], additive=additive, mean=mean, sparse=sparse, wall=wall, factor=1.0)
+        law = Calibrated(gap=links[2], factor=1.0, **choices)
         network = network_of(scene, packing, law)
         left = len(network.radii)
         reached = len(network.indices) / left

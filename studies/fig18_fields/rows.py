@@ -93,7 +93,13 @@ def field_row(boundary, *, method, **knobs):
 
 
 def warm_up(boundary, *, method, **knobs):
-    """Make the dispersion and the packing, load and compile, also what looks at the field."""
+    """Make the dispersion and the packing, load and compile, also what looks at the field.
+
+    Parameters
+    ----------
+    boundary, method, knobs
+        Of a case.
+    """
     scene = spheres_in(boundary)
     methods.warm_up(method, **knobs)
     if "particles" in knobs:

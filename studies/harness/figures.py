@@ -44,6 +44,14 @@ LOOK = {
 
 
 def look(name, **more):
-    """Keywords of a line for a method: its label, colour, marker and line style."""
+    """Keywords of a line for a method: its label, colour, marker and line style.
+
+    Parameters
+    ----------
+    name : str
+        Of a method.
+    **more
+        Instead of these, or besides.
+    """
     label, colour, marker, style = LOOK[name]
     return {"label": label, "color": colour, "marker": marker, "linestyle": style} | more

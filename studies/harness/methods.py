@@ -158,19 +158,39 @@ def load(method):
 
 
 def case(name, **more):
-    """Case of one method: its name, what is given here, its module, and what the method fixes."""
+    """Case of one method: its name, what is given here, its module, and what the method fixes.
+
+    Parameters
+    ----------
+    name : str
+        Of a method.
+    **more
+        Parameters of the scene and the resolution, in the order of the key.
+    """
     return {"name": name, **more, "method": found()[name].module, **found()[name].knobs}
 
 
 def exact_ratio(fraction, contrast):
-    """Exact effective conductivity of the sphere in a cube over that of the matrix."""
+    """Exact effective conductivity of the sphere in a cube over that of the matrix.
+
+    Parameters
+    ----------
+    fraction, contrast : float
+        Volume fraction of the sphere; its conductivity over the matrix's.
+    """
     from references import exact
 
     return exact.solve(sphere_in_cube(contrast, fraction=fraction)).conductivity / MATRIX
 
 
 def solve_row(scene, ratio, *, method, **knobs):
-    """Row of one solve, or of a formula. Arguments as `solved`."""
+    """Row of one solve, or of a formula.
+
+    Parameters
+    ----------
+    scene, ratio, method, knobs
+        As those of `solved`.
+    """
     if not hasattr(load(method), "solve"):
         return _estimated_row(scene, ratio, load(method).estimate, knobs)
     return solved(scene, ratio, method=method, **knobs)[1]
@@ -222,7 +242,15 @@ def small(module):
 
 
 def warm_up(method, **knobs):
-    """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk."""
+    """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk.
+
+    Parameters
+    ----------
+    method : str
+        Name of its module.
+    **knobs
+        Of its `solve`; the resolution is the method's own small one.
+    """
     for first in declared(method)[:1]:
         scene = sphere_in_cube(2.0, fraction=0.1, periodic="walls" in first.refuses)
         with tempfile.TemporaryDirectory() as folder, packings_in(folder):

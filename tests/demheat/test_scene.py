@@ -180,6 +180,8 @@ def test_images_cover_the_phase():
     for phase, sphere in found:
         painted[sphere.contains(points)] = phase
     assert_array_equal(painted, made.phase_at(points))
+    # At an edge and at a corner bounds reach into the box where the sphere does not.
+    assert len(scene(ball(0.08, 0.08, 0.08, 0.1), **PERIODIC).images()) == 4
     cut = scene(ball(-0.05, 0.5, 0.5, 0.1))
     assert_array_equal([phase for phase, _ in cut.images()], [1])
 

@@ -84,7 +84,10 @@ def test_its_voxels(scene):
     grid = voxelise(scene, (16, 16, 16), laminate=False)
     # Sides are whole voxels, and no centre of a voxel lies on a face.
     assert grid.fractions[1] == CENTRED.volume
-    middles = (np.stack(np.meshgrid(*[np.arange(16)] * 3, indexing="ij"), -1) + 0.5) / 16
+    # Where they are not, voxels at its faces are told by their centres.
+    shape = (15, 17, 19)
+    grid = voxelise(scene, shape, laminate=False)
+    middles = (np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), -1) + 0.5) / shape
     assert_array_equal(grid.phase.ravel(), scene.phase_at(middles))
 
 
@@ -170,8 +173,9 @@ def test_where_it_may_not_lie(inclusions, words):
         [CENTRED, Sphere((0.5, 0.1, 0.5), 0.2125, OTHER)],
         [Sphere((0.85, 0.8875, 0.5), 0.2236, OTHER), CENTRED],
         [CENTRED, Sphere((0.5, 0.5, 0.5), 0.1875, OTHER)],
-        # In a ball, its corners on it; in a layer; beside one.
+        # In a ball, its corners on it, and off the middle; in a layer; beside one.
         [Sphere((0.5, 0.5, 0.5), 0.5, OTHER), Brick((0.5, 0.5, 0.5), (0.6, 0.48, 0.64), OTHER)],
+        [Sphere((0.5, 0.5, 0.5), 0.5, OTHER), Brick((0.5, 0.5, 0.7), (0.6, 0.48, 0.2), OTHER)],
         [Layer(0, 0.25, 0.75, OTHER), CENTRED],
         [Layer(0, 0.75, 0.9, OTHER), CENTRED],
         [Layer(0, 0.25, 0.75, OTHER), CROSSING],

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from demheat.method import PARTICLES, SIZE, VOXELS, Errors, Method, Resolution
-from studies.harness import figures, methods, pick, runner, store
+from studies.harness import methods, pick, runner, store
 
 RESULTS = sorted((Path(__file__).parents[3] / "results").glob("*.csv"))
 
@@ -73,7 +73,7 @@ def test_a_row_knows_its_resolution_by_its_methods_knob(with_toy):
     ]
     df = pd.DataFrame(rows)
     words = ["8000 particles", "h = 0.25 L", "64^3 voxels", "degree 8", "20 cells", "", ""]
-    assert [figures.resolution(row) for _, row in df.iterrows()] == words
+    assert [methods.resolution(row) for _, row in df.iterrows()] == words
     sizes = [0.05, 0.25, 1 / 64, 1 / 8, 1 / 20, math.nan, math.nan]
     np.testing.assert_allclose(pick.with_size(df)["h"], sizes, rtol=1e-14)  # rounding
     more = pd.DataFrame([*rows, {"name": "toy", "cells": 40}, {"name": "toy", "cells": 40}])

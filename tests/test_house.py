@@ -1,0 +1,112 @@
+"""Rules of the house that can be read off the source: twins of kernels, arguments, docstrings, lengths of files."""
+
+import ast
+import inspect
+from pathlib import Path
+
+import pytest
+
+from demheat.shapes.base import Shape
+
+ROOT = Path(__file__).parents[1]
+TREES = {
+    path.relative_to(ROOT): ast.parse(path.read_text(encoding="utf-8"))
+    for package in ("demheat", "references", "studies")
+    for path in sorted((ROOT / package).rglob("*.py"))
+}
+KERNELS = {path: tree for path, tree in TREES.items() if path.stem.endswith("kernels")}
+OTHERS = {path: tree for path, tree in TREES.items() if path not in KERNELS}
+# What the harness calls, described in its docstring.
+STUDY = {"QUICK", "run", "warm_up", "claims", "table", "plot"}
+MOST_ARGUMENTS, MOST_LINES = 8, 410
+
+
+def compiled(function):
+    return any("njit" in ast.dump(decorator) for decorator in function.decorator_list)
+
+
+def public(tree):
+    """Functions of a module and methods of its classes that have no leading underscore."""
+    for node in tree.body:
+        if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+            yield from (each for each in node.body if isinstance(each, ast.FunctionDef) and each.name[0] != "_")
+        elif isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            yield node
+
+
+def arguments(function):
+    parts = function.args
+    names = [each.arg for each in (*parts.posonlyargs, *parts.args, *parts.kwonlyargs)]
+    return [name for name in names if name not in ("self", "cls")]
+
+
+def twins():
+    """Names that occur in tests marked `twin`: (module of kernels, name of one) by the imports of the test's file."""
+    found = set()
+    for path in (ROOT / "tests").rglob("test_*.py"):
+        text = path.read_text(encoding="utf-8")
+        if "mark.twin" not in text:
+            continue
+        tree = ast.parse(text)
+        modules = {}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom) and node.module:
+                for alias in node.names:
+                    modules[alias.asname or alias.name] = f"{node.module}.{alias.name}"
+        for node in ast.walk(tree):
+            if isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name) and node.value.id in modules:
+                found.add(f"{modules[node.value.id]}.{node.attr}")
+            elif isinstance(node, ast.Name) and node.id in modules:
+                found.add(modules[node.id])
+    return found
+
+
+def test_every_public_kernel_has_a_slow_twin():
+    named = {
+        f"{'.'.join(path.with_suffix('').parts)}.{function.name}"
+        for path, tree in KERNELS.items()
+        for function in public(tree)
+        if compiled(function)
+    }
+    assert len(named) > 50
+    assert sorted(named - twins()) == []
+
+
+def test_kernels_are_in_modules_of_kernels():
+    loose = [f"{path}: {f.name}" for path, tree in OTHERS.items() for f in public(tree) if compiled(f)]
+    assert loose == []
+
+
+@pytest.mark.parametrize("path", OTHERS, ids=str)
+def test_few_arguments(path):
+    functions = (node for node in ast.walk(OTHERS[path]) if isinstance(node, ast.FunctionDef))
+    assert [f.name for f in functions if len(arguments(f)) > MOST_ARGUMENTS] == []
+
+
+@pytest.mark.parametrize("path", OTHERS, ids=str)
+def test_public_functions_describe_their_parameters(path):
+    """All of two or more arguments; methods of shapes inherit what `Shape` says of them."""
+    known = STUDY if path.parts[0] == "studies" else set()
+    if path.parts[:2] == ("demheat", "shapes") and path.stem != "base":
+        known = {name for name, _ in inspect.getmembers(Shape)}
+    silent = [
+        f.name
+        for f in public(OTHERS[path])
+        if len(arguments(f)) + bool(f.args.kwarg) >= 2
+        and f.name not in known
+        and "Parameters\n" not in (ast.get_docstring(f) or "")
+    ]
+    assert silent == []
+
+
+def test_files_are_short():
+    """A reader holds one idea at a time; what passes this is split by ideas."""
+    lengths = {path: len((ROOT / path).read_text(encoding="utf-8").splitlines()) for path in TREES}
+    assert {str(path): n for path, n in lengths.items() if n > MOST_LINES} == {}
+
+
+def test_nothing_that_a_reader_cannot_follow():
+    """No numbers of a tracker."""
+    for path in TREES:
+        text = (ROOT / path).read_text(encoding="utf-8").lower()
+        assert not any(f"issue {n}" in text for n in range(10)), path
