@@ -1,5 +1,40 @@
+import fcntl
+import gc
 import os
 import tempfile
+from pathlib import Path
+
+import pytest
 
 # Tests make their own packings and never touch the user's; set before anything reads it.
 os.environ.setdefault("DEMHEAT_CACHE", tempfile.mkdtemp(prefix="demheat-test-cache-"))
+# Workers share the processors: one thread each, of libraries and (below) of Numba. Tests of two threads ask for them.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Python looks for unreachable cycles whenever 700 objects are new; compiling makes a million that live on.
+gc.set_threshold(50_000, 20, 20)
+
+
+@pytest.fixture(scope="session", autouse=True)
+def compiled_once(tmp_path_factory):
+    """One thread; and what two workers need compiled is compiled by one of them, the other waits and loads it."""
+    import numba
+    from numba.core.dispatcher import Dispatcher
+
+    import demheat.threads  # noqa: F401 - chooses the layer before threads start
+
+    numba.set_num_threads(1)
+    root = tmp_path_factory.getbasetemp()
+    locks = (root.parent if "PYTEST_XDIST_WORKER" in os.environ else root) / "compiling"
+    locks.mkdir(exist_ok=True)
+    compiled = Dispatcher.compile
+
+    def in_turn(self, signature):
+        # Kernels call kernels in no circle, and nor do those who wait.
+        with (locks / f"{Path(self.py_func.__code__.co_filename).stem}.{self.py_func.__qualname__}").open("w") as file:
+            fcntl.flock(file, fcntl.LOCK_EX)
+            return compiled(self, signature)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Dispatcher, "compile", in_turn)
+        yield
