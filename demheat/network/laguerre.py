@@ -6,6 +6,7 @@ from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets
 from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
+from demheat.network.links_kernels import match_links
 from demheat.packing.base import check_domain
 from demheat.scene import domain_volume
 
@@ -228,7 +229,7 @@ def _matched(number, indices, image, area, distance, spacing):
     """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
     indptr = np.concatenate([[0], np.cumsum(number)])
     matched = np.empty(len(area))
-    kernels.match_links(indptr, indices, image, area, matched)
+    match_links(indptr, indices, image, area, matched)
     keep = matched > 0.0
     if keep.all():
         return indptr, indices, image, matched, distance

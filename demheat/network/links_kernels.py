@@ -1,9 +1,9 @@
-"""What compiled loops need of a network: its links, and where they lead."""
+"""What compiled loops need of a network: its links, and where they lead; how links are found from facets."""
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
 
 class Links(NamedTuple):
@@ -81,3 +81,30 @@ def rise_along(i, e, links, places, gradient, x, branch):
     for k in range(3):
         rise += gradient[k] * branch[k]
     return rise, branch[0] ** 2 + branch[1] ** 2 + branch[2] ** 2
+
+
+@njit(cache=True, parallel=True)
+def match_links(indptr, indices, image, area, matched):
+    """Give each link one area, from those that its two cells see.
+
+    Parameters
+    ----------
+    indptr : (n + 1,) int64 array
+        Row pointers.
+    indices : (m,) uint32 array
+        The other cell of each link.
+    image : (m,) uint8 array
+        Which periodic image of it.
+    area : (m,) float array, m2
+        As seen from the row's cell.
+    matched : (m,) float array, m2, out
+        The mean of both; 0 where only one of the cells sees the facet.
+    """
+    for p in prange(len(indptr) - 1):
+        for e in range(indptr[p], indptr[p + 1]):
+            q, back = indices[e], 26 - image[e]
+            matched[e] = 0.0
+            for r in range(indptr[q], indptr[q + 1]):
+                if indices[r] == p and image[r] == back:
+                    matched[e] = 0.5 * (area[e] + area[r])
+                    break

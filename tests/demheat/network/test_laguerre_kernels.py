@@ -10,7 +10,6 @@ from demheat.network import laguerre_kernels as kernels
 from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import round_wall, tangents_within
 from demheat.scene import ROUND_AXES, domain_volume
-from tests.demheat.random_links import random_links
 
 SIZE = np.array([2.0, 1.0, 1.0])
 # Facets that are smaller may be dropped; none of these clouds has any between this and 1e-6.
@@ -122,24 +121,3 @@ def test_cells_that_need_more_say_so():
         near = tangents_within(flat, points, limits.reach)
         kernels.cut_cells(np.arange(30), sites, flat, near, limits, out)
         assert np.all(out.status == state)
-
-
-@pytest.mark.twin
-def test_links_get_the_mean_of_both_areas():
-    links, places = random_links(20)
-    rng = np.random.default_rng(4)
-    kept = rng.random(len(links.indices)) > 0.1  # some facets are seen from one side only
-    rows = np.repeat(np.arange(20), np.diff(links.indptr))[kept]
-    indptr = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=20))])
-    indices, image, area = links.indices[kept], places.image[kept], rng.random(kept.sum())
-    matched = np.full(kept.sum(), np.nan)
-    kernels.match_links(indptr, indices, image, area, matched)
-    seen = {}
-    for p, q, code, a in zip(rows.tolist(), indices.tolist(), image.tolist(), area, strict=True):
-        seen.setdefault((p, q, code), a)
-    back = [
-        seen.get((q, p, 26 - code)) for p, q, code in zip(rows.tolist(), indices.tolist(), image.tolist(), strict=True)
-    ]
-    right = [0.0 if b is None else 0.5 * (a + b) for a, b in zip(area, back, strict=True)]
-    assert np.array_equal(matched, right)
-    assert 0 < right.count(0.0) < len(right) / 2

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.network.links_kernels import rise_along
+from demheat.network.links_kernels import match_links, rise_along
 from tests.demheat.random_links import branch, each_link, random_links, received
 
 
@@ -18,3 +18,24 @@ def test_rise_along_links():
         assert_allclose(way, branch(i, e, links, places), atol=1e-15)
         assert_allclose(square, np.sum(way**2), rtol=1e-15)
         assert_allclose(g * rise, received(i, e, links, places, gradient, x), atol=1e-14 * max(g, 1.0))
+
+
+@pytest.mark.twin
+def test_links_get_the_mean_of_both_areas():
+    links, places = random_links(20)
+    rng = np.random.default_rng(4)
+    kept = rng.random(len(links.indices)) > 0.1  # some facets are seen from one side only
+    rows = np.repeat(np.arange(20), np.diff(links.indptr))[kept]
+    indptr = np.concatenate([[0], np.cumsum(np.bincount(rows, minlength=20))])
+    indices, image, area = links.indices[kept], places.image[kept], rng.random(kept.sum())
+    matched = np.full(kept.sum(), np.nan)
+    match_links(indptr, indices, image, area, matched)
+    seen = {}
+    for p, q, code, a in zip(rows.tolist(), indices.tolist(), image.tolist(), area, strict=True):
+        seen.setdefault((p, q, code), a)
+    back = [
+        seen.get((q, p, 26 - code)) for p, q, code in zip(rows.tolist(), indices.tolist(), image.tolist(), strict=True)
+    ]
+    right = [0.0 if b is None else 0.5 * (a + b) for a, b in zip(area, back, strict=True)]
+    assert np.array_equal(matched, right)
+    assert 0 < right.count(0.0) < len(right) / 2
