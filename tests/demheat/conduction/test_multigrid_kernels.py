@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from random_links import dense, each_link, random_links
 from scipy import sparse
 from scipy.sparse.linalg import spsolve_triangular
 
 from demheat.conduction import multigrid_kernels as kernels
-from tests.demheat.random_links import dense, each_link, random_links
 
 N, MOST = 60, 4
 

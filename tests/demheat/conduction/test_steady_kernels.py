@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from random_links import branch, dense, each_link, random_links, received
 
 from demheat.conduction import steady_kernels as kernels
-from tests.demheat.random_links import branch, dense, each_link, random_links, received
 
 pytestmark = pytest.mark.twin
 

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from random_links import branch, each_link, random_links, received
 
 from demheat.network.links_kernels import match_links, rise_along
-from tests.demheat.random_links import branch, each_link, random_links, received
 
 
 @pytest.mark.twin

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from random_links import branch, each_link, random_links, received
 
 from demheat.sampling import particle_flux_kernels as kernels
-from tests.demheat.random_links import branch, each_link, random_links, received
 
 
 @pytest.mark.twin

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from random_links import each_link, random_links
 
 from demheat.conduction.integrators import transient_kernels as kernels
-from tests.demheat.random_links import each_link, random_links
 
 pytestmark = pytest.mark.twin
 
