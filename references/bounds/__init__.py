@@ -40,12 +40,7 @@ FORMULA = {
     "role": "beside",
     "call": "estimate",
     "exceptions": {"field": "a formula knows the conductivity alone"},
-    "refuses": {
-        "layers": "formulas are of spheres",
-        "nested": "conductivities",
-        "unlike": "conductivities",
-        "cut": "a wall",
-    },
+    "refuses": {"layers": "a layer", "nested": "conductivities", "unlike": "conductivities", "cut": "a wall"},
 }
 # Errors at 15 % of spheres; at half of the volume all are tens of per cent off but Rayleigh's, of cubic arrays.
 METHODS = (

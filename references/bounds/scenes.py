@@ -32,11 +32,11 @@ def estimate(scene: Scene, *, formula: str = "maxwell") -> float:
     ValueError
         If there is no such formula.
     NotImplementedError
-        For layers, unlike spheres, and spheres that a wall cuts.
+        For other shapes, unlike spheres, and spheres that a wall cuts.
     """
     if formula not in FORMULAS:
         raise ValueError(f"formula = {formula!r}: must be one of {', '.join(FORMULAS)}")
-    scene.require("bounds: formulas are of spheres in a matrix", shapes=(Sphere,))
+    scene.require("formulas are of spheres in a matrix", shapes=(Sphere,))
     found = {inclusion.material.conductivity for inclusion in scene.inclusions}
     if len(found) > 1:
         raise NotImplementedError(f"bounds: spheres of {len(found)} conductivities; formulas are of two phases")

@@ -19,7 +19,7 @@ METHODS = (
         refuses={
             "flux": "multipole: walls",
             "cut": "is cut by a wall",
-            "layers": "multipole knows disjoint spheres",
+            "layers": "a layer",
             "nested": "nested in",
         },
         look=("grey", "*", "-"),

@@ -50,7 +50,7 @@ def test_zeta2_of_walls_layers_and_nested_spheres_is_refused():
     outer, inner = (Sphere((0.5,) * 3, radius, Material(5.0)) for radius in (0.4, 0.2))
     for parts, load, reason in (
         ([inner], {"walls": {"x-": 0.0, "x+": 1.0}}, "walls"),
-        ([Layer(0, 0.2, 0.4, Material(2.0))], {"gradient": (1.0, 0.0, 0.0)}, "layers"),
+        ([Layer(0, 0.2, 0.4, Material(2.0))], {"gradient": (1.0, 0.0, 0.0)}, "a layer"),
         ([outer, inner], {"gradient": (1.0, 0.0, 0.0)}, "nested"),
     ):
         with pytest.raises(NotImplementedError, match=reason):
