@@ -33,7 +33,7 @@ def wall_distances(packing: Packing) -> np.ndarray:
 
 
 def outward(packing: Packing, wall) -> np.ndarray:
-    """Unit vector from each centre towards one wall, (n, 3) float array; NaN where no direction leads there first.
+    """Unit vector from each centre towards one wall, (n, 3) float array; NaN in the middle of a round body.
 
     Parameters
     ----------

@@ -15,6 +15,17 @@ def surface_distances(centers, radii, size, periodic):
     return gaps[np.triu_indices(len(radii), 1)]
 
 
+class Counting:
+    """A generator that counts the points drawn."""
+
+    def __init__(self):
+        self.drawn, self.rng = 0, np.random.default_rng(1)
+
+    def random(self, shape):
+        self.drawn += shape[0]
+        return self.rng.random(shape)
+
+
 @pytest.mark.parametrize("periodic", [True, False])
 @pytest.mark.parametrize("reuse", [True, False])
 def test_spheres_do_not_overlap(periodic, reuse):
@@ -28,14 +39,6 @@ def test_spheres_do_not_overlap(periodic, reuse):
 
 
 def test_reuse_draws_less_and_places_uniformly():
-    class Counting:
-        def __init__(self):
-            self.drawn, self.rng = 0, np.random.default_rng(1)
-
-        def random(self, shape):
-            self.drawn += shape[0]
-            return self.rng.random(shape)
-
     sources, radii = (Counting(), Counting()), np.full(400, 0.03)
     found = [
         add_spheres(radii, np.ones(3), source, periodic=True, reuse=reuse)
@@ -57,6 +60,8 @@ def test_same_seed_same_spheres():
 
 def test_no_room_is_said(monkeypatch):
     monkeypatch.setattr(addition, "TRIALS", 1000)
+    source = Counting()
     # Centres stay in a cube of 0.35, whose diagonal is 0.61: two cannot be 0.65 apart.
     with pytest.raises(RuntimeError, match="no room for sphere 2 of 2 in 1000 trials"):
-        add_spheres(np.full(2, 0.325), np.ones(3), np.random.default_rng(0), periodic=False, margin=0.325)
+        add_spheres(np.full(2, 0.325), np.ones(3), source, periodic=False, margin=0.325)
+    assert source.drawn == 5 * addition.BATCH  # one for the first sphere, four for 1000 trials of the second

@@ -42,7 +42,9 @@ def test_walls_are_where_the_body_ends(domain):
         assert_allclose(bodies.wall_distance(foot, wall, domain, size), 0.0, atol=1e-14)
         assert bodies.inside(foot - 1e-12 * normal, domain, size).all()
         assert not bodies.inside(foot + 1e-12 * normal, domain, size).any()
-        assert bodies.inside(foot, domain, size, slack=1e-12).all()
+        # Slack is a part of the sides, which are 0.5 to 3.
+        assert bodies.inside(foot + 1e-9 * normal, domain, size, slack=1e-8).all()
+        assert not bodies.inside(foot + 1e-9 * normal, domain, size, slack=1e-10).any()
 
 
 @pytest.mark.parametrize("domain", BODIES)
