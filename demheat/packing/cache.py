@@ -186,7 +186,8 @@ def _plain(value):
 def _load(path, text):
     """Load the packing at `path` if it is whole and its key is `text`, else None."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        # A file that is no archive would be left open by NumPy.
+        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
             if str(stored["key"]) != text:
                 return None
             arrays = (stored[name] for name in ("centers", "radii", "size", "periodic"))

@@ -36,7 +36,8 @@ def write(packing: Packing, stream) -> None:
 def read(path) -> Found:
     """Read an archive without unpickling anything."""
     try:
-        with np.load(path, allow_pickle=False) as stored:
+        # A file that is no archive would be left open by NumPy.
+        with open(path, "rb") as file, np.load(file, allow_pickle=False) as stored:
             lacking = [name for name in NAMES if name not in stored.files]
             if lacking:
                 raise ValueError(f"found the arrays {', '.join(stored.files)}; expected {', '.join(NAMES)}")
