@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.bodies import inside
-from demheat.inputs import axis_number, finite
 from demheat.scene import Scene
+from demheat.scene.bodies import inside
+from demheat.scene.inputs import axis_number, finite
 
 # Of the box: points computed to lie on a wall may be so far beyond it.
 ON_WALL = 1e-9

@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.bodies import inside
 from demheat.field import Field
-from demheat.inputs import axis_number
+from demheat.scene.bodies import inside
+from demheat.scene.inputs import axis_number
 
 
 class Slice(NamedTuple):

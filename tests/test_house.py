@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from demheat.shapes.base import Shape
+from demheat.scene.shapes.base import Shape
 
 ROOT = Path(__file__).parents[1]
 TREES = {
@@ -87,7 +87,7 @@ def test_few_arguments(path):
 def test_public_functions_describe_their_parameters(path):
     """All of two or more arguments; methods of shapes inherit what `Shape` says of them."""
     known = STUDY if path.parts[0] == "studies" else set()
-    if path.parts[:2] == ("demheat", "shapes") and path.stem != "base":
+    if path.parts[:3] == ("demheat", "scene", "shapes") and path.stem != "base":
         known = {name for name, _ in inspect.getmembers(Shape)}
     silent = [
         f.name

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
+from demheat.scene.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21

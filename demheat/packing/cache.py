@@ -23,7 +23,7 @@ from demheat.packing.relax import relax
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 2
 RELAX = (
-    "demheat.bodies",
+    "demheat.scene.bodies",
     *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
 )
 LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")

@@ -19,8 +19,8 @@ from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.cache import LSA, cached, code_hash
 from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
-from demheat.parts import axis_number, finite, vector
 from demheat.scene import Material, Scene, Sphere
+from demheat.scene.parts import axis_number, finite, vector
 
 # Whose source decides what a dispersion is.
 CODE = (*LSA, "demheat.addition", __name__)

@@ -8,8 +8,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
+from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.

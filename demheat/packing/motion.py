@@ -12,10 +12,10 @@ from typing import NamedTuple
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.bodies import ROUND_AXES, domain_volume, nearest_wall, wall_names
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.base import wrap
 from demheat.packing.neighbours import near_rows
+from demheat.scene.bodies import ROUND_AXES, domain_volume, nearest_wall, wall_names
 
 # Collisions per sphere (each counted for one of the two) over which the pressure is averaged.
 WINDOW = 10

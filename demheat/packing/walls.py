@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from demheat import bodies
 from demheat.packing.base import Packing
+from demheat.scene import bodies
 
 
 def walls(packing: Packing) -> tuple[str, ...]:

@@ -10,11 +10,11 @@ from collections.abc import Sequence
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.bodies import inside
 from demheat.field import Field
 from demheat.network.bins_kernels import bin_points
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
+from demheat.scene.bodies import inside
 
 # Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
 # and 1 to 8 for 1e5 points and radii of 2 to 15 mean radii; sides of a whole or a third of the radius cost up to twice.

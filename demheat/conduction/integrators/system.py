@@ -14,8 +14,8 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.network.base import SIDES, row_numbers
 from demheat.network.links_kernels import Links
-from demheat.parts import finite
 from demheat.scene import ROUND_AXES, Flux
+from demheat.scene.parts import finite
 
 # Columns of every account of heat: one per side, then the sources.
 ACCOUNTS = len(SIDES) + 1

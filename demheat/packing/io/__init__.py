@@ -27,11 +27,11 @@ from collections.abc import Sequence
 from numbers import Integral
 from pathlib import Path
 
-from demheat.bodies import check_name
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
 from demheat.packing.io.text import Lines, broken
+from demheat.scene.bodies import check_name
 
 __all__ = ["read", "write"]
 

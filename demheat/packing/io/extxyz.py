@@ -6,10 +6,10 @@ import re
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES
 from demheat.packing.base import Packing
 from demheat.packing.io.found import Found
 from demheat.packing.io.text import Lines, flags, floats, numerals, read_table, whole, write_rows
+from demheat.scene.bodies import ROUND_AXES
 
 PAIR = re.compile(r"""([\w-]+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"']+))""")
 TRUE, FALSE = ("T", "TRUE", "1"), ("F", "FALSE", "0")

@@ -9,9 +9,9 @@ import zlib
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES
 from demheat.packing.io.found import Found
 from demheat.packing.io.text import broken
+from demheat.scene.bodies import ROUND_AXES
 
 TYPES = {"Float64": "f8", "Float32": "f4", "UInt8": "u1", "Int8": "i1", "String": "u1"}
 HEADERS = {"UInt32": "u4", "UInt64": "u8"}

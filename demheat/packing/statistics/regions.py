@@ -7,9 +7,9 @@ from itertools import product
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES, from_middle
 from demheat.packing.base import Packing
 from demheat.packing.walls import check_margin
+from demheat.scene.bodies import ROUND_AXES, from_middle
 
 # Nodes along the axis of a cylinder, per sphere. Largest error of 2000 spheres cut at random, against 1000 nodes: 6e-11
 # of a sphere up to half as wide as the core, 8e-5 of wider ones.

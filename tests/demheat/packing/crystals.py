@@ -4,9 +4,9 @@ from itertools import product
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
+from demheat.scene.bodies import ROUND_AXES
 
 # Crystals touch to rounding, 1e-15; their second neighbours are 1.41 away.
 CONTACT_GAP = 1e-6

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.bodies import ROUND_AXES
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.motion import tree
+from demheat.scene.bodies import ROUND_AXES
 
 # Between walls, and of a period: so long that a sphere never heads for another image than the nearest.
 WALLED, PERIOD = 5.0, 12.0

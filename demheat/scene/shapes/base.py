@@ -10,7 +10,7 @@ from itertools import product
 
 import numpy as np
 
-from demheat.material import Material
+from demheat.scene.material import Material
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
@@ -19,8 +19,8 @@ TOUCH = 1e-12
 class Shape(ABC):
     """A convex region of one material: what every inclusion is, and what the next one must supply.
 
-    A shape is a frozen dataclass in a file of its own. It checks its fields as it is made (`demheat.inputs`) and lives
-    in unbounded space: it knows neither box nor walls. All lengths are metres. What it must supply:
+    A shape is a frozen dataclass in a file of its own. It checks its fields as it is made (`demheat.scene.inputs`) and
+    lives in unbounded space: it knows neither box nor walls. All lengths are metres. What it must supply:
 
     - the fields `center`, three floats, and `material`; a shape without a centre overrides what uses it: `images`
       and `point_in`;

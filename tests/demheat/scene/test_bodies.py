@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import bodies
+from demheat.scene import bodies
 
 BODIES = {
     "box": (1.0, 2.0, 0.5),

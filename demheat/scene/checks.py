@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES, check_name, wall_names
-from demheat.inputs import finite, vector
-from demheat.parts import Flux, MovingCylinder, UniformSource
-from demheat.shapes import Shape
-from demheat.shapes.base import TOUCH
-from demheat.shapes.pairs import check_pairs
+from demheat.scene.bodies import ROUND_AXES, check_name, wall_names
+from demheat.scene.inputs import finite, vector
+from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.shapes import Shape
+from demheat.scene.shapes.base import TOUCH
+from demheat.scene.shapes.pairs import check_pairs
 
 
 def checked_inclusions(inclusions) -> tuple[Shape, ...]:

@@ -8,9 +8,9 @@ from numbers import Integral
 
 import numpy as np
 
-from demheat.inputs import axis_number, finite, number, vector
-from demheat.material import Material, check_material
-from demheat.shapes import Layer, Sphere
+from demheat.scene.inputs import axis_number, finite, number, vector
+from demheat.scene.material import Material, check_material
+from demheat.scene.shapes import Layer, Sphere
 
 __all__ = [
     "Flux",

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat import Layer, Material, Sphere
-from demheat.shapes import Shape
+from demheat.scene.shapes import Shape
 
 M = Material(2.0)
 PERIOD = np.array([1.0, 1.5, 2.0])
@@ -111,7 +111,7 @@ def test_what_a_shape_must_supply_is_asked_for():
 
 
 def test_engine_and_references_ask_the_shape_and_not_its_type():
-    root = Path(__file__).parents[3]
+    root = Path(__file__).parents[4]
     for package in ("demheat", "references"):
         for path in (root / package).rglob("*.py"):
             for line in path.read_text(encoding="utf-8").splitlines():

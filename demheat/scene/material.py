@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from demheat.inputs import number
+from demheat.scene.inputs import number
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.shapes.base import TOUCH, Shape, nearest
+from demheat.scene.shapes.base import TOUCH, Shape, nearest
 
 
 class _Cell(NamedTuple):

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from demheat.inputs import number, vector
-from demheat.material import Material, check_material
-from demheat.shapes.base import Shape, nearest
+from demheat.scene.inputs import number, vector
+from demheat.scene.material import Material, check_material
+from demheat.scene.shapes.base import Shape, nearest
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,9 @@ from numbers import Integral
 
 import numpy as np
 
-from demheat.inputs import number
-from demheat.material import Material, check_material
-from demheat.shapes.base import TOUCH, Shape
+from demheat.scene.inputs import number
+from demheat.scene.material import Material, check_material
+from demheat.scene.shapes.base import TOUCH, Shape
 
 
 @dataclass(frozen=True)

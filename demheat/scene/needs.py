@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from demheat.parts import Flux
+from demheat.scene.parts import Flux
 
 
 def _one_pair(scene):

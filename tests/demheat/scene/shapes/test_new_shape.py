@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat import Layer, Material, Scene, Sphere, evolve, referee, solve
-from demheat.inputs import vector
-from demheat.shapes import Shape
-from demheat.shapes.base import nearest
+from demheat.scene.inputs import vector
+from demheat.scene.shapes import Shape
+from demheat.scene.shapes.base import nearest
 from references import exact, fem, fft, multipole
 from references.voxels.paint import voxelise
 

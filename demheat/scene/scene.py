@@ -10,11 +10,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from demheat.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
-from demheat.inputs import finite, vector
-from demheat.material import Material, check_material
-from demheat.parts import Flux, MovingCylinder, UniformSource
-from demheat.scene_checks import (
+from demheat.scene.bodies import domain_volume
+from demheat.scene.checks import (
     check_domain,
     check_geometry,
     check_initial,
@@ -22,24 +19,12 @@ from demheat.scene_checks import (
     checked_load,
     checked_sources,
 )
-from demheat.scene_needs import check_steady, check_transient, refusals
-from demheat.shapes import Layer, Shape, Sphere
-from demheat.shapes.base import nearest
-
-__all__ = [
-    "ROUND_AXES",
-    "WALLS",
-    "Flux",
-    "UniformSource",
-    "Layer",
-    "Material",
-    "MovingCylinder",
-    "Scene",
-    "Shape",
-    "Sphere",
-    "domain_volume",
-    "wall_names",
-]
+from demheat.scene.inputs import finite, vector
+from demheat.scene.material import Material, check_material
+from demheat.scene.needs import check_steady, check_transient, refusals
+from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.shapes import Shape
+from demheat.scene.shapes.base import nearest
 
 # Points whose phases are found together.
 BLOCK = 4096
@@ -224,7 +209,7 @@ class Scene:
             True: a steady state is asked for, with loads that fix one, in a box and without sources. False: a transient
             is, with walls, an initial temperature and heat capacities.
         walls : str, optional
-            What walls it can have, a key of `demheat.scene_needs.WALLS`.
+            What walls it can have, a key of `demheat.scene.needs.WALLS`.
         domain : str, optional
             The only body it knows.
         shapes : tuple of types of Shape, optional

@@ -1,0 +1,22 @@
+"""What is computed: a scene, its shapes and materials, its loads and sources; NumPy is all that it needs."""
+
+from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
+from demheat.scene.material import Material
+from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.scene import Scene
+from demheat.scene.shapes import Layer, Shape, Sphere
+
+__all__ = [
+    "ROUND_AXES",
+    "WALLS",
+    "Flux",
+    "Layer",
+    "Material",
+    "MovingCylinder",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "UniformSource",
+    "domain_volume",
+    "wall_names",
+]
