@@ -18,7 +18,7 @@ LAYERS = {
     "demheat.scene.bodies": (),
     "demheat.scene.material": ("demheat.scene.inputs",),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
-    "demheat.scene.parts": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
+    "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
         "demheat.scene.inputs",
         "demheat.scene.bodies",

@@ -20,7 +20,7 @@ from demheat.packing.cache import LSA, cached, code_hash
 from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.scene import Material, Scene, Sphere
-from demheat.scene.parts import axis_number, finite, vector
+from demheat.scene.inputs import axis_number, finite, vector
 
 # Whose source decides what a dispersion is.
 CODE = (*LSA, "demheat.addition", __name__)

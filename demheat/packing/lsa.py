@@ -17,7 +17,7 @@ from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
-from demheat.scene.parts import finite
+from demheat.scene.inputs import finite
 
 # Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the
 # spheres have no time to arrange themselves: 1e4 of them with spread 0.3 then jam at 0.6538 (start at 0.55) or 0.651

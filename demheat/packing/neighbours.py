@@ -9,7 +9,7 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
 from demheat.packing.walls import bulk
-from demheat.scene.parts import finite
+from demheat.scene.inputs import finite
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0

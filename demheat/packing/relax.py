@@ -18,7 +18,7 @@ from demheat.packing.base import Packing, check_box, check_domain, make_packing,
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
 from demheat.scene.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
-from demheat.scene.parts import finite
+from demheat.scene.inputs import finite
 
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).

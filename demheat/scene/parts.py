@@ -8,23 +8,7 @@ from numbers import Integral
 
 import numpy as np
 
-from demheat.scene.inputs import axis_number, finite, number, vector
-from demheat.scene.material import Material, check_material
-from demheat.scene.shapes import Layer, Sphere
-
-__all__ = [
-    "Flux",
-    "UniformSource",
-    "Layer",
-    "Material",
-    "MovingCylinder",
-    "Sphere",
-    "axis_number",
-    "check_material",
-    "finite",
-    "number",
-    "vector",
-]
+from demheat.scene.inputs import number, vector
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ MOST_DIGITS = 13.0
 FAR_ORDER = 59
 
 
-class Solution(NamedTuple):
+class SolvedArray(NamedTuple):
     """One array at one contrast.
 
     Attributes
@@ -121,7 +121,7 @@ def conductivity(kind, contrast, fraction, *, order=None, digits=6) -> float:
     return solve(kind, contrast, fraction, order=order, digits=digits).conductivity
 
 
-def solve(kind, contrast, fraction, *, order=None, digits=6) -> Solution:
+def solve(kind, contrast, fraction, *, order=None, digits=6) -> SolvedArray:
     """Solve a cubic array of spheres under a mean unit gradient.
 
     Parameters
@@ -138,7 +138,7 @@ def solve(kind, contrast, fraction, *, order=None, digits=6) -> Solution:
 
     Returns
     -------
-    Solution
+    SolvedArray
 
     Raises
     ------
@@ -286,7 +286,7 @@ def _solve(kind, contrast, fraction, order):
     source, inner = np.zeros((2, order + 1, order + 1))
     source[degree, m] = b
     inner[degree, m] = np.where(degree == 1, r, 0.0) - matrix @ b
-    return Solution(
+    return SolvedArray(
         kind=kind,
         contrast=contrast,
         radius=r,

@@ -23,7 +23,7 @@ def temperature(solution, points, gradient=(0.0, 0.0, 1.0)):
 
     Parameters
     ----------
-    solution : Solution
+    solution : SolvedArray
     points : (n, 3) float array, edges
         Anywhere; the origin is the centre of a sphere.
     gradient : (3,) sequence of float, K/edge
@@ -46,7 +46,7 @@ def flux(solution, points, gradient=(0.0, 0.0, 1.0)):
 
     Parameters
     ----------
-    solution : Solution
+    solution : SolvedArray
     points : (n, 3) float array, edges
     gradient : (3,) sequence of float, K/edge
 

@@ -24,7 +24,7 @@ CHUNK = 50_000
 
 
 @dataclass(frozen=True)
-class Solution:
+class NodalField:
     """Nodal temperatures (n,) of a scene on a mesh; `lost` is how far out, in local coordinates, is in no element."""
 
     scene: Scene

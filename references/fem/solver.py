@@ -6,7 +6,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.scene import Scene
-from references.fem.lookup import Solution
+from references.fem.lookup import NodalField
 from references.fem.system import solve_nodes
 from references.mesh import make
 
@@ -54,7 +54,7 @@ def solve(
     scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
     solved = solve_nodes(scene, mesh, tolerance)
-    solution = Solution(scene, mesh, solved.temperature)
+    solution = NodalField(scene, mesh, solved.temperature)
     fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume
     stats = {"elements": len(mesh.cells), "nodes": len(mesh.points)} | mesh.stats | solved.stats
     return Field(

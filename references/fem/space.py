@@ -13,7 +13,7 @@ from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
 from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
-from references.fem.lookup import LOST, Solution
+from references.fem.lookup import LOST, NodalField
 from references.fem.multigrid import prolongation
 
 # A quadratic boundary leaves a point of the true surface this far, in local coordinates, outside: an edge as long as
@@ -100,7 +100,7 @@ def tetrahedra(scene, mesh) -> Space:
     lost = LOST if scene.domain == "box" else LOST_ON_ROUND if mesh.cells.shape[1] == 10 else LOST_ON_CHORDS
     # Distance of nodes that are neighbours.
     edge = mesh.stats["size"] / (2 if mesh.cells.shape[1] == 10 else 1)
-    view = partial(Solution, scene, mesh, lost=lost)
+    view = partial(NodalField, scene, mesh, lost=lost)
     walls = {name: WallNodes(np.unique(t), wall_weights(mesh, t)) for name, (t, _) in mesh.walls.items()}
     return Space(
         points=mesh.points,

@@ -24,7 +24,7 @@ from references.fft import cg_kernels as kernels
 from references.fft.cg_kernels import Symbol, Vectors
 from references.fft.hexahedron_kernels import Body, Sums, conduct_voxels, voxel_state
 from references.fft.link_kernels import Links, conduct_links, link_state
-from references.fft.problem import Clock, Problem, Solution, total
+from references.fft.problem import Clock, Problem, SolvedGrid, total
 from references.fft.sweeps import Transform
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -59,7 +59,7 @@ class _State(NamedTuple):
         return self.rz**2 / self.curvature if self.curvature > 0 else 0.0
 
 
-def solve(problem: Problem) -> Solution:
+def solve(problem: Problem) -> SolvedGrid:
     """Temperatures by preconditioned conjugate gradients.
 
     Raises
@@ -212,4 +212,4 @@ def _solution(problem, system, state, iterations, error, cost):
         return temperature, flux
 
     mean_flux = state.flux / problem.voxels.phase.size
-    return Solution(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error}, cost)
+    return SolvedGrid(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error}, cost)

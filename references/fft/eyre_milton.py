@@ -22,7 +22,7 @@ import numpy as np
 from references.fft import eyre_milton_kernels as kernels
 from references.fft import projection_kernels
 from references.fft.eyre_milton_kernels import Sums
-from references.fft.problem import Clock, Problem, Solution, total
+from references.fft.problem import Clock, Problem, SolvedGrid, total
 from references.fft.projection_kernels import Parts, Waves
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -38,7 +38,7 @@ class _Scheme(NamedTuple):
     waves: Waves
 
 
-def solve(problem: Problem) -> Solution:
+def solve(problem: Problem) -> SolvedGrid:
     """Fluxes by Eyre and Milton's iteration.
 
     Raises
@@ -63,7 +63,7 @@ def solve(problem: Problem) -> Solution:
     def state():
         return _state(problem, scheme, field)
 
-    return Solution(mean_flux, ends, state, field.size, iterations, errors, cost)
+    return SolvedGrid(mean_flux, ends, state, field.size, iterations, errors, cost)
 
 
 def _fail(iterations, error, tolerance):

@@ -42,7 +42,7 @@ class Problem(NamedTuple):
     max_iterations: int
 
 
-class Solution(NamedTuple):
+class SolvedGrid(NamedTuple):
     """A solved problem, in the units of the problem; fluxes are along the gradient, against Fourier's direction.
 
     Attributes
@@ -92,5 +92,5 @@ class Clock:
         self._part += self._transform.seconds
 
     def cost(self) -> dict:
-        """As `Solution.cost`."""
+        """As `SolvedGrid.cost`."""
         return {"iteration_s": self._whole, "transform_s": self._part}

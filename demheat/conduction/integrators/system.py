@@ -15,7 +15,7 @@ from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.network.base import SIDES, row_numbers
 from demheat.network.links_kernels import Links
 from demheat.scene import ROUND_AXES, Flux
-from demheat.scene.parts import finite
+from demheat.scene.inputs import finite
 
 # Columns of every account of heat: one per side, then the sources.
 ACCOUNTS = len(SIDES) + 1

@@ -11,7 +11,7 @@ from skfem.helpers import dot, grad
 from references import fem, mesh
 from references.fem import lookup
 from references.fem.elements import assemble, shapes
-from references.fem.lookup import Solution
+from references.fem.lookup import NodalField
 
 # ---------------------------------------------------------------- fields
 
@@ -36,7 +36,7 @@ def test_lookup_among_elements_of_very_different_size():
     of = scene(ball(10.0, (0.5, 0.5, 0.52), 0.47), ball(1.0, (0.93, 0.93, 0.93), 0.01))
     made = mesh.make(of, size=0.2)
     assert made.volumes.max() > 1e4 * made.volumes.min()
-    linear = Solution(of, made, made.points @ np.array([1.0, 2.0, 3.0]))
+    linear = NodalField(of, made, made.points @ np.array([1.0, 2.0, 3.0]))
     rng = np.random.default_rng(0)
     near = 0.93 + 0.02 * rng.standard_normal((300, 3))
     gap = rng.random((300, 3)) * (1, 1, 0) + (0, 0, 0.995)
@@ -51,7 +51,7 @@ def test_lookup_finds_what_the_nearest_centres_miss(monkeypatch):
     expected = field.temperature_at(points)
     monkeypatch.setattr(lookup, "NEAREST", (1,))
     assert_allclose(field.temperature_at(points), expected, atol=1e-9)  # continuous: either of two elements
-    monkeypatch.setattr(Solution, "_bounds", property(lambda self: (np.full((1, 3), 2.0), np.full((1, 3), 2.0))))
+    monkeypatch.setattr(NodalField, "_bounds", property(lambda self: (np.full((1, 3), 2.0), np.full((1, 3), 2.0))))
     with pytest.raises(RuntimeError, match="no element contains"):
         field.temperature_at(points)
 
