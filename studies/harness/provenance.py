@@ -239,7 +239,11 @@ def _imported(nodes):
 
 def _file_of(name):
     """Path of a module of ours, None for any other name; a method may lie elsewhere on Python's path."""
-    if name.split(".")[0] not in PACKAGES:
-        return None
-    bases = (Path(folder).joinpath(*name.split(".")) for folder in (ROOT, *sys.path))
+    return _found(name, ROOT, *sys.path) if name.split(".")[0] in PACKAGES else None
+
+
+@cache
+def _found(name, *folders):
+    """First file of a module in some folders. Kept: what a row runs imports hundreds of names, most of no module."""
+    bases = (Path(folder).joinpath(*name.split(".")) for folder in folders)
     return next((p for base in bases for p in (base / "__init__.py", base.with_suffix(".py")) if p.is_file()), None)

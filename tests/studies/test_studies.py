@@ -18,7 +18,7 @@ COSTS = ("CPU", "triad", "particle-steps")
 
 def _here(name, study, case):
     row = runner.compute_row(study, case, warm=False)
-    # A row's memory is measured from a collected heap: looking through all that is loaded costs more than most rows.
+    # As at the start of each module of tests: with what a row has loaded, a search costs more than most rows.
     gc.collect()
     gc.freeze()
     return row
@@ -30,7 +30,6 @@ def folder(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("DEMHEAT_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield tmp_path_factory.mktemp("out")
-    gc.unfreeze()
 
 
 def test_the_studies_are_there():

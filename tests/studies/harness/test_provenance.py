@@ -21,6 +21,7 @@ def tree(tmp_path, monkeypatch):
         path.write_text(textwrap.dedent(text))
         provenance.code_hash.cache_clear()
         provenance._parse.cache_clear()
+        provenance._found.cache_clear()
         return tmp_path
 
     write(

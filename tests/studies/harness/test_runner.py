@@ -77,7 +77,7 @@ def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
         for path, text in {"__init__": "", **files}.items():
             (home / f"{path}.py").parent.mkdir(parents=True, exist_ok=True)
             (home / f"{path}.py").write_text(text)
-        for cached in (provenance.code_hash, provenance._parse, importlib.invalidate_caches):
+        for cached in (provenance.code_hash, provenance._parse, provenance._found, importlib.invalidate_caches):
             getattr(cached, "cache_clear", cached)()
         for module in [each for each in sys.modules if each.startswith((home.name, name))]:
             del sys.modules[module]
