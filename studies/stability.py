@@ -114,10 +114,11 @@ def claims(df):
     taken = solves[(solves["contrast"] == math.inf) & (solves["status"] != "unsupported")]
     yield "Infinite conductivities taken by a method", len(taken), "= 0"
     for method in methods.compared():
-        # Eyre and Milton's scheme does not converge at the contrasts of this study that are not 0.01 or 10.
-        limit = ">= 0.3" if method.name == "fft-em" else ">= 0.85"
-        share = _right(finite[finite["name"] == method.name]).mean()
-        yield f"{method.title}: share of rows at finite contrast that are right", share, limit
+        rows = finite[finite["name"] == method.name]
+        # What a method declares that it refuses is no failure.
+        rows = rows[rows["contrast"] > 0] if "pores" in method.refuses else rows
+        text = f"{method.title}: share of rows at finite contrast that are right, declared refusals left out"
+        yield text, _right(rows).mean(), ">= 0.85"
     yield "FFT in single precision: worst relative difference from double precision", _single(df), 1e-4
     far = pick(df, name="lattice", contrast=1e8)
     if len(far):

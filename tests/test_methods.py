@@ -83,7 +83,8 @@ def test_samples_integrate_to_the_mean_flux(name, loaded):
 @fields
 def test_stats(name):
     stats = solved(name, mixed, gradient=OBLIQUE).stats
-    assert stats["unknowns"] > 500 and stats["iterations"] > 1
+    # A direct solver iterates once.
+    assert stats["unknowns"] > 500 and stats["iterations"] >= 1
     # A residual of 0 was not measured.
     assert 0 < stats["residual"] < IDENTITY
 
@@ -229,11 +230,14 @@ EXACT = {
 def test_declared_errors(name, scene):
     make, arguments, knobs = EXACT[scene]
     field, right = solved(name, make, *arguments, **knobs), solved("exact", make, *arguments, **knobs)
-    assert abs(referee.conductivity_error(field, right)) < allowed(name)
+    found = {"conductivity": abs(referee.conductivity_error(field, right))}
     if "field" not in METHODS[name].exceptions:
         points = points_in(field.scene)
-        assert referee.temperature_error(field, right, points).rms < allowed(name, "temperature")
-        assert referee.flux_error(field, right, points).rms < allowed(name, "flux")
+        found["temperature"] = referee.temperature_error(field, right, points).rms
+        found["flux"] = referee.flux_error(field, right, points).rms
+    declared = {part: allowed(name, part) for part in found}
+    print(f"{name}, {scene}: errors {found}, declared {declared}")
+    assert [part for part in found if not found[part] < declared[part]] == [], f"errors {found}, declared {declared}"
 
 
 @claiming("field", "errors")

@@ -41,6 +41,7 @@ def test_declared_orders(method):
     rows = np.abs([errors(method, value) for value in method.orders.values])
     fitted = np.polyfit(np.log(sizes), np.log(rows), 1)[0]
     declared = method.orders.conductivity, method.orders.temperature, method.orders.flux
+    print(f"{method.name}: orders of conductivity, temperature and flux {fitted}, declared {declared}")
     assert np.all(fitted >= declared), f"orders of conductivity, temperature and flux {fitted}, declared {declared}"
 
 

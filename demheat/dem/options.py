@@ -120,6 +120,8 @@ def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic
         If nobody knows a knob.
     """
     for old in RENAMED.keys() & knobs.keys():
+        if RENAMED[old] in knobs:
+            raise ValueError(f"{old} = {knobs[old]!r} beside {RENAMED[old]}, its new name: must be given once")
         warnings.warn(f"{old}= is now {RENAMED[old]}=", DeprecationWarning, stacklevel=3)
     knobs = {RENAMED.get(name, name): value for name, value in knobs.items()}
     own = {field.name for field in fields(Particles)}

@@ -68,7 +68,8 @@ def refusals(scene, *, walls, domain, shapes, nested, pores) -> Iterator[str]:
         yield f"inclusions in a {scene.domain}"
     if shapes is not None and not scene.only(*shapes):
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
-        yield f"a {scene.inclusions[number].kind}, Scene.inclusions[{number}]"
+        kind = scene.inclusions[number].kind
+        yield f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}, Scene.inclusions[{number}]"
     if not nested and np.any(scene.parents()):
         number = int(np.flatnonzero(scene.parents())[0])
         yield f"Scene.inclusions[{number - 1}], nested in [{scene.parents()[number] - 1}]"

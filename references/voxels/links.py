@@ -94,7 +94,7 @@ def cut(shape: Shape, resistance, axis: int, change: float, spacing) -> None:
         If the shape is not registered.
     """
     raise NotImplementedError(
-        f"links cut by inclusions of shape {type(shape).__name__}: not known here; use rule='plain'"
+        f"links cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
     )
 
 

@@ -227,7 +227,7 @@ def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
     """
     if cutting:
         raise NotImplementedError(
-            f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; use rule='plain' with fft"
+            f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
         )
     low, high = (np.clip(ends, 0.0, grid.shape * spacing) / spacing for ends in shape.bounds())
     low, high = np.floor(low).astype(int), np.ceil(high).astype(int)

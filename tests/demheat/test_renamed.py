@@ -19,6 +19,11 @@ def test_old_keywords(old, new):
     assert before.conductivity == demheat.solve(scene, **knobs, **new).conductivity
 
 
+def test_an_old_keyword_beside_its_new_one_is_refused():
+    with pytest.raises(ValueError, match="tiles = 2 beside replicas, its new name: must be given once"):
+        demheat.solve(gallery.slab(periodic=True), particles=200, tiles=2, replicas=1)
+
+
 def test_old_classes_and_functions():
     with pytest.warns(DeprecationWarning, match="demheat.Heating is now demheat.UniformSource"):
         assert demheat.Heating is demheat.UniformSource

@@ -57,8 +57,21 @@ def _check_pair(shapes, i, j, cell):
         raise ValueError(f"Scene.inclusions[{i}] is hidden by inclusions[{j}]: list the outer one first")
     if not _holds(first, second, cell):
         raise ValueError(
-            f"Scene.inclusions[{i}] and [{j}] overlap partially: inclusions must be disjoint, touching or fully nested"
+            f"Scene.inclusions[{i}] and [{j}] overlap partially{_unsure(first, second)}: inclusions must be disjoint, "
+            "touching or fully nested"
         )
+
+
+def _unsure(first, second):
+    """What to add where the shapes might be apart all the same."""
+    told = all(_is_ball(shape) or shape.fills_bounds for shape in (first, second))
+    return "" if told else ", or are too near for their bounds and bounding balls to tell them apart"
+
+
+def _is_ball(shape):
+    center, radius = shape.ball()
+    # Of two lengths that are equal but for rounding.
+    return shape.bounded and -shape.distance(center[None])[0] >= radius * (1 - 1e-9)
 
 
 def _crossed(first, second):

@@ -129,8 +129,11 @@ REFUSALS = {
         ),
         r"Scene.inclusions\[0\]: hexahedra follow boxes of layers only",
     ),
-    "laminates": (lambda scene: fft.solve(scene, voxels=8, rule="laminate"), "Brick: not known here; use rule='plain'"),
-    "links": (lambda scene: fft.solve(scene, voxels=8, rule="links"), "Brick: not known here; use rule='plain'"),
+    "laminates": (
+        lambda scene: fft.solve(scene, voxels=8, rule="laminate"),
+        "Brick: not known here; in fft use",
+    ),
+    "links": (lambda scene: fft.solve(scene, voxels=8, rule="links"), "Brick: not known here; in fft use"),
     "multipoles": (multipole.solve, r"a brick, Scene.inclusions\[1\]: multipole knows disjoint spheres"),
     "closed forms": (exact.solve, "no closed form"),
 }
