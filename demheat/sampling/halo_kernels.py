@@ -102,7 +102,10 @@ def _copied(cells, c, shift, buffer, count):
     begin, end = cells.start[c], cells.start[c + 1]
     if count + end - begin > buffer.shape[1]:
         larger = np.empty((ROWS, 2 * (count + end - begin)))
-        larger[:, :count] = buffer[:, :count]
+        # In loops: compiled in half the time of an assignment of slices.
+        for k in range(ROWS):
+            for t in range(count):
+                larger[k, t] = buffer[k, t]
         buffer = larger
     for k in range(ROWS):
         add = shift[k] if k < 3 else 0.0
