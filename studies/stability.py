@@ -60,20 +60,15 @@ def _resolutions(method):
 CASES = list(_cases())
 MODULES = {"lattice": "references.exact.lattice"}
 PAPER = {}
-MODULES = {"lattice": "references.exact.lattice"}
 
 
 def QUICK(case):
-    """Coarse rows; not the costly ones: elements in narrow gaps, Eyre and Milton's scheme at a contrast of 1e6.
-
-    Nor the mild contrast of 10, which `fig14_single_inclusion` has in every quick run, but for single precision.
-    """
+    """Coarse rows; not the costly ones: elements in narrow gaps, Eyre and Milton's scheme at a contrast of 1e6."""
     name, contrast, method = case["name"], case["contrast"], methods.found().get(case["name"])
     coarse = _resolutions(method)[0] if method else {"contrast": 1e8}
     fractions = (methods.THIRD,) if name == "fem" else (methods.THIRD, 0.52)
     slow = name == "fft-em" and contrast in SLOW
-    mild = contrast == 10.0 and "precision" not in case
-    return coarse.items() <= case.items() and case["fraction"] in fractions and not slow and not mild
+    return coarse.items() <= case.items() and case["fraction"] in fractions and not slow
 
 
 def run(name, fraction, contrast, method, **knobs):
