@@ -126,7 +126,7 @@ def warm_up(name, kind, fraction, realisation, boundary="gradient", axes="y", *,
 def claims(df):
     """All methods on the same spheres; boundary conditions; means and their bounds.
 
-    Converged values are held to 0.1 % of the multipoles, far below what chance does from cell to cell; to 0.3 % in
+    Converged values are held to 0.1 % of the multipoles, far below the standard deviation between cells; to 0.3 % in
     dense cells, and to 1 % at the worst resolution.
     """
     yield from present([*_one_arrangement(df), *_boundaries(df), *_averages(df)])
@@ -169,7 +169,7 @@ def _boundaries(df):
 
 
 def _averages(df):
-    """Means over axes and realisations: bounds, and what chance does beside what methods do."""
+    """Means over axes and realisations: bounds, and the deviation between cells beside that between methods."""
     for (fraction, name), rows in all_axes(df).groupby(["fraction", "name"]):
         limits = np.array([bounds_of(df, row) for _, row in rows.iterrows()])
         k = rows["k_ratio"].to_numpy(dtype=float)
@@ -186,8 +186,8 @@ def _averages(df):
 def table(df):
     """Errors, in % of the multipole value, on one cell of each fraction, along one axis; and k/k_m.
 
-    "Converged" is extrapolated from the method's own finest rows, of FEM the finest itself. "Chance" is the standard
-    deviation of k between cells, of means over three axes or along one, % of k; the mean's 95 % interval is from
+    "Converged" is extrapolated from the method's own finest rows, of FEM the finest itself. Standard
+    deviations between cells are of means over three axes, or along one, % of k; the mean's 95 % interval is from
     Student's distribution. Costs are those at f = 0.4, the packing from the cache.
     """
     from studies.fig17_etc.tables import lines
@@ -196,7 +196,7 @@ def table(df):
 
 
 def plot(df):
-    """k over that of the matrix with bounds and estimates; errors of the methods; chance beside both."""
+    """k over that of the matrix with bounds and estimates; errors of the methods; deviations between cells."""
     from studies.fig17_etc.figure import draw
 
     return draw(df)

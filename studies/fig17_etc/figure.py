@@ -1,4 +1,4 @@
-"""The figure of fig17_etc: conductivity with its bounds, errors of the methods, and chance beside both."""
+"""The figure of fig17_etc: conductivity with its bounds, errors of the methods, and deviations between cells."""
 
 from __future__ import annotations
 
@@ -115,11 +115,11 @@ def _percent_off(df, fraction, k):
 
 
 def _spreads(ax, df):
-    """What changes k: chance, boundaries, the spheres' sizes, and the method."""
+    """What changes k: the cell, boundaries, the spheres' sizes, and the method."""
     fractions = _fractions(df)
     cells = [interval(df, "periodic", f) for f in fractions]
     groups = {
-        ("chance: deviation of one cell, one axis", BLACK): [along_one_axis(df, f) for f in fractions],
+        ("standard deviation between cells, one axis", BLACK): [along_one_axis(df, f) for f in fractions],
         ("the same, mean over three axes", GREY): [i and 100 * i.deviation / i.mean for i in cells],
         ("isothermal walls instead of a gradient", PINK): [of_walls(df, f).mean() for f in fractions],
         ("unequal spheres instead of equal ones", GREEN): [change(df, f, "unequal") for f in fractions],

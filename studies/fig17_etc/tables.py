@@ -1,4 +1,4 @@
-"""The table of fig17_etc: k and its chance, bounds and estimates, errors and costs of the methods."""
+"""The table of fig17_etc: k and its deviation between cells, bounds and estimates, errors and costs of the methods."""
 
 from __future__ import annotations
 
@@ -59,11 +59,13 @@ def _line(quantity, of, values, digits=3, **costs):
 def _conductivities(df, fractions):
     """Means over cells, and what changes them."""
     exact = {f: interval(df, "periodic", f, name="multipole") for f in fractions}
-    chance = {f: interval(df, "periodic", f) for f in fractions}
+    between = {f: interval(df, "periodic", f) for f in fractions}
     yield _line("k/k_m", "mean of cells, multipoles", {f: i and i.mean for f, i in exact.items()}, 5)
     yield _line("%", "95 % interval of that mean, +-", {f: i and 100 * i.half / i.mean for f, i in exact.items()})
-    yield _line("%", "chance", {f: i and 100 * i.deviation / i.mean for f, i in chance.items()})
-    yield _line("%", "chance along one axis", {f: along_one_axis(df, f) for f in fractions})
+    yield _line(
+        "%", "standard deviation between cells", {f: i and 100 * i.deviation / i.mean for f, i in between.items()}
+    )
+    yield _line("%", "the same, along one axis", {f: along_one_axis(df, f) for f in fractions})
     for kind, name in (("unequal", "unequal spheres less equal ones"), ("walled", "walled cells less periodic ones")):
         yield _line("%", name, {f: change(df, f, kind) for f in fractions})
         yield _line("%", "95 % interval of that, +-", {f: change_interval(df, f, kind) for f in fractions})
