@@ -14,7 +14,7 @@ TOY = '''
 """Finite volumes on cells that take the material of their centre."""
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, diags
 from scipy.sparse.linalg import cg
 
 from demheat.field import Field, Samples
@@ -54,7 +54,8 @@ def solve(scene, *, cells=30):
     outer = second < 0  # a wall beyond the first cell: at the temperature that its jump holds
     matrix = coo_matrix((-g[~outer], (first[~outer], second[~outer])), shape=(len(k),) * 2).tocsr()
     matrix = matrix + matrix.T
-    matrix.setdiag(-np.asarray(matrix.sum(axis=1)).ravel() + np.bincount(first[outer], g[outer], len(k)))
+    diagonal = np.bincount(first[outer], g[outer], len(k)) - np.asarray(matrix.sum(axis=1)).ravel()
+    matrix = (matrix + diags(diagonal)).tocsr()
     load = np.bincount(first, g * jump, len(k)) - np.bincount(second[~outer], (g * jump)[~outer], len(k))
     steps = []
     warm, _ = cg(matrix, load, rtol=1e-13, callback=steps.append, maxiter=5000)

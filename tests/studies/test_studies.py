@@ -37,6 +37,8 @@ def test_the_studies_are_there():
     assert {"fig03_calibration", "packings"} <= set(NAMES)
 
 
+# Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.
+@pytest.mark.filterwarnings("ignore:.*do not fit into gaps:UserWarning")
 @pytest.mark.parametrize("name", NAMES)
 def test_quick_rows_and_claims(name, folder):
     study = runner.load(name)
