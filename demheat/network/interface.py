@@ -33,10 +33,6 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     """
     if rule not in RULES:
         raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
-    return _conductivity(k_here, k_there, share, rule)
-
-
-def _conductivity(k_here, k_there, share, rule):
     share = np.clip(share, 0.0, 1.0)
     if rule == "arithmetic":
         return share * k_here + (1.0 - share) * k_there
@@ -98,7 +94,8 @@ def _conductances(packing, facets, conductivity, rule):
         row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
         there = facets.indices[links]
         length = _lengths(packing.centers, packing.size, row, there, facets.image[links])
-        k = _conductivity(conductivity[row], conductivity[there], facets.distance[links] / length, rule)
+        share = facets.distance[links] / length
+        k = link_conductivity(conductivity[row], conductivity[there], share, rule=rule)
         conductance[links] = k * facets.area[links] / length
     return conductance
 
