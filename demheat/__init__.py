@@ -8,6 +8,7 @@ import warnings
 
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.progress import on_progress
 from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
 
 __all__ = [
@@ -24,6 +25,7 @@ __all__ = [
     "Sphere",
     "UniformSource",
     "evolve",
+    "on_progress",
     "solve",
 ]
 __version__ = "0.1.0"
