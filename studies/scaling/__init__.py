@@ -1,0 +1,188 @@
+"""How costs grow: with particles to 8e6, with inclusions to 20 000, with threads; every stage of every method.
+
+Spheres of silica in epoxy, k ratio 7.692, in a periodic cell under a mean gradient. `inclusions` keeps what a method
+spends on an inclusion and adds inclusions: equal spheres, three tenths of the volume. `kinds` has denser ones and sizes
+in a ratio of 10. `goal` sets the scene of 5000 spheres beside one sphere with as many particles, and each method's
+conductivity beside the multipoles'. `elements` refines one cell of 83 spheres, with one thread and with two. `before`
+runs the same 8e6 particles with the code of an earlier commit, taken from the history, right after today's.
+"""
+
+from studies.harness import methods
+from studies.harness.pick import largest, pick, present
+from studies.scaling.means import errors, fitted
+
+NUMBERS = (100, 300, 1000, 3000, 10_000, 20_000)
+MOST = {"multipole": 10_000, "fem": 300}  # inclusions; beyond them minutes become hours
+PER_INCLUSION = 50  # particles
+GOAL, MANY = 5000, 1_000_000
+KINDS = (("equal", 0.5), ("polydisperse", 0.3), ("polydisperse", 0.5))
+PARTICLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 8_000_000)
+VOXELS = (64, 128, 256, 512)
+THREADS = (1, 2)
+BEFORE = "b4da0d3"
+ACCURACY = 1e-4  # of the multipoles
+PAPER = {}
+TIMEOUT = 5400.0
+
+
+def _spent(name, number):
+    """What a method spends on so many inclusions."""
+    if name == "dem":
+        return {"particles": PER_INCLUSION * number, "seed": 0}
+    if name == "fft":
+        # A sphere of a cell of 1000 has 64^3/1000 voxels.
+        return {"voxels": 2 * round(3.2 * number ** (1 / 3))}
+    if name == "multipole":
+        return {"accuracy": ACCURACY}
+    # A third of a diameter.
+    return {"size": methods.EDGE * (6 * 0.3 / (3.14159 * number)) ** (1 / 3) / 3}
+
+
+def _cases():
+    for name in ("dem", "fft", "multipole", "fem"):
+        for number in NUMBERS:
+            if number <= MOST.get(name, NUMBERS[-1]):
+                scene = {"part": "inclusions", "number": number, "kind": "equal", "fraction": 0.3}
+                yield methods.case(name, **scene, **_spent(name, number))
+    for kind, fraction in KINDS:
+        for number in (1000, GOAL, NUMBERS[-1]):
+            for name in ("dem", "fft"):
+                scene = {"part": "kinds", "number": number, "kind": kind, "fraction": fraction}
+                yield methods.case(name, **scene, **_spent(name, number))
+    for name, number, knobs in (
+        ("dem", 1, {"particles": MANY, "seed": 0}),
+        ("dem", GOAL, {"particles": MANY, "seed": 0}),
+        ("fft", GOAL, {"voxels": VOXELS[2]}),
+        ("multipole", GOAL, {"accuracy": ACCURACY}),
+    ):
+        yield methods.case(name, part="goal", number=number, kind="equal", fraction=0.3, **knobs)
+    for particles in PARTICLES:
+        for threads in THREADS if particles < PARTICLES[-1] else THREADS[-1:]:
+            yield methods.case("dem", part="elements", particles=particles, seed=0, cores=threads)
+    for voxels in VOXELS:
+        for threads in THREADS if voxels < VOXELS[-1] else THREADS[-1:]:
+            yield methods.case("fft", part="elements", voxels=voxels, cores=threads)
+    yield methods.case("dem", part="before", particles=PARTICLES[-1], seed=0, then=BEFORE)
+    yield methods.case("dem", part="time", particles=PARTICLES[-1], seed=0)
+    for particles in PARTICLES[2:5:2]:
+        yield methods.case("dem", part="cutter", particles=particles, seed=0)
+    yield methods.case("dem", part="start", particles=PARTICLES[2], seed=0)
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """A hundred inclusions, a cell of coarse elements; nothing that is timed for its own sake."""
+    if case["part"] == "inclusions":
+        return case["number"] <= NUMBERS[0] and case["name"] != "fem"
+    if case["part"] == "elements":
+        return case.get("particles", 0) <= 10_000 and case.get("voxels", 0) <= 64
+    return False
+
+
+def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
+    """One row of a part."""
+    import tempfile
+
+    from studies.scaling import rows, whole
+
+    if method == "dem":
+        # Stages are called one by one, with the law that the method fixes.
+        knobs = {key: value for key, value in knobs.items() if key not in methods.found()[name].knobs}
+    if part in ("before", "time", "start"):
+        return {"before": whole.before_row, "time": whole.time_row, "start": whole.start_row}[part](**knobs)
+    if part == "cutter":
+        from studies.common.cutter import beside_voro
+
+        return beside_voro(**knobs)
+    scene = rows.cell() if part == "elements" else rows.scene_of(number, kind, fraction)
+    if method != "dem":
+        return rows.solved_row(scene, method=method, **knobs)
+    with tempfile.TemporaryDirectory() as folder, methods.packings_in(folder):
+        return rows.dem_row(scene, **knobs)
+
+
+def warm_up(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
+    """Make the dispersion, load and compile."""
+    from studies.scaling import rows
+
+    if part == "elements":
+        rows.cell()
+    elif number is not None:
+        rows.scene_of(number, kind, fraction)
+    if part in ("inclusions", "kinds", "goal", "elements"):
+        rows.warm_up(method)
+
+
+def claims(df):
+    """Fitted exponents, the scene of 5000 spheres, two threads, and today's code beside an earlier one.
+
+    Limits are the project's aims, set before any row was there.
+    """
+    df = errors(df)
+    yield from present([*_exponents(df), *_goal(df), *_engine(df)])
+
+
+def _exponents(df):
+    found = fitted(pick(df, part="inclusions"), "number")
+    for name, limit in (("dem", 1.15), ("fft", 1.15), ("multipole", 1.3)):
+        for _, fit in pick(found, name=name).iterrows():
+            yield f"{methods.found()[name].title}, {fit['stage']}: exponent in inclusions", fit["exponent"], limit
+
+
+def _goal(df):
+    rows = pick(df, part="goal")
+    many, one = (pick(rows, name="dem", number=number) for number in (GOAL, 1))
+    if len(many) and len(one):
+        ratio = _cached(many) / _cached(one)
+        yield f"DEM, {MANY} particles, packing there: CPU time for {GOAL} spheres over that for one", ratio, 3.0
+        yield f"DEM, {GOAL} spheres: error, %", largest(many, "error_percent"), 0.3
+    exact = pick(rows, name="multipole")
+    if len(exact):
+        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: CPU seconds", exact["cpu_s"].iloc[0], 600.0
+        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: GiB", exact["peak_mib"].iloc[0] / 1024, 8.0
+
+
+def _cached(rows):
+    """CPU seconds without those of the packing."""
+    return (rows["cpu_s"] - rows["packing_cpu_s"]).iloc[0]
+
+
+def _engine(df):
+    rows = pick(df, part="before")
+    if len(rows):
+        row = rows.iloc[0]
+        yield "DEM, 8e6: CPU time over that of the code before", row["cpu_s"] / row["then_cpu_s"], 0.6
+        yield "DEM, 8e6: peak memory per unknown, bytes", row["peak_mib"] * 2**20 / row["unknowns"], 600.0
+        yield "DEM, 8e6: change of the conductivity, %", 100 * abs(row["k"] / row["then_k"] - 1), 0.001
+    rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
+    if len(rows):
+        yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.25
+    rows = pick(df, part="cutter", particles=MANY)
+    if len(rows):
+        yield "Cells of two threads: efficiency", rows["efficiency"].iloc[0], ">= 0.8"
+        yield "Cells that are cut again, share", rows["redone"].iloc[0], 0.01
+        yield "Cells: CPU time over that of Voro++", rows["voro_ratio"].iloc[0], 0.25
+    rows = pick(df, part="start")
+    if len(rows):
+        yield "First solve, nothing compiled: wall seconds", rows["first_s"].iloc[0], 20.0
+
+
+def table(df):
+    """CPU and wall seconds of every row, of the DEM by stages, then fits.
+
+    GiB are the peak over what was there before. Errors are those of k against the multipoles' of the same spheres;
+    coarse rows are there for their costs. Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more.
+    The last lines say what 1e9 unknowns would take if the fits went on.
+    """
+    from studies.scaling.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """Costs of methods and stages as lines of slope one and others; two threads."""
+    from studies.scaling.figure import draw
+
+    return draw(df[df["status"] == "ok"])

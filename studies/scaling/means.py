@@ -1,0 +1,134 @@
+"""What is made of the rows of scaling: exponents, efficiencies, and what a larger cell would take."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from studies.harness.pick import order, pick
+
+# Stages of the DEM from the scene to the conductivity, and those of the field at points.
+STAGES = ("packing", "twins", "cells", "phases", "network", "equations", "field", "points")
+# A stage takes part in a fit where it lasts at least this long: shorter ones are clocks and caches.
+LEAST = 0.02
+# Rows of so many inclusions or elements and more are fitted: below, what does not grow weighs.
+FROM = {"number": 1000, "unknowns": 50_000}
+BILLION = 1e9
+
+
+def of_stages(df):
+    """CPU seconds of every stage of every row: a row for each, with its `stage`.
+
+    Parameters
+    ----------
+    df : data frame
+
+    Returns
+    -------
+    data frame
+    """
+    import pandas as pd
+
+    found = [df.assign(stage="all", seconds=df["cpu_s"], wall=df["wall_s"])]
+    for stage in (*STAGES, "solve"):
+        if f"{stage}_cpu_s" in df:
+            here = df[df[f"{stage}_cpu_s"].notna()]
+            found.append(here.assign(stage=stage, seconds=here[f"{stage}_cpu_s"], wall=here[f"{stage}_wall_s"]))
+    return pd.concat(found, ignore_index=True)
+
+
+def fitted(df, by):
+    """Exponent of the CPU time of every stage of every method.
+
+    Parameters
+    ----------
+    df : data frame
+        Of one part.
+    by : {"number", "unknowns"}
+        What grows.
+
+    Returns
+    -------
+    data frame
+        name, stage, exponent, number of rows, seconds of the largest and what is largest. A stage that never lasts
+        LEAST seconds has no exponent; nor one with fewer than three rows.
+    """
+    import pandas as pd
+
+    rows = []
+    stages = of_stages(df[df["status"] == "ok"])
+    for (name, stage), group in stages.groupby(["name", "stage"], sort=False):
+        group = group[(group[by] >= FROM[by]) & (group["seconds"] >= LEAST)].sort_values(by)
+        if len(group) >= 3:
+            exponent = order(group[by].to_numpy(float), group["seconds"].to_numpy(float))
+            last = group.iloc[-1]
+            rows.append(
+                {"name": name, "stage": stage, "exponent": exponent, "rows": len(group), "largest": last[by]}
+                | {"seconds": last["seconds"]}
+            )
+    return pd.DataFrame(rows, columns=["name", "stage", "exponent", "rows", "largest", "seconds"])
+
+
+def efficiencies(df):
+    """Wall time with one thread over that with n, divided by n, of every stage.
+
+    Parameters
+    ----------
+    df : data frame
+
+    Returns
+    -------
+    data frame
+        name, resolution (particles or voxels), stage, wall (s, one thread) and efficiency.
+    """
+    import pandas as pd
+
+    rows = []
+    df = of_stages(pick(df[df["status"] == "ok"], part="elements"))
+    df = df.assign(resolution=df["particles"].fillna(df["voxels"]) if "voxels" in df else df["particles"])
+    for (name, resolution, stage), group in df.groupby(["name", "resolution", "stage"], sort=False):
+        one, most = group[group["cores"] == 1], group[group["cores"] == group["cores"].max()]
+        if len(one) and most["cores"].iloc[0] > 1 and one["wall"].iloc[0] >= LEAST:
+            gained = one["wall"].iloc[0] / most["wall"].iloc[0] / most["cores"].iloc[0]
+            rows.append({"name": name, "resolution": resolution, "stage": stage} | {"wall": one["wall"].iloc[0]})
+            rows[-1]["efficiency"] = gained
+    return pd.DataFrame(rows, columns=["name", "resolution", "stage", "wall", "efficiency"])
+
+
+def errors(df):
+    """The rows with their error against the multipoles' conductivity of the same spheres, %, where that is known."""
+    known = {}
+    for _, row in pick(df[df["status"] == "ok"], name="multipole").iterrows():
+        known[row["number"], row["kind"], row["fraction"]] = row["k_ratio"]
+    exact = [known.get((n, k, f), math.nan) for n, k, f in zip(df["number"], df["kind"], df["fraction"], strict=True)]
+    return df.assign(error_percent=100 * (df["k_ratio"] / np.array(exact, dtype=float) - 1))
+
+
+def billion(df):
+    """What 1e9 unknowns would take by the costs of the largest row and the exponents of its method.
+
+    Parameters
+    ----------
+    df : data frame
+
+    Returns
+    -------
+    list of dict
+        name, unknowns, CPU hours and TiB.
+    """
+    parts = pick(df[df["status"] == "ok"], part="elements")
+    exponents = fitted(parts, "unknowns")
+    lines = []
+    for name in ("dem", "fft"):
+        rows = pick(parts, name=name).sort_values("unknowns")
+        power = pick(exponents, name=name, stage="all")["exponent"]
+        if len(rows) and len(power):
+            last = rows.iloc[-1]
+            more = BILLION / last["unknowns"]
+            lines.append(
+                {"name": name, "unknowns": BILLION}
+                | {"hours": last["cpu_s"] * more ** max(1.0, float(power.iloc[0])) / 3600}
+                | {"tib": last["peak_mib"] * more / 2**20, "from": last["unknowns"], "exponent": float(power.iloc[0])}
+            )
+    return lines
