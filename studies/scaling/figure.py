@@ -65,7 +65,7 @@ def _threads(ax, df):
         return
     finest = found[found["resolution"] == found.groupby("name")["resolution"].transform("max")]
     finest = finest[finest["wall"] >= 0.05]
-    words = [f"{methods.found()[row["name"]].title}: {row["stage"]}" for _, row in finest.iterrows()]
+    words = [f"{methods.found()[row['name']].title}: {row['stage']}" for _, row in finest.iterrows()]
     ax.barh(words, finest["efficiency"], color=[LOOK[name][1] for name in finest["name"]])
     ax.axvline(0.8, color=GREY, linestyle=":")
     ax.set(xlabel="wall time of one thread over two, halved", title="Two threads, finest cell of both", xlim=(0, 1.1))
