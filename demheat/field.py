@@ -67,8 +67,8 @@ class Field:
     temperature_at : callable (n, 3) float array, m -> (n,) float array, K
         Of a steady state NaN in pores and where no temperature is fixed, see the module.
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
-        0 in pores of a steady state. Both take one (3,) point too, and raise ValueError if the points are anything else, not finite, or outside a
-        body with walls.
+        0 in pores of a steady state. Both take one (3,) point too, and raise ValueError if the points are anything
+        else, not finite, or outside a body with walls.
     wall_temperature : mapping of str to float, K
         Area-averaged temperature of each loaded wall; empty in a periodic cell.
     wall_heat : mapping of str to float, W
