@@ -72,25 +72,6 @@ def bodies(network, scene):
     return Bodies(found.label, still, temperature)
 
 
-def cut_off(network, still):
-    """The network without the links of particles that no heat passes.
-
-    Parameters
-    ----------
-    network : Network
-    still : (n,) bool array
-
-    Returns
-    -------
-    Network
-    """
-    if not np.any(network.conductance[np.repeat(still, np.diff(network.indptr))]):
-        return network._replace(wall_conductance=np.where(still[network.wall_particle], 0.0, network.wall_conductance))
-    links = np.where(np.repeat(still, np.diff(network.indptr)), 0.0, network.conductance)
-    walls = np.where(still[network.wall_particle], 0.0, network.wall_conductance)
-    return network._replace(conductance=links, wall_conductance=walls)
-
-
 def level_off(temperature, label, volumes):
     """Take off each body its mean, in place.
 

@@ -81,7 +81,7 @@ def gather(links, image, jump, found, state, most):
                 tail += 1
                 for k in range(3):
                     shift[j, k] = shift[i, k] + step[k]
-            elif not climbs[body]:
+            elif label[j] != NONE and not climbs[body]:
                 rise, size = 0.0, 0.0
                 for k in range(3):
                     part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]

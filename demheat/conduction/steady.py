@@ -8,7 +8,7 @@ from scipy import sparse
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.multigrid import preconditioner
-from demheat.network.base import SIDES, Network
+from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
 
 SOLVERS = ("auto", "cg", "amg")
@@ -103,7 +103,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
     Solution
     """
     bodies = islands.bodies(network, scene)
-    network = network if bodies is None else islands.cut_off(network, bodies.still)
+    network = network if bodies is None else without_links(network, bodies.still)
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Field, Samples
-from demheat.network.base import SIDES, image_shifts, row_numbers
+from demheat.network.base import SIDES, image_shifts, row_numbers, without_links
 from demheat.sampling.edges import edges_of
 from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
@@ -30,6 +30,8 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
     -------
     Field
     """
+    if solution.still is not None:
+        network = without_links(network, solution.still)
     temperature, heat = {}, {}
     for name in scene.walls or {}:
         here = network.wall_side == SIDES.index(name)
@@ -160,8 +162,6 @@ def _heat_through(network, solution, axis, position):
         y = network.centers[:, k]
         there = y[network.indices] + image_shifts(network.image, network.size)[:, k]
         rise += solution.mean_gradient[k] * (there - y[row])
-    if solution.still is not None:
-        rise[solution.still[row]] = 0.0
     # Each link stands in two rows, with both signs changed.
     heat = -0.5 * float((side(step) - side(x[row])) @ (network.conductance * rise))
     for end in (0, 1):

@@ -27,8 +27,6 @@ def mean_flux(network, scene, solution):
     """
     first = np.empty((len(network.volumes), 3))
     kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
-    if solution.still is not None:
-        first[solution.still] = 0.0
     towards = wall_normals(network) * network.wall_distance[:, None]
     return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
 
@@ -50,7 +48,7 @@ def cell_fluxes(network, solution):
     (n, 3) float array, W/m2
     """
     if not network.cells:
-        return _at_rest(particle_flux(network, solution, split="half"), solution)
+        return particle_flux(network, solution, split="half")
     n = len(network.volumes)
     shape, flow = np.empty((n, 3, 3)), np.empty((n, 3))
     where = links_of(network), places_of(network)
@@ -59,14 +57,7 @@ def cell_fluxes(network, solution):
     outer = normal[:, :, None] * normal[:, None, :]
     np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
     np.add.at(flow, network.wall_particle, normal * solution.wall_heat[:, None])
-    return _at_rest(-np.linalg.solve(shape, flow[..., None])[..., 0], solution)
-
-
-def _at_rest(fluxes, solution):
-    """Fluxes without the rounding that the temperatures of particles leave which no heat passes."""
-    if solution.still is not None:
-        fluxes[solution.still] = 0.0
-    return fluxes
+    return -np.linalg.solve(shape, flow[..., None])[..., 0]
 
 
 def filled(solution):

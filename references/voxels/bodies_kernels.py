@@ -100,7 +100,7 @@ def gather(below, periodic, jump, found, state, most):
                 tail += 1
                 for k in range(3):
                     shift[j, k] = shift[i, k] + step[k]
-            elif not climbs[label[i]]:
+            elif label[j] != NONE and not climbs[label[i]]:
                 rise, size = 0.0, 0.0
                 for k in range(3):
                     part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]
