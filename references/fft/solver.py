@@ -89,7 +89,7 @@ def solve(
     ValueError
         If an argument is not as described, or the grid has too few voxels for the scheme.
     NotImplementedError
-        If the load is another, or the scheme or rule cannot do with a zero conductivity.
+        If the load is another, or the scheme or rule cannot do with a zero conductivity that leaves heat a way.
     RuntimeError
         If the iteration does not converge.
     """

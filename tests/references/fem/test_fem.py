@@ -231,10 +231,9 @@ def test_a_pore_is_the_limit_of_a_vanishing_conductivity():
     pore, near = (fem.solve(scene(ball(k)), order=1, size=0.12) for k in (0.0, 1e-7))
     assert_allclose(pore.conductivity, near.conductivity, rtol=1e-6)  # ten times the conductivity of the pore
     points = points_in((1, 1, 1))
-    inside = np.linalg.norm(points - 0.5, axis=1) < 0.3
+    inside = pore.scene.phase_at(points) == 1
     # Outside too, past the chords of straight elements.
-    change = pore.temperature_at(points[~inside]) - near.temperature_at(points[~inside])
-    assert_allclose(change - change.mean(), 0, atol=2e-6)
+    assert_allclose(pore.temperature_at(points[~inside]), near.temperature_at(points[~inside]), atol=2e-6)
     assert np.all(np.isnan(pore.temperature_at(points[inside])))
     assert np.all(pore.flux_at(points)[inside] == 0)
     assert pore.stats["unknowns"] < near.stats["unknowns"]
