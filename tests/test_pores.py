@@ -5,7 +5,7 @@ import pytest
 from method_scenes import METHODS, Estimated, allowed, answered, asked
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Layer, Material, Scene, Sphere
+from demheat import Flux, Layer, Material, Scene, Sphere
 from references import fft
 
 PORE, METAL = Material(0.0), Material(2.0)
@@ -190,3 +190,10 @@ def test_poor_conductors_are_no_pores():
     found = fft.solve(cell(layer, ball), voxels=10, rule="plain", threads=1)
     # Two planes of voxels of ten have the layer's conductivity.
     assert_allclose(found.conductivity, 1e-5 / found.fractions[1], rtol=1e-3)
+
+
+@pytest.mark.parametrize("name", ["dem", "fem", "exact"])
+def test_a_wall_that_no_temperature_reaches_has_none(name):
+    field = answered(METHODS[name], cell(LAYER, walls={"y-": 20.0, "y+": Flux(0.0)}))
+    assert field.wall_temperature["y-"] == 20.0 and np.isnan(field.wall_temperature["y+"])
+    assert field.wall_heat == {"y-": 0.0, "y+": 0.0}

@@ -62,13 +62,12 @@ def bodies(network, scene):
         passing, level = _at_walls(network, scene, found.label, count)
     still = np.append(~passing, True)[found.label]
     if scene.periodic:
-        path = found.shift * network.size
-        path += network.centers
-        temperature = np.where(still, -(path @ gradient), np.nan)
+        temperature, here = np.full(len(solid), np.nan), np.flatnonzero(still & solid)
+        path = network.centers[here] + found.shift[here] * network.size
+        temperature[here] = -(path @ gradient)
         level_off(temperature, np.where(still, found.label, -1), network.volumes)
     else:
         temperature = np.append(np.where(passing, np.nan, level), np.nan)[found.label]
-    temperature[~solid] = np.nan
     return Bodies(found.label, still, temperature)
 
 

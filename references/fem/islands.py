@@ -112,6 +112,23 @@ def extend(found: Bodies, mesh, temperature) -> None:
         temperature[outside] = temperature[inside[cKDTree(mesh.points[inside]).query(mesh.points[outside])[1]]]
 
 
+def reached(found: Bodies, scene, temperature):
+    """The temperature of nodes, NaN in bodies that no wall's temperature reaches.
+
+    Parameters
+    ----------
+    found : Bodies
+    scene : Scene
+    temperature : (n,) float array, K or degrees Celsius
+
+    Returns
+    -------
+    (n,) float array, K or degrees Celsius
+    """
+    lost = np.append(~found.passing & np.isnan(found.level) & (not scene.periodic), False)
+    return np.where(lost[found.node], np.nan, temperature)
+
+
 def _pieces(mesh, solid):
     """Piece of each node in the box, joined by conducting elements, -1 in pores; their number."""
     cells = mesh.cells[solid].astype(np.int64)

@@ -115,7 +115,8 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
     stats |= {"assembly_s": assembled - begin, "solve_s": time.perf_counter() - assembled}
-    return Solved(temperature, *_walls(scene, given, temperature, heat), stats, found)
+    shown = temperature if found is None else islands.reached(found, scene, temperature)
+    return Solved(temperature, *_walls(scene, given, shown, heat), stats, found)
 
 
 def _at_rest(scene, mesh, given, found):
@@ -125,8 +126,8 @@ def _at_rest(scene, mesh, given, found):
     islands.extend(found, mesh, temperature)
     stats = {"unknowns": 0, "iterations": 0, "residual": 0.0, "islands": len(found.passing)}
     stats |= {"assembly_s": 0.0, "solve_s": 0.0}
-    walls = _walls(scene, given, temperature, np.zeros(len(mesh.points)))
-    return Solved(temperature, *walls, stats, found)
+    shown = islands.reached(found, scene, temperature)
+    return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown))), stats, found)
 
 
 def _given(scene, mesh, solid):
@@ -187,6 +188,11 @@ def _walls(scene, given, temperature, heat):
     for name, nodes in given.nodes.items():
         entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))
     for name, weights in given.weights.items():
-        mean[name] = float(weights @ temperature / weights.sum())
+        here = np.flatnonzero(weights)
+        known = here[np.isfinite(temperature[here])]
+        if len(known) == len(here):
+            mean[name] = float(weights @ np.nan_to_num(temperature) / weights.sum())
+        else:
+            mean[name] = float(weights[known] @ temperature[known] / weights[known].sum()) if len(known) else np.nan
         entering[name] = float(scene.wall_fluxes[name] * weights.sum())
     return mean, entering
