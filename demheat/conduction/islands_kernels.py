@@ -74,18 +74,22 @@ def gather(links, image, jump, found, state, most):
         for e in range(indptr[i], indptr[i + 1]):
             if conductance[e] <= 0.0:
                 continue
-            j, code = indices[e], np.int64(image[e])
+            j = indices[e]
+            # Where links lead is worked out for few: mostly both ends are known, of a body that climbs.
+            if label[j] != OPEN and (climbs[body] or label[j] == NONE):
+                continue
+            code = np.int64(image[e])
             step[0], step[1], step[2] = code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1
             if label[j] == OPEN:
                 label[j], queue[tail] = body, j
                 tail += 1
                 for k in range(3):
                     shift[j, k] = shift[i, k] + step[k]
-            elif label[j] != NONE and not climbs[body]:
-                rise, size = 0.0, 0.0
-                for k in range(3):
-                    part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]
-                    rise, size = rise + part, size + abs(part)
-                climbs[body] = abs(rise) > ROUNDING * size
+                continue
+            rise, size = 0.0, 0.0
+            for k in range(3):
+                part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]
+                rise, size = rise + part, size + abs(part)
+            climbs[body] = abs(rise) > ROUNDING * size
     state[0], state[1], state[2], state[3] = head, tail, seed, bodies
     return head < tail or seed < len(label)

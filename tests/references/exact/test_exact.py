@@ -207,7 +207,8 @@ def test_coated_sphere_meets_the_interface_conditions(scene):
         sides = [np.array(outer.center) + normals * radius * (1 + s * 1e-12) for s in (-1, 1)]
         warm = [field.temperature_at(points) for points in sides]
         # Rounding and the step of 1e-12 across; fluxes are of order 1e3 W/m2.
-        assert_allclose(warm[0], warm[1], atol=1e-9)
+        if radius == outer.radius or inner.material.conductivity > 0:  # a pore has no temperature
+            assert_allclose(warm[0], warm[1], atol=1e-9)
         through = [np.sum(field.flux_at(points) * normals, axis=1) for points in sides]
         assert_allclose(through[0], through[1], atol=1e-7)
     # In the coat the flux is minus k times the slope of the temperature, by central differences.
