@@ -1,4 +1,12 @@
-"""What every method returns: temperatures, fluxes and the effective conductivity, without saying how."""
+"""What every method returns: temperatures, fluxes and the effective conductivity, without saying how.
+
+Pores are phases of conductivity 0. In a steady state the flux in a pore is 0 and its temperature NaN, as the problem
+does not fix it, whatever the method. A body of conducting material that no heat can pass, cut off by pores, carries
+exactly none and has one temperature: that of the wall it reaches, NaN where it reaches no wall with a temperature. In a
+periodic cell each such body's temperature less that of the mean gradient has zero mean over the body, as levels there
+are free. If all bodies are cut off from the load, the effective conductivity is exactly 0. In time pores do have a
+temperature, the initial one and what sources put into them.
+"""
 
 from __future__ import annotations
 
@@ -27,10 +35,12 @@ class Samples(NamedTuple):
         Sum to the volume of the body as the method has it: those of the Platonic law, which carry the heat, do not fill
         it.
     temperature : (n,) float array, K or degrees Celsius
+        Of a steady state NaN in pores and where no temperature is fixed, see the module; `numpy.nanmean` leaves these
+        out.
     phase : (n,) int array
         Phase number as the method saw it.
     flux : (n, 3) float array, W/m2
-        Along Fourier's direction (down the gradient).
+        Along Fourier's direction (down the gradient). 0 in pores; of a voxel that an interface cuts the mean over it.
     """
 
     points: np.ndarray
@@ -55,10 +65,10 @@ class Field:
         Volume fraction of each phase as the method saw it.
     sampler : callable () -> Samples
     temperature_at : callable (n, 3) float array, m -> (n,) float array, K
-        NaN where the method has no temperature (the DEM in pores, which exchange no heat).
+        Of a steady state NaN in pores and where no temperature is fixed, see the module.
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
-        Both take one (3,) point too, and raise ValueError if the points are anything else, not finite, or outside a
-        body with walls.
+        0 in pores of a steady state. Both take one (3,) point too, and raise ValueError if the points are anything
+        else, not finite, or outside a body with walls.
     wall_temperature : mapping of str to float, K
         Area-averaged temperature of each loaded wall; empty in a periodic cell.
     wall_heat : mapping of str to float, W
@@ -83,13 +93,25 @@ class Field:
     through: Callable[[int, float], float] | None = None
 
     def __post_init__(self):
-        for name in ("temperature_at", "flux_at"):
-            object.__setattr__(self, name, _guarded(getattr(self, name), self.scene))
+        for name, in_pores in (("temperature_at", np.nan), ("flux_at", 0.0)):
+            evaluate = getattr(self, name)
+            if self._has_pores:
+                evaluate = _outside_pores(evaluate, self.scene, in_pores)
+            object.__setattr__(self, name, _guarded(evaluate, self.scene))
+
+    @property
+    def _has_pores(self):
+        """Whether there are places without a temperature: in time pores have one."""
+        return self.time is None and self.scene.conductivities.min() == 0
 
     @cached_property
     def samples(self) -> Samples:
         """The method's own values at its own points."""
-        return self.sampler()
+        own = self.sampler()
+        if not self._has_pores:
+            return own
+        solid = self.scene.conductivities[own.phase] > 0
+        return own._replace(temperature=np.where(solid, own.temperature, np.nan))
 
     def heat_through(self, axis, position) -> float:
         """Heat that crosses a section of the body, W, by the method's own balance.
@@ -133,12 +155,13 @@ class Field:
         """
         if self.scene.periodic:
             gradient = np.array(self.scene.gradient)
-            return float(-self.mean_flux @ gradient / (gradient @ gradient))
+            # The sum takes the sign off a zero.
+            return float(-self.mean_flux @ gradient / (gradient @ gradient)) + 0.0
         axis = self.scene.axis
         low, high = (self.wall_temperature["xyz"[axis] + side] for side in "-+")
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
-        return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low))
+        return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
 
 
 def _guarded(evaluate, scene):
@@ -152,6 +175,19 @@ def _guarded(evaluate, scene):
         if not scene.periodic:
             _check_inside(points, scene)
         return evaluate(points)
+
+    return at
+
+
+def _outside_pores(evaluate, scene, in_pores):
+    """The same function of points, with one value in all pores."""
+
+    def at(points):
+        solid = scene.conductivities[scene.phase_at(points)] > 0
+        found = evaluate(points[solid])
+        values = np.full((len(points), *found.shape[1:]), in_pores)
+        values[solid] = found
+        return values
 
     return at
 

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.multigrid import preconditioner
-from demheat.network.base import SIDES, Network
+from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
 
 SOLVERS = ("auto", "cg", "amg")
@@ -23,7 +24,8 @@ class Solution(NamedTuple):
     Attributes
     ----------
     temperature : (n,) float array, K
-        Of each particle, less the linear field of the mean gradient; NaN on islands that no wall temperature reaches.
+        Of each particle, less the linear field of the mean gradient; NaN in pores and on islands that no wall
+        temperature reaches.
     mean_gradient : (3,) float array, K/m
         Of a periodic cell; zero with walls.
     wall_temperature : (w,) float array, K
@@ -32,6 +34,8 @@ class Solution(NamedTuple):
         Into the body through each wall facet.
     stats : dict
         unknowns, iterations, residual, solver, islands.
+    still : (n,) bool array, optional
+        Particles that no heat passes, see `demheat.conduction.islands`; None if all phases conduct.
     """
 
     temperature: np.ndarray
@@ -39,6 +43,7 @@ class Solution(NamedTuple):
     wall_temperature: np.ndarray
     wall_heat: np.ndarray
     stats: dict
+    still: np.ndarray | None = None
 
 
 class _System(NamedTuple):
@@ -97,6 +102,8 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
     -------
     Solution
     """
+    bodies = islands.bodies(network, scene)
+    network = network if bodies is None else without_links(network, bodies.still)
     reached = _reached(network, scene)
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
@@ -107,9 +114,13 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
             f"asked for {tolerance:.1e}"
         )
-    if scene.periodic:
+    if scene.periodic and bodies is None:
         x -= np.average(x, weights=network.volumes)
     x = np.where(reached, x + system.level, np.nan)
+    if bodies is not None:
+        if scene.periodic:
+            islands.level_off(x, np.where(bodies.still, -1, bodies.label), network.volumes)
+        x = np.where(bodies.still, bodies.temperature, x)
     stats = {
         "unknowns": int(reached.sum()),
         "iterations": int(iterations),
@@ -117,7 +128,8 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
         "solver": chosen,
         "islands": int((~reached).sum()),
     }
-    return Solution(x, system.gradient, *_at_walls(system, scene, x), stats)
+    still = None if bodies is None else bodies.still
+    return Solution(x, system.gradient, *_at_walls(system, scene, x), stats, still)
 
 
 def check_solver(solver, tolerance):

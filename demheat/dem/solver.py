@@ -32,6 +32,8 @@ def solve(
 ) -> Field:
     """Steady conduction in a scene by the discrete element method.
 
+    Pores, of conductivity 0, have no flux and no temperature, see `demheat.field`.
+
     Parameters
     ----------
     scene : Scene

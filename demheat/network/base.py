@@ -146,3 +146,24 @@ def branches(centers, size, indptr, indices, image):
     (m, 3) float array, m
     """
     return centers[indices] + image_shifts(image, size) - np.repeat(centers, np.diff(indptr), axis=0)
+
+
+def without_links(network, still):
+    """A Network without the links of some particles, which exchange no heat.
+
+    Parameters
+    ----------
+    network : Network
+    still : (n,) bool array
+
+    Returns
+    -------
+    Network
+    """
+    cut = np.repeat(still, np.diff(network.indptr))
+    walls = np.where(still[network.wall_particle], 0.0, network.wall_conductance)
+    # Links are symmetric: mostly those of pores conduct nothing anyway, and nothing is copied.
+    if not np.any(network.conductance[cut]):
+        return network._replace(wall_conductance=walls)
+    cut |= still[network.indices]
+    return network._replace(conductance=np.where(cut, 0.0, network.conductance), wall_conductance=walls)

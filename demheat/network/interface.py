@@ -34,9 +34,10 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     if rule not in RULES:
         raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
     share = np.clip(share, 0.0, 1.0)
-    if rule == "arithmetic":
-        return share * k_here + (1.0 - share) * k_there
     least = np.minimum(k_here, k_there)
+    if rule == "arithmetic":
+        # Pores exchange no heat, whatever is beside them.
+        return np.where(least > 0, share * k_here + (1.0 - share) * k_there, 0.0)
     series = share * k_there + (1.0 - share) * k_here
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Field, Samples
-from demheat.network.base import SIDES, image_shifts, row_numbers
+from demheat.network.base import SIDES, image_shifts, row_numbers, without_links
 from demheat.sampling.edges import edges_of
 from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
@@ -30,10 +30,12 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
     -------
     Field
     """
+    if solution.still is not None:
+        network = without_links(network, solution.still)
     temperature, heat = {}, {}
     for name in scene.walls or {}:
         here = network.wall_side == SIDES.index(name)
-        temperature[name] = float(np.average(solution.wall_temperature[here], weights=network.wall_area[here]))
+        temperature[name] = _wall_mean(solution.wall_temperature[here], network.wall_area[here])
         heat[name] = float(solution.wall_heat[here].sum())
     # What enters a body in time need not leave it.
     by_walls = time is None and not scene.periodic
@@ -51,6 +53,12 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
         time=time,
         through=lambda axis, position: _heat_through(network, solution, axis, position),
     )
+
+
+def _wall_mean(temperature, area):
+    """Area-averaged temperature of a wall, where it has one: not on pores and islands."""
+    known = np.isfinite(temperature) & (area > 0)
+    return float(np.average(temperature[known], weights=area[known])) if known.any() else float("nan")
 
 
 def _described(network):
@@ -81,17 +89,19 @@ def _temperatures(network, solution):
 class _Locator:
     """Finds the radical cell that holds a point: the nearest centre in four dimensions, weight included."""
 
-    def __init__(self, network):
+    def __init__(self, network, among=None):
+        self.among = np.arange(len(network.radii)) if among is None else np.flatnonzero(among)
         self.size, self.periodic = network.size, network.periodic
         weights = network.radii**2
         lifted = np.column_stack([network.centers, np.sqrt(weights.max() - weights)])
         self.centers = network.centers
-        self.tree = cKDTree(lifted, boxsize=np.append(np.where(self.periodic, self.size, 0.0), 0.0))
+        self.tree = cKDTree(lifted[self.among], boxsize=np.append(np.where(self.periodic, self.size, 0.0), 0.0))
 
     def __call__(self, points):
         """Cell numbers and offsets from their centres."""
         wrapped = np.where(self.periodic, points % self.size, points)
         _, cell = self.tree.query(np.column_stack([wrapped, np.zeros(len(points))]))
+        cell = self.among[cell]
         offsets = wrapped - self.centers[cell]
         return cell, offsets - np.where(self.periodic, self.size * np.round(offsets / self.size), 0.0)
 
@@ -105,12 +115,17 @@ def _samplers(scene, network, solution):
         return Samples(network.centers, network.volumes, _temperatures(network, solution), network.phase, fluxes())
 
     if network.cells:
-        how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivities": scene.conductivities}
+        conducting = scene.conductivities[network.phase]
+        if solution.still is not None:
+            conducting[solution.still] = 0.0
+        how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivity": conducting}
         edges = cache(lambda: edges_of(scene, network, solution))
         parts = solution.temperature, solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
         return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
-    locate = cache(lambda: _Locator(network))
+    # In a steady state nobody asks for points in pores.
+    solid = None if solution.still is None else scene.conductivities[network.phase] > 0
+    locate = cache(lambda: _Locator(network, solid))
 
     def temperature_at(points):
         cell, offsets = locate()(points)

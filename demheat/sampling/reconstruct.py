@@ -31,21 +31,22 @@ class Reconstruction:
     network : Network
     edges : Edges
     temperature : (n,) float array, K
-        Less the linear field of a periodic cell's mean gradient; NaN on islands.
+        Less the linear field of a periodic cell's mean gradient; NaN in pores and on islands.
     gradient : (3,) float array, K/m
         That mean gradient; zero between walls.
     slope : (n, 3) float array, K/m
         Gradient of each cell, mean gradient included.
     periodic : (3,) bool array
     phase_at : callable (points) -> (m,) int array
-    conductivities : (number of phases,) float array, W/(m K)
+    conductivity : (n,) float array, W/(m K)
+        Of each cell; 0 where no heat passes.
     """
 
-    def __init__(self, network, edges, temperature, gradient, slope, *, periodic, phase_at, conductivities):
+    def __init__(self, network, edges, temperature, gradient, slope, *, periodic, phase_at, conductivity):
         self.network, self.edges = network, edges
         self.temperature, self.gradient, self.slope = temperature, gradient, slope - gradient
         self.periodic, self.phase_at = np.asarray(periodic, bool), phase_at
-        self.conductivities = np.asarray(conductivities, dtype=float)
+        self.conductivity = np.asarray(conductivity, dtype=float)
         # A fourth coordinate keeps phases apart by more than the box is wide.
         self.apart = 2.0 * np.linalg.norm(network.size)
         lifted = np.column_stack([network.centers, self.apart * network.phase])
@@ -78,7 +79,7 @@ class Reconstruction:
         more, steeper = self._beyond_linear(seed, wrapped, from_seed)
         level = self.temperature[seed] + np.einsum("ij,ij->i", self.slope[seed], from_seed)
         slope = self.slope[seed] + steeper + self.gradient
-        k = self.conductivities[self.network.phase[seed]]
+        k = self.conductivity[seed]
         flux = -np.where(k[:, None] > 0, k[:, None] * slope, 0.0)
         return level + more + points @ self.gradient, flux
 

@@ -14,7 +14,7 @@ class Material:
     Parameters
     ----------
     conductivity : float, W/(m K)
-        Finite and not negative; 0 is a perfect insulator (a pore).
+        Finite and not negative; 0 is a perfect insulator (a pore), see `demheat.field`.
     density : float, kg/m3, optional
         Needed by transients only.
     heat_capacity : float, J/(kg K), optional

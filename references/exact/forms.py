@@ -1,4 +1,4 @@
-"""The closed forms that `exact.solve` chooses from: laminate, cubic array of spheres, neutral coated spheres.
+"""The closed forms that `exact.solve` chooses from: laminate, spheres in an insulator or a cubic array, coated spheres.
 
 A form takes a scene and gives a `Closed`, or None if the scene is not of its kind.
 """
@@ -15,6 +15,7 @@ import numpy as np
 
 from demheat.scene import Flux, Layer, Sphere
 from references.exact import lattice, lattice_field
+from references.exact.insulated import sphere_temperature
 
 # Rounding of coordinates and conductivities that users type or work out.
 SAME = 1e-12
@@ -48,7 +49,7 @@ class Closed(NamedTuple):
 def laminate(scene):
     """Homogeneous box or plane layers: harmonic mean across, arithmetic mean along.
 
-    Layers of zero conductivity share a temperature jump evenly, the limit of equal small conductivities.
+    Where layers of zero conductivity stop the heat, the temperature between them is constant across, see `Field`.
     """
     k = scene.conductivities
     layered = scene.only(Layer)
@@ -60,7 +61,7 @@ def laminate(scene):
     thickness = np.diff(breaks)
     along = float(thickness @ pieces / length)
     across = length / float(np.sum(thickness / pieces)) if np.all(pieces > 0) else 0.0
-    slope = across / pieces if across else (pieces == 0) * length / thickness[pieces == 0].sum()
+    slope = across / pieces if across else np.zeros(len(pieces))
     # Plain homogeneous material also takes an imposed flux along its layers, for it has none.
     means = np.full(3, along if np.all(pieces == pieces[0]) else np.nan)
     means[normal] = across
@@ -71,25 +72,45 @@ def laminate(scene):
     rise = np.concatenate([[0.0], np.cumsum(slope * thickness)])
     sideways = np.where(np.arange(3) == normal, 0.0, gradient)
 
+    flat = None if across else _flat(scene, normal, breaks, pieces > 0, load)
+
     def where(points):
         turns = np.floor(points[:, normal] / length) if scene.periodic else 0.0
         return turns, points[:, normal] - turns * length
 
     def temperature(points):
         turns, x = where(points)
+        if flat is not None:
+            # Points on an interface belong to either side.
+            before, after = (
+                np.clip(np.searchsorted(breaks, x, side) - 1, 0, len(pieces) - 1) for side in ("left", "right")
+            )
+            here = np.where(np.isnan(flat[after]), flat[before], flat[after])
+            return points @ sideways + gradient[normal] * turns * length + here
         return level + points @ sideways + gradient[normal] * (turns * length + np.interp(x, breaks, rise))
 
     def flux(points):
         _, x = where(points)
         piece = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(pieces) - 1)
-        result = -pieces[piece][:, None] * sideways
-        result[:, normal] = -across * gradient[normal]
+        result = 0.0 - pieces[piece][:, None] * sideways
+        result[:, normal] = 0.0 - across * gradient[normal]
         return result
 
-    mean = -along * sideways
-    mean[normal] = -across * gradient[normal]
+    mean = 0.0 - along * sideways
+    mean[normal] = 0.0 - across * gradient[normal]
     form = "homogeneous" if len(set(pieces.tolist())) == 1 else "laminate"
     return Closed(form, temperature, flux, mean, normal, breaks, {"unknowns": len(pieces), "digits": 15.0})
+
+
+def insulated(scene):
+    """Spheres apart in a matrix of no conductivity: no heat passes."""
+    temperature = sphere_temperature(scene) if scene.inclusions else None
+    load = None if temperature is None else mean_load(scene, np.zeros(3))
+    if load is None:
+        return None
+    stats = {"unknowns": len(scene.inclusions), "digits": 15.0}
+    breaks = np.array([0.0, scene.size[0]])
+    return Closed("insulated", temperature, lambda points: np.zeros(points.shape), np.zeros(3), 0, breaks, stats)
 
 
 def cubic_array(scene):
@@ -201,6 +222,33 @@ def mean_load(scene, conductivities):
         gradient[axis] = -flow / conductivities[axis]
     level = high - gradient[axis] * scene.size[axis] if isinstance(low, Flux) else low
     return gradient, float(level)
+
+
+def _flat(scene, normal, breaks, conducts, load):
+    """Temperature of pieces that no heat crosses, less what varies along them, (pieces,) float array; NaN in pores."""
+    gradient, level = load
+    letter, length, count = "xyz"[normal], breaks[-1], len(conducts)
+    flat = np.full(count, np.nan)
+    # Runs of pieces between pores; in a periodic cell the last goes on in the first.
+    ends = np.flatnonzero(np.diff(np.concatenate([[0], conducts.astype(int), [0]])))
+    runs = [list(pair) for pair in ends.reshape(-1, 2)]
+    if not scene.periodic:
+        along = not any(name[0] == letter for name in scene.walls)
+        held = scene.wall_temperatures
+        for start, stop in runs:
+            low = held.get(letter + "-", np.nan) if start == 0 else np.nan
+            high = held.get(letter + "+", np.nan) if stop == count else np.nan
+            flat[start:stop] = level if along else (high if np.isnan(low) else low)
+        return flat
+    joined = len(runs) > 1 and conducts[0] and conducts[-1]
+    for number, (start, stop) in enumerate(runs):
+        low, high = breaks[start], breaks[stop]
+        if joined and number == 0:
+            low = breaks[runs[-1][0]] - length
+        if joined and number == len(runs) - 1:
+            high = breaks[runs[0][1]] + length
+        flat[start:stop] = gradient[normal] * (low + high) / 2
+    return flat
 
 
 def _pieces(scene, normal):

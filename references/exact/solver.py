@@ -6,13 +6,13 @@ import numpy as np
 
 from demheat.field import Field, Samples
 from demheat.scene import Scene
-from references.exact.forms import coated_spheres, cubic_array, laminate
+from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
 from references.midpoints import check_points_per_axis, midpoints
 
 KNOWN = (
     "a homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic cell "
-    "of equal spheres, and neutral coated spheres, each under a mean gradient or one pair of opposite walls (with an "
-    "imposed flux only where the flux is uniform)"
+    "of equal spheres, spheres apart in a matrix of no conductivity, and neutral coated spheres, each under a mean "
+    "gradient or one pair of opposite walls (with an imposed flux only where the flux is uniform)"
 )
 
 
@@ -22,7 +22,8 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     Parameters
     ----------
     scene : Scene
-        Homogeneous, laminate, cubic array of spheres or neutral coated spheres; see `forms`.
+        Homogeneous, laminate, cubic array of spheres, spheres in a matrix of no conductivity or neutral coated
+        spheres; see `forms`.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
 
@@ -41,7 +42,7 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     """
     check_points_per_axis(points_per_axis)
     scene.require(steady=True)
-    closed = laminate(scene) or cubic_array(scene) or coated_spheres(scene)
+    closed = laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)
     if closed is None:
         load = f"gradient {scene.gradient}" if scene.periodic else f"walls {dict(scene.walls)}"
         raise NotImplementedError(
@@ -51,7 +52,7 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     heat, temperatures = {}, {}
     for name in scene.walls or {}:
         axis, sign = "xyz".index(name[0]), 1 if name[1] == "-" else -1
-        heat[name] = float(sign * closed.mean_flux[axis] * scene.volume / scene.size[axis])
+        heat[name] = 0.0 + float(sign * closed.mean_flux[axis] * scene.volume / scene.size[axis])
         temperatures[name] = _wall_mean(scene, closed, axis, name[1])
     return Field(
         scene=scene,

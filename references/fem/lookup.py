@@ -25,19 +25,33 @@ CHUNK = 50_000
 
 @dataclass(frozen=True)
 class NodalField:
-    """Nodal temperatures (n,) of a scene on a mesh; `lost` is how far out, in local coordinates, is in no element."""
+    """Nodal temperatures (n,) of a scene on a mesh; `lost` is how far out, in local coordinates, is in no element.
+
+    Of the elements, (m,) bool arrays, `still` are those that no heat passes, `open` those without a temperature.
+    """
 
     scene: Scene
     mesh: Mesh
     temperature: np.ndarray
     lost: float = LOST
+    still: np.ndarray | None = None
+    open: np.ndarray | None = None
+
+    @cached_property
+    def conductivity(self):
+        """Of each element, 0 where no heat passes, (m,) float array, W/(m K)."""
+        conductivity = self.scene.conductivities[self.mesh.phase]
+        return conductivity if self.still is None else np.where(self.still, 0.0, conductivity)
 
     def samples(self):
         """`Samples` at quadrature points inside all elements."""
         rows = []
         for ids, points, volumes, temperature, gradient in at_quadrature(self.mesh, self.temperature, degree=7):
             phase = np.repeat(self.mesh.phase[ids], volumes.shape[1])
-            flux = -self.scene.conductivities[phase, None] * gradient.reshape(-1, 3)
+            flux = -np.repeat(self.conductivity[ids], volumes.shape[1])[:, None] * gradient.reshape(-1, 3)
+            temperature = temperature.reshape(volumes.shape)
+            if self.open is not None:
+                temperature = np.where(self.open[ids][:, None], np.nan, temperature)
             rows.append((points.reshape(-1, 3), volumes.ravel(), temperature.ravel(), phase, flux))
         return Samples(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
@@ -49,6 +63,8 @@ class NodalField:
         for part, ids, X in self._located(inside):
             values, _ = shapes(self.mesh.cells.shape[1], X.T)
             temperature[part] = np.einsum("pn,pn->p", values, self.temperature[self.mesh.cells[ids]])
+            if self.open is not None:
+                temperature[part][self.open[ids]] = np.nan
         if self.scene.periodic:
             temperature += (points - inside) @ np.array(self.scene.gradient)
         return temperature
@@ -62,15 +78,14 @@ class NodalField:
             _, slopes = shapes(cells.shape[1], X.T)
             back, _ = inverse(np.einsum("pnx,pnk->pxk", self.mesh.points[cells], slopes))
             gradient = np.einsum("pnk,pkx,pn->px", slopes, back, self.temperature[cells], optimize=True)
-            flux[part] = -self.scene.conductivities[self.mesh.phase[ids], None] * gradient
+            flux[part] = -self.conductivity[ids, None] * gradient
         return flux
 
     def mean_flux(self):
         """Flux density averaged over the volume of the body, (3,) float array, W/m2."""
         total = np.zeros(3)
         for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
-            conductivity = self.scene.conductivities[self.mesh.phase[ids]]
-            total -= conductivity @ np.einsum("bq,bqx->bx", volumes, gradient)
+            total -= self.conductivity[ids] @ np.einsum("bq,bqx->bx", volumes, gradient)
         return total / self.scene.volume
 
     def spread(self, points, amounts):

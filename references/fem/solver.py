@@ -41,7 +41,8 @@ def solve(
     Raises
     ------
     ValueError
-        If an argument is not as described, the load leaves the temperature open, or nothing conducts.
+        If an argument is not as described, the load leaves the temperature open, or heat is forced where nothing takes
+        it.
     NotImplementedError
         If surfaces of the scene touch.
     RuntimeError
@@ -54,7 +55,7 @@ def solve(
     scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
     solved = solve_nodes(scene, mesh, tolerance)
-    solution = NodalField(scene, mesh, solved.temperature)
+    solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume
     stats = {"elements": len(mesh.cells), "nodes": len(mesh.points)} | mesh.stats | solved.stats
     return Field(
@@ -68,3 +69,11 @@ def solve(
         wall_heat=solved.wall_heat,
         stats=stats,
     )
+
+
+def _cut_off(scene, bodies):
+    """Elements that no heat passes, and those of bodies that no temperature reaches."""
+    if bodies is None:
+        return {}
+    is_open = np.append(~bodies.passing & np.isnan(bodies.level), False)[bodies.element]
+    return {"still": bodies.still, "open": None if scene.periodic else is_open}

@@ -1,8 +1,9 @@
 """The equations of one scene on one mesh: what is known, what is loaded, what pores cut off.
 
 The temperature is a known part, the mean gradient or the wall temperatures, plus a correction that vanishes where the
-known part is the answer. Elements without conductivity (pores) are left out; afterwards they get the temperature that
-they have in the limit of a vanishing conductivity, and so do islands, the bodies inside them.
+known part is the answer. Elements without conductivity (pores) are left out, and so are the bodies that no heat passes,
+whose temperature needs no solving, see `islands`. Afterwards nodes in pores get a temperature, for elements there may
+reach past an interface: that in the limit of a vanishing conductivity.
 """
 
 from __future__ import annotations
@@ -13,9 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from references.fem import islands
 from references.fem.elements import assemble, wall_weights
 from references.fem.multigrid import solve_free
 from references.mesh import twins
+
+# Relative residual of the temperature in pores, which only elements past an interface show.
+SMOOTH = 1e-6
 
 
 class Solved(NamedTuple):
@@ -28,12 +33,15 @@ class Solved(NamedTuple):
     wall_heat : dict of str to float, W
         Heat into the body by the reactions at the nodes: sums to zero to the solver's residual.
     stats : dict
+    bodies : islands.Bodies, or None
+        That pores leave; None if all phases conduct.
     """
 
     temperature: np.ndarray
     wall_temperature: dict[str, float]
     wall_heat: dict[str, float]
     stats: dict[str, object]
+    bodies: islands.Bodies | None = None
 
 
 class _Given(NamedTuple):
@@ -71,16 +79,20 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
     Raises
     ------
     ValueError
-        If nothing conducts, or heat is forced into a pore or into a part that pores cut off from all temperatures.
+        If heat is forced into a pore or into a part that pores cut off from all temperatures.
     RuntimeError
         If the residual stays above the tolerance.
     """
     begin = time.perf_counter()
     conductivity = scene.conductivities[mesh.phase]
+    given, dof = _given(scene, mesh, conductivity > 0), twins(len(mesh.points), mesh.pairs)
+    pores, found = conductivity == 0, None
+    if pores.any():
+        found = islands.find(scene, mesh)
+        conductivity = np.where(found.still, 0.0, conductivity)
     unit = conductivity.max()
     if unit == 0:
-        raise ValueError("Scene: all conductivities are 0, no heat can flow")
-    given, dof = _given(scene, mesh, conductivity > 0), twins(len(mesh.points), mesh.pairs)
+        return _at_rest(scene, mesh, given, found)
     matrix, load = assemble(mesh, conductivity / unit, dof, given.lift)
     bodies = _bodies(matrix, given.shares > 0, pores=not conductivity.all())
     imposed = np.zeros(len(load))
@@ -94,15 +106,28 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
     correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance)
     heat = unit * (matrix @ correction - load)
     temperature = given.lift + correction[dof]
-    if not conductivity.all():
-        shift, more = _pore_shift(mesh, conductivity == 0, temperature, dof, given, bodies, tolerance)
+    temperature += given.level
+    stats |= {"islands": 0 if found is None else int(np.count_nonzero(~found.passing))}
+    if found is not None:
+        islands.settle(found, scene, mesh, temperature)
+        shift, more = _pore_shift(mesh, pores, temperature - given.level, dof, given, found)
         temperature += shift
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
-    temperature += given.level
-    stats |= {"islands": len(bodies.loose) if given.nodes else max(len(bodies.loose) - 1, 0)}
     stats |= {"assembly_s": assembled - begin, "solve_s": time.perf_counter() - assembled}
-    return Solved(temperature, *_walls(scene, given, temperature, heat), stats)
+    shown = temperature if found is None else islands.reached(found, scene, temperature)
+    return Solved(temperature, *_walls(scene, given, shown, heat), stats, found)
+
+
+def _at_rest(scene, mesh, given, found):
+    """The solution where pores let no heat pass: exactly none, without a system."""
+    temperature = given.lift + given.level
+    islands.settle(found, scene, mesh, temperature)
+    islands.extend(found, mesh, temperature)
+    stats = {"unknowns": 0, "iterations": 0, "residual": 0.0, "islands": len(found.passing)}
+    stats |= {"assembly_s": 0.0, "solve_s": 0.0}
+    shown = islands.reached(found, scene, temperature)
+    return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown))), stats, found)
 
 
 def _given(scene, mesh, solid):
@@ -148,20 +173,13 @@ def _check_loose(mesh, imposed, bodies):
             raise ValueError(f"Scene.walls: a flux enters a part, near {mesh.points[pin]}, that no temperature reaches")
 
 
-def _pore_shift(mesh, pores, temperature, dof, given, bodies, tolerance):
-    """What to add to the temperature in pores and islands: the limit of a vanishing conductivity of the pores.
-
-    Pores then obey Laplace's equation between the bodies, an island floats at the level at which no heat enters it.
-    """
-    floating = bodies.loose if given.nodes else bodies.loose[1:]
-    merged = np.arange(len(dof))
-    for body in floating:
-        merged[bodies.label == body] = np.argmax(bodies.label == body)
-    merged = merged[dof]
-    fixed = ((bodies.label >= 0) & ~np.isin(bodies.label, floating)) | (given.shares > 0)
-    matrix, load = assemble(mesh, pores.astype(float), merged, temperature)
-    shift, stats = solve_free(mesh, matrix, load, fixed, merged, tolerance)
-    return shift[merged], stats
+def _pore_shift(mesh, pores, temperature, dof, given, found):
+    """What to add to the temperature in pores: the limit of a vanishing conductivity, Laplace's equation there."""
+    fixed = (found.node >= 0) | (given.shares > 0)
+    fixed[dof[fixed]] = True
+    matrix, load = assemble(mesh, pores.astype(float), dof, temperature)
+    shift, stats = solve_free(mesh, matrix, load, fixed, dof, SMOOTH)
+    return shift[dof], stats
 
 
 def _walls(scene, given, temperature, heat):
@@ -170,6 +188,11 @@ def _walls(scene, given, temperature, heat):
     for name, nodes in given.nodes.items():
         entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))
     for name, weights in given.weights.items():
-        mean[name] = float(weights @ temperature / weights.sum())
+        here = np.flatnonzero(weights)
+        known = here[np.isfinite(temperature[here])]
+        if len(known) == len(here):
+            mean[name] = float(weights @ np.nan_to_num(temperature) / weights.sum())
+        else:
+            mean[name] = float(weights[known] @ temperature[known] / weights[known].sum()) if len(known) else np.nan
         entering[name] = float(scene.wall_fluxes[name] * weights.sum())
     return mean, entering

@@ -9,6 +9,7 @@ import numpy as np
 
 from demheat.field import Samples
 from demheat.scene import Scene
+from references.voxels.bodies import Bodies
 from references.voxels.paint import Voxels, centers
 
 # Flux and slope jump at an interface: a voxel of another phase, and a cut one, counts only where nothing is better.
@@ -30,6 +31,8 @@ class Grid(NamedTuple):
         Linear part: level + slope.x.
     sharp : bool
         The temperature of a cut voxel is that of its centre (links), not a mean over its phases.
+    bodies : Bodies, or None
+        That pores leave; None if all phases conduct.
     temperature : (nx, ny, nz) float array, K
         Less the linear part; as `flux`, None until it is solved for.
     flux : (3, nx, ny, nz) float array, W/m2
@@ -42,6 +45,7 @@ class Grid(NamedTuple):
     slope: np.ndarray
     level: float
     sharp: bool
+    bodies: Bodies | None = None
     temperature: np.ndarray | None = None
     flux: np.ndarray | None = None
 
@@ -67,14 +71,16 @@ def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
     phase = grid.scene.phase_at(points)
     value, weights = np.zeros(len(points)), np.zeros(len(points))
     slope, offset = np.zeros((3, len(points))), np.zeros((3, len(points)))
+    body = _body_at(grid, points, phase)
     for index, weight, away, mirrored in _neighbours(grid, points):
         good, cut = _preference(grid.voxels, index, phase, trusted=grid.sharp)
-        weight = weight * good
+        joined = _joined(grid, index, body)
+        weight = np.where(joined, weight * good, 0.0)
         conductivity = grid.voxels.conductivity[grid.voxels.phase[tuple(index)]]
         known = ~cut & (conductivity > 0)
         # What is less than linear vanishes on the isothermal walls, so it is mirrored there with its sign changed.
         sign = np.where(mirrored[0], -1.0, 1.0)
-        value += weight * sign * grid.temperature[tuple(index)]
+        value += weight * sign * np.where(joined, grid.temperature[tuple(index)], 0.0)
         weights += weight
         for axis in range(3):
             rise = np.where(
@@ -103,8 +109,9 @@ def flux_at(grid: Grid, points: np.ndarray) -> np.ndarray:
     points = points[:, grid.order]
     phase = grid.scene.phase_at(points)
     total, weights = np.zeros((len(points), 3)), np.zeros(len(points))
+    body = _body_at(grid, points, phase)
     for index, weight, _, mirrored in _neighbours(grid, points):
-        weight = weight * _preference(grid.voxels, index, phase, trusted=False)[0]
+        weight = weight * _preference(grid.voxels, index, phase, trusted=False)[0] * _joined(grid, index, body)
         weights += weight
         for axis in range(3):
             total[:, axis] += weight * _sign(axis, mirrored) * grid.flux[(axis, *index)]
@@ -153,6 +160,24 @@ def _sign(component, mirrored):
     """Sign of a mirrored flux: along an isothermal wall, and across an insulated one, it changes."""
     flips = mirrored[0] ^ mirrored[component] if component else np.zeros_like(mirrored[0])
     return np.where(flips, -1.0, 1.0)
+
+
+def _body_at(grid, points, phase):
+    """The body of each point: that of the voxel that tells most about it; -1 if all around are pores, None without."""
+    if grid.bodies is None:
+        return None
+    body, most = np.full(len(points), -1), np.zeros(len(points))
+    for index, weight, _, _ in _neighbours(grid, points):
+        weight = weight * _preference(grid.voxels, index, phase, trusted=grid.sharp)[0]
+        here = grid.bodies.label[tuple(index)]
+        better = (here >= 0) & (weight > most)
+        body[better], most[better] = here[better], weight[better]
+    return body
+
+
+def _joined(grid, index, body):
+    """Whether a voxel is of the body of the point: others, across pores, tell nothing about it."""
+    return True if body is None else grid.bodies.label[tuple(index)] == body
 
 
 def _preference(voxels, index, phase, *, trusted):

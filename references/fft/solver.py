@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
@@ -15,8 +16,9 @@ from demheat.scene import Scene
 from references.fft import cg, eyre_milton
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
-from references.fft.problem import Problem
+from references.fft.problem import Problem, SolvedGrid
 from references.threads import Team, thread_count
+from references.voxels.bodies import bodies, settle
 from references.voxels.links import cut, links
 from references.voxels.paint import grid_shape, paint, voxelise
 
@@ -87,7 +89,7 @@ def solve(
     ValueError
         If an argument is not as described, or the grid has too few voxels for the scheme.
     NotImplementedError
-        If the load is another, or the scheme or rule cannot do with a zero conductivity.
+        If the load is another, or the scheme or rule cannot do with a zero conductivity that leaves heat a way.
     RuntimeError
         If the iteration does not converge.
     """
@@ -99,12 +101,17 @@ def solve(
     shape = tuple(grid_shape(scene, voxels)[a] for a in order)
     if rule == "auto":
         knobs = knobs._replace(rule=_automatic(scheme, scene))
-    _check_scheme(box, scheme, knobs.rule, shape)
+    _check_grid(box, knobs.rule, shape)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(box, shape, laminate=knobs.rule != "plain")
     slope, level = _linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
     units = _units(grid)
+    if scene.conductivities.min() == 0:
+        grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
+        if not grid.bodies.passing.any():
+            return _field(scene, grid, units, _at_rest(shape), knobs)
+    _check_scheme(box, scheme, knobs.rule)
     with Team(threads) as team:
         problem = _problem(grid, units, knobs, team)
         solution = SOLVERS[scheme](problem)
@@ -164,7 +171,13 @@ def _check_load(scene):
     )
 
 
-def _check_scheme(box, scheme, rule, shape):
+def _check_grid(box, rule, shape):
+    if rule != "links" and not box.periodic and shape[0] < 2:
+        raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
+
+
+def _check_scheme(box, scheme, rule):
+    """Pores that leave heat a way are for the scalar scheme on voxels."""
     if scheme == "eyre-milton":
         box.require(
             "Eyre and Milton's scheme converges like the square root of the contrast, which is infinite; use scheme "
@@ -173,8 +186,6 @@ def _check_scheme(box, scheme, rule, shape):
         )
     if rule == "links":
         box.require("links have a harmonic mean; use rule 'plain'", pores=False)
-    if rule != "links" and not box.periodic and shape[0] < 2:
-        raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
 
 
 def _automatic(scheme, scene):
@@ -264,13 +275,16 @@ def _links(grid, units):
 def _field(scene, grid, units, solution, knobs):
     """The solution in the user's units and axes; what is costly is made when asked for."""
     mean_flux = np.empty(3)
-    mean_flux[list(grid.order)] = -units.flux * solution.mean_flux
+    mean_flux[list(grid.order)] = 0.0 - units.flux * solution.mean_flux
 
     @cache
     def whole():
         temperature, flux = solution.state()
         temperature *= units.temperature
         flux *= -units.flux
+        if grid.bodies is not None:
+            settle(grid.bodies, grid.scene, temperature, grid.slope, grid.slope[0] * grid.scene.size[0])
+            flux[:, np.append(~grid.bodies.passing, True)[grid.bodies.label]] = 0.0
         return grid._replace(temperature=temperature, flux=flux)
 
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
@@ -289,8 +303,17 @@ def _field(scene, grid, units, solution, knobs):
     )
 
 
+def _at_rest(shape):
+    """The solution where pores let no heat pass: exactly none, without iterations."""
+
+    def state():
+        return np.zeros(shape), np.zeros((3, *shape))
+
+    return SolvedGrid(np.zeros(3), np.zeros(2), state, math.prod(shape), 0, {"residual": 0.0}, {})
+
+
 def _wall_heat(scene, units, solution):
     """Heat into the body through each of the two walls, W."""
     area, name = scene.volume / scene.size[scene.axis], "xyz"[scene.axis]
     low, high = (float(units.flux * end * area) for end in solution.ends)
-    return {name + "-": -low, name + "+": high}
+    return {name + "-": 0.0 - low, name + "+": high}

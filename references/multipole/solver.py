@@ -17,6 +17,7 @@ from demheat.field import Field, Samples
 from demheat.scene import Scene
 from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
+from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
 from references.multipole.truncation import converged, field_truncation, truncation
@@ -63,13 +64,15 @@ def solve(
     ValueError
         If an argument is out of range.
     NotImplementedError
-        For other walls, layers, nested spheres, spheres cut by a wall beside their centre, a matrix of no conductivity.
+        For other walls, layers, nested spheres, spheres cut by a wall beside their centre.
     RuntimeError
         If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     scene.require(steady=True)
-    arrangement = arrange(scene)
+    arrangement = arrange(scene, any_matrix=True)
+    if scene.matrix.conductivity == 0:
+        return at_rest(scene, arrangement.spheres, points_per_axis)
     history = converged(arrangement, order=order, accuracy=accuracy, tolerance=tolerance, threads=threads)
     return _field(scene, arrangement, history, points_per_axis)
 

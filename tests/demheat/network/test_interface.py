@@ -19,8 +19,10 @@ def test_arithmetic():
     assert_allclose(link_conductivity(np.array([1.0]), np.array([3.0]), np.array([0.75]), rule="arithmetic"), 1.5)
 
 
-def test_a_pore_conducts_nothing():
-    k = link_conductivity(np.array([0.0, 5.0, 0.0]), np.array([5.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5]))
+@pytest.mark.parametrize("rule", ["harmonic", "arithmetic"])
+def test_a_pore_conducts_nothing(rule):
+    here, there, share = np.array([0.0, 5.0, 0.0]), np.array([5.0, 0.0, 0.0]), np.array([0.0, 1.0, 0.5])
+    k = link_conductivity(here, there, share, rule=rule)
     assert np.array_equal(k, np.zeros(3))
 
 

@@ -51,7 +51,7 @@ def test_quadratic_temperatures_of_one_phase_are_exact(monkeypatch):
         rough,
         periodic=[False] * 3,
         phase_at=field.scene.phase_at,
-        conductivities=[2.0],
+        conductivity=np.full(600, 2.0),
     )
     points = inside()
     # Ridge times the error of the slopes, some 3, over the least eigenvalue of the fits, 1e-6.

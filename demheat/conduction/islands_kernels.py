@@ -1,0 +1,95 @@
+"""Compiled search of a network for bodies: particles that conducting links join, over any number of others."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+# Labels of particles that are looked for, and of those that belong to no body.
+OPEN, NONE = -2, -1
+# Of the rises that cancel in a sum: those of a closed way across the mean gradient leave rounding only.
+ROUNDING = 1e-12
+
+
+class Found(NamedTuple):
+    """Bodies of a network, as far as they are known.
+
+    Attributes
+    ----------
+    label : (n,) int32 array
+        Body of each particle; OPEN before it is known, NONE outside all.
+    shift : (n, 3) int16 array
+        Boxes by which a particle is moved to where its body reaches it from its first particle.
+    climbs : (n,) bool array
+        Of the first entries, one for each body: whether a way in it back to the same particle, across the box, rises
+        with the mean gradient.
+    queue : (n,) uint32 array
+        Particles in the order in which they are found.
+    """
+
+    label: np.ndarray
+    shift: np.ndarray
+    climbs: np.ndarray
+    queue: np.ndarray
+
+
+@njit(cache=True)
+def gather(links, image, jump, found, state, most):
+    """Go on with the search for bodies, through at most so many particles.
+
+    Parameters
+    ----------
+    links : Links
+    image : (m,) uint8 array
+        Which periodic image of its other end each link leads to, see `Facets`.
+    jump : (3,) float array, K
+        Rise of the mean temperature over the box along each axis.
+    found : Found
+        In and out.
+    state : (4,) int64 array
+        Zeros at first: particles done, in the queue, looked at as first ones; bodies. In and out.
+    most : int
+
+    Returns
+    -------
+    bool
+        Whether anything is left to do.
+    """
+    indptr, indices, conductance = links
+    label, shift, climbs, queue = found.label, found.shift, found.climbs, found.queue
+    head, tail, seed, bodies = state[0], state[1], state[2], state[3]
+    end = head + most
+    step = np.empty(3, np.int64)
+    while head < end:
+        if head == tail:
+            while seed < len(label) and label[seed] != OPEN:
+                seed += 1
+            if seed == len(label):
+                break
+            label[seed], queue[tail] = bodies, seed
+            bodies, tail = bodies + 1, tail + 1
+        i = queue[head]
+        head += 1
+        body = label[i]
+        for e in range(indptr[i], indptr[i + 1]):
+            if conductance[e] <= 0.0:
+                continue
+            j = indices[e]
+            # Where links lead is worked out for few: mostly both ends are known, of a body that climbs.
+            if label[j] != OPEN and (climbs[body] or label[j] == NONE):
+                continue
+            code = np.int64(image[e])
+            step[0], step[1], step[2] = code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1
+            if label[j] == OPEN:
+                label[j], queue[tail] = body, j
+                tail += 1
+                for k in range(3):
+                    shift[j, k] = shift[i, k] + step[k]
+                continue
+            rise, size = 0.0, 0.0
+            for k in range(3):
+                part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]
+                rise, size = rise + part, size + abs(part)
+            climbs[body] = abs(rise) > ROUNDING * size
+    state[0], state[1], state[2], state[3] = head, tail, seed, bodies
+    return head < tail or seed < len(label)
