@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -83,8 +84,11 @@ class Field:
     through: Callable[[int, float], float] | None = None
 
     def __post_init__(self):
+        # What is made when first asked for, and kept, is made once: by one thread, the others wait.
+        lock = threading.RLock()
+        object.__setattr__(self, "sampler", _in_turn(self.sampler, lock))
         for name in ("temperature_at", "flux_at"):
-            object.__setattr__(self, name, _guarded(getattr(self, name), self.scene))
+            object.__setattr__(self, name, _guarded(_in_turn(getattr(self, name), lock), self.scene))
 
     @cached_property
     def samples(self) -> Samples:
@@ -139,6 +143,14 @@ class Field:
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low))
+
+
+def _in_turn(evaluate, lock):
+    def at(*points):
+        with lock:
+            return evaluate(*points)
+
+    return at
 
 
 def _guarded(evaluate, scene):
