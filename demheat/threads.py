@@ -4,9 +4,10 @@ Numba's workqueue layer is always present and lets its threads sleep between loo
 time slices on a shared machine, and processes forked after it has run are killed. Set NUMBA_THREADING_LAYER to choose
 another, NUMBA_NUM_THREADS=1 for one thread.
 
-The workqueue layer ends the process if a second Python thread enters a parallel loop while one runs. So all parallel
-loops pass through a gate here, one at a time: about 20 ns each. They take microseconds to tenths of a second, so the
-threads take turns. Loops compiled before this module is imported do not know the gate.
+The workqueue layer ends the process if a second Python thread enters a parallel loop while one runs, and hands even a
+loop of one thread over to another. So all parallel loops pass through a gate here: one at a time, some 20 ns each; they
+take microseconds to tenths of a second, so Python threads take turns. A loop of one thread needs no other: the calling
+thread runs it itself, beside all others. Loops compiled before this module is imported do not know the gate.
 """
 
 import ctypes
@@ -14,64 +15,71 @@ import os
 
 import llvmlite.binding as llvm
 import numba
+from llvmlite import ir
 
 if "NUMBA_THREADING_LAYER" not in os.environ:
     numba.config.THREADING_LAYER = "workqueue"
 
-# Compiled loops look the entry of the threading layer up by this name, when they are compiled or loaded.
+# Compiled loops look the entry of the threading layer up by this name when they are compiled or loaded.
 ENTRY = "numba_parallel_for"
-# What it takes, pointers and counts, and hands on while it holds a lock of Python's. Python's own lock is free then:
-# the wait stops no other thread. Integers stand for pointers, which older and newer LLVM spell differently.
-ARGUMENTS = 8
-_GATE = """
-declare i32 @demheat_acquire({word}, i32)
-declare void @demheat_release({word})
-declare void @demheat_parallel_for({types})
-define void @demheat_gate({named}) {{
-  %done = call i32 @demheat_acquire({word} {lock}, i32 1)
-  call void @demheat_parallel_for({named})
-  call void @demheat_release({word} {lock})
-  ret void
-}}
-"""
+# Pointers and counts that it takes: first the loop's function and its four arguments, last the number of threads.
+ARGUMENTS, OF_LOOP = 8, slice(1, 5)
 _kept = []
 
 
 def _take_turns():
-    """Put a lock before the entry of the workqueue layer, for all that is compiled or loaded from now on."""
+    """Put a gate before the entry of the workqueue layer, for all that is compiled or loaded from now on."""
     from numba.np.ufunc import workqueue
 
     python = ctypes.pythonapi
     python.PyThread_allocate_lock.restype = ctypes.c_void_p
-    lock, word = python.PyThread_allocate_lock(), f"i{8 * ctypes.sizeof(ctypes.c_void_p)}"
-    acquire, release = (
-        ctypes.cast(f, ctypes.c_void_p).value for f in (python.PyThread_acquire_lock, python.PyThread_release_lock)
-    )
-    for name, address in (("acquire", acquire), ("release", release), ("parallel_for", workqueue.parallel_for)):
-        llvm.add_symbol(f"demheat_{name}", address)
-    text = _GATE.format(
-        word=word,
-        lock=lock,
-        types=", ".join([word] * ARGUMENTS),
-        named=", ".join(f"{word} %a{i}" for i in range(ARGUMENTS)),
-    )
+    lock = python.PyThread_allocate_lock()
+    wait, leave = (_address(each) for each in (python.PyThread_acquire_lock, python.PyThread_release_lock))
+    module = _gate(lock, {"demheat_wait": wait, "demheat_leave": leave, "demheat_enter": workqueue.parallel_for})
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
-    machine = llvm.Target.from_default_triple().create_target_machine()
-    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(text), machine)
+    machine = llvm.Target.from_default_triple().create_target_machine(opt=2)
+    engine = llvm.create_mcjit_compiler(llvm.parse_assembly(str(module)), machine)
     engine.finalize_object()
-    llvm.add_symbol(ENTRY, engine.get_function_address("demheat_gate"))
-    # A child gets the lock as it is: fork only between loops, and open it again on both sides. Foreign functions
-    # called by address let Python's other threads run meanwhile.
-    wait = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_int)(acquire)
-    leave = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(release)
-    if hasattr(os, "register_at_fork"):
-        os.register_at_fork(
-            before=lambda: wait(lock, 1),
-            after_in_parent=lambda: leave(lock),
-            after_in_child=lambda: leave(lock),
-        )
     _kept.append(engine)
+    llvm.add_symbol(ENTRY, engine.get_function_address("demheat_gate"))
+    if hasattr(os, "register_at_fork"):
+        # A child gets the lock as it is: fork between loops only, and open it on both sides. Called by their addresses
+        # these functions let Python's other threads run meanwhile.
+        close = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_int)(wait)
+        reopen = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(leave)
+        after = {side: lambda: reopen(lock) for side in ("after_in_parent", "after_in_child")}
+        os.register_at_fork(before=lambda: close(lock, 1), **after)
+
+
+def _address(function):
+    return ctypes.cast(function, ctypes.c_void_p).value
+
+
+def _gate(lock, functions):
+    """The gate as LLVM's code: Python's own lock, which its callers have released, is not needed for any of it."""
+    for name, address in functions.items():
+        llvm.add_symbol(name, address)
+    word, void, integer = ir.IntType(8 * ctypes.sizeof(ctypes.c_void_p)), ir.VoidType(), ir.IntType(32)
+    module = ir.Module()
+    wait, leave, enter = (
+        ir.Function(module, ir.FunctionType(result, takes), name)
+        for name, result, takes in zip(
+            functions, (integer, void, void), ([word, integer], [word], [word] * ARGUMENTS), strict=True
+        )
+    )
+    gate = ir.Function(module, ir.FunctionType(void, [word] * ARGUMENTS), "demheat_gate")
+    code = ir.IRBuilder(gate.append_basic_block())
+    with code.if_else(code.icmp_signed("==", gate.args[-1], word(1))) as (alone, together):
+        with alone:
+            loop = code.inttoptr(gate.args[0], ir.FunctionType(void, [word] * 4).as_pointer())
+            code.call(loop, gate.args[OF_LOOP])
+        with together:
+            code.call(wait, [word(lock), integer(1)])
+            code.call(enter, gate.args)
+            code.call(leave, [word(lock)])
+    code.ret_void()
+    return module
 
 
 if not numba.config.DISABLE_JIT:
