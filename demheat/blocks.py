@@ -2,12 +2,12 @@
 
 import time
 
-# Seconds that a block should last; it may last twice as long.
+# Seconds that a block should last.
 SECONDS = 0.1
 
 
 def blocks(number, first):
-    """Cut a range into blocks that last about as long as they should: the next is twice or half as long as the last.
+    """Cut a range into blocks that last about as long as they should, the next at most twice as long as the last.
 
     For loops whose entries do not depend on each other: where the cuts are differs from run to run.
 
@@ -27,7 +27,4 @@ def blocks(number, first):
         end, started = min(number, begin + length), time.perf_counter()
         yield begin, end
         spent, begin = time.perf_counter() - started, end
-        if spent < SECONDS / 2:
-            length *= 2
-        elif spent > SECONDS:
-            length = max(first, length // 2)
+        length = max(first, int(length * min(2.0, SECONDS / max(spent, 1e-9))))
