@@ -9,45 +9,51 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-# After `begun` each runs for over five minutes with one thread, most of it in few compiled loops; the calls before are
-# for compiling.
+# Each runs for over five minutes with one thread, most of it in the compiled loop that says `begun`; the calls before
+# are for compiling.
 HEAD = """
 import numpy as np
 from demheat.packing.base import make_packing
+def announced(module, name):
+    whole = getattr(module, name)
+    def wrapper(*arguments):
+        print("begun", flush=True)
+        return whole(*arguments)
+    setattr(module, name, wrapper)
 def points(n):
     centers = np.random.default_rng(0).random((n, 3))
     return make_packing(centers, np.full(n, 0.5 * (0.6 / n) ** (1 / 3)), (1.0, 1.0, 1.0), True, {})
 """
 STAGES = {
     "radial distribution": """
-from demheat.packing.statistics import radial_distribution
+from demheat.packing.statistics import correlations, radial_distribution
 radial_distribution(points(1000), r_max=1.0)
 packing = points(500_000)
-print("begun", flush=True)
+announced(correlations.kernels, "pair_counts")
 radial_distribution(packing, r_max=0.45 / (2 * packing.radii[0]))
 """,
     "two-point probability": """
-from demheat.packing.statistics import two_point
+from demheat.packing.statistics import correlations, two_point
 two_point(points(1000), r_max=1.0, lines=10)
-print("begun", flush=True)
+announced(correlations.kernels, "line_correlations")
 two_point(points(1000), r_max=1.0, lines=3_000_000, along=[(1, 0, 0)] * 50)
 """,
     "halo": """
-from demheat.sampling.halo import halo_average
+from demheat.sampling.halo import halo_average, kernels
 def average(n, radius):
     x, phase = points(n).centers, np.arange(n) % 2
     halo_average(x, x, np.ones(n), radius=radius, size=(1.0, 1.0, 1.0), periodic=True, phases=(phase, phase))
 average(100, 0.2)
-print("begun", flush=True)
+announced(kernels, "ball_means")
 average(700_000, 0.49)
 """,
     "neighbours": """
-from demheat.packing.neighbours import near_rows
+from demheat.packing.neighbours import kernels, near_rows
 def search(n, skin):
     packing = points(n)
     near_rows(np.column_stack((packing.centers, packing.radii)), packing.size, packing.periodic, skin=skin, guess=0.01)
 search(100, 0.1)
-print("begun", flush=True)
+announced(kernels, "near_rows")
 search(600_000, 0.45)
 """,
     "time steps": """
