@@ -8,8 +8,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 # Rows swept one after the other. Neighbours in space are near in memory: less than a tenth of the links leave a block.
 ROWS = 65536
 # A neighbour joins an aggregate over a link of at least this part of the strongest link of both.

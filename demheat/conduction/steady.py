@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network

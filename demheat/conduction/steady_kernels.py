@@ -7,7 +7,6 @@ order, so that bits do not depend on the number of threads.
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.links_kernels import rise_along
 
 BLOCK = 2048

@@ -9,7 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.polyhedron_kernels import cut, empty_polyhedron, measure, start_box
 
 OK, UNSECURED, OVERFLOW, TANGLED = 0, 1, 2, 3

@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 
 class Links(NamedTuple):
     """Links of a network in compressed rows; each stands in both of its rows.

@@ -10,8 +10,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 # Particles per task. Fixed, so that rows land in the same place whatever the number of threads.
 CHUNK = 256
 # Column of the radius in rows (x, y, z, radius).

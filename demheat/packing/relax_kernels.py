@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 # Particles per task and per partial sum. Fixed, so that sums are the same whatever the number of threads.
 CHUNK = 256
 # Column of the radius in rows (x, y, z, radius).

@@ -11,8 +11,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 # A cell counts as inside, or as out of reach, only beyond this part of the radius: its edges are rounded.
 HAIR = 1e-9
 # Rows of `Cells.slots`: three coordinates, the phase, the volume, volume times three values.

@@ -3,7 +3,6 @@
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.links_kernels import rise_along
 
 HALF, RADII, CELL = 0, 1, 2

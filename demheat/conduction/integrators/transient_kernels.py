@@ -9,8 +9,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 FAST = {"reassoc", "contract"}
 
 

@@ -5,7 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing.cells_kernels import RADIUS, Reach, append_row
 
 # Parts of the work, each with its own sums. Fixed, so that sums are the same whatever the number of threads.

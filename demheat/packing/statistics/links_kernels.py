@@ -5,8 +5,6 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-
 # Unit vectors closer than this to parallel span no plane worth testing; in what remains rounding stays below SLACK.
 PARALLEL, SLACK = 1e-6, 1e-9
 # Fewer contacts hold nothing.
