@@ -30,18 +30,21 @@ def seeded():
 def one_blas_thread():
     """BLAS with one thread: in short products between compiled loops more of them only spin.
 
-    The last thread to leave puts back what the first one found.
+    Some builds of BLAS count by thread: each puts back what it found. Others count for the process: there the last one
+    to leave puts back what the first one found.
     """
     from threadpoolctl import threadpool_limits
 
     with _BLAS:
+        mine = threadpool_limits(1, "blas")
         if _within[0] == 0:
-            _found.append(threadpool_limits(1, "blas"))
+            _found.append(mine)
         _within[0] += 1
     try:
         yield
     finally:
         with _BLAS:
+            mine.restore_original_limits()
             _within[0] -= 1
             if _within[0] == 0:
                 _found.pop().restore_original_limits()
