@@ -10,6 +10,7 @@ temperature, the initial one and what sources put into them.
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -93,8 +94,11 @@ class Field:
     through: Callable[[int, float], float] | None = None
 
     def __post_init__(self):
+        # What is made when first asked for, and kept, is made once: by one thread, the others wait.
+        lock = threading.RLock()
+        object.__setattr__(self, "sampler", _in_turn(self.sampler, lock))
         for name, in_pores in (("temperature_at", np.nan), ("flux_at", 0.0)):
-            evaluate = getattr(self, name)
+            evaluate = _in_turn(getattr(self, name), lock)
             if self._has_pores:
                 evaluate = _outside_pores(evaluate, self.scene, in_pores)
             object.__setattr__(self, name, _guarded(evaluate, self.scene))
@@ -162,6 +166,14 @@ class Field:
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
+
+
+def _in_turn(evaluate, lock):
+    def at(*points):
+        with lock:
+            return evaluate(*points)
+
+    return at
 
 
 def _guarded(evaluate, scene):

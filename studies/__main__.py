@@ -13,16 +13,22 @@ from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
 
 DEFAULT_OUT, STORED = Path("out"), Path("results")
+# As a shell says of a command that SIGINT ended.
+INTERRUPTED = 130
 
 
 def main(words=None):
-    """Do what the command line says and return the exit status: 0 only if no claim failed."""
+    """Do what the command line says and return the exit status: 0 only if no claim failed, 130 if interrupted."""
     arguments = _parser().parse_args(words)
     try:
         return arguments.action(arguments)
     except ValueError as error:
         print(f"studies: {error}", file=sys.stderr)
         return 2
+    except KeyboardInterrupt:
+        kept = ": rows done are kept; the same command goes on" if arguments.action is _run else ""
+        print(f"\nstudies: interrupted{kept}", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _parser():

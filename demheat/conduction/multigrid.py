@@ -9,6 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from demheat.conduction import multigrid_kernels as kernels
+from demheat.process_state import seeded
 
 # Particles of an aggregate at most; found 8 on average. With 6 the iterations are as many and the set-up twice as long.
 MOST = 16
@@ -81,7 +82,8 @@ def _coarser(links, diagonal, scale):
     pointers, columns, values = kernels.galerkin(links, diagonal, scale, aggregates)
     count = len(aggregates.start) - 1
     a = sparse.csr_matrix((values, columns, pointers), shape=(count, count))
-    hierarchy = pyamg.ruge_stuben_solver(a, **CYCLE)
+    with seeded():
+        hierarchy = pyamg.ruge_stuben_solver(a, **CYCLE)
     return aggregates, lambda r: _cycle(hierarchy, 0, r)
 
 

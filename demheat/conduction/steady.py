@@ -5,11 +5,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
+import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
+from demheat.process_state import one_blas_thread
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
@@ -269,15 +271,12 @@ def matrix(network, diagonal):
 
 
 def _multigrid(system):
-    from threadpoolctl import threadpool_limits
-
     links, diagonal = links_of(system.network), system.diagonal
-    # BLAS threads only spin here: its share is short dot products between compiled sweeps.
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread():
         precondition = preconditioner(links, diagonal)
 
     def solve(r, x, limit, most):
-        with threadpool_limits(1, "blas"):
+        with one_blas_thread():
             return _preconditioned(links, diagonal, precondition, r, x, limit, most), x
 
     return solve

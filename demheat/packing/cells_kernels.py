@@ -203,7 +203,7 @@ def append_row(i, p, grid, reach, out, k):
 
 
 @njit(parallel=True, cache=True)
-def near_rows(points, grid, reach, buffer, lengths):
+def near_rows(points, grid, reach, first, buffer, lengths):
     """Rows of near neighbours, one chunk of particles per row of `buffer`; lengths are right even if it is too short.
 
     Parameters
@@ -213,16 +213,19 @@ def near_rows(points, grid, reach, buffer, lengths):
     grid : Grid
     reach : Reach
         Of the nearest image.
+    first : int
+        Number of the chunk in the first row of `buffer`.
     buffer : (chunks, capacity) uint32 array, out
         The last column is scratch.
     lengths : (n,) int array, out
+        Of all particles; those of other chunks stay as they are.
     """
     n = len(points)
-    for chunk in prange(len(buffer)):
+    for row in prange(len(buffer)):
         k = np.int64(0)
-        for i in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
+        for i in range((first + row) * CHUNK, min(n, (first + row + 1) * CHUNK)):
             before = k
-            k = append_row(i, points[i], grid, reach, buffer[chunk], k)
+            k = append_row(i, points[i], grid, reach, buffer[row], k)
             lengths[i] = k - before
 
 

@@ -13,7 +13,7 @@ from numba import njit
 # leave the region its list of neighbours serves, to hit wall 0 to 5 (x-, x+, y-, ...) or the round wall.
 AGAIN, LEAVE, WALL, ROUND = -1, -2, -3, -9
 # Why the motion stopped.
-LEFT, TIMED_OUT, COUNTED, STUCK = 0, 1, 2, 3
+LEFT, TIMED_OUT, COUNTED, STUCK, PAUSED = 0, 1, 2, 3, 4
 # Events per collision asked for that can only mean that time stands still; a dense packing has 1.2, a thin gas between
 # walls some tens.
 TOO_MANY = 1000
@@ -86,6 +86,14 @@ class Events(NamedTuple):
     times: np.ndarray
     levels: np.ndarray
     partner: np.ndarray
+
+
+class Count(NamedTuple):
+    """What has happened in a run: collisions between spheres, events, and the sum of impulse times distance."""
+
+    collisions: int
+    events: int
+    virial: float
 
 
 @njit(cache=True, error_model="numpy", inline="always")
@@ -302,10 +310,10 @@ def start(bounds, spheres, lists, events):
 
 
 @njit(cache=True, error_model="numpy")
-def run(bounds, spheres, lists, events, most):
+def run(bounds, spheres, lists, events, most, done, pause):
     """Work off events until a sphere leaves its region, the last time is reached or `most` collisions have happened.
 
-    All spheres then stand at the same time.
+    All spheres then stand at the same time. After a pause the same call with what was done goes on, to the same bits.
 
     Parameters
     ----------
@@ -316,22 +324,21 @@ def run(bounds, spheres, lists, events, most):
     events : Events, in and out
     most : int
         Collisions.
+    done : Count
+        Before a pause; zeros at first.
+    pause : int
+        Events after which to pause.
 
     Returns
     -------
     why : int
-        LEFT, TIMED_OUT, COUNTED, or STUCK if events go on without end.
+        LEFT, TIMED_OUT, COUNTED, STUCK if events go on without end, or PAUSED.
     now : float
-    collisions : int
-        Between spheres.
-    worked_off : int
-        Events.
-    virial : float
-        Sum over the collisions of impulse times distance.
+    done : Count
     """
     times, partner = events.times, events.partner
-    collisions = worked_off = 0
-    virial = 0.0
+    collisions, worked_off, virial = done
+    until = worked_off + pause
     while True:
         i = _earliest(events)
         now = times[i]
@@ -345,6 +352,8 @@ def run(bounds, spheres, lists, events, most):
         if collisions >= most:
             why = COUNTED
             break
+        if worked_off == until:
+            return PAUSED, now, Count(collisions, worked_off, virial)
         worked_off += 1
         if worked_off > TOO_MANY * (most + len(spheres)):
             why = STUCK
@@ -364,4 +373,4 @@ def run(bounds, spheres, lists, events, most):
             _predict(bounds, spheres, lists, events, met if turn else np.int64(i), now)
     for i in range(len(spheres)):
         _advance(spheres, i, now)
-    return why, now, collisions, worked_off, virial
+    return why, now, Count(collisions, worked_off, virial)

@@ -26,6 +26,8 @@ SKIN, SKIN_MOST, SKIN_LEAST, LONGER, SHORTER = 0.5, 2.0, 1e-7, 1.4, 0.6
 GROWTH_MOST, GROWTH_LEAST = 0.02, 1e-12
 # Spheres that overlap more than this are no start: one bad pair would make all others a thin gas.
 LEAST_RATIO = 0.5
+# Events between which Ctrl-C is heard: some tenths of a second.
+PAUSE = 100_000
 CENTER, VELOCITY = slice(kernels.X, kernels.Z + 1), slice(kernels.U, kernels.W + 1)
 
 
@@ -118,7 +120,10 @@ class Motion:
         bounds, lists = self.bounds(grow, last), kernels.Lists(self.spheres[:, CENTER].copy(), indptr, indices)
         kernels.start(bounds, self.spheres, lists, self.next)
         left = WINDOW * n - self.window.collisions
-        why, now, collisions, events, virial = kernels.run(bounds, self.spheres, lists, self.next, left)
+        why, done = kernels.PAUSED, kernels.Count(0, 0, 0.0)
+        while why == kernels.PAUSED:
+            why, now, done = kernels.run(bounds, self.spheres, lists, self.next, left, done, PAUSE)
+        collisions, events, virial = done
         if why == kernels.STUCK:
             raise RuntimeError(f"{events} events without {left} collisions at phi = {self.phi:.6f}: time stands still")
         self.spheres[:, kernels.RADIUS] *= 1.0 + grow * now

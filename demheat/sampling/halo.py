@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.blocks import blocks
 from demheat.field import Field
 from demheat.network.bins_kernels import bin_points
 from demheat.sampling import halo_kernels as kernels
@@ -79,7 +80,9 @@ def halo_average(
     for first in range(0, columns.shape[1], 3):
         part = columns[:, first : first + 3]
         out = np.empty((len(at), 3))
-        kernels.ball_means(sorted_at, begin, wanted, radius, _with_values(cells, part), out)
+        filled, run = _with_values(cells, part), cells.dims[2]
+        for low, high in blocks((len(begin) - 1) // run, 1):
+            kernels.ball_means(sorted_at, begin[low * run : high * run + 1], wanted, radius, filled, out)
         means[places, first : first + 3] = out[:, : part.shape[1]]
     return means.reshape(len(at), *values.shape[1:])
 

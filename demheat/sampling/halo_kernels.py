@@ -174,7 +174,7 @@ def ball_means(at, start, wanted, radius, cells, out):
     at : (m, 3) float array, m
         Wrapped into the box on periodic axes, sorted by cells.
     start : (cells + 1,) int array
-        First point of each cell.
+        First point of each cell. Of some whole columns of cells only: points of the others are passed over.
     wanted : (m,) float array
         Phase that counts for each point; 0 if phases do not.
     radius : float, m

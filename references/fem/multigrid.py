@@ -11,6 +11,7 @@ from pyamg.multilevel import MultilevelSolver
 from pyamg.relaxation.smoothing import change_smoothers
 from scipy.sparse import csr_matrix, diags
 
+from demheat.process_state import seeded
 from references.mesh import EDGE_COLUMN
 
 MOST_ITERATIONS = 500
@@ -172,10 +173,7 @@ def multigrid(A, constant, quadratic=None):
 
 
 def _hierarchy(A, constant, prolongation):
-    # pyamg estimates spectral radii with NumPy's global generator: same start each time, and put back afterwards.
-    state = np.random.get_state()  # noqa: NPY002
-    np.random.seed(0)  # noqa: NPY002
-    try:
+    with seeded():
         if prolongation is None or prolongation.shape[1] == 0:
             return pyamg.smoothed_aggregation_solver(A, B=constant[:, None], **COARSEST)
         fine = MultilevelSolver.Level()
@@ -185,5 +183,3 @@ def _hierarchy(A, constant, prolongation):
         levels = MultilevelSolver([fine, *coarse.levels], coarse_solver=COARSEST["coarse_solver"])
         change_smoothers(levels, SMOOTHER, SMOOTHER)
         return levels
-    finally:
-        np.random.set_state(state)  # noqa: NPY002

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import tempfile
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -15,13 +16,14 @@ from typing import NamedTuple
 import numpy as np
 import pyfftw
 
+from demheat.process_state import open_after_fork
 from references.fft.sweeps import Plans, Transform, Worker
 
 # CPU time of estimated over measured plans of planes and of columns: 1.5 and 1.4 at 128^3, 1.1 and 1.7 at 512^3.
 # Measuring takes 0.2 s to 1 s, once, for only one block of planes and one buffer of columns is planned.
 MEASURED_FROM = 1_000_000
 PLANNING_SECONDS = 5.0
-_loaded = set()
+_loaded, _PLANNING = set(), open_after_fork(threading.RLock())
 
 
 def fourier(components: int, shape: tuple, dtype: type, threads: int) -> Transform:
@@ -123,6 +125,12 @@ def _moved(plan):
 
 def _planned(source, target, *, loose, measured, **plan):
     """Plan once: from kept wisdom if there is any, else measured where that pays; in place, for one thread."""
+    # FFTW's wisdom and time limit are the process's: a thread that plans meanwhile would plan otherwise.
+    with _PLANNING:
+        return _plan(source, target, loose=loose, measured=measured, **plan)
+
+
+def _plan(source, target, *, loose, measured, **plan):
     _load_wisdom(source.dtype)
     flags = ("FFTW_DESTROY_INPUT", *(["FFTW_UNALIGNED"] if loose else []))
     try:

@@ -11,6 +11,7 @@ from demheat.conduction import steady_kernels
 from demheat.conduction.integrators import transient_kernels
 from demheat.conduction.multigrid import CYCLE
 from demheat.network.base import row_numbers
+from demheat.process_state import one_blas_thread, seeded
 
 MOST = 5000
 # A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.
@@ -111,8 +112,6 @@ def _jacobi(system):
 
 def _multigrid(system, free, kept, g):
     """Conjugate gradients on the free nodes, preconditioned by a hierarchy made for about this g."""
-    from threadpoolctl import threadpool_limits
-
     if kept.get("g") != g:
         kept["g"], kept["matrix"] = g, _matrix(system, free, g)
     made_for = kept.get("made_for", math.inf)
@@ -125,7 +124,7 @@ def _multigrid(system, free, kept, g):
         def tick(_):
             count[0] += 1
 
-        with threadpool_limits(1, "blas"):
+        with one_blas_thread():
             step, _ = cg(a, r[free], rtol=0.0, atol=limit, maxiter=MOST, M=kept["precondition"], callback=tick)
         y[free] += step
         return count[0]
@@ -146,9 +145,7 @@ def _matrix(system, free, g):
 
 def _hierarchy(a) -> LinearOperator:
     import pyamg
-    from threadpoolctl import threadpool_limits
 
-    # BLAS threads only spin here: its share is short dot products between compiled sweeps.
-    with threadpool_limits(1, "blas"):
+    with one_blas_thread(), seeded():
         levels = pyamg.smoothed_aggregation_solver(a, improve_candidates=None, **CYCLE)
         return levels.aspreconditioner(cycle="V")

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.blocks import blocks
 from demheat.packing.base import Packing
 from demheat.packing.cells_kernels import Reach
 from demheat.packing.neighbours import build_grid, wrapped
@@ -19,6 +20,8 @@ from demheat.packing.walls import check_margin, wall_distances
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
 
+# Lines summed at once, some tenths of a second. Fixed, so that sums are.
+BLOCK = 4096
 # Part of the seed of the lines: random points drawn with the same seed must not be where lines start.
 STREAM = 2
 
@@ -119,9 +122,11 @@ def radial_distribution(
     points = wrapped(np.column_stack((packing.centers, radii)), packing.size, packing.periodic)
     reach = Reach(float(r_max), 0.0) if scaled else Reach(0.0, r_max * unit)
     grid = build_grid(points, packing.size, packing.periodic, reach)
-    counts = np.empty((kernels.TASKS, 2, bins), dtype=np.int64)
-    kernels.pair_counts(points, grid, origins, is_origin, reach, counts)
-    single, double = counts.sum(axis=0)
+    counts, total = np.empty((kernels.TASKS, 2, bins), np.int64), np.zeros((2, bins), np.int64)
+    for first, last in blocks(len(origins), kernels.TASKS):
+        kernels.pair_counts(points, grid, origins[first:last], is_origin, reach, counts)
+        total += counts.sum(axis=0)
+    single, double = total
     edges = np.linspace(0.0, r_max, bins + 1)
     cubes = _mean_cubed_sums(radii)[origins].sum() if scaled else len(origins) * unit**3
     expected = density * cubes * 4 / 3 * np.pi * np.diff(edges**3)
@@ -214,9 +219,12 @@ def _line_means(packing, along, lags, bounds, lines, rng):
         span = np.where(packing.periodic, 0.0, length * direction)
         first, last = bounds[0] - np.minimum(span, 0.0), bounds[1] - np.maximum(span, 0.0)
         starts = first + rng.random((lines, 3)) * (last - first)
-        sums = np.empty((kernels.TASKS, 2, len(lags) + 1))
-        kernels.line_correlations(cloud, grid, kernels.Lines(starts, direction, lags, steps), sums)
-        values[k], square = sums.sum(axis=0) / lines
+        sums, total = np.empty((kernels.TASKS, 2, len(lags) + 1)), np.zeros((2, len(lags) + 1))
+        for begin in range(0, lines, BLOCK):
+            part = kernels.Lines(starts[begin : begin + BLOCK], direction, lags, steps)
+            kernels.line_correlations(cloud, grid, part, sums)
+            total += sums.sum(axis=0)
+        values[k], square = total / lines
         errors[k] = np.sqrt(np.maximum(square - values[k] ** 2, 0.0) / (lines - 1))
     return values, errors
 

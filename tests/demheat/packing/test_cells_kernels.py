@@ -71,12 +71,12 @@ def test_near_rows(periodic):
         walled = near(points, points, period * (np.arange(3) != axis), REACH)
         assert walled.sum() - 70 < expected.sum()  # some cross it; each is near itself
     buffer, lengths = np.empty((1, expected.sum() + 1), dtype=np.uint32), np.empty(70, dtype=np.int64)
-    kernels.near_rows(points, grid, REACH, buffer, lengths)
+    kernels.near_rows(points, grid, REACH, 0, buffer, lengths)
     assert_array_equal(lengths, expected.sum(axis=1))
     rows = np.split(buffer[0, :-1], np.cumsum(lengths)[:-1])
     assert_array_equal(np.concatenate([np.sort(row) for row in rows]), np.nonzero(expected)[1])
     lengths[:] = 0
-    kernels.near_rows(points, grid, REACH, np.empty((1, 4), dtype=np.uint32), lengths)
+    kernels.near_rows(points, grid, REACH, 0, np.empty((1, 4), dtype=np.uint32), lengths)
     assert_array_equal(lengths, expected.sum(axis=1))  # counted on in a buffer that is too short
 
 

@@ -219,7 +219,7 @@ def test_energy_and_momentum(rate, monkeypatch):
     def spied(bounds, *arguments):
         before = motion.spheres[:, 3:6].copy()
         found = run(bounds, *arguments)
-        after, (_, _, collisions, _, virial) = motion.spheres[:, 3:6], found
+        after, (collisions, _, virial) = motion.spheres[:, 3:6], found[2]
         assert collisions > 100
         assert_allclose(after.sum(axis=0), before.sum(axis=0), atol=1e-11)  # rounding of thousands of sums of 300
         gain = (np.sum(after**2) - np.sum(before**2)) / 2
@@ -234,7 +234,7 @@ def test_energy_and_momentum(rate, monkeypatch):
 
 def test_time_that_stands_still_is_an_error(monkeypatch):
     start = lsa(200, phi=0.3)
-    monkeypatch.setattr(kernels, "run", lambda *_: (kernels.STUCK, 0.0, 0, 10**6, 0.0))
+    monkeypatch.setattr(kernels, "run", lambda *_: (kernels.STUCK, 0.0, kernels.Count(0, 10**6, 0.0)))
     with pytest.raises(RuntimeError, match="time stands still"):
         lsa(start=start, phi=0.4)
 

@@ -138,13 +138,31 @@ def test_start(periodic, domain, leash):
     assert partner[first] != kernels.AGAIN and np.any(partner >= 0 if leash == FAR else partner == kernels.LEAVE)
 
 
+def in_pieces(state, most, pause=10**6):
+    """A run, however often it pauses."""
+    why, done = kernels.PAUSED, kernels.Count(0, 0, 0.0)
+    while why == kernels.PAUSED:
+        why, now, done = kernels.run(*state, most, done, pause)
+    return why, now, done
+
+
+@pytest.mark.twin
+def test_pauses_change_no_bit():
+    found = []
+    for pause in (10**6, 3):
+        state = gas(True, last=2.0, number=12, seed=1)
+        kernels.start(*state)
+        found.append((in_pieces(state, 10**6, pause), state[1].tobytes()))
+    assert found[0] == found[1] and found[0][0][2].events > 9
+
+
 @pytest.mark.twin
 @pytest.mark.parametrize(("periodic", "domain"), KINDS)
 def test_run(periodic, domain):
     bounds, spheres, lists, events = state = gas(periodic, domain, last=2.0, number=12, seed=1)
     slow = SlowTwin(bounds, spheres, lists)
     kernels.start(*state)
-    why, now, collisions, worked_off, virial = kernels.run(*state, 10**6)
+    why, now, (collisions, worked_off, virial) = in_pieces(state, 10**6)
     assert (why, now) == (kernels.TIMED_OUT, 2.0) == (slow.follow(2.0), slow.now)
     assert collisions == slow.collisions > 5 and worked_off >= collisions + slow.bounces
     assert (slow.bounces > 0) == (periodic is not True)
@@ -160,14 +178,14 @@ def test_run_stops():
     bounds, spheres, lists, events = state = gas(True, leash=0.4, last=10.0)
     slow = SlowTwin(bounds, spheres, lists)
     kernels.start(*state)
-    why, now, *_ = kernels.run(*state, 10**6)
+    why, now, _ = in_pieces(state, 10**6)
     assert why == kernels.LEFT == slow.follow(10.0)
     assert_allclose(now, slow.now, rtol=1e-10)
     assert_allclose(np.linalg.norm(spheres[:, :3] - lists.home, axis=1).max(), 0.4, rtol=1e-10)
     bounds, spheres, lists, events = state = gas(True, last=10.0)
     slow = SlowTwin(bounds, spheres, lists)
     kernels.start(*state)
-    why, now, collisions, *_ = kernels.run(*state, 3)
+    why, now, (collisions, *_) = in_pieces(state, 3)
     assert (why, collisions) == (kernels.COUNTED, 3) and slow.follow(now) == kernels.TIMED_OUT
     assert slow.collisions == 3
     assert_allclose(spheres[:, :3], slow.x, atol=1e-11)

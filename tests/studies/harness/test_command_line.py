@@ -1,6 +1,17 @@
 """The command line of the studies, on a study small enough to break on purpose."""
 
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
 from studies.__main__ import main, study_names
+
+ROOT = Path(__file__).parents[3]
 
 
 def test_run_writes_rows_page_and_figure(tiny, capsys):
@@ -63,3 +74,28 @@ def test_list_says_what_is_stored(tiny, capsys, monkeypatch):
     monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name])
     assert main(["list", "--out", str(tiny.out)]) == 0
     assert "2 rows,   1 quick;   1 held,   0 stale,   1 missing   A tiny study." in capsys.readouterr().out
+
+
+def test_ctrl_c_ends_a_run_with_a_line_and_no_process_left(tiny, tmp_path):
+    tiny.write(
+        '{"name": "sleeps", "x": 3.0}',
+        **{'_log("run " + name)': '_log(f"run {name} {os.getpid()}")', "= 1.5\n": "= 60\n"},
+    )
+    run = subprocess.Popen(
+        [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out)],
+        stderr=subprocess.PIPE,
+        env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(tmp_path)])},
+        text=True,
+    )
+    log = tmp_path / "log"
+    while not (log.exists() and "run sleeps" in log.read_text()):
+        assert run.poll() is None
+        time.sleep(0.05)
+    run.send_signal(signal.SIGINT)
+    # The row would sleep for a minute.
+    _, said = run.communicate(timeout=30)
+    assert run.returncode == 130
+    assert said == "\nstudies: interrupted: rows done are kept; the same command goes on\n"
+    assert sorted(row["status"] for row in tiny.rows().values()) == ["ok", "ok"]
+    with pytest.raises(ProcessLookupError):
+        os.kill(int(log.read_text().split()[-1]), 0)

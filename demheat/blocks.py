@@ -1,0 +1,30 @@
+"""Long compiled loops in blocks of a fraction of a second, between which Ctrl-C is heard and progress is told."""
+
+import time
+
+# Seconds that a block should last.
+SECONDS = 0.1
+
+
+def blocks(number, first):
+    """Cut a range into blocks that last about as long as they should, the next at most twice as long as the last.
+
+    For loops whose entries do not depend on each other: where the cuts are differs from run to run.
+
+    Parameters
+    ----------
+    number : int
+    first : int
+        Length of the first block, and the least of all but the last.
+
+    Yields
+    ------
+    (begin, end) : ints
+        From 0 to the number.
+    """
+    begin, length = 0, first
+    while begin < number:
+        end, started = min(number, begin + length), time.perf_counter()
+        yield begin, end
+        spent, begin = time.perf_counter() - started, end
+        length = max(first, int(length * min(2.0, SECONDS / max(spent, 1e-9))))
