@@ -6,6 +6,7 @@ from functools import singledispatch
 
 import numpy as np
 
+from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
 from references.voxels.paint import voxelise
@@ -41,36 +42,52 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
     change = resistivity - resistivity[scene.parents()]
     if phase is None and _rounded(scene):
         phase = voxelise(scene, shape, laminate=False).phase
-    return tuple(_along(scene, shape, axis, resistivity, change, phase) for axis in range(3))
-
-
-def _along(scene, shape, axis, resistivity, change, phase):
-    """Conductivities of the links along one axis; each inclusion replaces the resistivity it was painted on."""
-    counts = np.array(shape)
-    spacing = np.array(scene.size) / counts
-    counts[axis] += 1
-    resistance = np.full(counts, resistivity[0])
-    # Half links at both ends, where a face of the box cuts them.
-    view = np.moveaxis(resistance, axis, 2)
-    view[:, :, [0, -1]] *= 0.5
     # What has no end last: the order of addition decides how sums are rounded, nothing else.
     inclusions = sorted(enumerate(scene.inclusions, start=1), key=lambda pair: not pair[1].bounded)
-    for group in groups(inclusions, scene.size, periodic=scene.periodic):
-        if isinstance(group, Spheres):
-            _cut_spheres(group, resistance, axis, change, spacing)
-        else:
-            cut(group[1], resistance, axis, change[group[0]], spacing)
+    parts = list(groups(inclusions, scene.size, periodic=scene.periodic))
+    found = []
+    with stage("links") as done:
+        for axis in range(3):
+            found.append(_resistances(scene, shape, axis, resistivity[0]))
+            for group in parts:
+                _cut_group(group, found[axis], axis, change, np.array(scene.size) / shape)
+                done(axis / 3)
+            _finish(scene, axis, found[axis], NEAREST * resistivity, phase)
+    return tuple(found)
+
+
+def _resistances(scene, shape, axis, resistivity):
+    """Those of all links along one axis in the matrix alone."""
+    counts = np.array(shape)
+    counts[axis] += 1
+    resistance = np.full(counts, resistivity)
+    # Half links at both ends, where a face of the box cuts them.
+    np.moveaxis(resistance, axis, 2)[:, :, [0, -1]] *= 0.5
+    return resistance
+
+
+def _cut_group(group, resistance, axis, change, spacing):
+    """Each inclusion replaces the resistivity it was painted on."""
+    if isinstance(group, Spheres):
+        _cut_spheres(group, resistance, axis, change, spacing)
+    else:
+        number, shape = group
+        cut(shape, resistance, axis, change[number], spacing)
+
+
+def _finish(scene, axis, resistance, least, phase):
+    """Make resistances conductivities, in place: faces of the box, surfaces next to nodes."""
+    view = np.moveaxis(resistance, axis, 2)
     if scene.periodic:
         view[:, :, 0] += view[:, :, -1]
         view[:, :, -1] = view[:, :, 0]
     else:
         view[:, :, [0, -1]] *= 2.0
     if _rounded(scene):
-        kernels.keep_off(view, np.moveaxis(phase, axis, 2), NEAREST * resistivity, scene.periodic)
-    conductivity = np.divide(1.0, resistance, out=resistance)
+        kernels.keep_off(view, np.moveaxis(phase, axis, 2), least, scene.periodic)
+    np.divide(1.0, resistance, out=resistance)
     if not scene.periodic and axis != scene.axis:
-        np.moveaxis(conductivity, axis, 2)[:, :, [0, -1]] = 0.0
-    return conductivity
+        view[:, :, [0, -1]] = 0.0
 
 
 def _rounded(scene):
