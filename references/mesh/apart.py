@@ -49,11 +49,12 @@ def run_apart(function: Callable, *arguments, seconds: float, done: Callable[[fl
     Exception
         Whatever the function raises.
     """
-    code = f"import sys; sys.path[:] = {sys.path!r}; from references.mesh.apart import main; main()"
     # A session of its own: Ctrl-C in a terminal is for the parent alone, who ends the child.
     knobs = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": os.name == "posix"}
-    with subprocess.Popen([sys.executable, "-c", code], **knobs) as child:
+    with subprocess.Popen([sys.executable, __file__], **knobs) as child:
         try:
+            # The path first, with which the rest is found.
+            pickle.dump(sys.path, child.stdin)
             pickle.dump((function, arguments), child.stdin)
             child.stdin.flush()
             begin = time.monotonic()
@@ -81,6 +82,7 @@ def main():
     channel = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # Nothing else may write there.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+    sys.path[:] = pickle.load(sys.stdin.buffer)
     function, arguments = pickle.load(sys.stdin.buffer)
     over = threading.Event()
     alive = threading.Thread(target=_say_alive, args=(channel, over), daemon=True)
@@ -105,6 +107,10 @@ def _say_alive(channel, over):
 
 
 def _end_with_parent():
-    # Nothing more is sent: the end of the pipe is the end of the parent. Not by the buffer, whose lock would stay taken.
+    # Nothing more is sent: the end of the pipe is the end of the parent. Not read by the buffer, which has a lock.
     os.read(sys.stdin.fileno(), 1)
     os._exit(1)
+
+
+if __name__ == "__main__":
+    main()

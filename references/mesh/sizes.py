@@ -148,11 +148,10 @@ def check_cost(sizes: Sizes, box, order: int) -> float:
     """
     cells, most = estimated_cells(sizes, np.array(box)), min(MOST_CELLS, memory() / BYTES[order])
     if cells > most:
-        least = sizes.size * (cells / most) ** (1 / 3)
+        least, need = sizes.size * (cells / most) ** (1 / 3), cells * BYTES[order] / 2**30
         raise ValueError(
-            f"size = {sizes.size:.3g} m: about {cells:.1e} tetrahedra would need {cells * BYTES[order] / 2**30:.0f} GiB "
-            f"of memory with their equations; here at most {most:.1e} are possible: ask for a size of {least:.2g} m or "
-            f"more{', or for order = 1' if order == 2 else ''}"
+            f"size = {sizes.size:.3g} m: about {cells:.1e} tetrahedra, which with their equations take {need:.0f} GiB; "
+            f"here {most:.1e} are possible: must be >= {least:.2g} m{', or take order = 1' if order == 2 else ''}"
         )
     return cells
 
