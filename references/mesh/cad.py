@@ -15,11 +15,11 @@ from scipy.spatial import cKDTree
 
 from demheat.scene import WALLS, Layer, Shape, Sphere
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
-from references.mesh.gmsh_session import Elements, attempts, call_gmsh, session, tetrahedra
-from references.mesh.sizes import check_cost, checked_size, unit_lengths, wanted_sizes
+from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
+from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
 
-# How much longer edges may be one metre farther from a feature, in metres.
-GROWTH = 0.3
+# Balls and shells that gmsh's own fields look through for each point; more are looked up in a table.
+MOST_FIELDS = 1000
 
 
 def make(scene, *, size=None, order=2, curved=True):
@@ -103,6 +103,12 @@ def _tetrahedra(geometry, sizes, elements):
         phases = _cut_geometry(gmsh, geometry)
         if geometry.periodic:
             _tie_faces(gmsh, geometry.box)
+        # Kept until the end: gmsh has its address.
+        features = None
+        if len(sizes.balls) + len(sizes.shells) > MOST_FIELDS:
+            features = table(sizes, geometry.box)
+            look_up(gmsh, features)
+            sizes = sizes._replace(balls=sizes.balls[:0], shells=sizes.shells[:0])
         _set_sizes(gmsh, sizes, geometry.box)
         return tetrahedra(gmsh, phases, elements)
 

@@ -195,6 +195,26 @@ def session():
                     gmsh.option.setNumber(name, value)
 
 
+def look_up(gmsh, table):
+    """Take the sizes of elements from a table: gmsh's own fields all go through all features for each point.
+
+    Parameters
+    ----------
+    gmsh : module
+        In a `session`.
+    table : (n,) float array
+        Of `references.mesh.sizes.table`; must live as long as the model is meshed.
+    """
+    from references.mesh.size_kernels import size_callback
+
+    # gmsh's own wrapper takes functions of Python, which cost as much as the mesh.
+    failed = ctypes.c_int()
+    address = ctypes.c_void_p(table.ctypes.data)
+    gmsh.lib.gmshModelMeshSetSizeCallback(size_callback.ctypes, address, ctypes.byref(failed))
+    if failed.value:
+        raise RuntimeError(gmsh.logger.getLastError())
+
+
 def tetrahedra(gmsh, phases, elements):
     """Mesh the volumes of the current model.
 
