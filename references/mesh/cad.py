@@ -19,7 +19,7 @@ from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up,
 from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
 
 # Balls and shells that gmsh's own fields look through for each point; more are looked up in a table.
-MOST_FIELDS = 1000
+MOST_FIELDS = 400
 
 
 def make(scene, *, size=None, order=2, curved=True):
