@@ -115,7 +115,15 @@ def test_ctrl_c_ends_meshing_and_the_mesher():
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_the_mesher_ends_with_its_parent():
-    script = SCRIPT.replace("print(report.stage, flush=True)", "__import__('os').kill(__import__('os').getpid(), 9)")
+    begun, _ = SCRIPT.split("from demheat import progress")
+    script = (
+        begun
+        + """
+import os, time
+from references.mesh.apart import run_apart
+run_apart(time.sleep, 600.0, seconds=1.0, done=lambda share: os.kill(os.getpid(), 9))
+"""
+    )
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
         child = int(parent.stdout.readline())
     assert parent.returncode == -signal.SIGKILL
