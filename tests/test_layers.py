@@ -118,7 +118,7 @@ LAYERS = {
     "references.times": (),
     "references.midpoints": ("demheat.field",),
     "references.richardson": (),
-    "references.voxels": ("demheat.scene", "references.voxels"),
+    "references.voxels": ("demheat.scene", "demheat.progress", "references.voxels"),
     "references.mesh": ("demheat.scene", "demheat.progress", "references.mesh"),
     "references.exact": (
         "demheat.scene",

@@ -8,6 +8,8 @@ from skfem.element import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
 
+from demheat.progress import stage
+
 # By the number of nodes; scikit-fem orders the nodes as `Mesh.cells` and `Wall.triangles` do.
 ELEMENTS = {4: ElementTetP1(), 10: ElementTetP2(), 3: ElementTriP1(), 6: ElementTriP2()}
 # Elements per block: the largest array, 14 points x 10 functions x 3 components, is then 67 MB.
@@ -119,23 +121,31 @@ def assemble(mesh, conductivity, dof, lift):
     (n,) float array, W
         Minus the matrix times the known part, the latter taken before nodes are merged.
     """
-    count, parts, load = len(mesh.points), [], np.zeros(len(mesh.points))
-    for ids, rule in blocks(mesh):
-        ids = ids[conductivity[ids] > 0]
-        if not len(ids):
-            continue
-        slopes, weights = gradients(mesh, ids, rule)
-        slopes *= np.sqrt(weights * conductivity[ids, None])[..., None, None]
-        slopes = np.swapaxes(slopes, 1, 2).reshape(len(ids), mesh.cells.shape[1], -1)
-        matrices = slopes @ np.swapaxes(slopes, 1, 2)
-        rows = dof[mesh.cells[ids]]
-        heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
-        load -= np.bincount(rows.ravel(), heat.ravel(), count)
-        i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
-        parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
+    count, parts, load, seen = len(mesh.points), [], np.zeros(len(mesh.points)), 0
+    with stage("assembly") as done:
+        for ids, rule in blocks(mesh):
+            seen += len(ids)
+            done(seen / len(mesh.cells))
+            ids = ids[conductivity[ids] > 0]
+            if not len(ids):
+                continue
+            matrices = _matrices(mesh, ids, rule, conductivity[ids])
+            rows = dof[mesh.cells[ids]]
+            heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
+            load -= np.bincount(rows.ravel(), heat.ravel(), count)
+            i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
+            parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
     while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
         parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
     return parts[0], load
+
+
+def _matrices(mesh, ids, rule, conductivity):
+    """Stiffness matrices of one block of elements."""
+    slopes, weights = gradients(mesh, ids, rule)
+    slopes *= np.sqrt(weights * conductivity[:, None])[..., None, None]
+    slopes = np.swapaxes(slopes, 1, 2).reshape(len(ids), mesh.cells.shape[1], -1)
+    return slopes @ np.swapaxes(slopes, 1, 2)
 
 
 def wall_weights(mesh, triangles):

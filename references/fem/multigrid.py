@@ -12,6 +12,7 @@ from pyamg.relaxation.smoothing import change_smoothers
 from scipy.sparse import csr_matrix, diags
 
 from demheat.process_state import seeded
+from demheat.progress import stage
 from references.mesh import EDGE_COLUMN
 
 MOST_ITERATIONS = 500
@@ -54,7 +55,8 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance):
     scale = diags(1 / np.sqrt(diagonal[free]))
     A, b = (scale @ matrix[free][:, free] @ scale).tocsr(), scale @ load[free]
     precondition = multigrid(A, np.sqrt(diagonal[free]), prolongation(mesh, free, dof))
-    x, stats["iterations"], stats["residual"] = conjugate_gradients(A, b, precondition, tolerance)
+    with stage("equations") as done:
+        x, stats["iterations"], stats["residual"] = conjugate_gradients(A, b, precondition, tolerance, done)
     if not stats["residual"] <= tolerance:
         raise RuntimeError(
             f"finite elements: residual {stats['residual']:.2e} > tolerance {tolerance:.2e} after "
@@ -64,7 +66,7 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance):
     return solution, stats
 
 
-def conjugate_gradients(A, b, precondition, tolerance):
+def conjugate_gradients(A, b, precondition, tolerance, done=None):
     """Solve A x = b from x = 0.
 
     Parameters
@@ -75,6 +77,8 @@ def conjugate_gradients(A, b, precondition, tolerance):
     precondition : callable (n,) -> (n,)
     tolerance : float
         Largest relative residual.
+    done : callable (share), optional
+        Called with the share of the way to the tolerance.
 
     Returns
     -------
@@ -101,8 +105,15 @@ def conjugate_gradients(A, b, precondition, tolerance):
             x += step * p
             r -= step * Ap
             old, iterations = new, iterations + 1
+            if done is not None:
+                done(_share(math.sqrt(_dot(r, r)) / scale, tolerance))
         residual = math.sqrt(_dot(b - A @ x, b - A @ x)) / scale
     return x, iterations, residual
+
+
+def _share(residual, tolerance):
+    """Of the way from a residual of 1 to the tolerance, by logarithms."""
+    return min(max(math.log(residual) / math.log(tolerance), 0.0), 1.0) if 0 < residual < 1 else float(residual == 0)
 
 
 def _dot(a, b):

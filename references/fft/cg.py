@@ -20,11 +20,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.progress import stage
 from references.fft import cg_kernels as kernels
 from references.fft.cg_kernels import Symbol, Vectors
 from references.fft.hexahedron_kernels import Body, Sums, conduct_voxels, voxel_state
 from references.fft.link_kernels import Links, conduct_links, link_state
-from references.fft.problem import Clock, Problem, SolvedGrid, total
+from references.fft.problem import Clock, Problem, SolvedGrid, converged, total
 from references.fft.sweeps import Transform
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -79,8 +80,8 @@ def solve(problem: Problem) -> SolvedGrid:
         if iterations >= problem.max_iterations or not excess < before:
             _fail(iterations, error, problem.tolerance)
         before = excess
-        with clock:
-            iterations = _iterate(problem, system, state, iterations)
+        with clock, stage("iterations") as done:
+            iterations = _iterate(problem, system, state, iterations, done)
 
 
 def _error(rz, energy, problem):
@@ -180,9 +181,10 @@ def _restart(problem, system):
     return _State(energy, flux, ends, rz, curvature=_turn(problem, system, 0))
 
 
-def _iterate(problem, system, state, iterations):
+def _iterate(problem, system, state, iterations, done):
     """Conjugate gradients from a fresh direction until the decrease of energy is small; returns the iterations."""
     energy, rz, curvature, decreases = state.energy, state.rz, state.curvature, []
+    first = _error(rz, energy, problem)
     while iterations < problem.max_iterations and curvature > 0:
         alpha = rz / curvature
         decreases.append(alpha * rz)
@@ -190,8 +192,10 @@ def _iterate(problem, system, state, iterations):
         iterations += 1
         before, rz = rz, _precondition(problem, system, kernels.step, problem.dtype(alpha))
         small = sum(decreases[-max(2, len(decreases) // 8) :]) <= problem.tolerance**2 * energy
-        if small and _error(rz, energy, problem) <= problem.tolerance:
+        error = _error(rz, energy, problem)
+        if small and error <= problem.tolerance:
             break
+        done(converged(first, error, problem.tolerance))
         curvature = _turn(problem, system, rz / before)
     return iterations
 

@@ -19,10 +19,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.progress import stage
 from references.fft import eyre_milton_kernels as kernels
 from references.fft import projection_kernels
 from references.fft.eyre_milton_kernels import Sums
-from references.fft.problem import Clock, Problem, SolvedGrid, total
+from references.fft.problem import Clock, Problem, SolvedGrid, converged, total
 from references.fft.projection_kernels import Parts, Waves
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
@@ -155,14 +156,16 @@ def _iterate(problem, scheme, transform, field):
     for component, value in zip(work, mean, strict=True):
         component[:] = value
     transform.planes(kernels.reflect, field, work, scheme.mirror, sums, forward=True)
-    iterations, error, clock = 0, math.inf, Clock(transform)
-    with clock:
+    iterations, error, first, clock = 0, math.inf, math.inf, Clock(transform)
+    with clock, stage("iterations") as done:
         while error > problem.tolerance and iterations < problem.max_iterations:
             _on_modes(problem, scheme, transform, kernel, scale, mean)
             transform.planes(kernels.reflect, field, work, scheme.mirror, sums, backward=True, forward=True)
             flux = 0.5 * np.linalg.norm(sums.flux.sum(axis=0)) / cells
             error = 0.5 * math.sqrt(total(sums.change) / cells) / flux if flux > 0 else math.inf
             iterations += 1
+            first = error if iterations == 1 else first
+            done(converged(first, error, problem.tolerance))
     return iterations, error, clock.cost()
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from time import perf_counter
 from typing import NamedTuple
@@ -75,6 +76,21 @@ def total(sums: np.ndarray) -> float:
     NumPy's own sum groups them as it likes, and at contrasts of 1e6 the last bit of an energy is ten iterations.
     """
     return float(np.cumsum(sums)[-1])
+
+
+def converged(first: float, error: float, tolerance: float) -> float:
+    """Share of the way from a first error to the tolerance, 0 to 1, by logarithms.
+
+    Parameters
+    ----------
+    first, error, tolerance : float
+        Not a number where an error is not known.
+    """
+    if error <= tolerance:
+        return 1.0
+    if not tolerance < error < first < math.inf:
+        return 0.0
+    return math.log(first / error) / math.log(first / tolerance)
 
 
 class Clock:

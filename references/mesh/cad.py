@@ -8,17 +8,18 @@ reach gmsh, whose tolerances are absolute.
 from __future__ import annotations
 
 from functools import singledispatch
+from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.scene import WALLS, Layer, Shape, Sphere
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
-from references.mesh.gmsh_session import attempts, session, tetrahedra
-from references.mesh.sizes import checked_size, unit_lengths, wanted_sizes
+from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
+from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
 
-# How much longer edges may be one metre farther from a feature, in metres.
-GROWTH = 0.3
+# Balls and shells that gmsh's own fields look through for each point; more are looked up in a table.
+MOST_FIELDS = 400
 
 
 def make(scene, *, size=None, order=2, curved=True):
@@ -42,7 +43,7 @@ def make(scene, *, size=None, order=2, curved=True):
     Raises
     ------
     ValueError
-        If an argument is not as described, or asks for more than 3e7 elements.
+        If an argument is not as described, or asks for more than 3e7 elements, or more than memory holds.
     NotImplementedError
         If surfaces of the scene touch, or inclusions are neither spheres nor layers.
     RuntimeError
@@ -52,26 +53,40 @@ def make(scene, *, size=None, order=2, curved=True):
     """
     scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
     size = checked_size(scene, size, order)
-    sizes = unit_lengths(wanted_sizes(scene, size), max(scene.size))
+    wanted = wanted_sizes(scene, size)
+    cells = check_cost(wanted, scene.size, order)
+    sizes = unit_lengths(wanted, max(scene.size))
 
-    def attempt(factor, algorithm):
-        return _attempt(scene, sizes._replace(size=factor * sizes.size), algorithm, order == 2, bool(curved))
+    def attempt(factor, algorithm, done):
+        finer = sizes._replace(size=factor * sizes.size)
+        return _attempt(scene, finer, Elements(algorithm, order == 2, bool(curved), cells), done)
 
     return attempts(attempt, size)
 
 
-def _attempt(scene, sizes, algorithm, quadratic, curved):
+class _Geometry(NamedTuple):
+    """What the mesher knows of a scene: images of the inclusions with their phases, its box and unit length, m."""
+
+    images: list[tuple[int, Shape]]
+    size: tuple[float, float, float]
+    periodic: bool
+
+    @property
+    def scale(self):
+        return max(self.size)
+
+    @property
+    def box(self):
+        return np.array(self.size) / self.scale
+
+
+def _attempt(scene, sizes, elements, done):
     """One try: geometry, mesh, arrays, checks."""
-    scale = max(scene.size)
-    box = np.array(scene.size) / scale
-    with session() as gmsh:
-        phases = _geometry(gmsh, scene, scale)
-        if scene.periodic:
-            _tie_faces(gmsh, box)
-        _set_sizes(gmsh, sizes, box)
-        points, cells, phase = tetrahedra(gmsh, phases, algorithm, quadratic=quadratic, curved=curved)
+    geometry = _Geometry(scene.images(), scene.size, scene.periodic)
+    scale, box = geometry.scale, geometry.box
+    points, cells, phase = call_gmsh(_tetrahedra, geometry, sizes, elements, cells=elements.estimated, done=done)
     pairs = snap(points, box, scene.periodic)
-    straightened, jacobian = straighten(points, cells, pairs) if quadratic else (0, 1.0)
+    straightened, jacobian = straighten(points, cells, pairs) if elements.quadratic else (0, 1.0)
     volumes, curves = volumes_of(points[cells]) * scale**3, bent(points[cells])
     walls = {name: wall(points, cells, box, name) for name in WALLS}
     stats = {"straightened": straightened, "jacobian": jacobian}
@@ -82,10 +97,26 @@ def _attempt(scene, sizes, algorithm, quadratic, curved):
     return mesh
 
 
-def _geometry(gmsh, scene, scale):
+def _tetrahedra(geometry, sizes, elements):
+    """Points, cells and phases, in unit lengths."""
+    with session() as gmsh:
+        phases = _cut_geometry(gmsh, geometry)
+        if geometry.periodic:
+            _tie_faces(gmsh, geometry.box)
+        # Kept until the end: gmsh has its address.
+        features = None
+        if len(sizes.balls) + len(sizes.shells) > MOST_FIELDS:
+            features = table(sizes, geometry.box)
+            look_up(gmsh, features)
+            sizes = sizes._replace(balls=sizes.balls[:0], shells=sizes.shells[:0])
+        _set_sizes(gmsh, sizes, geometry.box)
+        return tetrahedra(gmsh, phases, elements)
+
+
+def _cut_geometry(gmsh, geometry):
     """Cut box, layers and spheres into one another; {volume tag: phase}."""
-    occ, box = gmsh.model.occ, np.array(scene.size) / scale
-    tools = [(phase, (3, solid(shape, occ, box, scale))) for phase, shape in scene.images()]
+    occ, box = gmsh.model.occ, geometry.box
+    tools = [(phase, (3, solid(shape, occ, box, geometry.scale))) for phase, shape in geometry.images]
     body = (3, occ.addBox(0, 0, 0, *box))
     phases = {body[1]: 0}
     if tools:

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import ctypes
 import importlib
+import sys
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
+from typing import NamedTuple
 
 import numpy as np
+
+from demheat.progress import stage
+from references.mesh.apart import APART_FROM, run_apart
 
 # Debian and Ubuntu packages of the libraries that gmsh's wheel links to and a bare system lacks (readelf -d, dpkg -S).
 PACKAGES = {
@@ -43,6 +48,8 @@ OPTIONS = {
     "Mesh.MaxNumThreads3D": 1,
 }
 SET_LATER = ("Mesh.MeshSizeMax", "Mesh.Algorithm3D", "Mesh.SecondOrderLinear")
+# Of meshing, per tetrahedron of second order; found: 7e-5 to 1.2e-4.
+SECONDS_EACH = 1e-4
 _LOCK = threading.Lock()
 
 
@@ -79,13 +86,34 @@ def _loads(name):
     return True
 
 
+class Elements(NamedTuple):
+    """What tetrahedra to make.
+
+    Attributes
+    ----------
+    algorithm : int
+        Number of gmsh's 3-D algorithm.
+    quadratic : bool
+        With nodes at the middles of the edges.
+    curved : bool
+        Put those onto the surfaces.
+    estimated : float
+        Their number, about.
+    """
+
+    algorithm: int
+    quadratic: bool
+    curved: bool
+    estimated: float
+
+
 def attempts(attempt, size):
     """Mesh at the size asked for, or if gmsh fails at neighbouring ones.
 
     Parameters
     ----------
-    attempt : callable (factor on the size, number of gmsh's 3-D algorithm)
-        One try; returns a Mesh.
+    attempt : callable (factor on the size, number of gmsh's 3-D algorithm, done)
+        One try; returns a Mesh, and calls done(share) meanwhile.
     size : float, m
         That a factor of 1 stands for.
 
@@ -105,9 +133,8 @@ def attempts(attempt, size):
     begin, errors = time.perf_counter(), []
     for number, (factor, algorithm) in enumerate(ATTEMPTS, start=1):
         try:
-            # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
-            with ThreadPoolExecutor(1) as pool:
-                mesh = pool.submit(attempt, factor, algorithm).result()
+            with stage("mesh") as done:
+                mesh = attempt(factor, algorithm, done)
         except Exception as error:
             if type(error) not in (Exception, RuntimeError):  # gmsh raises plain Exception
                 raise
@@ -116,6 +143,31 @@ def attempts(attempt, size):
         stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
         return mesh._replace(stats=stats | mesh.stats)
     raise RuntimeError(f"gmsh could not mesh the scene at any of {len(ATTEMPTS)} sizes ({'; '.join(errors)})")
+
+
+def call_gmsh(function, *arguments, cells, done):
+    """Call function(*arguments), which works in a `session`, where it can be interrupted.
+
+    Parameters
+    ----------
+    function : callable
+        Of a module.
+    *arguments
+        Which pickle takes.
+    cells : float
+        Estimated number of tetrahedra: many are made in a process of their own.
+    done : callable (share)
+
+    Returns
+    -------
+    object
+        What the function returns.
+    """
+    if cells >= APART_FROM and sys.executable:
+        return run_apart(function, *arguments, seconds=cells * SECONDS_EACH, done=done)
+    # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
+    with ThreadPoolExecutor(1) as pool:
+        return pool.submit(function, *arguments).result()
 
 
 @contextmanager
@@ -143,7 +195,27 @@ def session():
                     gmsh.option.setNumber(name, value)
 
 
-def tetrahedra(gmsh, phases, algorithm, *, quadratic, curved):
+def look_up(gmsh, table):
+    """Take the sizes of elements from a table: gmsh's own fields all go through all features for each point.
+
+    Parameters
+    ----------
+    gmsh : module
+        In a `session`.
+    table : (n,) float array
+        Of `references.mesh.sizes.table`; must live as long as the model is meshed.
+    """
+    from references.mesh.size_kernels import size_callback
+
+    # gmsh's own wrapper takes functions of Python, which cost as much as the mesh.
+    failed = ctypes.c_int()
+    address = ctypes.c_void_p(table.ctypes.data)
+    gmsh.lib.gmshModelMeshSetSizeCallback(size_callback.ctypes, address, ctypes.byref(failed))
+    if failed.value:
+        raise RuntimeError(gmsh.logger.getLastError())
+
+
+def tetrahedra(gmsh, phases, elements):
     """Mesh the volumes of the current model.
 
     Parameters
@@ -152,12 +224,7 @@ def tetrahedra(gmsh, phases, algorithm, *, quadratic, curved):
         In a `session`, with its sizes set.
     phases : mapping of int to int
         Phase of each volume tag.
-    algorithm : int
-        Number of gmsh's 3-D algorithm.
-    quadratic : bool
-        With nodes at the middles of the edges.
-    curved : bool
-        Put those onto the surfaces.
+    elements : Elements
 
     Returns
     -------
@@ -172,12 +239,13 @@ def tetrahedra(gmsh, phases, algorithm, *, quadratic, curved):
     RuntimeError
         If no tetrahedra were made.
     """
-    gmsh.option.setNumber("Mesh.Algorithm3D", algorithm)
-    gmsh.option.setNumber("Mesh.SecondOrderLinear", not curved)
+    gmsh.option.setNumber("Mesh.Algorithm3D", elements.algorithm)
+    gmsh.option.setNumber("Mesh.SecondOrderLinear", not elements.curved)
+    # All dimensions at once: one after the other they make other meshes.
     gmsh.model.mesh.generate(3)
-    if quadratic:
+    if elements.quadratic:
         gmsh.model.mesh.setOrder(2)
-    kind, width = (11, 10) if quadratic else (4, 4)
+    kind, width = (11, 10) if elements.quadratic else (4, 4)
     parts = {tag: gmsh.model.mesh.getElementsByType(kind, tag)[1].reshape(-1, width) for tag in phases}
     cells = np.concatenate(list(parts.values())).astype(np.int64)
     phase = np.repeat(np.array(list(phases.values()), np.int32), [len(part) for part in parts.values()])
@@ -188,6 +256,6 @@ def tetrahedra(gmsh, phases, algorithm, *, quadratic, curved):
     place[tags.astype(np.int64)] = np.arange(len(tags))
     used, cells = np.unique(place[cells], return_inverse=True)
     cells = cells.reshape(-1, width).astype(np.int32)
-    if quadratic:
+    if elements.quadratic:
         cells[:, [8, 9]] = cells[:, [9, 8]]  # gmsh lists edge 23 before 13
     return coordinates.reshape(-1, 3)[used], cells, phase

@@ -7,8 +7,8 @@ from itertools import combinations
 import numpy as np
 
 from references.mesh.cells import EDGE_COLUMN, Mesh, Wall, bent, snap, straighten, volumes_of
-from references.mesh.gmsh_session import attempts, session, tetrahedra
-from references.mesh.sizes import checked_size
+from references.mesh.gmsh_session import Elements, attempts, call_gmsh, session, tetrahedra
+from references.mesh.sizes import CELLS, checked_size
 
 # Of the volume; chords of elements as long as the radius lose about this much.
 LARGEST_LOSS = 0.2
@@ -44,25 +44,36 @@ def make_round(scene, *, size, order):
     """
     scene.require("only boxes can have them here", shapes=())
     size = checked_size(scene, size, order)
-    return attempts(lambda factor, algorithm: _attempt(scene, factor * size, algorithm, order), size)
+
+    def attempt(factor, algorithm, done):
+        elements = Elements(algorithm, order == 2, True, CELLS * scene.volume / size**3)
+        return _attempt(scene, factor * size, elements, done)
+
+    return attempts(attempt, size)
 
 
-def _attempt(scene, size, algorithm, order):
+def _attempt(scene, size, elements, done):
     """One try: geometry, mesh, arrays, checks."""
     scale = max(scene.size)
     box = np.array(scene.size) / scale
-    with session() as gmsh:
-        tag = _body(gmsh.model.occ, scene.domain, box)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size / scale)
-        points, cells, phase = tetrahedra(gmsh, {tag: 0}, algorithm, quadratic=order == 2, curved=True)
+    what = scene.domain, box, size / scale, elements
+    points, cells, phase = call_gmsh(_tetrahedra, *what, cells=elements.estimated, done=done)
     pairs = snap(points, box, False)
-    straightened, jacobian = straighten(points, cells, pairs) if order == 2 else (0, 1.0)
+    straightened, jacobian = straighten(points, cells, pairs) if elements.quadratic else (0, 1.0)
     volumes, curved = volumes_of(points[cells]) * scale**3, bent(points[cells])
     error = float(volumes.sum() / scene.volume - 1)
     if volumes.min() <= 0 or abs(error) > LARGEST_LOSS:
         raise RuntimeError(f"smallest element {volumes.min():.3g} m3, volume off by {error:.3g}")
     stats = {"straightened": straightened, "jacobian": jacobian, "volume_error": error}
     return Mesh(points * scale, cells, phase, volumes, curved, _walls(scene, points, cells, box), pairs, stats)
+
+
+def _tetrahedra(domain, box, size, elements):
+    """Points, cells and phases, in unit lengths."""
+    with session() as gmsh:
+        tag = _body(gmsh.model.occ, domain, box)
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        return tetrahedra(gmsh, {tag: 0}, elements)
 
 
 def _body(occ, domain, box):

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 import math
+import os
 from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
+# How much longer edges may be one metre farther from a feature, in metres.
+GROWTH = 0.3
+# Numbers at the head of a `table`.
+HEAD = 10
 # Cube root of the box volume over the default size: about 1e5 nodes at either order,
 EDGES = {1: 50, 2: 26}
 # or if that is more, this times the cube root of the number of spheres (found: 0.07 % on 83 of them at order 2).
 EDGES_APART = 8
 MOST_CELLS = 3e7
+# Tetrahedra of a uniform mesh over its volume and the size's cube; found: 4.2 to 4.6.
+CELLS = 4.5
+# Of memory at most, with the equations and what solves them, per tetrahedron of each order.
+BYTES = {1: 1500, 2: 3500}
 # Of the longest edge. Closer surfaces touch: the cusp between them has no valid elements (2e-6 meshes, 0 does not).
 NARROWEST = 1e-6
 _WHY = "the cusp between touching surfaces has no valid elements; leave a gap or let them overlap clearly"
@@ -21,6 +31,10 @@ SAME = 1e-10
 # Edge length on a small sphere over its radius; in a gap, to a distance of width = sqrt(gap radius), over that width;
 # in a shell over its thickness.
 ON_SPHERE, IN_GAP, IN_SHELL = 0.33, 0.5, 3.0
+# Of the smaller sphere's radius. What is wider is no gap: the sphere's own elements grow to the size that it asks for.
+FAR = 6.0
+# Of the longest edge: images of spheres beyond say nothing, however coarse the mesh.
+BEYOND = 0.25
 
 
 class Sizes(NamedTuple):
@@ -74,8 +88,8 @@ def checked_size(scene, size, order):
         good = False
     if not good:
         raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
-    if estimated_cells(scene, size) > MOST_CELLS:
-        least = (estimated_cells(scene, 1.0) / MOST_CELLS) ** (1 / 3)
+    least = (CELLS * math.prod(scene.size) / MOST_CELLS) ** (1 / 3)
+    if size < least:
         raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} tetrahedra; must be >= {least:.3g} m")
     return float(size)
 
@@ -101,7 +115,7 @@ def wanted_sizes(scene, size):
     """
     centers, radii = _spheres(scene, size)
     planes = _planes(scene)
-    outer, inner, gaps = _pairs(scene, centers, radii)
+    outer, inner, gaps = _pairs(scene, centers, radii, size)
     gaps = np.vstack([gaps, _box_gaps(scene, centers, radii, planes)])
     width = np.sqrt(gaps[:, 3] * gaps[:, 4])
     balls = np.vstack(
@@ -116,8 +130,46 @@ def wanted_sizes(scene, size):
     return Sizes(size, *(t[t[:, -1] < size] for t in (balls, shells, slabs)))
 
 
+def check_cost(sizes: Sizes, box, order: int) -> float:
+    """Refuse a mesh that is hopeless, before it is begun.
+
+    Parameters
+    ----------
+    sizes : Sizes
+        In metres.
+    box : (3,) sequence of float, m
+    order : {1, 2}
+
+    Returns
+    -------
+    float
+        Estimated number of tetrahedra.
+
+    Raises
+    ------
+    ValueError
+        If there would be more than 3e7 tetrahedra, or they would need more memory than there is.
+    """
+    cells, most = estimated_cells(sizes, np.array(box)), min(MOST_CELLS, memory() / BYTES[order])
+    if cells > most:
+        least, need = sizes.size * (cells / most) ** (1 / 3), cells * BYTES[order] / 2**30
+        raise ValueError(
+            f"size = {sizes.size:.3g} m: about {cells:.1e} tetrahedra, which with their equations take {need:.0f} GiB; "
+            f"here {most:.1e} are possible: must be >= {least:.2g} m{', or take order = 1' if order == 2 else ''}"
+        )
+    return cells
+
+
+def memory() -> float:
+    """Bytes of memory of this machine; infinite where the system does not tell."""
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, OSError, ValueError):
+        return math.inf
+
+
 def _spheres(scene, size):
-    """Centres and radii of the spheres, and of all images in a periodic cell, less than one edge from the box."""
+    """Centres and radii of the spheres, and of all images in a periodic cell, less than one size from the box."""
     spheres = [shape for shape in scene.inclusions if shape.bounded]
     centers = np.array([s.center for s in spheres]).reshape(-1, 3)
     radii = np.array([s.radius for s in spheres])
@@ -127,7 +179,7 @@ def _spheres(scene, size):
         centers = (centers % box + shifts[:, None]).reshape(-1, 3)
         radii = np.tile(radii, len(shifts))
     outside = np.maximum(0, np.maximum(-centers, centers - box))
-    near = np.linalg.norm(outside, axis=1) < radii + size
+    near = np.linalg.norm(outside, axis=1) < radii + min(size, BEYOND * max(box))
     return centers[near], radii[near]
 
 
@@ -145,27 +197,36 @@ def _planes(scene):
     return planes
 
 
-def _pairs(scene, centers, radii):
-    """Nested pairs (outer, inner), and rows (point, gap, smaller radius) for all pairs of spheres."""
-    nested, rows = [(np.zeros(0, int), np.zeros(0, int))], [np.zeros((0, 5))]
-    for k in range(len(radii) - 1):
-        other = np.arange(k + 1, len(radii))
-        outer = np.where(radii[other] > radii[k], other, k)
-        inner = np.where(radii[other] > radii[k], k, other)
-        offset = centers[inner] - centers[outer]
-        distance = np.linalg.norm(offset, axis=1)
-        inside = distance < radii[outer]
-        gap = np.where(inside, radii[outer] - radii[inner] - distance, distance - radii[outer] - radii[inner])
-        for i in np.flatnonzero(gap < NARROWEST * max(scene.size)):
-            raise NotImplementedError(f"spheres at {centers[k]} and {centers[other[i]]} touch: {_WHY}")
-        nested.append((outer[inside], inner[inside]))
-        # Concentric spheres have no narrowest point; their shell counts instead.
-        off = distance > 0
-        along = (radii[outer] + np.where(inside, -1, 1) * gap / 2)[off] / distance[off]
-        points = centers[outer[off]] + along[:, None] * offset[off]
-        rows.append(np.column_stack([points, gap[off], radii[inner[off]]]))
-    outer, inner = (np.concatenate(part) for part in zip(*nested, strict=True))
-    return outer, inner, np.vstack(rows)
+def _pairs(scene, centers, radii, size):
+    """Nested pairs (outer, inner), and rows (point, gap, smaller radius) for pairs of spheres that are near."""
+    outer, inner = _near(centers, radii, size)
+    offset = centers[inner] - centers[outer]
+    distance = np.linalg.norm(offset, axis=1)
+    inside = distance < radii[outer]
+    gap = np.where(inside, radii[outer] - radii[inner] - distance, distance - radii[outer] - radii[inner])
+    for i in np.flatnonzero(gap < NARROWEST * max(scene.size)):
+        raise NotImplementedError(f"spheres at {centers[outer[i]]} and {centers[inner[i]]} touch: {_WHY}")
+    # Concentric spheres have no narrowest point; their shell counts instead.
+    off = distance > 0
+    along = (radii[outer] + np.where(inside, -1, 1) * gap / 2)[off] / distance[off]
+    points = centers[outer[off]] + along[:, None] * offset[off]
+    rows = np.column_stack([points, gap[off], radii[inner[off]]])
+    return outer[inside], inner[inside], rows[gap[off] < FAR * radii[inner[off]]]
+
+
+def _near(centers, radii, size):
+    """Pairs (outer or larger, inner or smaller) of spheres between which elements may have to be small."""
+    if not len(radii):
+        return np.zeros(0, int), np.zeros(0, int)
+    # A gap counts while sqrt(gap radius) is below size / IN_GAP and gap below FAR radii, of the smaller sphere: it is
+    # then below their common bound, whatever that radius.
+    widest = np.minimum(FAR * radii, math.sqrt(FAR) * size / IN_GAP)
+    near = cKDTree(centers).query_ball_point(centers, 2 * radii + widest, return_sorted=True)
+    one = np.repeat(np.arange(len(radii)), [len(others) for others in near])
+    other = np.concatenate(near).astype(int)
+    # Each pair once, found from its larger sphere, the first of two that are equal.
+    kept = (radii[one] > radii[other]) | ((radii[one] == radii[other]) & (one < other))
+    return one[kept], other[kept]
 
 
 def _box_gaps(scene, centers, radii, planes):
@@ -179,7 +240,7 @@ def _box_gaps(scene, centers, radii, planes):
             faces_it = np.all((points >= 0) & (points <= box), axis=1)
             for i in np.flatnonzero(faces_it & (gap < NARROWEST * max(scene.size))):
                 raise NotImplementedError(f"sphere at {centers[i]} touches a plane or edge at {points[i]}: {_WHY}")
-            rows.append(np.column_stack([points, gap, radii])[faces_it])
+            rows.append(np.column_stack([points, gap, radii])[faces_it & (gap < FAR * radii)])
     return np.vstack(rows)
 
 
@@ -196,13 +257,65 @@ def unit_lengths(sizes, scale):
     return sizes._replace(size=sizes.size / scale, balls=sizes.balls / scale, shells=sizes.shells / scale, slabs=slabs)
 
 
-def estimated_cells(scene, size):
-    """Number of tetrahedra of a uniform mesh (found: 4.2 to 4.6 times volume over size cubed).
+def table(sizes: Sizes, box) -> np.ndarray:
+    """Balls and shells sorted into cells of the box, as `references.mesh.size_kernels.size_at` reads them.
 
     Parameters
     ----------
-    scene : Scene
-    size : float, m
-        Of the edges.
+    sizes : Sizes
+    box : (3,) float array
+        Sides, in the same unit.
+
+    Returns
+    -------
+    (n,) float array
     """
-    return 4.5 * math.prod(scene.size) / size**3
+    shells = sizes.shells
+    features = np.vstack(
+        [
+            np.column_stack([sizes.balls, np.zeros(len(sizes.balls))]),
+            np.column_stack([shells[:, :3], shells[:, 3:5].mean(axis=1), shells[:, 5], np.ones(len(shells))]),
+        ]
+    )
+    counts = np.maximum(1, np.floor(box / (np.prod(box) / max(len(features), 1)) ** (1 / 3))).astype(int)
+    each = counts / box
+    # Beyond that they ask for nothing less than the size; a little more, for rounding.
+    reach = (features[:, 3] + (sizes.size - features[:, 4]) / GROWTH)[:, None] * 1.001
+    low, high = (np.floor((features[:, :3] + sign * reach) * each).astype(int) for sign in (-1, 1))
+    low, high = np.clip(low, 0, counts - 1), np.clip(high, 0, counts - 1)
+    which, cell = _cells(low, high, counts)
+    order = np.argsort(cell, kind="stable")
+    starts = np.r_[0, np.cumsum(np.bincount(cell, minlength=np.prod(counts)))]
+    rows = features[which[order]].ravel()
+    head = [0, *counts, *each, HEAD, HEAD + len(starts), GROWTH]
+    made = np.concatenate([head, starts, rows])
+    made[0] = len(made)
+    return made
+
+
+def _cells(low, high, counts):
+    """(feature, flat index of a cell) of all cells low to high, both included, of each feature."""
+    span = high - low + 1
+    number = np.prod(span, axis=1)
+    which = np.repeat(np.arange(len(span)), number)
+    place = np.arange(len(which)) - np.repeat(np.cumsum(number) - number, number)
+    z = place % span[which, 2]
+    y = place // span[which, 2] % span[which, 1]
+    x = place // (span[which, 2] * span[which, 1])
+    return which, np.ravel_multi_index((low[which] + np.column_stack([x, y, z])).T, counts)
+
+
+def estimated_cells(sizes: Sizes, box) -> float:
+    """Number of tetrahedra of a mesh, from what is asked of it; found: within a factor of 2.
+
+    Parameters
+    ----------
+    sizes : Sizes
+    box : (3,) float array
+        Sides, in the same unit.
+    """
+    cells = CELLS * float(np.prod(box)) / sizes.size**3
+    middle = sizes.balls[:, :3]
+    here = np.all((middle >= 0) & (middle <= box), axis=1)
+    radius, h = sizes.balls[here, 3], sizes.balls[here, 4]
+    return cells + CELLS * float(np.sum(4 / 3 * math.pi * (radius / h) ** 3))

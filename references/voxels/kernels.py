@@ -81,6 +81,57 @@ def paint_sphere(grid, phase, center, radius, spacing, low, high):
 
 
 @numba.njit(cache=True)
+def paint_spheres(grid, windows, spacing):
+    """`paint_sphere` for one window after the other.
+
+    Parameters
+    ----------
+    grid : (nx, ny, nz) int array
+        Changed in place.
+    windows : Windows
+    spacing : (3,) float array, m
+
+    Returns
+    -------
+    count : int
+        Of the voxels that the surfaces may cut.
+    """
+    count = 0
+    for n in range(len(windows.radius)):
+        center, low, high = windows.center[n], windows.low[n], windows.high[n]
+        count += paint_sphere(grid, windows.number[n], center, windows.radius[n], spacing, low, high)
+    return count
+
+
+@numba.njit(cache=True)
+def cut_spheres(shape, windows, spacing, cuts):
+    """`cut_sphere` for one window after the other.
+
+    Parameters
+    ----------
+    shape : (3,) int array
+        Voxels of the whole grid, for the flat index.
+    windows : Windows
+    spacing : (3,) float array, m
+    cuts : Cuts
+        Out: as many rows as `paint_spheres` counts, and one of `moment` more.
+
+    Returns
+    -------
+    found : int
+        Rows filled.
+    """
+    found = 0
+    for n in range(len(windows.radius)):
+        center, low, high = windows.center[n], windows.low[n], windows.high[n]
+        index, fraction, moment = cuts.index[found:], cuts.fraction[found:], cuts.moment[found:]
+        new = cut_sphere(shape, center, windows.radius[n], spacing, low, high, index, fraction, moment)
+        cuts.phase[found : found + new] = windows.number[n]
+        found += new
+    return found
+
+
+@numba.njit(cache=True)
 def cut_sphere(shape, center, radius, spacing, low, high, index, fraction, moment):
     """Voxels that the surface of a sphere cuts: their fraction inside and the second moment of the surface normal.
 
@@ -202,11 +253,13 @@ def cut_links(resistance, change, center, radius, spacing):
     """
     na, nb, n = resistance.shape
     h = spacing[2]
-    for i in range(na):
+    first_i, last_i = _reached(center[0], radius, spacing[0], na)
+    first_j, last_j = _reached(center[1], radius, spacing[1], nb)
+    for i in range(first_i, last_i):
         x2 = ((i + 0.5) * spacing[0] - center[0]) ** 2
         if x2 >= radius * radius:
             continue
-        for j in range(nb):
+        for j in range(first_j, last_j):
             s2 = radius * radius - x2 - ((j + 0.5) * spacing[1] - center[1]) ** 2
             if s2 <= 0.0:
                 continue
@@ -217,6 +270,30 @@ def cut_links(resistance, change, center, radius, spacing):
                 inside = min(high, k + 0.5) - max(low, k - 0.5)
                 if inside > 0.0:
                     resistance[i, j, k] += change * inside
+
+
+@numba.njit(cache=True)
+def cut_links_by_spheres(resistance, change, center, radius, spacing):
+    """`cut_links` by one sphere after the other.
+
+    Parameters
+    ----------
+    resistance : (na, nb, n + 1) float array, m K/W
+        Changed in place.
+    change : (s,) float array, m K/W
+    center : (s, 3) float array, m
+    radius : (s,) float array, m
+    spacing : (3,) float array, m
+    """
+    for sphere in range(len(radius)):
+        cut_links(resistance, change[sphere], center[sphere], radius[sphere], spacing)
+
+
+@numba.njit(cache=True)
+def _reached(center, radius, spacing, count):
+    """Rows first <= i < last that hold all whose middles, (i + 1/2) spacings, are nearer than the radius."""
+    first, last = math.floor((center - radius) / spacing - 0.5), math.ceil((center + radius) / spacing + 0.5)
+    return min(max(int(first), 0), count), min(max(int(last), 0), count)
 
 
 @numba.njit(cache=True)

@@ -14,8 +14,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
+from references.voxels.spheres import Spheres, groups, windows
 
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
 MOST_PHASES = 2**16
@@ -191,10 +193,30 @@ def medium(voxels: Voxels, scalar, tensor, dtype) -> Medium:
 
 def _paint(scene, grid, spacing, cutting):
     """Paint the inclusions in order; return the voxels that their surfaces cut, none if they are not asked for."""
-    found = [_none()]
-    for number, shape in scene.images():
-        found.append(paint(shape, grid, spacing, number, cutting=cutting))
+    found, inclusions = [_none()], list(enumerate(scene.inclusions, start=1))
+    with stage("voxels") as done:
+        for group in groups(inclusions, scene.size, periodic=scene.periodic):
+            if isinstance(group, Spheres):
+                found += _paint_spheres(group, grid, spacing, cutting, lambda n: done(n / len(inclusions)))
+            else:
+                number, shape = group
+                found.append(paint(shape, grid, spacing, number, cutting=cutting))
+                done(number / len(inclusions))
     return Cuts(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+
+def _paint_spheres(spheres, grid, spacing, cutting, done):
+    """Paint images of spheres in order; the voxels that their surfaces cut, block by block."""
+    found = []
+    for block in windows(spheres, grid.shape, spacing):
+        count = kernels.paint_spheres(grid, block, spacing)
+        if cutting:
+            # One more row of moments: voxels that turn out not to be cut are integrated there, too.
+            cuts = Cuts(np.empty(count, np.int64), np.empty(count), np.empty((count + 1, 6)), np.empty(count, np.int64))
+            n = kernels.cut_spheres(np.array(grid.shape), block, spacing, cuts)
+            found.append(Cuts(*(column[:n].copy() for column in cuts)))
+        done(block.number[-1])
+    return found
 
 
 def _none():
@@ -242,16 +264,9 @@ def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
 
 @paint.register
 def _(shape: Sphere, grid, spacing, number, *, cutting):
-    counts = np.array(grid.shape)
-    center = np.array(shape.center)
-    low = np.clip(np.floor((center - shape.radius) / spacing) - 1, 0, counts).astype(np.int64)
-    high = np.clip(np.ceil((center + shape.radius) / spacing) + 1, 0, counts).astype(np.int64)
-    count = kernels.paint_sphere(grid, number, center, shape.radius, spacing, low, high)
-    if not cutting:
-        return _none()
-    index, fraction, moment = np.empty(count, np.int64), np.empty(count), np.empty((count + 1, 6))
-    n = kernels.cut_sphere(counts, center, shape.radius, spacing, low, high, index, fraction, moment)
-    return Cuts(index[:n], fraction[:n], moment[:n], np.full(n, number))
+    one = Spheres(np.array([number]), np.array([shape.center]), np.array([shape.radius]))
+    found = _paint_spheres(one, grid, spacing, cutting, lambda _: None)
+    return Cuts(*(np.concatenate(column) for column in zip(_none(), *found, strict=True)))
 
 
 @paint.register

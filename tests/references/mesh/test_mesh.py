@@ -241,8 +241,8 @@ def test_bad_order():
 
 
 def test_wrong_geometry_is_noticed(monkeypatch):
-    geometry = cad._geometry
-    monkeypatch.setattr(cad, "_geometry", lambda *args: dict.fromkeys(geometry(*args), 0))
+    geometry = cad._cut_geometry
+    monkeypatch.setattr(cad, "_cut_geometry", lambda *args: dict.fromkeys(geometry(*args), 0))
     with pytest.raises(RuntimeError, match="phase 1: .* misplaced"):
         mesh.make(scene(ball()), size=0.25)
     monkeypatch.undo()

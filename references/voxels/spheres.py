@@ -1,0 +1,120 @@
+"""Spheres of a scene as arrays, all images of them, in pieces that kernels go through within a part of a second."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from itertools import groupby, product
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Shape, Sphere
+
+# Voxels that one call of a kernel looks at, but for one sphere's plane: 0.1 s where surfaces are integrated.
+MOST_LOOKED_AT = 2**20
+
+
+class Spheres(NamedTuple):
+    """Images of spheres as they meet the box, in painting order.
+
+    Attributes
+    ----------
+    number : (n,) int64 array
+        Phase.
+    center : (n, 3) float array, m
+    radius : (n,) float array, m
+    """
+
+    number: np.ndarray
+    center: np.ndarray
+    radius: np.ndarray
+
+
+class Windows(NamedTuple):
+    """Pieces of spheres with the voxels that each may fill or cut, as kernels read them.
+
+    Attributes
+    ----------
+    number, center, radius
+        As in `Spheres`, of the sphere that each is a piece of.
+    low, high : (n, 3) int64 array
+        Voxels to look at, low <= index < high.
+    """
+
+    number: np.ndarray
+    center: np.ndarray
+    radius: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+
+def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> Iterator[Spheres | tuple[int, Shape]]:
+    """Inclusions that meet the box: spheres that follow one another as arrays, images of other shapes one by one.
+
+    Parameters
+    ----------
+    inclusions : sequence of (phase number, Shape)
+        In painting order.
+    size : (3,) sequence of float, m
+    periodic : bool
+        Whether images count.
+
+    Yields
+    ------
+    Spheres, or tuple of int and Shape
+    """
+    # What only derives from a sphere may be registered with a painting of its own.
+    for spheres, group in groupby(inclusions, key=lambda pair: type(pair[1]) is Sphere):
+        if spheres:
+            yield images(list(group), size, periodic=periodic)
+        else:
+            yield from ((n, image) for n, shape in group for image in shape.images(size, periodic=periodic))
+
+
+def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Spheres:
+    """All images of spheres, as `Shape.images` finds them one by one.
+
+    Parameters
+    ----------
+    spheres : sequence of (phase number, Sphere)
+    size : (3,) sequence of float, m
+    periodic : bool
+    """
+    number = np.array([n for n, _ in spheres], np.int64)
+    center, radius = np.array([s.center for _, s in spheres]), np.array([s.radius for _, s in spheres])
+    size = np.array(size, dtype=float)
+    shifts = np.array(list(product((0, -1, 1), repeat=3)) if periodic else [(0, 0, 0)])
+    centers = (center % size if periodic else center)[:, None] + shifts * size
+    gap = np.maximum(0.0, np.maximum(-centers, centers - size))
+    which, shift = np.nonzero(gap[..., 0] ** 2 + gap[..., 1] ** 2 + gap[..., 2] ** 2 < radius[:, None] ** 2)
+    return Spheres(number[which], centers[which, shift], radius[which])
+
+
+def windows(spheres: Spheres, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT) -> list[Windows]:
+    """The voxels that spheres may fill or cut, in blocks of not many voxels.
+
+    Parameters
+    ----------
+    spheres : Spheres
+    shape : (3,) tuple of int
+        Voxels along each side.
+    spacing : (3,) float array, m
+    whole : bool
+        Leave large spheres in one piece, which else are divided along the x-axis.
+    most : int
+        Voxels of a block, about.
+    """
+    counts, radius = np.array(shape), spheres.radius[:, None]
+    low = np.clip(np.floor((spheres.center - radius) / spacing) - 1, 0, counts).astype(np.int64)
+    high = np.clip(np.ceil((spheres.center + radius) / spacing) + 1, 0, counts).astype(np.int64)
+    across = high[:, 0] - low[:, 0]
+    pieces = np.clip(-(-np.prod(high - low, axis=1) // most), 1, 1 if whole else np.maximum(across, 1))
+    which = np.repeat(np.arange(len(pieces)), pieces)
+    part = np.arange(len(which)) - np.repeat(np.cumsum(pieces) - pieces, pieces)
+    begin, low, high = low[which, 0], low[which], high[which]
+    low[:, 0] = begin + across[which] * part // pieces[which]
+    high[:, 0] = begin + across[which] * (part + 1) // pieces[which]
+    found = Windows(*(column[which] for column in spheres), low, high)
+    block = np.cumsum(np.prod(high - low, axis=1)) // most
+    ends = [0, *(np.flatnonzero(np.diff(block)) + 1), len(block)]
+    return [Windows(*(column[a:b] for column in found)) for a, b in zip(ends, ends[1:], strict=False) if b > a]

@@ -1,0 +1,171 @@
+"""gmsh in a process of its own: answers, errors, crashes, Ctrl-C."""
+
+import math
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from demheat.scene import Material, Scene, Sphere
+from references import mesh
+from references.mesh import cad, gmsh_session, sizes
+from references.mesh.apart import run_apart
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture(autouse=True)
+def gmsh_or_skip():
+    try:
+        mesh.load_gmsh()
+    except ImportError as error:
+        pytest.skip(str(error))
+
+
+def ball(radius=1 / 3):
+    return Scene((1.0,) * 3, Material(1.0), [Sphere((0.5,) * 3, radius, Material(2.0))], walls={"x-": 0.0, "x+": 1.0})
+
+
+def call(function, *arguments):
+    shares = []
+    return run_apart(function, *arguments, seconds=1.0, done=shares.append), shares
+
+
+def test_answers_and_shares():
+    answer, shares = call(math.sqrt, 4.0)
+    assert answer == 2.0 and shares == sorted(shares)
+    # Two signs of life at least; more than the seconds that were estimated stay below 1.
+    _, shares = call(time.sleep, 0.7)
+    assert len(shares) >= 2 and all(0 < share <= 0.95 for share in shares)
+
+
+def test_errors_are_those_of_the_function():
+    with pytest.raises(ValueError, match="math domain error|nonnegative"):
+        call(math.sqrt, -1.0)
+    with pytest.raises(ZeroDivisionError):
+        call(divmod, 1, 0)
+
+
+def test_what_is_printed_there_does_no_harm(capfd):
+    assert call(print, "loud")[0] is None
+    assert capfd.readouterr() == ("", "loud\n")
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_a_crash_is_an_error():
+    # The child's own signals: as if gmsh read beyond its memory, and as if the system took the memory back.
+    with pytest.raises(RuntimeError, match="crashed.*-6"):
+        call(os.abort)
+    with pytest.raises(MemoryError, match="larger size"):
+        call(signal.raise_signal, signal.SIGKILL)
+    with pytest.raises(RuntimeError, match="status 3"):
+        call(os._exit, 3)
+
+
+def test_many_elements_are_made_apart_and_are_the_same(monkeypatch):
+    here = mesh.make(ball(), size=0.2)
+    monkeypatch.setattr(gmsh_session, "APART_FROM", 0)
+    calls, there = [], gmsh_session.run_apart
+    monkeypatch.setattr(gmsh_session, "run_apart", lambda *a, **k: calls.append(a[0]) or there(*a, **k))
+    apart = mesh.make(ball(), size=0.2)
+    assert calls == [cad._tetrahedra]
+    assert np.array_equal(apart.points, here.points) and np.array_equal(apart.cells, here.cells)
+    assert np.array_equal(apart.phase, here.phase)
+
+
+SCRIPT = """
+import subprocess
+class Told(subprocess.Popen):
+    def __init__(self, *a, **k):
+        super().__init__(*a, **k)
+        print(self.pid, flush=True)
+subprocess.Popen = Told
+from demheat import progress
+from demheat.scene import Material, Scene, Sphere
+from references import fem
+progress.SILENT = 0.0
+progress.on_progress(lambda report: print(report.stage, flush=True))
+sphere = Sphere((0.5,) * 3, 1 / 3, Material(2.0))
+try:
+    # Half a minute and more.
+    fem.solve(Scene((1.0,) * 3, Material(1.0), [sphere], walls={"x-": 0.0, "x+": 1.0}), size=0.022)
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_ctrl_c_ends_meshing_and_the_mesher():
+    with subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
+        child = int(parent.stdout.readline())
+        assert parent.stdout.readline() == "mesh\n"
+        parent.send_signal(signal.SIGINT)
+        rest = parent.stdout.read().split("\n")
+    assert parent.returncode == 0
+    # Not one stage after the mesh: it was not waited for.
+    assert set(rest) == {"mesh", "interrupted", ""} or set(rest) == {"interrupted", ""}
+    with pytest.raises(ProcessLookupError):
+        os.kill(child, 0)
+
+
+@pytest.mark.skipif(os.name != "posix", reason="signals")
+def test_the_mesher_ends_with_its_parent():
+    begun, _ = SCRIPT.split("from demheat import progress")
+    script = (
+        begun
+        + """
+import os, time
+from references.mesh.apart import run_apart
+run_apart(time.sleep, 600.0, seconds=1.0, done=lambda share: os.kill(os.getpid(), 9))
+"""
+    )
+    with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
+        child = int(parent.stdout.readline())
+    assert parent.returncode == -signal.SIGKILL
+    for _ in range(500):
+        try:
+            os.kill(child, 0)
+        except ProcessLookupError:
+            return
+        # Nobody may be left to reap it: a zombie has ended, too.
+        if Path(f"/proc/{child}/stat").exists() and Path(f"/proc/{child}/stat").read_text().split()[2] == "Z":
+            return
+        time.sleep(0.02)
+    raise AssertionError("the mesher outlives its parent")
+
+
+def test_hopeless_meshes_are_refused_before_they_are_begun(monkeypatch):
+    monkeypatch.setattr(cad, "attempts", None)
+    monkeypatch.setattr(sizes, "memory", lambda: 2.0**30)
+    with pytest.raises(ValueError, match=r"size = 0.02 m: about 5\.6e\+05 tetrahedra.* 2 GiB;.* >= 0.024 m, or take"):
+        mesh.make(ball(), size=0.02)
+    # Small spheres ask for more elements than the size alone: refused, too, at the default size.
+    tiny = [Sphere(((i + 0.5) / 9, (j + 0.5) / 9, 0.3), 0.01, Material(2.0)) for i in range(9) for j in range(9)]
+    monkeypatch.setattr(sizes, "memory", lambda: 50e6)
+    with pytest.raises(ValueError, match="size = .*must be >="):
+        mesh.make(Scene((1.0,) * 3, Material(1.0), tiny, walls={"x-": 0.0, "x+": 1.0}), size=0.1, order=1)
+
+
+def test_pairs_looked_at_grow_like_the_spheres():
+    """Lattices of ever more spheres: each has as many neighbours, whatever their number."""
+    for n in (4, 8):
+        places = (np.stack(np.meshgrid(*[np.arange(n)] * 3), axis=-1).reshape(-1, 3) + 0.5) / n
+        outer, _ = sizes._near(places, np.full(n**3, 0.33 / n), 0.1 / n)
+        # Of each pair one is counted, within 2 radii and a gap below sqrt(24) sizes, 1.15 distances: 6 neighbours.
+        assert len(outer) == 3 * n**2 * (n - 1)
+    # A few large ones among many small: each pair is found from the larger.
+    rng = np.random.default_rng(0)
+    outer, inner = sizes._near(rng.random((50, 3)), np.r_[0.3, np.full(49, 0.01)], 0.01)
+    assert np.all(outer[np.flatnonzero(outer == 0)] == 0) and not np.any(inner == 0)
+
+
+def test_wide_gaps_are_none():
+    two = [Sphere((x, 0.5, 0.5), 0.01, Material(2.0)) for x in (0.45, 0.55)]
+    of = Scene((1.0,) * 3, Material(1.0), two, walls={"x-": 0.0, "x+": 1.0})
+    # Eight radii between them: elements grow from 0.33 radii on each to the size, with nothing in the middle.
+    assert len(sizes.wanted_sizes(of, 0.25).balls) == 2
