@@ -41,6 +41,7 @@ LAYERS = {
     "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.progress": (),
+    "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.gallery": ("demheat.addition", "demheat.scene"),
@@ -50,6 +51,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
     ),
     "demheat.network": (
@@ -57,6 +59,7 @@ LAYERS = {
         "demheat.laws",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
         "demheat.network",
     ),
@@ -64,6 +67,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.network",
         "demheat.conduction",
     ),
@@ -72,6 +76,7 @@ LAYERS = {
         "demheat.field",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.network",
         "demheat.conduction.steady_kernels",
         "demheat.sampling",
@@ -80,6 +85,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
         "demheat.network",
         "demheat.conduction.steady",
@@ -171,8 +177,8 @@ HOMES = {
     "meshio": ("references.mesh",),
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
-    # The threading layer must be chosen before the first kernel is compiled: demheat.threads does that.
-    "numba": ("*kernels", "demheat.threads"),
+    # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
+    "numba": ("*kernels", "demheat.threads", "demheat.compiled"),
     "pandas": ("studies",),
     "matplotlib": ("studies",),
     "multivoro": ("studies",),
@@ -227,7 +233,7 @@ def refused(name, source, modules=MODULES, is_package=False):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
-            beside = name.endswith("kernels") and target.endswith("kernels")
+            beside = name.endswith("kernels") and (target.endswith("kernels") or target == "demheat.compiled")
             # Kernels share helpers among themselves and know nothing else.
             if not (fits or beside):
                 wrong.append(f"{name} imports {target}")
