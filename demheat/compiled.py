@@ -28,7 +28,7 @@ import numba
 import numpy as np
 from numba.core import event
 
-from demheat.progress import stage
+from demheat.progress import in_parts
 
 # Sources are ours below this folder, in these packages.
 ROOT, OURS = Path(__file__).resolve().parents[1], ("demheat", "references", "studies")
@@ -186,20 +186,19 @@ class Compiling(event.Listener):
     """Says that kernels are being compiled once it has taken long, counted over all of them."""
 
     def __init__(self):
-        self.depth, self.spent, self.begun, self.said = 0, 0.0, 0.0, None
+        self.depth, self.parts, self.said = 0, in_parts("compiling, once"), None
 
     def on_start(self, event):
         """A kernel begins: the outermost counts, not those that it calls."""
         self.depth += 1
         if self.depth == 1:
-            self.begun, self.said = time.monotonic(), stage("compiling, once", before=self.spent)
+            self.said = self.parts()
             self.said.__enter__()
 
     def on_end(self, event):
         """It ends."""
         self.depth -= 1
         if self.depth == 0:
-            self.spent += time.monotonic() - self.begun
             self.said.__exit__(None, None, None)
 
 

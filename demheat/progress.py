@@ -125,6 +125,28 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
             _clear(thread)
 
 
+def in_parts(name: str):
+    """A stage with pauses that do not count, such as those of a generator.
+
+    Returns
+    -------
+    callable () -> context manager
+        Each part, to be used as `stage` is.
+    """
+    spent = [0.0]
+
+    @contextmanager
+    def part():
+        begun = time.monotonic()
+        try:
+            with stage(name, before=spent[0]) as done:
+                yield done
+        finally:
+            spent[0] += time.monotonic() - begun
+
+    return part
+
+
 def _unheard(share):
     pass
 

@@ -95,6 +95,7 @@ LAYERS = {
     "demheat.build": (
         "demheat.scene",
         "demheat.laws",
+        "demheat.progress",
         "demheat.packing",
         "demheat.network",
         "demheat.calibration",
@@ -103,6 +104,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.field",
         "demheat.laws",
+        "demheat.progress",
         "demheat.packing",
         "demheat.conduction",
         "demheat.sampling",

@@ -16,6 +16,7 @@ from demheat.conduction.transient import evolve as evolve_network
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
 
@@ -92,7 +93,8 @@ def solve(
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
     spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}
-    return field_of(scene, network, solution, stats=spent)
+    with stage("field"):
+        return field_of(scene, network, solution, stats=spent)
 
 
 def evolve(

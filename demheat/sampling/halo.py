@@ -12,6 +12,7 @@ import numpy as np
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.field import Field
 from demheat.network.bins_kernels import bin_points
+from demheat.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 from demheat.scene.bodies import inside
@@ -76,11 +77,13 @@ def halo_average(
     cells, order = _cells(points, volumes, phase, radius, size, periodic)
     begin, places = (cells.start, order) if at is points else bin_points(at, size, cells.dims)
     sorted_at, wanted, columns = at[places], wanted[places], columns[order]
-    for first in range(0, columns.shape[1], 3):
-        part = columns[:, first : first + 3]
-        out = np.empty((len(at), 3))
-        kernels.ball_means(sorted_at, begin, wanted, radius, _with_values(cells, part), out)
-        means[places, first : first + 3] = out[:, : part.shape[1]]
+    with stage("halos") as done:
+        for first in range(0, columns.shape[1], 3):
+            part = columns[:, first : first + 3]
+            out = np.empty((len(at), 3))
+            kernels.ball_means(sorted_at, begin, wanted, radius, _with_values(cells, part), out)
+            means[places, first : first + 3] = out[:, : part.shape[1]]
+            done(min(1.0, (first + 3) / columns.shape[1]))
     return means.reshape(len(at), *values.shape[1:])
 
 
