@@ -130,6 +130,11 @@ class ByContent:
         return str(self.line)
 
 
+def is_kept(path: Path) -> bool:
+    """Whether there is machine code of any of the kernels of a file, as it is now."""
+    return any(Path(_folder_of(path.stem, source_key(path.resolve()))).glob("*.nbi"))
+
+
 @functools.cache
 def base_folder() -> Path:
     """The first of these that can be written: the user's folder, one beside this file, one of this run alone.

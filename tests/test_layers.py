@@ -100,7 +100,18 @@ LAYERS = {
         "demheat.network",
         "demheat.calibration",
     ),
+    # Calls what it wants compiled.
+    "demheat.warm": (
+        "demheat.scene",
+        "demheat.progress",
+        "demheat.compiled",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+    ),
     "demheat.dem": (
+        "demheat.warm",
         "demheat.scene",
         "demheat.field",
         "demheat.laws",
@@ -180,7 +191,7 @@ HOMES = {
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
     # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
-    "numba": ("*kernels", "demheat.threads", "demheat.compiled"),
+    "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
     "matplotlib": ("studies",),
     "multivoro": ("studies",),

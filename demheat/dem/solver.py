@@ -19,6 +19,7 @@ from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
+from demheat.warm import Helper
 
 
 def solve(
@@ -87,7 +88,9 @@ def solve(
     law.check(scene)
     counts = wanted.counts(scene, law)
     begun = time.perf_counter()
-    packing = wanted.packed(scene, counts)
+    with Helper(wanted=law.cells) as helper:
+        packing = wanted.packed(scene, counts)
+        helper.join()
     packed = time.perf_counter()
     network = network_of(scene, packing, law, seed=seed)
     connected = time.perf_counter()
