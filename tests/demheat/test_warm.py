@@ -1,0 +1,65 @@
+import os
+
+import numpy as np
+
+from demheat import warm
+from demheat.network.laguerre import laguerre
+
+
+def test_the_lattice_is_as_the_tessellation_would_have_it():
+    """Kernels are compiled for types: unlike ones would be compiled in vain."""
+    packing, facets = warm.lattice()
+    cut = laguerre(packing.centers, packing.radii**2, packing.size, periodic=False)
+    for name in ("indptr", "indices", "image", "area", "distance", "wall_particle", "wall_side", "volumes"):
+        ours, theirs = getattr(facets, name), getattr(cut, name)
+        assert (ours.dtype, ours.ndim, ours.flags.c_contiguous) == (
+            theirs.dtype,
+            theirs.ndim,
+            theirs.flags.c_contiguous,
+        )
+    np.testing.assert_array_equal(facets.indptr, cut.indptr)
+    np.testing.assert_allclose(facets.volumes, cut.volumes, rtol=1e-12)  # rounding
+
+
+def test_parts_are_done_once_and_failures_are_left_to_others(tmp_path):
+    done = []
+
+    def good():
+        done.append("good")
+
+    def bad():
+        raise RuntimeError
+
+    warm.work_off(tmp_path, [bad, good])
+    warm.work_off(tmp_path, [good])
+    assert done == ["good"]
+
+
+def test_all_parts_run():
+    for part in warm.PARTS:
+        part()
+
+
+def test_no_helper_in_tests_nor_without_need():
+    assert os.environ["DEMHEAT_WARM"] == "0"
+    with warm.Helper(wanted=True) as helper:
+        assert helper.process is None
+        helper.join()
+
+
+def test_a_helper_ends_with_its_caller(monkeypatch):
+    monkeypatch.setattr(warm, "_useful", lambda: True)
+    monkeypatch.setattr(warm, "PARTS", ())
+    with warm.Helper(wanted=True) as helper:
+        process, folder = helper.process, helper.folder
+        assert process.poll() is None and os.path.isdir(folder)
+    assert process.poll() is not None and not os.path.exists(folder)
+
+
+def test_a_helper_that_cannot_start_does_no_harm(monkeypatch):
+    monkeypatch.setattr(warm, "_useful", lambda: True)
+    monkeypatch.setattr(warm.sys, "executable", "/nowhere/python")
+    with warm.Helper(wanted=True) as helper:
+        helper.join()
+        assert helper.process is None
+    assert not os.path.exists(helper.folder)
