@@ -34,6 +34,8 @@ from demheat.progress import in_parts
 # Sources are ours below this folder, in these packages.
 ROOT, OURS = Path(__file__).resolve().parents[1], ("demheat", "references", "studies")
 VERSIONS = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
+# Settings of Numba that change the code it makes.
+SETTINGS = ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUGINFO_DEFAULT")
 # Machine code that nobody asked for so long is thrown away.
 KEPT = 60 * 24 * 3600.0
 # Python looks for unreachable cycles whenever 700 objects are new; compiling makes a million that live on. Rarer looks
@@ -58,14 +60,15 @@ def source_key(path: Path, root: Path = ROOT) -> str:
     root : Path
         The folder that holds our packages.
     """
-    digest = hashlib.sha256(repr(VERSIONS).encode())
+    settings = [str(getattr(numba.config, name, None)) for name in SETTINGS]
+    digest = hashlib.sha256(repr((VERSIONS, settings)).encode())
     for each in sorted(_sources(path, root, set())):
         digest.update(each.relative_to(root).as_posix().encode() + each.read_bytes())
     return digest.hexdigest()
 
 
 def _sources(path, root, found):
-    """The file and all files of ours that it imports, directly or not; but for this one, which no machine code is of."""
+    """The file and all files of ours that it imports, directly or not, but for this one."""
     if path in found or path == Path(__file__).resolve() or not path.is_file():
         return found
     found.add(path)

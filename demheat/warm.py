@@ -30,7 +30,7 @@ from demheat.network.base import Facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.network.links_kernels import links_of
-from demheat.packing.base import make_packing
+from demheat.packing.base import Packing
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Material, Scene
@@ -130,8 +130,9 @@ def multigrid():
 
 
 def steady():
-    """Compile the balance of heat, the steps of conjugate gradients and what a field is read off with."""
+    """Compile the balance of heat, the steps that large networks take, and what a field is read off with."""
     network, scene = _network()
+    # The linear start is exact: no iteration, and none is compiled.
     solution = solve_checked(network, scene, solver="cg", tolerance=1e-8)
     field_of(scene, network, solution, stats={})
     x, r = np.ones_like(solution.temperature), np.ones_like(solution.temperature)
@@ -169,7 +170,7 @@ def lattice():
         volumes=np.full(n, SIDE**-3.0),
     )
     radii = np.full(n, 0.5 / SIDE)
-    return make_packing(centers, radii, np.ones(3), np.zeros(3, dtype=bool), {"algorithm": "lattice"}), facets
+    return Packing(centers, radii, np.ones(3), np.zeros(3, dtype=bool), {"algorithm": "lattice"}), facets
 
 
 def _network():

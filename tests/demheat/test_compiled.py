@@ -56,7 +56,11 @@ def test_what_a_kernel_imports_counts(tmp_path, words):
 def test_versions_count(tmp_path, monkeypatch):
     folder = package(tmp_path, own_kernels="x = 1\n")
     before = key(folder, "own_kernels")
-    monkeypatch.setattr(compiled, "VERSIONS", ("another",))
+    with monkeypatch.context() as patch:
+        patch.setattr(compiled, "VERSIONS", ("another",))
+        assert key(folder, "own_kernels") != before
+    # Checks of bounds are compiled in.
+    monkeypatch.setattr(compiled.numba.config, "BOUNDSCHECK", 1)
     assert key(folder, "own_kernels") != before
 
 

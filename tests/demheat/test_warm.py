@@ -1,8 +1,10 @@
 import os
 
 import numpy as np
+import pytest
 
 from demheat import warm
+from demheat.conduction.steady import solve_checked
 from demheat.network.laguerre import laguerre
 
 
@@ -18,6 +20,7 @@ def test_the_lattice_is_as_the_tessellation_would_have_it():
             theirs.flags.c_contiguous,
         )
     np.testing.assert_array_equal(facets.indptr, cut.indptr)
+    assert facets.wall_area.sum() == pytest.approx(6.0) and cut.wall_area.sum() == pytest.approx(6.0)
     np.testing.assert_allclose(facets.volumes, cut.volumes, rtol=1e-12)  # rounding
 
 
@@ -33,6 +36,11 @@ def test_parts_are_done_once_and_failures_are_left_to_others(tmp_path):
     warm.work_off(tmp_path, [bad, good])
     warm.work_off(tmp_path, [good])
     assert done == ["good"]
+
+
+def test_the_lattice_needs_no_iteration():
+    network, scene = warm._network()
+    assert solve_checked(network, scene, solver="cg", tolerance=1e-8).stats["iterations"] == 0
 
 
 def test_all_parts_run():
