@@ -24,7 +24,7 @@ import numpy as np
 from demheat.compiled import ROOT, is_kept
 from demheat.conduction import steady_kernels
 from demheat.conduction.multigrid import preconditioner
-from demheat.conduction.steady import solve_checked
+from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
 from demheat.network import laguerre_kernels
 from demheat.network.base import Facets
 from demheat.network.interface import connect
@@ -46,18 +46,19 @@ class Helper:
 
     Parameters
     ----------
-    wanted : bool
+    parts : sequence of callable ()
+        Of `PARTS`, in their order; none if nothing is to be compiled.
     """
 
-    def __init__(self, wanted):
-        self.process = self.folder = None
-        if not (wanted and _useful()):
+    def __init__(self, parts):
+        self.process, self.folder, self.parts = None, None, tuple(parts)
+        if not (self.parts and _useful()):
             return
         with contextlib.suppress(OSError):
             self.folder = tempfile.mkdtemp(prefix="demheat-warm-")
             path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "demheat.warm", self.folder],
+                [sys.executable, "-m", "demheat.warm", self.folder, *(part.__name__ for part in self.parts)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
@@ -72,7 +73,7 @@ class Helper:
         if self.process is None:
             return
         with stage("compiling, once"):
-            work_off(self.folder, reversed(PARTS))
+            work_off(self.folder, self.parts[::-1])
             with contextlib.suppress(subprocess.TimeoutExpired):
                 self.process.wait(PATIENCE)
 
@@ -145,6 +146,22 @@ def steady():
 PARTS = (cells, multigrid, steady)
 
 
+def parts_of(law, particles: int, *, steady_state: bool = True):
+    """What a first solve of so many particles needs: nothing where facets do not bound cells.
+
+    Parameters
+    ----------
+    law : Laguerre, Calibrated or Platonic
+    particles : int
+    steady_state : bool
+        If not, marches in time follow, of which nothing is known here.
+    """
+    if not law.cells:
+        return ()
+    large = (multigrid,) if particles > AMG_UNKNOWNS else ()
+    return (cells, *large, steady) if steady_state else (cells,)
+
+
 def lattice():
     """A simple cubic packing of a unit box between walls and the facets of its cells, as `laguerre` would give them."""
     at = (np.arange(SIDE) + 0.5) / SIDE
@@ -187,4 +204,4 @@ def _end_with_caller():
 
 if __name__ == "__main__":
     threading.Thread(target=_end_with_caller, daemon=True).start()
-    work_off(sys.argv[1], PARTS)
+    work_off(sys.argv[1], [part for part in PARTS if part.__name__ in sys.argv[2:]])

@@ -19,7 +19,7 @@ from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
-from demheat.warm import Helper
+from demheat.warm import Helper, parts_of
 
 
 def solve(
@@ -88,10 +88,10 @@ def solve(
     law.check(scene)
     counts = wanted.counts(scene, law)
     begun = time.perf_counter()
-    with Helper(wanted=law.cells) as helper:
+    with Helper(parts_of(law, particles)) as helper:
         packing = wanted.packed(scene, counts)
+        packed = time.perf_counter()
         helper.join()
-    packed = time.perf_counter()
     network = network_of(scene, packing, law, seed=seed)
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
@@ -174,7 +174,10 @@ def evolve(
     check_callables(scene)
 
     def fields():
-        network = network_of(scene, wanted.packed(scene, counts), law, seed=seed)
+        with Helper(parts_of(law, particles, steady_state=False)) as helper:
+            packing = wanted.packed(scene, counts)
+            helper.join()
+        network = network_of(scene, packing, law, seed=seed)
         loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}
         if law.holds_centers:
             loads["held_centers"] = np.ones(len(network.volumes), dtype=bool)

@@ -3,7 +3,7 @@ import os
 import numpy as np
 import pytest
 
-from demheat import warm
+from demheat import Laguerre, Platonic, warm
 from demheat.conduction.steady import solve_checked
 from demheat.network.laguerre import laguerre
 
@@ -48,17 +48,25 @@ def test_all_parts_run():
         part()
 
 
+def test_parts_are_those_that_a_solve_needs():
+    assert warm.parts_of(Laguerre(), 100_000) == warm.PARTS
+    assert warm.parts_of(Laguerre(), 1000) == (warm.cells, warm.steady)
+    assert warm.parts_of(Laguerre(), 1000, steady_state=False) == (warm.cells,)
+    assert warm.parts_of(Platonic(), 100_000) == ()
+    with warm.Helper(()) as helper:
+        assert helper.process is None
+
+
 def test_no_helper_in_tests_nor_without_need():
     assert os.environ["DEMHEAT_WARM"] == "0"
-    with warm.Helper(wanted=True) as helper:
+    with warm.Helper(warm.PARTS) as helper:
         assert helper.process is None
         helper.join()
 
 
 def test_a_helper_ends_with_its_caller(monkeypatch):
     monkeypatch.setattr(warm, "_useful", lambda: True)
-    monkeypatch.setattr(warm, "PARTS", ())
-    with warm.Helper(wanted=True) as helper:
+    with warm.Helper(warm.PARTS) as helper:
         process, folder = helper.process, helper.folder
         assert process.poll() is None and os.path.isdir(folder)
     assert process.poll() is not None and not os.path.exists(folder)
@@ -67,7 +75,7 @@ def test_a_helper_ends_with_its_caller(monkeypatch):
 def test_a_helper_that_cannot_start_does_no_harm(monkeypatch):
     monkeypatch.setattr(warm, "_useful", lambda: True)
     monkeypatch.setattr(warm.sys, "executable", "/nowhere/python")
-    with warm.Helper(wanted=True) as helper:
+    with warm.Helper(warm.PARTS) as helper:
         helper.join()
         assert helper.process is None
     assert not os.path.exists(helper.folder)
