@@ -181,7 +181,7 @@ def test_the_stages_of_a_solve_and_a_march_are_heard(heard):
     field = solve(scene, particles=300, seed=11)
     field.temperature_at(np.array([[0.5, 0.5, 0.5]]))
     stages = {report.stage for report in heard}
-    assert {"packing", "settling", "points"} <= stages
+    assert {"packing", "points"} <= stages
     heard.clear()
     bar = Scene(size=(1, 1, 1), matrix=STEEL, walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
     assert len(list(evolve(bar, [0.01, 0.02], particles=300, seed=11))) == 2
@@ -191,8 +191,9 @@ def test_the_stages_of_a_solve_and_a_march_are_heard(heard):
 
 def test_relaxing_growing_and_rows_tell_shares_that_do_not_fall(heard):
     from demheat.packing.lsa import lsa
+    from demheat.packing.relax import settle
 
-    lsa(200, phi=0.5, seed=3)
-    for name in ("packing", "growing"):
+    settle(lsa(200, phi=0.5, seed=3), steps=3)
+    for name in ("packing", "growing", "settling"):
         shares = [report.share for report in heard if report.stage == name and report.share == report.share]
         assert shares and all(0 <= share <= 1 for share in shares), name
