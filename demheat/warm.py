@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 from pathlib import Path
 
 import numba
@@ -39,6 +40,8 @@ from demheat.scene import Material, Scene
 SIDE = 6
 # Seconds that the second process is waited for at most.
 PATIENCE = 300.0
+# Seconds between looks whether it is done.
+POLL = 0.05
 
 
 class Helper:
@@ -68,14 +71,23 @@ class Helper:
     def __enter__(self):
         return self
 
-    def join(self):
-        """Compile what nobody has begun, then wait for what the other process has."""
+    def join(self, *parts):
+        """Compile what nobody has begun, then wait for what the other process has.
+
+        Parameters
+        ----------
+        *parts : callable ()
+            To wait for; default all.
+        """
         if self.process is None:
             return
         with stage("compiling, once"):
             work_off(self.folder, self.parts[::-1])
-            with contextlib.suppress(subprocess.TimeoutExpired):
-                self.process.wait(PATIENCE)
+            end = time.monotonic() + PATIENCE
+            while not all(_done_file(self.folder, part).exists() for part in parts or self.parts):
+                if self.process.poll() is not None or time.monotonic() > end:
+                    break
+                time.sleep(POLL)
 
     def __exit__(self, *_):
         if self.process is not None:
@@ -104,7 +116,7 @@ def work_off(folder, parts):
     Parameters
     ----------
     folder : path
-        Where a file says that a part has been begun.
+        Where files say which parts have been begun, and done.
     parts : sequence of callable ()
     """
     for part in parts:
@@ -114,6 +126,11 @@ def work_off(folder, parts):
             continue
         with contextlib.suppress(Exception):
             part()
+        _done_file(folder, part).touch()
+
+
+def _done_file(folder, part):
+    return Path(folder) / f"{part.__name__}.done"
 
 
 def cells():

@@ -19,7 +19,7 @@ from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
-from demheat.warm import Helper, parts_of
+from demheat.warm import Helper, cells, parts_of
 
 
 def solve(
@@ -91,8 +91,9 @@ def solve(
     with Helper(parts_of(law, particles)) as helper:
         packing = wanted.packed(scene, counts)
         packed = time.perf_counter()
+        helper.join(cells)
+        network = network_of(scene, packing, law, seed=seed)
         helper.join()
-    network = network_of(scene, packing, law, seed=seed)
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
     spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}

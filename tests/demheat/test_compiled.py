@@ -135,6 +135,7 @@ def test_compiling_is_said_once_it_has_taken_long(monkeypatch):
                 listener.on_end(None)
     finally:
         on_progress(None)
+    assert listener.depth == 0 and not progress._open
     assert heard and {report.stage for report in heard} == {"compiling, once"}
     assert all(report.elapsed >= 0.05 for report in heard)
 

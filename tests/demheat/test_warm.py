@@ -34,6 +34,7 @@ def test_parts_are_done_once_and_failures_are_left_to_others(tmp_path):
         raise RuntimeError
 
     warm.work_off(tmp_path, [bad, good])
+    assert all(warm._done_file(tmp_path, part).exists() for part in (bad, good))
     warm.work_off(tmp_path, [good])
     assert done == ["good"]
 
@@ -70,6 +71,39 @@ def test_a_helper_ends_with_its_caller(monkeypatch):
         process, folder = helper.process, helper.folder
         assert process.poll() is None and os.path.isdir(folder)
     assert process.poll() is not None and not os.path.exists(folder)
+
+
+def test_the_caller_does_what_nobody_has_begun_and_waits_for_the_rest(monkeypatch):
+    class Process:
+        looks = 0
+
+        def poll(self):
+            self.looks += 1
+            if self.looks == 3:
+                warm._done_file(helper.folder, first).touch()
+
+        def kill(self):
+            pass
+
+        wait = kill
+        stdin = open(os.devnull)  # noqa: SIM115 - closed by the helper
+
+    def first():
+        raise AssertionError("begun by the other one")
+
+    def second():
+        done.append("second")
+
+    done = []
+    monkeypatch.setattr(warm, "_useful", lambda: True)
+    monkeypatch.setattr(warm, "POLL", 0.0)
+    monkeypatch.setattr(warm.subprocess, "Popen", lambda *_, **__: Process())
+    with warm.Helper((first, second)) as helper:
+        (warm.Path(helper.folder) / "first").touch()
+        helper.join(second)
+        assert done == ["second"] and helper.process.looks == 0
+        helper.join()
+        assert helper.process.looks == 3
 
 
 def test_a_helper_that_cannot_start_does_no_harm(monkeypatch):
