@@ -227,9 +227,9 @@ def _minimise(centers, radii, box, goal, done, *, fixed=None):
 
 
 def _share(step, mean, first, goal):
-    """The part done of a relaxation, whose overlaps fall about exponentially."""
+    """The part done of a relaxation, whose overlaps fall about exponentially; between walls they may stay above."""
     fallen = math.log(first / mean) / math.log(first / goal.overlap) if 0 < goal.overlap < mean < first else 0.0
-    return min(1.0, max(step / max(goal.steps, 1), fallen))
+    return max(step / max(goal.steps, 1), min(0.95, fallen))
 
 
 def _in_units(centers, radii, box, unit, fixed):
