@@ -14,6 +14,7 @@ from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.network.platonic import platonic_facets
 from demheat.packing.base import Packing
 from demheat.packing.conforming import conform
+from demheat.progress import stage
 from demheat.scene import Scene
 
 
@@ -57,11 +58,12 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     packing, facets = _facets(packing, law)
     cut = time.perf_counter()
     factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
-    # Wall areas are those of the walls: what scales is the conductance of their links.
-    facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
-    phase = scene.phase_at(packing.centers)
-    _warn_of_lost_phases(scene, phase)
-    network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
+    with stage("network"):
+        # Wall areas are those of the walls: what scales is the conductance of their links.
+        facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
+        phase = scene.phase_at(packing.centers)
+        _warn_of_lost_phases(scene, phase)
+        network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
     spent = {"tessellation_s": cut - begun, "network_s": time.perf_counter() - cut}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
     return network._replace(stats=said | spent)
@@ -81,12 +83,13 @@ def _facets(packing, law):
 
 def _calibrated(scene, packing, facets, law):
     """C_t of a packing under a load like the scene's; of a sphere's in a cube of the same volume."""
-    if scene.domain == "sphere":
-        packing = cube_like(packing)
-        packing, facets = _facets(packing, law)
-        scene = Scene(size=tuple(packing.size), matrix=scene.matrix, initial=0.0)
-    flat = calibration_scene(scene)
-    return calibration(connect(packing, facets, flat.phase_at(packing.centers), flat.conductivities), flat)
+    with stage("calibration"):
+        if scene.domain == "sphere":
+            packing = cube_like(packing)
+            packing, facets = _facets(packing, law)
+            scene = Scene(size=tuple(packing.size), matrix=scene.matrix, initial=0.0)
+        flat = calibration_scene(scene)
+        return calibration(connect(packing, facets, flat.phase_at(packing.centers), flat.conductivities), flat)
 
 
 def _warn_of_gaps(packing):

@@ -8,6 +8,8 @@ import pytest
 
 # Tests make their own packings and never touch the user's; set before anything reads it.
 os.environ.setdefault("DEMHEAT_CACHE", tempfile.mkdtemp(prefix="demheat-test-cache-"))
+# Second processes that compile would run beside the tests.
+os.environ["DEMHEAT_WARM"] = "0"
 # Workers share the processors: one thread each, of libraries and (below) of Numba. Tests of two threads ask for them.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

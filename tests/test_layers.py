@@ -43,6 +43,7 @@ LAYERS = {
     "demheat.process_state": (),
     "demheat.blocks": (),
     "demheat.progress": (),
+    "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.gallery": ("demheat.addition", "demheat.scene"),
@@ -53,6 +54,7 @@ LAYERS = {
         "demheat.threads",
         "demheat.blocks",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
     ),
     "demheat.network": (
@@ -60,6 +62,7 @@ LAYERS = {
         "demheat.laws",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
         "demheat.network",
     ),
@@ -68,6 +71,7 @@ LAYERS = {
         "demheat.threads",
         "demheat.process_state",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.network",
         "demheat.conduction",
     ),
@@ -77,6 +81,7 @@ LAYERS = {
         "demheat.threads",
         "demheat.blocks",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.network",
         "demheat.conduction.steady_kernels",
         "demheat.sampling",
@@ -85,6 +90,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.threads",
         "demheat.progress",
+        "demheat.compiled",
         "demheat.packing",
         "demheat.network",
         "demheat.conduction.steady",
@@ -94,14 +100,27 @@ LAYERS = {
     "demheat.build": (
         "demheat.scene",
         "demheat.laws",
+        "demheat.progress",
         "demheat.packing",
         "demheat.network",
         "demheat.calibration",
     ),
+    # Calls what it wants compiled.
+    "demheat.warm": (
+        "demheat.scene",
+        "demheat.progress",
+        "demheat.compiled",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+    ),
     "demheat.dem": (
+        "demheat.warm",
         "demheat.scene",
         "demheat.field",
         "demheat.laws",
+        "demheat.progress",
         "demheat.packing",
         "demheat.conduction",
         "demheat.sampling",
@@ -178,8 +197,8 @@ HOMES = {
     "meshio": ("references.mesh",),
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
-    # The threading layer must be chosen before the first kernel is compiled: demheat.threads does that.
-    "numba": ("*kernels", "demheat.threads"),
+    # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
+    "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
     "matplotlib": ("studies",),
     "multivoro": ("studies",),
@@ -234,7 +253,7 @@ def refused(name, source, modules=MODULES, is_package=False):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
-            beside = name.endswith("kernels") and target.endswith("kernels")
+            beside = name.endswith("kernels") and (target.endswith("kernels") or target == "demheat.compiled")
             # Kernels share helpers among themselves and know nothing else.
             if not (fits or beside):
                 wrong.append(f"{name} imports {target}")

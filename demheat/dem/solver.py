@@ -16,8 +16,10 @@ from demheat.conduction.transient import evolve as evolve_network
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene
+from demheat.warm import Helper, cells, parts_of
 
 
 def solve(
@@ -88,13 +90,17 @@ def solve(
     law.check(scene)
     counts = wanted.counts(scene, law)
     begun = time.perf_counter()
-    packing = wanted.packed(scene, counts)
-    packed = time.perf_counter()
-    network = network_of(scene, packing, law, seed=seed)
+    with Helper(parts_of(law, particles)) as helper:
+        packing = wanted.packed(scene, counts)
+        packed = time.perf_counter()
+        helper.join(cells)
+        network = network_of(scene, packing, law, seed=seed)
+        helper.join()
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
     spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}
-    return field_of(scene, network, solution, stats=spent)
+    with stage("field"):
+        return field_of(scene, network, solution, stats=spent)
 
 
 def evolve(
@@ -171,7 +177,10 @@ def evolve(
     check_callables(scene)
 
     def fields():
-        network = network_of(scene, wanted.packed(scene, counts), law, seed=seed)
+        with Helper(parts_of(law, particles, steady_state=False)) as helper:
+            packing = wanted.packed(scene, counts)
+            helper.join()
+        network = network_of(scene, packing, law, seed=seed)
         loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}
         if law.holds_centers:
             loads["held_centers"] = np.ones(len(network.volumes), dtype=bool)

@@ -17,6 +17,7 @@ from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
+from demheat.progress import stage
 from demheat.scene.inputs import finite
 
 # Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the
@@ -136,7 +137,8 @@ def lsa(
         _check_alone(start, number, size, radii, periodic, domain)
     motion = Motion(start, np.random.default_rng([seed, 1]))
     _check_room(start, motion.phi, goal.phi)
-    stopped = _grow(motion, goal)
+    with stage("growing") as done:
+        stopped = _grow(motion, goal, done)
     centers, radii_now, shrunk = motion.packing()
     if shrunk > 1e-10:
         warnings.warn(f"radii were shrunk by {shrunk:.1e} of themselves to leave no overlap", stacklevel=2)
@@ -146,14 +148,15 @@ def lsa(
     return make_packing(centers, radii_now, start.size, start.periodic, provenance, domain=start.domain)
 
 
-def _grow(motion, goal):
+def _grow(motion, goal, done):
     """Run until the goal is reached; returns what stopped it, or raises RuntimeError if the spheres jam before."""
-    phi, windows, limit = goal.phi, 0, JAMMED if goal.pressure is None else goal.pressure
+    phi, windows, limit, begun = goal.phi, 0, JAMMED if goal.pressure is None else goal.pressure, motion.phi
     while phi is None or motion.phi < phi * (1 - 1e-14):
         reached = motion.pressure if windows else 0.0
         if not motion.run(goal.rate(reached), phi):
             continue
         windows += 1
+        done(_share(motion, begun, phi, limit))
         if goal.progress is not None:
             goal.progress(motion.collisions / len(motion.spheres), motion.phi, motion.pressure)
         # The first window may begin with many collisions of spheres that nearly touch.
@@ -165,6 +168,13 @@ def _grow(motion, goal):
                 )
             return "pressure"
     return "phi"
+
+
+def _share(motion, begun, phi, limit):
+    """The part done: of the radii's growth, or on the way to the pressure, which rises about exponentially."""
+    grown = (motion.phi - begun) / (phi - begun) if phi is not None and phi > begun else 0.0
+    pressed = math.log(motion.pressure) / math.log(limit) if motion.pressure > 1.0 else 0.0
+    return min(1.0, max(grown, pressed))
 
 
 def _check_alone(start, number, size, radii, periodic, domain):

@@ -17,6 +17,7 @@ from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
+from demheat.progress import stage
 from demheat.scene.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
 from demheat.scene.inputs import finite
 
@@ -116,7 +117,8 @@ def relax(
     drawn *= np.cbrt(phi * domain_volume(domain, size) / (4.0 / 3.0 * np.pi * np.sum(drawn**3)))
     check_fit(drawn, size, periodic)
     order = morton_order(centers, size)
-    centers, reached = _minimise(centers[order], drawn, (size, periodic, domain), goal)
+    with stage("packing") as done:
+        centers, reached = _minimise(centers[order], drawn, (size, periodic, domain), goal, done)
     provenance = {"algorithm": "relax", "seed": int(seed), "number": int(number), "phi": float(phi)}
     provenance |= {"radii": repr(radii), "overlap": float(goal.overlap), "steps": int(goal.steps)} | reached
     return make_packing(centers, drawn, size, periodic, provenance, domain=domain)
@@ -159,7 +161,8 @@ def settle(
     goal = Relaxation(overlap, steps, progress)
     check_fit(packing.radii, packing.size, packing.periodic)
     box = (packing.size, packing.periodic, packing.domain)
-    centers, reached = _minimise(packing.centers, packing.radii, box, goal, fixed=fixed)
+    with stage("settling") as done:
+        centers, reached = _minimise(packing.centers, packing.radii, box, goal, done, fixed=fixed)
     centers[fixed] = packing.centers[fixed]
     return packing._replace(centers=centers, provenance=packing.provenance | {"settled": reached})
 
@@ -187,15 +190,18 @@ def check_fit(radii, size, periodic) -> None:
             )
 
 
-def _minimise(centers, radii, box, goal, *, fixed=None):
-    """Run FIRE in a box (size, periodic, domain); returns the centres, inside it, and what was reached."""
+def _minimise(centers, radii, box, goal, done, *, fixed=None):
+    """Run FIRE in a box (size, periodic, domain); returns the centres, inside it, and what was reached.
+
+    Told of the share done: `done`.
+    """
     size, periodic, domain = box
     unit = float(np.mean(radii))
     spheres, inner = _in_units(centers, radii, box, unit, fixed)
     points, force = spheres.points, np.zeros_like(spheres.velocity)
     chunks = -(-len(points) // kernels.CHUNK)
     sums, farthest = np.empty((chunks, kernels.SUMS)), np.empty(chunks)
-    start, lists, moved, row = None, 0, 0.0, 16.0
+    start, lists, moved, row, first = None, 0, 0.0, 16.0, None
     pace = (DT, MIX, 0)
     for step in range(goal.steps + 1):
         if start is None or 2 * moved > SKIN:
@@ -205,6 +211,8 @@ def _minimise(centers, radii, box, goal, *, fixed=None):
         mean = sums[:, kernels.OVERLAP].sum() / max(sums[:, kernels.COUNT].sum(), 1.0) / 2
         if goal.progress is not None:
             goal.progress(step, mean)
+        first = first or mean
+        done(_share(step, mean, first, goal))
         power, ff, vv = sums[:, : kernels.OVERLAP].sum(axis=0)
         if mean <= goal.overlap or ff == 0.0 or step == goal.steps:
             break
@@ -216,6 +224,12 @@ def _minimise(centers, radii, box, goal, *, fixed=None):
     reached |= {"max_overlap": worst, "converged": bool(mean <= goal.overlap)}
     centers = np.clip(wrap(points[:, :3] * unit, size, periodic), 0.0, size)
     return _inside(centers, size, domain), reached
+
+
+def _share(step, mean, first, goal):
+    """The part done of a relaxation, whose overlaps fall about exponentially; between walls they may stay above."""
+    fallen = math.log(first / mean) / math.log(first / goal.overlap) if 0 < goal.overlap < mean < first else 0.0
+    return max(step / max(goal.steps, 1), min(0.95, fallen))
 
 
 def _in_units(centers, radii, box, unit, fixed):

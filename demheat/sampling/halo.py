@@ -13,6 +13,7 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.blocks import blocks
 from demheat.field import Field
 from demheat.network.bins_kernels import bin_points
+from demheat.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 from demheat.scene.bodies import inside
@@ -77,13 +78,16 @@ def halo_average(
     cells, order = _cells(points, volumes, phase, radius, size, periodic)
     begin, places = (cells.start, order) if at is points else bin_points(at, size, cells.dims)
     sorted_at, wanted, columns = at[places], wanted[places], columns[order]
-    for first in range(0, columns.shape[1], 3):
-        part = columns[:, first : first + 3]
-        out = np.empty((len(at), 3))
-        filled, run = _with_values(cells, part), cells.dims[2]
-        for low, high in blocks((len(begin) - 1) // run, 1):
-            kernels.ball_means(sorted_at, begin[low * run : high * run + 1], wanted, radius, filled, out)
-        means[places, first : first + 3] = out[:, : part.shape[1]]
+    with stage("halos") as done:
+        for first in range(0, columns.shape[1], 3):
+            part = columns[:, first : first + 3]
+            out = np.empty((len(at), 3))
+            filled, run = _with_values(cells, part), cells.dims[2]
+            rows = (len(begin) - 1) // run
+            for low, high in blocks(rows, 1):
+                kernels.ball_means(sorted_at, begin[low * run : high * run + 1], wanted, radius, filled, out)
+                done((first + 3 * low / rows) / (columns.shape[1] + 2))
+            means[places, first : first + 3] = out[:, : part.shape[1]]
     return means.reshape(len(at), *values.shape[1:])
 
 

@@ -11,6 +11,8 @@ quarter of it.
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.progress import stage
+
 # Cells of a fit, and the part of their weights that holds it to the linear temperature of the cell. Found on a sphere
 # of contrast 5, flux error away from the interface, rms with 3e3, 1e4, 5e4 particles: 1.30, .49, .18 % (single cells
 # 4.2, 3.2, 2.0 %); 30 cells and 1e-9: 2.6, .86, .22 %. More of the ridge leaves curvature out; less of it, or fewer
@@ -67,7 +69,11 @@ class Reconstruction:
         if not len(points):
             return np.empty(0), np.empty((0, 3))
         if not np.array_equal(points, self._points):
-            parts = [self._fitted(points[k : k + CHUNK]) for k in range(0, len(points), CHUNK)]
+            with stage("points") as done:
+                parts = []
+                for k in range(0, len(points), CHUNK):
+                    done(k / len(points))
+                    parts.append(self._fitted(points[k : k + CHUNK]))
             self._points, self._found = points.copy(), [np.concatenate(part) for part in zip(*parts, strict=True)]
         return tuple(values.copy() for values in self._found)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import numba
 
+import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+
 compiled = numba.njit(cache=True, nogil=True)
 
 # Values of a column moved at a time: a cache line or more of each of the buffer's rows.

@@ -11,6 +11,8 @@ import math
 import numba
 import numpy as np
 
+import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+
 compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
 
 

@@ -10,6 +10,8 @@ from __future__ import annotations
 import numba
 import numpy as np
 
+import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+
 compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
 
 

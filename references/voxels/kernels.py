@@ -7,6 +7,8 @@ import math
 import numba
 import numpy as np
 
+import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+
 # A cut voxel is integrated exactly along one direction and by two-point Gauss on this many intervals along the others.
 INTERVALS = 4
 GAUSS = 0.5 / math.sqrt(3.0)

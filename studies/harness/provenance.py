@@ -52,12 +52,13 @@ def threads():
 
 
 def row_environment():
-    """Environment of a row's process: one thread count for every library, and waiting threads that do not spin."""
+    """Environment of a row's process: one thread count for all, waiting threads that do not spin, no helper."""
     count = str(threads())
     return {
         **os.environ,
         "NUMBA_THREADING_LAYER": "workqueue",
         "OMP_WAIT_POLICY": "PASSIVE",
+        "DEMHEAT_WARM": "0",
         "NUMBA_NUM_THREADS": count,
         "OMP_NUM_THREADS": count,
         "OPENBLAS_NUM_THREADS": count,

@@ -30,6 +30,7 @@ import time
 import traceback
 from pathlib import Path
 
+from demheat.progress import stage
 from studies.harness.cost import measured, triad_gbs
 from studies.harness.provenance import SAME, code_hash, module_of, provenance
 from studies.harness.store import TAIL, case_key, read_rows, write_rows
@@ -116,7 +117,9 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
         key = case_key(case)
-        rows[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
+        with stage(f"{name} {number}/{len(todo)}, {_short(key)}", before=time.perf_counter() - start) as done:
+            done((number - 1) / len(todo))
+            rows[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
         write_rows(path, (rows[case_key(c)] for c in study.CASES if case_key(c) in rows))
         say(_progress(number, len(todo), rows[key], time.perf_counter() - start))
     return path
@@ -159,9 +162,13 @@ def _progress(number, total, row, elapsed):
     error = row.get("error_percent")
     tail = f", error {error:+.4f} %" if isinstance(error, float) else f", {row['note']}" if row["note"] else ""
     cost = f"{row['cpu_s']:.2f} CPU-s" if isinstance(row.get("cpu_s"), float) else "no cost"
-    short = row["case"].split(",method=")[0]  # what a method fixes comes last
-    head = f"[{number}/{total}] {short}: {row['status']}, {cost}{tail}"
+    head = f"[{number}/{total}] {_short(row['case'])}: {row['status']}, {cost}{tail}"
     return f"{head}  ({elapsed:.0f} s so far, about {left:.0f} s left)"
+
+
+def _short(key):
+    """A case without what its method fixes, which comes last."""
+    return key.split(",method=")[0]
 
 
 def spawn_row(name, study, case):

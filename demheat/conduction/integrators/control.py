@@ -10,6 +10,7 @@ import numpy as np
 
 from demheat.conduction.integrators.pace import ANY
 from demheat.conduction.integrators.system import ACCOUNTS
+from demheat.progress import in_parts
 
 # How large the estimated error of a step may be, for an accuracy eps at the asked time and n more steps of this size:
 #     SAFETY eps (eps / USUAL)^((1 + DAMPED) / 2) n^DAMPED, in units of the temperature span.
@@ -125,15 +126,17 @@ def fixed_steps(advance, system, x, times, *, step, span, pace=ANY):
     x : (N,) float array, K
     ledger : Ledger
     """
-    ledger, memory, now = Ledger(), None, 0.0
+    ledger, memory, now, part = Ledger(), None, 0.0, in_parts("march")
     for end, asked in pace.stops(times):
         count = max(0, math.ceil((end - now) / min(step, pace.least(now, end)) * (1 - 1e-12)))
         first = now
-        for k in range(count):
-            size = (end - first) / count
-            done = advance(x, first + k * size, size, memory, False)
-            x, memory = done.x, done.memory
-            ledger.add(done, size, True)
+        with part() as said:
+            for k in range(count):
+                size = (end - first) / count
+                done = advance(x, first + k * size, size, memory, False)
+                x, memory = done.x, done.memory
+                ledger.add(done, size, True)
+                said((first + (k + 1) * size) / times[-1])
         now = end
         _check_finite(x, ledger, now)
         if asked:
@@ -166,24 +169,26 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, first, pace=ANY
     RuntimeError
         If no step is small enough.
     """
-    ledger, memory, now, wanted = Ledger(), None, 0.0, first
+    ledger, memory, now, wanted, part = Ledger(), None, 0.0, first, in_parts("march")
     allowed = SAFETY * accuracy * (accuracy / USUAL) ** (0.5 * (1.0 + DAMPED))
     for end, asked in pace.stops(times):
         goal = next(time for time in times if time >= end)
-        while end - now > TINIEST * end:
-            size = _shared(end - now, min(wanted, pace.allowed(now)))
-            done = advance(x, now, size, memory, True)
-            span.widened(done.x)
-            share = _size(system, done.error) / (span() * allowed * ((goal - now) / size) ** DAMPED)
-            accepted = share <= 1.0
-            ledger.add(done, size, accepted)
-            wanted = size * min(GROW, max(CUT, CAUTION * share ** (-1 / 3) if share > 0 else GROW))
-            if accepted:
-                x, memory, now = done.x, done.memory, now + size
-            elif not wanted > TINIEST * end:
-                raise RuntimeError(
-                    f"steps of {wanted:.1e} s at {now:.3e} s after {ledger.rejected} rejections: error not met"
-                )
+        with part() as said:
+            while end - now > TINIEST * end:
+                size = _shared(end - now, min(wanted, pace.allowed(now)))
+                done = advance(x, now, size, memory, True)
+                span.widened(done.x)
+                share = _size(system, done.error) / (span() * allowed * ((goal - now) / size) ** DAMPED)
+                accepted = share <= 1.0
+                ledger.add(done, size, accepted)
+                wanted = size * min(GROW, max(CUT, CAUTION * share ** (-1 / 3) if share > 0 else GROW))
+                if accepted:
+                    x, memory, now = done.x, done.memory, now + size
+                    said(now / times[-1])
+                elif not wanted > TINIEST * end:
+                    raise RuntimeError(
+                        f"steps of {wanted:.1e} s at {now:.3e} s after {ledger.rejected} rejections: error not met"
+                    )
         now = end
         _check_finite(x, ledger, now)
         if asked:

@@ -16,6 +16,7 @@ from demheat.packing.neighbours import build_grid, wrapped
 from demheat.packing.statistics import correlations_kernels as kernels
 from demheat.packing.statistics.regions import core_volume, inscribed_box, spheres_in_box
 from demheat.packing.walls import check_margin, wall_distances
+from demheat.progress import stage
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
@@ -214,18 +215,20 @@ def _line_means(packing, along, lags, bounds, lines, rng):
     steps = math.ceil(length / (2 * np.mean(packing.radii)))
     grid = build_grid(cloud, packing.size, packing.periodic, Reach(1.0, length / steps / 2))
     values, errors = np.empty((2, len(along), len(lags) + 1))
-    for k, direction in enumerate(along):
-        # Both ends keep inside the walls.
-        span = np.where(packing.periodic, 0.0, length * direction)
-        first, last = bounds[0] - np.minimum(span, 0.0), bounds[1] - np.maximum(span, 0.0)
-        starts = first + rng.random((lines, 3)) * (last - first)
-        sums, total = np.empty((kernels.TASKS, 2, len(lags) + 1)), np.zeros((2, len(lags) + 1))
-        for begin in range(0, lines, BLOCK):
-            part = kernels.Lines(starts[begin : begin + BLOCK], direction, lags, steps)
-            kernels.line_correlations(cloud, grid, part, sums)
-            total += sums.sum(axis=0)
-        values[k], square = total / lines
-        errors[k] = np.sqrt(np.maximum(square - values[k] ** 2, 0.0) / (lines - 1))
+    with stage("correlations") as done:
+        for k, direction in enumerate(along):
+            # Both ends keep inside the walls.
+            span = np.where(packing.periodic, 0.0, length * direction)
+            first, last = bounds[0] - np.minimum(span, 0.0), bounds[1] - np.maximum(span, 0.0)
+            starts = first + rng.random((lines, 3)) * (last - first)
+            sums, total = np.empty((kernels.TASKS, 2, len(lags) + 1)), np.zeros((2, len(lags) + 1))
+            for begin in range(0, lines, BLOCK):
+                part = kernels.Lines(starts[begin : begin + BLOCK], direction, lags, steps)
+                kernels.line_correlations(cloud, grid, part, sums)
+                total += sums.sum(axis=0)
+                done((k + begin / lines) / len(along))
+            values[k], square = total / lines
+            errors[k] = np.sqrt(np.maximum(square - values[k] ** 2, 0.0) / (lines - 1))
     return values, errors
 
 

@@ -1,0 +1,152 @@
+import os
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+
+import pytest
+
+from demheat import compiled, on_progress, progress
+
+ROOT = Path(__file__).parents[2]
+
+
+def package(folder, **files):
+    """A folder with a package `demheat` of these files."""
+    for name, text in files.items():
+        path = folder / "demheat" / f"{name}.py"
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(text)
+    return folder
+
+
+def key(folder, name):
+    compiled.source_key.cache_clear()
+    return compiled.source_key(folder / "demheat" / f"{name}.py", folder)
+
+
+def test_the_key_is_that_of_the_text_wherever_it_lies(tmp_path):
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    one = package(tmp_path / "a", own_kernels="x = 1\n")
+    two = package(tmp_path / "b", own_kernels="x = 1\n")
+    assert key(one, "own_kernels") == key(two, "own_kernels")
+    (two / "demheat" / "own_kernels.py").write_text("x = 2\n")
+    assert key(one, "own_kernels") != key(two, "own_kernels")
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["from demheat.other_kernels import f", "from demheat import other_kernels", "from .other_kernels import f",
+     "import demheat.other_kernels as o", "def g():\n    from demheat.between_kernels import f"],
+)  # fmt: skip
+def test_what_a_kernel_imports_counts(tmp_path, words):
+    """Numba's own stamp does not see this: the old machine code would run."""
+    folder = package(
+        tmp_path, own_kernels=words, other_kernels="f = 1\n", between_kernels="from demheat.other_kernels import f\n"
+    )
+    before = key(folder, "own_kernels")
+    (folder / "demheat" / "other_kernels.py").write_text("f = 2\n")
+    assert key(folder, "own_kernels") != before
+    unlike = key(folder, "other_kernels")
+    (folder / "demheat" / "own_kernels.py").write_text(words + "\ny = 3\n")
+    assert key(folder, "other_kernels") == unlike
+
+
+def test_versions_count(tmp_path, monkeypatch):
+    folder = package(tmp_path, own_kernels="x = 1\n")
+    before = key(folder, "own_kernels")
+    with monkeypatch.context() as patch:
+        patch.setattr(compiled, "VERSIONS", ("another",))
+        assert key(folder, "own_kernels") != before
+    # Checks of bounds are compiled in.
+    monkeypatch.setattr(compiled.numba.config, "BOUNDSCHECK", 1)
+    assert key(folder, "own_kernels") != before
+
+
+def run(code, **environment):
+    env = {name: value for name, value in os.environ.items() if name not in ("NUMBA_CACHE_DIR", "NUMBA_DISABLE_JIT")}
+    env |= {"PYTHONPATH": str(ROOT), **environment}
+    done = subprocess.run([sys.executable, "-c", code], env=env, capture_output=True, text=True, check=True)
+    return done.stdout.split(), done.stderr
+
+
+PLACE = "from demheat.packing import cells_kernels as k; print(k.fill_cells._cache.cache_path)"
+
+
+def test_kernels_are_kept_in_the_users_folder_or_the_one_asked_for(tmp_path):
+    (place,), said = run(PLACE, XDG_CACHE_HOME=str(tmp_path))
+    assert Path(place).parent == tmp_path / "demheat" / "kernels" and Path(place).name.startswith("cells_kernels-")
+    assert said == ""
+    (place,), _ = run(PLACE, XDG_CACHE_HOME=str(tmp_path), NUMBA_CACHE_DIR=str(tmp_path / "asked"))
+    assert Path(place).parent == tmp_path / "asked"
+
+
+def test_without_any_folder_kernels_are_compiled_for_this_run_and_a_line_says_so(tmp_path, monkeypatch):
+    # Below a file nobody can write, not even root.
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "file" / "compiled.py"))
+    compiled.base_folder.cache_clear()
+    try:
+        with pytest.warns(UserWarning, match="set NUMBA_CACHE_DIR"):
+            folder = compiled.base_folder()
+        assert folder.is_dir() and os.environ["NUMBA_CACHE_DIR"] == str(folder)
+    finally:
+        compiled.base_folder.cache_clear()
+
+
+def test_an_unwritable_home_is_passed_over_in_silence_for_the_package(tmp_path):
+    (tmp_path / "file").touch()
+    below = str(tmp_path / "file" / "home")
+    (place,), said = run(PLACE, HOME=below, XDG_CACHE_HOME=below)
+    assert Path(place).parent == ROOT / "demheat" / "__pycache__" / "kernels" and said == ""
+
+
+def test_old_machine_code_is_thrown_away(tmp_path):
+    for name, age in (("new_kernels-1", 0.0), ("old_kernels-1", 2 * compiled.KEPT), ("other", 2 * compiled.KEPT)):
+        (tmp_path / name).mkdir()
+        then = (tmp_path / name).stat().st_mtime - age
+        os.utime(tmp_path / name, (then, then))
+    compiled._tidy(tmp_path)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["new_kernels-1", "other"]
+
+
+def test_only_kernels_of_ours_are_placed(tmp_path):
+    assert compiled.ByContent.from_function(lambda: None, str(tmp_path / "x.py")) is None
+    assert compiled.ByContent.from_function(lambda: None, os.__file__) is None
+
+
+def test_compiling_is_said_once_it_has_taken_long(monkeypatch):
+    monkeypatch.setattr(progress, "PAUSE", 0.01)
+    monkeypatch.setattr(progress, "WAIT", 0.0)
+    monkeypatch.setattr(progress, "SILENT", 0.05)
+    heard, listener = [], compiled.Compiling()
+    on_progress(heard.append)
+    try:
+        with warnings.catch_warnings():
+            # Each is shorter than the silence; together they are longer.
+            for _ in range(4):
+                listener.on_start(None)
+                listener.on_start(None)
+                progress.time.sleep(0.03)
+                listener.on_end(None)
+                listener.on_end(None)
+    finally:
+        on_progress(None)
+    assert listener.depth == 0 and not progress._open
+    assert heard and {report.stage for report in heard} == {"compiling, once"}
+    assert all(report.elapsed >= 0.05 for report in heard)
+
+
+def test_numba_tells_us(monkeypatch):
+    """The event of its interface, of a kernel that is compiled now."""
+    numba = pytest.importorskip("numba")
+    if numba.config.DISABLE_JIT:
+        pytest.skip("nothing is compiled")
+    told = []
+    monkeypatch.setattr(compiled.Compiling, "on_start", lambda self, event: told.append("start"))
+    monkeypatch.setattr(compiled.Compiling, "on_end", lambda self, event: told.append("end"))
+    numba.njit(lambda x: x + 1)(1)
+    assert told == ["start", "end"]
