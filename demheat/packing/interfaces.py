@@ -10,7 +10,6 @@ from scipy.spatial.transform import Rotation
 
 from demheat.scene import Layer, Scene, Shape, Sphere
 
-
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12
 

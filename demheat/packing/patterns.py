@@ -1,5 +1,7 @@
 """Touch points of twins on the interfaces of a scene, closer where another interface or a wall is near."""
 
+from typing import NamedTuple
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -98,7 +100,9 @@ def _on_spheres(numbers, interfaces, radius, turns):
             break
         refined = close
     turns.used += len(numbers) + int(refined.sum())
-    fine = spheres.pattern(numbers[refined], FINE * radius, turns.matrices(turn[refined] + 1))
+    chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
+    # Fibonacci points descend along the axis of their sphere.
+    fine = _Fine(*spheres.pattern(chosen, FINE * radius, matrices), chosen, -matrices[:, :, 2])
     return _refined(interfaces, even, spacing, fine, radius)
 
 
@@ -113,22 +117,42 @@ def _on_other(number, surface, interfaces, radius, rng):
     spacing = _spacing(interfaces, *even, radius)
     if np.all(spacing >= SPACING * radius):
         return even
-    return _refined(interfaces, even, spacing, pattern(FINE * radius), radius)
+    points, normals, own = pattern(FINE * radius)
+    longest = np.eye(3)[[np.argmax(np.ptp(points, axis=0))]]
+    fine = _Fine(points, normals, own, np.array([number]), longest)
+    return _refined(interfaces, even, spacing, fine, radius)
+
+
+class _Fine(NamedTuple):
+    points: np.ndarray  # (n, 3) m, to choose from
+    normals: np.ndarray  # (n, 3) unit vectors
+    own: np.ndarray  # (n,) ascending
+    numbers: np.ndarray  # (m,) of the surfaces, ascending
+    axes: np.ndarray  # (m, 3) unit vectors, along which its points are sought
 
 
 def _refined(interfaces, even, spacing, fine, radius):
     """An even pattern where its spacing is not too wide, elsewhere what is chosen from a fine one."""
-    fine = _inside(interfaces.scene, *fine)
-    wanted = _spacing(interfaces, *fine, radius)
-    narrow = wanted < SPACING * radius
+    more = _inside(interfaces.scene, *fine[:3])
+    wanted = _spacing(interfaces, *more, radius)
+    narrow = np.flatnonzero(wanted < SPACING * radius)
+    even, more = _taken(even, np.flatnonzero(spacing >= SPACING * radius)), _taken(more, narrow)
     # Small spheres keep points all round.
-    wanted = np.minimum(wanted, interfaces.widest_spacing(fine[2]))
-    fine, wanted = [column[narrow] for column in fine], wanted[narrow]
-    even = [column[spacing >= SPACING * radius] for column in even]
-    chosen = _thinned(fine[0], fine[2], THINNING * wanted, even[0], even[2])
-    columns = [np.concatenate([first, more[chosen]]) for first, more in zip(even, fine, strict=True)]
-    order = np.argsort(columns[2], kind="stable")
-    return tuple(column[order] for column in columns)
+    wanted = np.minimum(wanted[narrow], interfaces.widest_spacing(more[2]))
+    chosen = np.zeros(len(narrow), dtype=bool)
+    start, there = (_starts(own, fine.numbers) for own in (more[2], even[2]))
+    kernels.thinned(start, more[0], THINNING * wanted, there, even[0], fine.axes, chosen)
+    columns = [np.concatenate(pair) for pair in zip(even, _taken(more, np.flatnonzero(chosen)), strict=True)]
+    return _taken(columns, np.argsort(columns[2], kind="stable"))
+
+
+def _taken(columns, places):
+    return [column.take(places, axis=0) for column in columns]
+
+
+def _starts(own, numbers):
+    """Where the points of each of some surfaces begin and end, (m, 2) int array; owners ascend."""
+    return np.stack([np.searchsorted(own, numbers), np.searchsorted(own, numbers, side="right")], axis=1)
 
 
 def _inside(scene, points, normals, own):
@@ -143,14 +167,3 @@ def _spacing(interfaces, points, normals, own, radius):
     """Distance between twins at points of surfaces: no more than the gap's width asks, see GAP_SPACING."""
     width = interfaces.width(points, normals, own)
     return np.clip(GAP_SPACING * width, LEAST_SPACING * radius, SPACING * radius)
-
-
-def _thinned(points, own, least, taken, taken_own):
-    """Which of some points are chosen so that each keeps its least distance from others of its surface, (n,) bools."""
-    numbers, chosen = np.unique(own), np.zeros(len(points), dtype=bool)
-    start = np.append(np.searchsorted(own, numbers), len(own))
-    there = np.isin(taken_own, numbers)
-    taken, taken_own = taken[there], taken_own[there]
-    taken_start = np.append(np.searchsorted(taken_own, numbers), len(taken_own))
-    kernels.thinned(start, points, least, taken_start, taken, chosen)
-    return chosen
