@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat.packing.interfaces import FEWEST, SphereSurface, surfaces_of
+from demheat.packing.interfaces import FEWEST, surfaces_of
 from demheat.packing.spheres import Spheres
 
 
@@ -23,9 +23,10 @@ class Interfaces:
 
     def __init__(self, scene, reach):
         found = surfaces_of(scene)
-        spheres = [surface for surface in found if isinstance(surface, SphereSurface)]
+        whole = [getattr(surface, "is_sphere", False) for surface in found]
+        spheres = [surface for surface, is_sphere in zip(found, whole, strict=True) if is_sphere]
         self.scene, self.reach, self.spheres = scene, reach, Spheres(spheres, scene, reach)
-        self.others = [surface for surface in found if not isinstance(surface, SphereSurface)]
+        self.others = [surface for surface, is_sphere in zip(found, whole, strict=True) if not is_sphere]
 
     def __len__(self):
         """Number of surfaces."""

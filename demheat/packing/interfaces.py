@@ -20,6 +20,9 @@ class SphereSurface(NamedTuple):
     shape: Sphere
     scene: Scene
 
+    # Such surfaces are asked all at once, by `demheat.packing.spheres`; others need not say that they are none.
+    is_sphere = True
+
     @property
     def depth(self) -> float:
         """How far inwards nothing is in the way, m."""

@@ -1,4 +1,4 @@
-"""Which of many shapes hold points: spheres all at once, others one by one where they may."""
+"""Which of many shapes hold points: balls all at once, others one by one where they may."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ import numpy as np
 
 from demheat.scene.shapes.base import Shape, nearest
 from demheat.scene.shapes.bins import ball_bins, candidates
-from demheat.scene.shapes.sphere import Sphere
 
 # Points looked at together: bounds the scratch memory, and fits a cache.
 BLOCK = 16384
@@ -28,7 +27,7 @@ class Holders:
     def __init__(self, shapes: Sequence[Shape], size: Sequence[float], *, periodic: bool):
         self.shapes, self.period = shapes, np.array(size) if periodic else None
         self.centers, self.radii = bounding_balls(shapes)
-        self.spheres = np.array([type(shape) is Sphere for shape in shapes], dtype=bool)
+        self.spheres = np.array([shape.fills_ball for shape in shapes], dtype=bool)
         ends = np.isfinite(self.radii)
         self.endless = np.flatnonzero(~ends)
         self._ball = np.flatnonzero(ends)
