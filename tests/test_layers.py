@@ -43,7 +43,6 @@ LAYERS = {
     "demheat.progress": (),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
-    "demheat.gallery": ("demheat.addition", "demheat.scene"),
     "demheat.slices": ("demheat.scene", "demheat.field"),
     "demheat.packing": (
         "demheat.addition",
@@ -52,6 +51,7 @@ LAYERS = {
         "demheat.progress",
         "demheat.packing",
     ),
+    "demheat.gallery": ("demheat.addition", "demheat.scene", "demheat.packing.dispersion"),
     "demheat.network": (
         "demheat.scene",
         "demheat.laws",
