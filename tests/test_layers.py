@@ -46,7 +46,6 @@ LAYERS = {
     "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
-    "demheat.gallery": ("demheat.addition", "demheat.scene"),
     "demheat.slices": ("demheat.scene", "demheat.field"),
     "demheat.packing": (
         "demheat.addition",
@@ -57,6 +56,7 @@ LAYERS = {
         "demheat.compiled",
         "demheat.packing",
     ),
+    "demheat.gallery": ("demheat.addition", "demheat.scene", "demheat.packing.dispersion"),
     "demheat.network": (
         "demheat.scene",
         "demheat.laws",

@@ -11,31 +11,22 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.interfaces import nearest_gap, surfaces_near, surfaces_of
+from demheat.packing.gaps import Interfaces
+from demheat.packing.patterns import GAP_SPACING, LEAST_OFFSET, LEAST_SPACING, SPACING, patterns
+from demheat.progress import stage
 from demheat.scene import Scene
 
 # In mean radii of the packing. Twins at half a radius make cells centred between the interface and the next layer,
 # which is what the two-point flux needs where the interface is curved; found best of offsets .3 to .95 and spacings 1.2
 # to 2.1 on the centred sphere at four contrasts (at offset .8 and spacing 1.8 the error is six times larger).
 OFFSET = 0.5
-SPACING = 1.6
 # A particle gives way when its centre is nearer to the interface than the twins beside it plus this.
 CLEARANCE = 0.4
-# Nearer to an obstacle than this the two cells of a pair would be slivers: the pair is left out.
-LEAST_OFFSET = 0.05
 # Weight of a twin beyond its squared offset: a twin at OFFSET weighs as much as a mean particle.
 EXCESS = 1.0 - OFFSET**2
-# In a gap of width g the twins of the other side must not come nearer to an interface than its own: with offsets g/4
-# and points COVER spacings away at most that needs a spacing below g/(sqrt(2) COVER) = 0.88 g.
-GAP_SPACING = 0.85
-LEAST_SPACING = 4 * LEAST_OFFSET
-# Points thinned to this part of their spacing cover the surface at least as densely as an even pattern does.
-THINNING = 0.75
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
 # points need up to 0.77 near their poles.
 COVER = 0.8
-# In mean radii: interfaces farther apart change neither spacings nor offsets.
-REACH = 1.01 * max(SPACING / GAP_SPACING, 4.0 * OFFSET)
 
 
 class _Twins(NamedTuple):
@@ -70,21 +61,11 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()
-    rng = np.random.default_rng([seed, 71])
-    surfaces = surfaces_of(scene)
-    parts, left_out = [], 0
-    for surface in surfaces:
-        others = surfaces_near(surface, surfaces, REACH * radius)
-        points, normals = _pattern(surface, others, radius, rng)
-        points = surface.touched(points, normals)
-        offsets = _room(points, normals, surface, others, scene, OFFSET * radius)
-        fits = offsets >= LEAST_OFFSET * radius
-        left_out += int(np.sum(_gap(points[~fits], normals[~fits], surface, others) < LEAST_SPACING * radius))
-        parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
-    twins = _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True)))
+    interfaces = Interfaces(scene, _reach(packing, radius))
+    twins, left_out = _twins_on(interfaces, radius, seed)
     centers, weights, good = _twin_points(twins, scene, radius)
     twins = _Twins(*(column[good] for column in twins))
-    near = nearest_gap(packing.centers, surfaces)
+    near = interfaces.gap(packing.centers)
     keep = near > _cleared(packing, twins, radius, near)
     kept = np.minimum(packing.radii**2, near**2 - _margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
@@ -95,65 +76,28 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     )
 
 
-def _pattern(surface, surfaces, radius, rng):
-    """Points in the box and normals on a surface, closer where another interface or a wall is near."""
-    points, normals = _inside(surface, *surface.pattern(SPACING * radius, rng))
-    spacing = _spacing(points, normals, surface, surfaces, radius)
-    coarse = spacing >= SPACING * radius
-    if coarse.all():
-        return points, normals
-    fine, fine_normals = _inside(surface, *surface.pattern(0.8 * LEAST_SPACING * radius, rng))
-    wanted = _spacing(fine, fine_normals, surface, surfaces, radius)
-    narrow = np.flatnonzero(wanted < SPACING * radius)
-    chosen = narrow[_thinned(fine[narrow], THINNING * wanted[narrow], points[coarse])]
-    return np.concatenate([points[coarse], fine[chosen]]), np.concatenate([normals[coarse], fine_normals[chosen]])
+def _reach(packing, radius):
+    """Gaps that are wider than this change nothing, m."""
+    # Of spacings and offsets, whose points lie a little inside of their surfaces; of particles that give way; and of
+    # those whose weights are limited.
+    apart = max(SPACING / GAP_SPACING, 4.0 * OFFSET) + 0.02
+    weighty = np.sqrt(packing.radii.max() ** 2 + _margin(radius))
+    return 1.001 * max(apart * radius, (OFFSET + CLEARANCE) * radius, weighty)
 
 
-def _inside(surface, points, normals):
-    """The points that lie in the box, where it has walls."""
-    if surface.scene.periodic:
-        return points, normals
-    good = np.all((points > 0) & (points < surface.scene.size), axis=1)
-    return points[good], normals[good]
-
-
-def _spacing(points, normals, surface, surfaces, radius):
-    """Distance between twins at points of a surface: no more than the gap's width asks, see GAP_SPACING."""
-    return np.clip(GAP_SPACING * _gap(points, normals, surface, surfaces), LEAST_SPACING * radius, SPACING * radius)
-
-
-def _gap(points, normals, surface, surfaces):
-    """Width of the gap to the nearest other interface, or to the mirror image in a wall that faces this one."""
-    gap = np.full(len(points), np.inf)
-    for other in surfaces:
-        np.minimum(gap, other.gap(points, skip_self=other is surface), out=gap)
-    # A wall that cuts the interface, rather than faces it, leaves no gap.
-    return np.minimum(gap, 2.0 * _way_to_wall(points, normals, surface.scene, facing=0.9))
-
-
-def _way_to_wall(points, normals, scene, *, facing=0.0):
-    """Distance along the normal, either way, to the nearest wall whose own normal is that close to it (cosine)."""
-    if scene.periodic:
-        return np.full(len(points), np.inf)
-    size, way = np.array(scene.size), []
-    for direction in (normals, -normals):
-        height = np.where(direction > 0, size - points, points)
-        faced = np.abs(direction) > facing
-        way.append(np.divide(height, np.abs(direction), out=np.full_like(height, np.inf), where=faced).min(axis=1))
-    return np.minimum(*way)
-
-
-def _thinned(points, least, taken):
-    """Choose points that keep their least distance from each other and from those taken, closest-set first."""
-    free = np.ones(len(points), dtype=bool)
-    if len(taken):
-        free = cKDTree(taken).query(points)[0] >= least
-    tree, chosen = cKDTree(points), []
-    for p in np.argsort(least, kind="stable"):
-        if free[p]:
-            chosen.append(p)
-            free[tree.query_ball_point(points[p], least[p])] = False
-    return np.array(chosen, dtype=int)
+def _twins_on(interfaces, radius, seed):
+    """Pairs that fit on all surfaces, and the number of those that do not."""
+    parts, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0
+    with stage("twins") as done:
+        for points, normals, own in patterns(interfaces, radius, seed):
+            done((own.max(initial=-1) + 1) / len(interfaces))
+            points = interfaces.touched(points, normals, own)
+            offsets = _room(points, normals, own, interfaces, radius)
+            fits = offsets >= LEAST_OFFSET * radius
+            width = interfaces.width(points[~fits], normals[~fits], own[~fits])
+            left_out += int(np.sum(width < LEAST_SPACING * radius))
+            parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
+    return _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True))), left_out
 
 
 def _margin(radius):
@@ -165,13 +109,11 @@ def _margin(radius):
     return ((COVER * SPACING) ** 2 - EXCESS) * radius**2
 
 
-def _room(points, normals, surface, surfaces, scene, most):
+def _room(points, normals, own, interfaces, radius):
     """Largest offset that leaves each twin its own place: a half of the way to a wall, a quarter to an interface."""
-    room = np.full(len(points), min(most, 0.5 * surface.depth))
-    for other in surfaces:
-        room = np.minimum(room, 0.25 * other.gap(points, skip_self=other is surface))
-    room = np.minimum(room, 0.5 * _way_to_wall(points, normals, scene))
-    return room
+    room = np.minimum(OFFSET * radius, 0.5 * interfaces.depth(own))
+    room = np.minimum(room, 0.25 * interfaces.gap(points, own))
+    return np.minimum(room, 0.5 * interfaces.way_to_wall(points, normals))
 
 
 def _twin_points(twins, scene, radius):

@@ -35,7 +35,7 @@ GROWTH = 0.002
 # gives up.
 MOST = {"lsa": 0.63, "rsa": MOST_FILLED}
 MOST_ADDED = 0.3
-# A scene compares all pairs of its spheres, and random addition does too: more take hours.
+# Some 4 CPU-seconds for each thousand by collisions.
 MOST_SPHERES = 100_000
 
 

@@ -10,10 +10,8 @@ from scipy.spatial.transform import Rotation
 
 from demheat.scene import Layer, Scene, Shape, Sphere
 
-# Points that are looked at together: some tens of microseconds of work for each surface that is near.
-BLOCK = 2048
-# Of sums of a few lengths.
-ROUNDING = 1e-12
+# Points of an even pattern on a sphere, at least: facets that enclose it.
+FEWEST = 12
 
 
 class SphereSurface(NamedTuple):
@@ -21,6 +19,9 @@ class SphereSurface(NamedTuple):
 
     shape: Sphere
     scene: Scene
+
+    # Such surfaces are asked all at once, by `demheat.packing.spheres`; others need not say that they are none.
+    is_sphere = True
 
     @property
     def depth(self) -> float:
@@ -41,7 +42,7 @@ class SphereSurface(NamedTuple):
             Turns the pattern.
         """
         center, radius = self.ball()
-        count = max(12, int(np.ceil(4 * np.pi * radius**2 / (np.sqrt(0.75) * spacing**2))))
+        count = int(pattern_count(radius, spacing))
         normals = Rotation.random(random_state=rng).apply(fibonacci_sphere(count))
         return center + radius * normals, normals
 
@@ -59,9 +60,17 @@ class SphereSurface(NamedTuple):
         """
         if len(normals) == 0:
             return points
-        counted = None if self.scene.periodic else self._in_box
         center, radius = self.ball()
-        return center + inscribed_radius(normals, counted=counted) * radius * normals
+        return center + self.inner_radius(normals) * radius * normals
+
+    def inner_radius(self, normals):
+        """Distance of those tangent planes from the centre over the radius.
+
+        Parameters
+        ----------
+        normals : (k, 3) float array
+        """
+        return inscribed_radius(normals, counted=None if self.scene.periodic else self._in_box)
 
     def _in_box(self, directions):
         """Directions in which the surface lies in the box: elsewhere it has no facets."""
@@ -209,55 +218,15 @@ def surfaces_of(scene: Scene) -> list:
     return found + [once[place] for place in sorted(once)]
 
 
-def nearest_gap(points, surfaces):
-    """Distance of points to the nearest of some surfaces, (n,) float array, m.
-
-    Cheap where neighbours in memory are near in space: of each block of points only the surfaces that can be nearest to
-    one of them are looked at, since no distance changes by more than a point moves.
+def pattern_count(radius, spacing):
+    """Number of points of an even pattern on spheres, (m,) int array.
 
     Parameters
     ----------
-    points : (n, 3) float array, m
-    surfaces : list of SphereSurface, PlaneSurface or the like
+    radius : (m,) float array or float, m
+    spacing : float, m
     """
-    nearest = np.full(len(points), np.inf)
-    if not surfaces or not len(points):
-        return nearest
-    starts = np.arange(0, len(points), BLOCK)
-    low, high = np.minimum.reduceat(points, starts), np.maximum.reduceat(points, starts)
-    rough = np.array([surface.gap(0.5 * (low + high)) for surface in surfaces])
-    # Twice half the diagonal of the block, and a little for rounding.
-    spread = 1.0001 * np.linalg.norm(high - low, axis=1)
-    for start, close in zip(starts, (rough <= rough.min(axis=0) + spread).T, strict=True):
-        block = slice(start, start + BLOCK)
-        for k in np.flatnonzero(close):
-            np.minimum(nearest[block], surfaces[k].gap(points[block]), out=nearest[block])
-    return nearest
-
-
-def surfaces_near(surface, surfaces, reach):
-    """Those of some surfaces, itself for its images, that come within a distance of points of a surface.
-
-    Parameters
-    ----------
-    surface : SphereSurface, PlaneSurface or the like
-    surfaces : list of such
-        Itself among them.
-    reach : float, m
-    """
-    center, radius = surface.ball()
-    if np.isinf(radius):
-        return surfaces
-    found = []
-    for other in surfaces:
-        if other is surface:
-            # Its images: a period away.
-            between = min(surface.scene.size) - radius if surface.scene.periodic else np.inf
-        else:
-            between = other.gap(center[None])[0]
-        if between <= (radius + reach) * (1 + ROUNDING):
-            found.append(other)
-    return found
+    return np.maximum(FEWEST, np.ceil(4 * np.pi * np.square(radius) / (np.sqrt(0.75) * spacing**2))).astype(np.int64)
 
 
 def fibonacci_sphere(count):
@@ -287,5 +256,6 @@ def inscribed_radius(normals, *, counted=None):
     if len(directions) == 0:
         return 1.0
     chord, _ = cKDTree(normals).query(directions)
-    cosine = 1.0 - 0.5 * chord**2
+    # Where no facet is near the polyhedron has no end there: it counts as cut off at four radii.
+    cosine = np.maximum(1.0 - 0.5 * chord**2, 0.25)
     return float(np.mean(cosine**-3.0) ** (-1.0 / 3.0))

@@ -70,8 +70,9 @@ def refusals(scene, *, walls, domain, shapes, nested, pores) -> Iterator[str]:
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
         kind = scene.inclusions[number].kind
         yield f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}, Scene.inclusions[{number}]"
-    if not nested and np.any(scene.parents()):
-        number = int(np.flatnonzero(scene.parents())[0])
-        yield f"Scene.inclusions[{number - 1}], nested in [{scene.parents()[number] - 1}]"
+    parents = np.zeros(1) if nested else scene.parents()
+    if np.any(parents):
+        number = int(np.flatnonzero(parents)[0])
+        yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
     if not pores and np.any(scene.conductivities == 0):
         yield "a conductivity is 0"

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -24,10 +25,7 @@ from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
 from demheat.scene.shapes import Shape
-from demheat.scene.shapes.base import nearest
-
-# Points whose phases are found together.
-BLOCK = 4096
+from demheat.scene.shapes.holders import Holders
 
 
 @dataclass(frozen=True)
@@ -147,19 +145,15 @@ class Scene:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         phase = np.zeros(len(points), dtype=np.int32)
-        period, balls = self.period, [shape.ball() for shape in self.inclusions]
-        centers, radii = np.array([c for c, _ in balls]).reshape(-1, 3), np.array([r for _, r in balls])
-        # Of each block of points, near in space where they are near in memory, only shapes that may hold one count.
-        for start in range(0, len(points), BLOCK):
-            block = slice(start, start + BLOCK)
-            low, high = points[block].min(axis=0), points[block].max(axis=0)
-            offsets = nearest(0.5 * (low + high) - centers, period)
-            reach = radii + 0.5001 * np.linalg.norm(high - low)
-            near = np.einsum("ij,ij->i", offsets, offsets) <= reach**2
-            for number in np.flatnonzero(near):
-                inside = self.inclusions[number].contains(points[block], period=period)
-                phase[block][inside] = number + 1
+        if self.inclusions:
+            for point, number in self._holders.pairs(points):
+                # What is painted last is seen.
+                np.maximum.at(phase, point, (number + 1).astype(np.int32))
         return phase
+
+    @cached_property
+    def _holders(self):
+        return Holders(self.inclusions, self.size, periodic=self.periodic)
 
     def parents(self) -> np.ndarray:
         """Phase that each inclusion was painted on: (1 + number of inclusions,) int array, entry 0 unused.
@@ -169,8 +163,9 @@ class Scene:
         points = [shape.point_in(self.size, periodic=self.periodic) for shape in self.inclusions]
         points = np.array(points).reshape(-1, 3)
         parent = np.zeros(len(points) + 1, dtype=np.int64)
-        for number, shape in enumerate(self.inclusions, start=1):
-            parent[number + 1 :][shape.contains(points[number:], period=self.period)] = number
+        for inner, outer in self._holders.pairs(points):
+            before = outer < inner
+            np.maximum.at(parent, inner[before] + 1, outer[before] + 1)
         return parent
 
     def only(self, *shapes: type[Shape]) -> bool:

@@ -118,6 +118,27 @@ def test_dispersion_keeps_its_gap(periodic, gap):
         assert centers.max() <= 2.0 - 0.15 - least + 1e-14
 
 
+@pytest.mark.parametrize("ratio", [1.0, 10.0])
+@pytest.mark.parametrize("periodic", [True, False])
+def test_dense_dispersion(ratio, periodic, tmp_path, monkeypatch):
+    monkeypatch.setenv("DEMHEAT_CACHE", str(tmp_path))
+    make = {"fraction": 0.4, "ratio": ratio, "periodic": periodic, "axis": 2, "edge": 2.0}
+    scene = gallery.dispersion(120, seed=1, **make)
+    centers, radii = (np.array([getattr(s, name) for s in scene.inclusions]) for name in ("center", "radius"))
+    assert_allclose(4 / 3 * math.pi * np.sum(radii**3) / scene.volume, 0.4, rtol=1e-12)  # rounding
+    assert_allclose(radii.max() / radii.min(), ratio, rtol=1e-12)
+    assert_allclose(scene.conductivities[[0, -1]], [0.195, 1.5])
+    offsets = centers[:, None] - centers
+    offsets -= np.round(offsets / 2.0) * 2.0 if periodic else 0.0
+    gaps = (np.linalg.norm(offsets, axis=2) - radii - radii[:, None])[np.triu_indices(120, 1)]
+    least = 0.02 * 2 * np.cbrt(np.mean(radii**3))
+    assert gaps.min() >= least - 1e-12  # rounding of coordinates up to 2
+    if not periodic:
+        assert np.min(np.minimum(centers, 2.0 - centers).min(axis=1) - radii) >= least - 1e-12
+    other = gallery.dispersion(120, seed=2, **make)
+    assert np.abs(centers - [s.center for s in other.inclusions]).max() > 0.01
+
+
 def test_periodic_dispersion_crosses_faces_and_is_uniform():
     scene = gallery.random_dispersion(2000, fraction=0.15, gap=0.0)
     centers = np.array([sphere.center for sphere in scene.inclusions]) / 0.1
@@ -148,6 +169,9 @@ def test_dispersion_between_walls_takes_the_load_of_another_scene():
         (lambda: gallery.coated_sphere(core_fraction=1.0), "core_fraction = 1.0"),
         (lambda: gallery.coated_sphere(core=-1.0), "Material.conductivity = -1.0"),
         (lambda: gallery.random_dispersion(0), "count = 0"),
+        (lambda: gallery.dispersion(1), "count = 1"),
+        (lambda: gallery.dispersion(20, ratio=0.5), "ratio = 0.5"),
+        (lambda: gallery.dispersion(20, fraction=0.7), "must be <= 0.63"),
         (lambda: gallery.random_dispersion(fraction=1.5), "fraction = 1.5"),
         (lambda: gallery.random_dispersion(diameter=1.0), "diameter = 1.0"),
         (lambda: gallery.random_dispersion(gap=-0.1), "gap = -0.1"),

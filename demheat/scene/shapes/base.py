@@ -29,7 +29,7 @@ class Shape(ABC):
     Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
     along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
     (`nearest`). What a shape may override, where it has something sharper or faster, is `contains`, `ball`, `meets`,
-    `volume_in` and `fills_bounds`.
+    `volume_in`, `fills_bounds` and `fills_ball`.
 
     That is enough for phases, voxels that belong to the phase of their centre, and the DEM without conforming facets.
     What a method must know besides, it asks for by the shape's type, and refuses other shapes: `Scene.require`, and
@@ -41,6 +41,8 @@ class Shape(ABC):
     material: Material
     # Whether it is all of the box of its `bounds`.
     fills_bounds = False
+    # Whether it is all of its `ball`: balls are looked at all at once.
+    fills_ball = False
 
     @abstractmethod
     def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:

@@ -9,6 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene.shapes.base import TOUCH, Shape, nearest
+from demheat.scene.shapes.bins import ball_bins, candidates
+from demheat.scene.shapes.holders import bounding_balls
 
 
 class _Cell(NamedTuple):
@@ -38,13 +40,29 @@ def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: boo
     """
     box = np.array(size)
     cell = _Cell(box, box if periodic else None, TOUCH * box.max())
-    balls = [shape.ball() for shape in shapes]
-    centers, radii = np.array([c for c, _ in balls]).reshape(-1, 3), np.array([r for _, r in balls])
-    for i in range(len(shapes) - 1):
-        offsets = nearest(centers[i + 1 :] - centers[i], cell.period)
-        close = np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) < radii[i] + radii[i + 1 :] - cell.tolerance
-        for j in i + 1 + np.flatnonzero(close):
-            _check_pair(shapes, i, int(j), cell)
+    centers, radii = bounding_balls(shapes)
+    for i, j in _close(shapes, centers, radii, cell):
+        _check_pair(shapes, i, j, cell)
+
+
+def _close(shapes, centers, radii, cell):
+    """Pairs of shapes whose balls overlap, in order: those of two balls by bins, those with an endless shape all."""
+    ends = np.isfinite(radii)
+    ball = np.flatnonzero(ends)
+    # Where two balls overlap, the centre of the smaller one lies in the larger one made twice as large.
+    bins = ball_bins(centers[ball], 2.0 * radii[ball], cell.size, periodic=cell.period is not None)
+    one, other = (ball[part] for part in candidates(bins, centers[ball]))
+    offsets = nearest(centers[one] - centers[other], cell.period)
+    close = np.sqrt(np.einsum("ij,ij->i", offsets, offsets)) < radii[one] + radii[other] - cell.tolerance
+    found = [np.stack([one[close], other[close]])]
+    for number in np.flatnonzero(~ends):
+        # A ball beside an endless shape, which most are, is apart from it.
+        near = ~ends
+        near[ball] = shapes[number].distance(centers[ball], period=cell.period) < radii[ball] - cell.tolerance
+        others = np.flatnonzero(near)
+        found.append(np.stack([np.full(len(others), number), others]))
+    pairs = np.sort(np.concatenate(found, axis=1), axis=0)
+    return np.unique(pairs[:, pairs[0] < pairs[1]], axis=1).T.tolist()
 
 
 def _check_pair(shapes, i, j, cell):

@@ -28,6 +28,8 @@ class Sphere(Shape):
     radius: float
     material: Material
 
+    fills_ball = True
+
     def __post_init__(self):
         object.__setattr__(self, "center", vector("Sphere.center", self.center))
         number(self, "radius", "a finite number > 0 m", lambda v: v > 0)

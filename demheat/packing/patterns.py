@@ -1,0 +1,169 @@
+"""Touch points of twins on the interfaces of a scene, closer where another interface or a wall is near."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from demheat.packing import surfaces_kernels as kernels
+from demheat.packing.interfaces import pattern_count
+
+# Of twins along an interface, in mean radii of the packing; found best together with their offsets, see
+# `demheat.packing.conforming`.
+SPACING = 1.6
+# Offsets nearer to an obstacle than this would make slivers of the two cells of a pair: it is left out.
+LEAST_OFFSET = 0.05
+# In a gap of width g the twins of the other side must not come nearer to an interface than its own: with offsets g/4
+# and points COVER spacings away at most that needs a spacing below g/(sqrt(2) COVER) = 0.88 g.
+GAP_SPACING = 0.85
+LEAST_SPACING = 4 * LEAST_OFFSET
+# Spacing of the points that closer patterns are chosen from.
+FINE = 0.8 * LEAST_SPACING
+# Points thinned to this part of their spacing cover the surface at least as densely as an even pattern does.
+THINNING = 0.75
+# Spheres, and points to choose from, that are looked at together: bounds the scratch memory (some 100 bytes a point).
+MOST_SPHERES, MOST_POINTS = 256, 1 << 20
+
+
+def patterns(interfaces, radius, seed):
+    """Touch points on all surfaces of a scene, chunk by chunk.
+
+    Parameters
+    ----------
+    interfaces : Interfaces
+    radius : float, m
+        Mean radius of the packing.
+    seed : int
+        Turns the pattern of each sphere.
+
+    Yields
+    ------
+    points, normals : (k, 3) float arrays, m and 1
+        In the box, where it has walls.
+    own : (k,) int array
+        Numbers of their surfaces, ascending.
+    """
+    turns = _Turns(seed)
+    for numbers in _chunks(interfaces.spheres, radius):
+        yield _on_spheres(numbers, interfaces, radius, turns)
+    rng = turns.after()
+    for number, other in enumerate(interfaces.others, start=len(interfaces.spheres)):
+        yield _on_other(number, other, interfaces, radius, rng)
+
+
+class _Turns:
+    """Random rotations, drawn from one stream and used up in order."""
+
+    def __init__(self, seed):
+        self.seed, self.used = [seed, 71], 0
+        self._rng, self._drawn = np.random.default_rng(self.seed), np.empty((0, 4))
+
+    def matrices(self, numbers):
+        """Rotations of these numbers in the stream, (m, 3, 3) float array."""
+        missing = numbers.max(initial=-1) + 1 - len(self._drawn)
+        if missing > 0:
+            self._drawn = np.concatenate([self._drawn, self._rng.normal(size=(missing + len(self._drawn), 4))])
+        return Rotation.from_quat(self._drawn[numbers]).as_matrix() if len(numbers) else np.empty((0, 3, 3))
+
+    def after(self):
+        """The generator as it is when the rotations that were used have been drawn."""
+        rng = np.random.default_rng(self.seed)
+        rng.normal(size=(self.used, 4))
+        return rng
+
+
+def _chunks(spheres, radius):
+    """Numbers of the spheres in runs of a limited number of points to choose from."""
+    total = np.cumsum(pattern_count(spheres.radii, FINE * radius))
+    begin = 0
+    while begin < len(spheres):
+        before = total[begin - 1] if begin else 0
+        end = int(np.searchsorted(total, before + MOST_POINTS, side="right"))
+        end = min(max(end, begin + 1), begin + MOST_SPHERES)
+        yield np.arange(begin, min(end, len(spheres)))
+        begin = end
+
+
+def _on_spheres(numbers, interfaces, radius, turns):
+    """Pattern of some spheres.
+
+    Each takes its turn from the stream, and one more for its closer pattern if it needs one: which turns those after it
+    take, and with them which of them need one, is found by repetition. One more of them is right after each.
+    """
+    spheres, refined = interfaces.spheres, np.zeros(len(numbers), dtype=bool)
+    while True:
+        turn = turns.used + np.arange(len(numbers)) + np.cumsum(refined) - refined
+        even = _inside(interfaces.scene, *spheres.pattern(numbers, SPACING * radius, turns.matrices(turn)))
+        spacing = _spacing(interfaces, *even, radius)
+        close = np.isin(numbers, even[2][spacing < SPACING * radius])
+        if np.array_equal(close, refined):
+            break
+        refined = close
+    turns.used += len(numbers) + int(refined.sum())
+    chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
+    # Fibonacci points descend along the axis of their sphere.
+    fine = _Fine(*spheres.pattern(chosen, FINE * radius, matrices), chosen, -matrices[:, :, 2])
+    return _refined(interfaces, even, spacing, fine, radius)
+
+
+def _on_other(number, surface, interfaces, radius, rng):
+    """Pattern of a surface that is not a sphere."""
+
+    def pattern(spacing):
+        points, normals = surface.pattern(spacing, rng)
+        return points, normals, np.full(len(points), number)
+
+    even = _inside(interfaces.scene, *pattern(SPACING * radius))
+    spacing = _spacing(interfaces, *even, radius)
+    if np.all(spacing >= SPACING * radius):
+        return even
+    points, normals, own = pattern(FINE * radius)
+    longest = np.eye(3)[[np.argmax(np.ptp(points, axis=0))]]
+    fine = _Fine(points, normals, own, np.array([number]), longest)
+    return _refined(interfaces, even, spacing, fine, radius)
+
+
+class _Fine(NamedTuple):
+    points: np.ndarray  # (n, 3) m, to choose from
+    normals: np.ndarray  # (n, 3) unit vectors
+    own: np.ndarray  # (n,) ascending
+    numbers: np.ndarray  # (m,) of the surfaces, ascending
+    axes: np.ndarray  # (m, 3) unit vectors, along which its points are sought
+
+
+def _refined(interfaces, even, spacing, fine, radius):
+    """An even pattern where its spacing is not too wide, elsewhere what is chosen from a fine one."""
+    more = _inside(interfaces.scene, *fine[:3])
+    wanted = _spacing(interfaces, *more, radius)
+    narrow = np.flatnonzero(wanted < SPACING * radius)
+    even, more = _taken(even, np.flatnonzero(spacing >= SPACING * radius)), _taken(more, narrow)
+    # Small spheres keep points all round.
+    wanted = np.minimum(wanted[narrow], interfaces.widest_spacing(more[2]))
+    chosen = np.zeros(len(narrow), dtype=bool)
+    start, there = (_starts(own, fine.numbers) for own in (more[2], even[2]))
+    kernels.thinned(start, more[0], THINNING * wanted, there, even[0], fine.axes, chosen)
+    columns = [np.concatenate(pair) for pair in zip(even, _taken(more, np.flatnonzero(chosen)), strict=True)]
+    return _taken(columns, np.argsort(columns[2], kind="stable"))
+
+
+def _taken(columns, places):
+    return [column.take(places, axis=0) for column in columns]
+
+
+def _starts(own, numbers):
+    """Where the points of each of some surfaces begin and end, (m, 2) int array; owners ascend."""
+    return np.stack([np.searchsorted(own, numbers), np.searchsorted(own, numbers, side="right")], axis=1)
+
+
+def _inside(scene, points, normals, own):
+    """The points that lie in the box, where it has walls."""
+    if scene.periodic:
+        return points, normals, own
+    good = np.all((points > 0) & (points < scene.size), axis=1)
+    return points[good], normals[good], own[good]
+
+
+def _spacing(interfaces, points, normals, own, radius):
+    """Distance between twins at points of surfaces: no more than the gap's width asks, see GAP_SPACING."""
+    width = interfaces.width(points, normals, own)
+    return np.clip(GAP_SPACING * width, LEAST_SPACING * radius, SPACING * radius)

@@ -1,0 +1,56 @@
+"""Gaps of all surfaces at once against one surface after the other."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Layer, Material, Scene, Sphere
+from demheat.packing.gaps import Interfaces
+from demheat.packing.interfaces import surfaces_of
+
+MATRIX, OTHER = Material(1.0), Material(10.0)
+
+
+def scene(kind, periodic):
+    rng = np.random.default_rng(1)
+    sites = (np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5) / 4
+    if kind == "few":
+        found = [Sphere((0.2, 0.2, 0.3), 0.15, OTHER), Sphere((0.2, 0.2, 0.3), 0.12, MATRIX)]
+        found += [Sphere((0.7, 0.6, 0.2), 0.12, OTHER), Sphere((0.95, 0.3, 0.7), 0.2, OTHER)]
+        found += [Layer(2, 0.95, 1.0, OTHER)]
+    elif kind == "its own images":
+        found = [Sphere((0.4, 0.5, 0.55), 0.485, OTHER), Sphere((0.4, 0.5, 0.55), 0.4, MATRIX)]
+    else:
+        radii = 0.1 * (1.0 if kind == "equal" else 10.0 ** -rng.random(64))
+        found = [Sphere(c, r, OTHER) for c, r in zip(sites, np.broadcast_to(radii, 64), strict=True)]
+    load = {"gradient": (0, 1, 0)} if periodic else {"walls": {"y-": 0.0, "y+": 1.0}}
+    return Scene((1, 1, 1), MATRIX, found, **load)
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("kind", ["few", "its own images", "equal", "unequal"])
+def test_gaps_are_those_of_one_surface_after_the_other(kind, periodic):
+    given, reach = scene(kind, periodic), 0.06
+    interfaces, surfaces = Interfaces(given, reach), surfaces_of(given)
+    assert len(interfaces) == len(surfaces)
+    points = np.random.default_rng(4).random((5000, 3))
+    slow = np.min([surface.gap(points) for surface in surfaces], axis=0)
+    seen = slow <= reach
+    assert_allclose(interfaces.gap(points)[seen], slow[seen], rtol=0, atol=1e-15)
+    assert np.all(interfaces.gap(points)[~seen] > reach)
+    for number, surface in enumerate(surfaces):
+        on, normals = surface.pattern(0.05, np.random.default_rng(number))
+        slow = np.min([other.gap(on, skip_self=other is surface) for other in surfaces], axis=0)
+        found, seen = interfaces.gap(on, np.full(len(on), number)), slow <= reach
+        assert_allclose(found[seen], slow[seen], rtol=0, atol=1e-15)
+        assert np.all(found[~seen] > reach)
+
+
+def test_way_to_wall():
+    interfaces = Interfaces(scene("equal", False), 0.3)
+    points = np.array([[0.9, 0.5, 0.5], [0.9, 0.5, 0.5], [0.5, 0.5, 0.5], [0.1, 0.2, 0.5]])
+    normals = np.array([[1.0, 0.0, 0.0], [0.6, 0.8, 0.0], [1.0, 0.0, 0.0], [0.8, 0.6, 0.0]])
+    # Straight on, at an angle, beyond the reach, and backwards.
+    assert_allclose(interfaces.way_to_wall(points, normals), [0.1, 0.1 / 0.6, np.inf, 0.125], rtol=1e-14)
+    assert_allclose(interfaces.way_to_wall(points, normals, facing=0.9), [0.1, np.inf, np.inf, np.inf], rtol=1e-14)
+    assert np.all(np.isinf(Interfaces(scene("equal", True), 0.3).way_to_wall(points, normals)))
