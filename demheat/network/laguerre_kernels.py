@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-from demheat.network.polyhedron_kernels import cut, empty_polyhedron, measure, start_box
+from demheat.network.polyhedron_kernels import PLAIN, cut, empty_polyhedron, measure, start_box
 from demheat.network.sites_kernels import (
     HERE,
     cutting_reach,
@@ -93,7 +93,7 @@ class Cut(NamedTuple):
     distance: np.ndarray
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _sift(heap, key, root, count):
     """Restore the heap (least key first) below root."""
     item = heap[root]
@@ -110,7 +110,7 @@ def _sift(heap, key, root, count):
     heap[root] = item
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _farthest(cell, count):
     """Distance of the farthest vertex from the site."""
     square, most = cell.square, 0.0
@@ -119,7 +119,7 @@ def _farthest(cell, count):
     return np.sqrt(most)
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _cut_wall(cell, count, planes, center, eps, wall, tangents, skip):
     """Cut by the planes of a round wall listed in tangents, but for the plane `skip`.
 
@@ -145,24 +145,24 @@ def _cut_wall(cell, count, planes, center, eps, wall, tangents, skip):
     return OK, count, planes
 
 
-@njit(cache=True)
-def _misses_tangents(vertex, count, reach, center, wall):
+@njit(**PLAIN)
+def _misses_tangents(cell, count, reach, center, wall):
     """Whether a plane of a round wall farther than reach from the centre might still cut the cell.
 
     A plane beyond which a vertex lies touches the round body within sqrt(R_v^2 - R^2) of that vertex, R_v the vertex's
     distance from the body's middle or axis.
     """
     for v in range(count):
-        off, far = -(wall.radius**2), 0.0
-        for k in range(3):
-            off += wall.across[k] * (center[k] + vertex[k, v] - wall.middle[k]) ** 2
-            far += vertex[k, v] ** 2
-        if off > 0.0 and np.sqrt(far) + np.sqrt(off) > reach:
+        off = wall.across[0] * (center[0] + cell.x[v] - wall.middle[0]) ** 2
+        off += wall.across[1] * (center[1] + cell.y[v] - wall.middle[1]) ** 2
+        off += wall.across[2] * (center[2] + cell.z[v] - wall.middle[2]) ** 2
+        off -= wall.radius**2
+        if off > 0.0 and np.sqrt(cell.square[v]) + np.sqrt(off) > reach:
             return True
     return False
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _nearest(center, tangents, wall):
     """Where among the listed planes of a round wall that nearest to the centre stands; -1 for an empty list."""
     best, found = -np.inf, -1
@@ -175,10 +175,10 @@ def _nearest(center, tangents, wall):
     return found
 
 
-@njit(cache=True)
-def _start(i, half, sites, wall, cell):
+@njit(**PLAIN)
+def _start(i, half, sites, wall, found, cell):
     """Begin the cell of site i as a box of that half edge, within walls; the vertex count."""
-    low, high = np.empty(3), np.empty(3)
+    low, high = found.gap[0], found.gap[1]
     for k in range(3):
         low[k], high[k] = -half, half
         # Tangent planes enclose as much as the round body: their corners stand out of its box.
@@ -189,7 +189,7 @@ def _start(i, half, sites, wall, cell):
     return start_box(low, high, cell)
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _cut_sites(cell, count, planes, farthest, found, m, eps):
     """Cut by the radical planes of the m candidates, nearest first, until the next is beyond the cell.
 
@@ -225,23 +225,20 @@ def _cut_sites(cell, count, planes, farthest, found, m, eps):
     return OK, count, planes, farthest
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _cut_level(i, level, sites, cell, count, planes, found, eps):
     """Cut by the sites of a level, ring by ring, until those left cannot; (status, vertex count, number of planes)."""
-    farthest, ring, m = _farthest(cell, count), 0, 0
+    farthest, ring = _farthest(cell, count), 1
     find_home(i, level, sites, found)
     while True:
-        m = gather_ring(i, ring, level, farthest, sites, m, found)
+        m = gather_ring(i, ring, level, farthest, sites, 0, found)
         if m < 0:
             return CROWDED, 0, 0
-        ring += 1
-        if ring == 1:  # the home and what is around it together: the nearest planes come first
-            continue
         if m > 0:
             state, count, planes, farthest = _cut_sites(cell, count, planes, farthest, found, m, eps)
             if state != OK or count == 0:
                 return state, 0, 0
-            m = 0
+        ring += 1
         distance, ended = ring_distance(ring, level, sites, found)
         if distance >= cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
             return OK, count, planes
@@ -249,11 +246,11 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
             return UNSECURED, 0, 0
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
     center = sites.points[i]
-    count, planes, state = _start(i, half, sites, wall, cell), 6, OK
+    count, planes, state = _start(i, half, sites, wall, found, cell), 6, OK
     # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
     first = _nearest(center, tangents, wall)
     if first >= 0:
@@ -267,12 +264,12 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     if len(wall.normals):
         skip = tangents[first] if first >= 0 else -1
         state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)
-        if state == OK and count > 0 and _misses_tangents(cell.vertex, count, reach, center, wall):
+        if state == OK and count > 0 and _misses_tangents(cell, count, reach, center, wall):
             state = UNSECURED
     return state, count, planes
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _narrow(cell, count):
     """Whether a side of the start box that is no wall still bounds the cell."""
     for v in range(count):
@@ -283,7 +280,7 @@ def _narrow(cell, count):
     return False
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _note_facets(row, chunk, planes, cell, sliver, out):
     """Note the facets of more than a sliver's area at the end of a chunk's."""
     e, links, ends = out.used[chunk], 0, 0
@@ -380,7 +377,7 @@ class Gathered(NamedTuple):
     wall_distance: np.ndarray
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _gather_chunk(place, e, w, cut, out):
     """Bring the facets of one chunk to the places from e on for links, from w on for walls."""
     for s in range(cut.used[place]):

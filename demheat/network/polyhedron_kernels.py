@@ -1,5 +1,8 @@
 """Convex polyhedra that planes are cut off from, compiled.
 
+Functions here that make no array are compiled without Numba's counting of references to them, which is most of the time
+of a function this short.
+
 Every vertex is the meeting of three planes, kept as an oriented triple of plane slots with the vertices at the other
 ends of its three edges; cutting by a plane takes away the vertices beyond it and closes the hole by a rim of new ones.
 Memory grows with the number of planes, not with its square.
@@ -10,6 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+# Options of functions that make no array: no references are counted, and no division is checked.
+PLAIN = {"cache": True, "error_model": "numpy", "_nrt": False}
+
 
 class Polyhedron(NamedTuple):
     """A convex polyhedron around the origin, of up to p planes in slots, and scratch memory for cutting it.
@@ -18,8 +24,8 @@ class Polyhedron(NamedTuple):
 
     Attributes
     ----------
-    vertex : (3, 4 p) float array, m
-        Coordinates, one after the other: loops over the vertices then read what is side by side.
+    x, y, z : (4 p,) float arrays, m
+        Vertices.
     square : (4 p,) float array, m2
         Squared distance of each vertex from the origin.
     triple : (4 p, 3) int32 array
@@ -42,7 +48,9 @@ class Polyhedron(NamedTuple):
         Scratch: the new vertex whose triple begins with a plane.
     """
 
-    vertex: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
     square: np.ndarray
     triple: np.ndarray
     edge: np.ndarray
@@ -59,7 +67,9 @@ class Polyhedron(NamedTuple):
 def empty_polyhedron(most):
     """Memory of a Polyhedron of up to `most` planes."""
     return Polyhedron(
-        np.empty((3, 4 * most)),
+        np.empty(4 * most),
+        np.empty(4 * most),
+        np.empty(4 * most),
         np.empty(4 * most),
         np.empty((4 * most, 3), np.int32),
         np.empty((4 * most, 3), np.int32),
@@ -73,7 +83,7 @@ def empty_polyhedron(most):
     )
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def start_box(low, high, cell):
     """Begin a polyhedron as a box; slots 2k and 2k + 1 are the low and the high side of axis k.
 
@@ -97,8 +107,14 @@ def start_box(low, high, cell):
         total = 0.0
         for k in range(3):
             end = (v >> (2 - k)) & 1
-            cell.vertex[k, v] = high[k] if end else low[k]
-            total += cell.vertex[k, v] ** 2
+            corner = high[k] if end else low[k]
+            if k == 0:
+                cell.x[v] = corner
+            elif k == 1:
+                cell.y[v] = corner
+            else:
+                cell.z[v] = corner
+            total += corner * corner
             cell.triple[v, k] = 2 * k + end
         cell.square[v] = total
         if (v ^ (v >> 1) ^ (v >> 2)) & 1 == 0:  # keep every triple counter-clockwise seen from outside
@@ -109,52 +125,49 @@ def start_box(low, high, cell):
     return 8
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _end(triple, w, b):
     """Where plane b stands in the triple of vertex w: its edge with the plane that follows."""
     return 0 if triple[w, 0] == b else (1 if triple[w, 1] == b else 2)
 
 
-@njit(cache=True)
+@njit(**PLAIN, inline="always")
 def _heights(cell, count, slot, eps):
     """Height of each vertex above the plane in a slot; the number of those beyond it."""
-    x, y, z, above = cell.vertex[0], cell.vertex[1], cell.vertex[2], cell.above
     nx, ny, nz, h = cell.normal[slot, 0], cell.normal[slot, 1], cell.normal[slot, 2], cell.distance[slot]
     beyond = 0
     for v in range(count):
-        above[v] = nx * x[v] + ny * y[v] + nz * z[v] - h
-        beyond += above[v] > eps
+        cell.above[v] = nx * cell.x[v] + ny * cell.y[v] + nz * cell.z[v] - h
+        beyond += cell.above[v] > eps
     return beyond
 
 
-@njit(cache=True)
+@njit(**PLAIN, inline="always")
 def _add(cell, new, v, k, slot):
     """Put a new vertex where edge k of vertex v crosses the plane in a slot."""
-    x, y, z, above, triple = cell.vertex[0], cell.vertex[1], cell.vertex[2], cell.above, cell.triple
-    a, b, w = triple[v, k], triple[v, (k + 1) % 3], cell.edge[v, k]
-    t = above[v] / (above[v] - min(above[w], 0.0))  # a vertex kept within eps above the plane stands for it
-    x[new] = x[v] + t * (x[w] - x[v])
-    y[new] = y[v] + t * (y[w] - y[v])
-    z[new] = z[v] + t * (z[w] - z[v])
-    cell.square[new] = x[new] * x[new] + y[new] * y[new] + z[new] * z[new]
-    triple[new, 0], triple[new, 1], triple[new, 2] = a, b, slot
+    a, b, w = cell.triple[v, k], cell.triple[v, (k + 1) % 3], cell.edge[v, k]
+    t = cell.above[v] / (cell.above[v] - min(cell.above[w], 0.0))  # what is kept within eps above the plane is on it
+    x = cell.x[v] + t * (cell.x[w] - cell.x[v])
+    y = cell.y[v] + t * (cell.y[w] - cell.y[v])
+    z = cell.z[v] + t * (cell.z[w] - cell.z[v])
+    cell.x[new], cell.y[new], cell.z[new], cell.square[new] = x, y, z, x * x + y * y + z * z
+    cell.triple[new, 0], cell.triple[new, 1], cell.triple[new, 2] = a, b, slot
     cell.edge[new, 0] = w
-    cell.edge[w, _end(triple, w, b)] = new
+    cell.edge[w, _end(cell.triple, w, b)] = new
     cell.begins[a] = new
-    above[new] = 0.0
+    cell.above[new] = 0.0
 
 
-@njit(cache=True)
+@njit(**PLAIN, inline="always")
 def _close(cell, first, total):
     """Join the new vertices from `first` on to a rim; False unless they are one simple loop."""
-    triple, edge, begins = cell.triple, cell.edge, cell.begins
     v, steps = first, 0
     while steps < total - first:
-        b = triple[v, 1]
-        w = begins[b]
-        if w < first or w >= total or triple[w, 0] != b:
-            return False
-        edge[v, 1], edge[w, 2] = w, v
+        b = cell.triple[v, 1]
+        w = cell.begins[b]
+        if w < first or w >= total or cell.triple[w, 0] != b:
+            break
+        cell.edge[v, 1], cell.edge[w, 2] = w, v
         v = w
         steps += 1
         if v == first:
@@ -162,29 +175,27 @@ def _close(cell, first, total):
     return v == first and steps == total - first
 
 
-@njit(cache=True)
+@njit(**PLAIN, inline="always")
 def _fill(cell, beyond, total, eps):
     """Move the last vertices to the places of those that are gone; the new number of vertices."""
-    vertex, triple, edge, above = cell.vertex, cell.triple, cell.edge, cell.above
     left, last = total - beyond, total - 1
     for s in range(beyond):
         hole = cell.gone[s]
         if hole >= left:
             break
-        while above[last] > eps:
+        while cell.above[last] > eps:
             last -= 1
+        cell.x[hole], cell.y[hole], cell.z[hole] = cell.x[last], cell.y[last], cell.z[last]
         cell.square[hole] = cell.square[last]
         for k in range(3):
-            vertex[k, hole] = vertex[k, last]
-            triple[hole, k] = triple[last, k]
-            w = edge[last, k]
-            edge[hole, k] = w
-            edge[w, _end(triple, w, triple[last, (k + 1) % 3])] = hole
+            w = cell.edge[last, k]
+            cell.triple[hole, k], cell.edge[hole, k] = cell.triple[last, k], w
+            cell.edge[w, _end(cell.triple, w, cell.triple[last, (k + 1) % 3])] = hole
         last -= 1
     return left
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def cut(cell, count, slot, eps):
     """Cut a polyhedron by the plane in a slot that it does not use yet.
 
@@ -206,19 +217,16 @@ def cut(cell, count, slot, eps):
         How many of them lie on the plane: 0 if it misses, and the polyhedron is as it was.
     """
     beyond = _heights(cell, count, slot, eps)
-    if beyond == 0:
-        return count, 0
-    if beyond == count:
-        return 0, 0
-    above, edge, gone = cell.above, cell.edge, cell.gone
+    if beyond == 0 or beyond == count:
+        return count - beyond, 0
     total, s = count, 0
     for v in range(count):
-        if above[v] > eps:
-            gone[s] = v
+        if cell.above[v] > eps:
+            cell.gone[s] = v
             s += 1
             for k in range(3):
-                if above[edge[v, k]] <= eps:
-                    if total == len(above):
+                if cell.above[cell.edge[v, k]] <= eps:
+                    if total == len(cell.above):
                         return -1, 0
                     _add(cell, total, v, k, slot)
                     total += 1
@@ -227,7 +235,7 @@ def cut(cell, count, slot, eps):
     return _fill(cell, beyond, total, eps), total - count
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def measure(cell, count, planes):
     """Write the facet areas of a polyhedron by slot.
 
@@ -244,23 +252,21 @@ def measure(cell, count, planes):
     float, m3
         Its volume.
     """
-    x, y, z = cell.vertex[0], cell.vertex[1], cell.vertex[2]
-    triple, edge, normal, area = cell.triple, cell.edge, cell.normal, cell.area
     for f in range(planes):
-        area[f] = 0.0
+        cell.area[f] = 0.0
     for v in range(count):
         for k in range(3):
-            w = edge[v, k]
+            w = cell.edge[v, k]
             if w < v:
                 continue
-            # Seen from outside the edge runs from v to w with plane b on its left and a on its right.
-            a, b = triple[v, k], triple[v, (k + 1) % 3]
-            cx = 0.5 * (y[v] * z[w] - z[v] * y[w])
-            cy = 0.5 * (z[v] * x[w] - x[v] * z[w])
-            cz = 0.5 * (x[v] * y[w] - y[v] * x[w])
-            area[b] += normal[b, 0] * cx + normal[b, 1] * cy + normal[b, 2] * cz
-            area[a] -= normal[a, 0] * cx + normal[a, 1] * cy + normal[a, 2] * cz
+            # Half the cross product of both ends; seen from outside plane b is on the left of the way from v to w.
+            a, b = cell.triple[v, k], cell.triple[v, (k + 1) % 3]
+            x = 0.5 * (cell.y[v] * cell.z[w] - cell.z[v] * cell.y[w])
+            y = 0.5 * (cell.z[v] * cell.x[w] - cell.x[v] * cell.z[w])
+            z = 0.5 * (cell.x[v] * cell.y[w] - cell.y[v] * cell.x[w])
+            cell.area[b] += cell.normal[b, 0] * x + cell.normal[b, 1] * y + cell.normal[b, 2] * z
+            cell.area[a] -= cell.normal[a, 0] * x + cell.normal[a, 1] * y + cell.normal[a, 2] * z
     volume = 0.0
     for f in range(planes):
-        volume += cell.distance[f] * area[f]
+        volume += cell.distance[f] * cell.area[f]
     return volume / 3.0

@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from demheat.network.polyhedron_kernels import PLAIN
+
 # Code of the image in the box itself: no shift along any axis.
 HERE = 13
 
@@ -93,7 +95,7 @@ def empty_candidates(room):
     )
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def cutting_reach(farthest, weight, heaviest):
     """Sites of at most some weight cut a cell only if they are nearer than this.
 
@@ -112,7 +114,7 @@ def cutting_reach(farthest, weight, heaviest):
     return farthest + np.sqrt(square) if square > 0.0 else 0.0
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def find_home(i, level, sites, found):
     """Note where a site stands in the grid of a level.
 
@@ -131,7 +133,7 @@ def find_home(i, level, sites, found):
         found.gap[1, k] = found.width[k] - found.gap[0, k]
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def ring_distance(ring, level, sites, found):
     """What a ring of grid cells keeps away from the site, and whether it and those beyond hold no cell.
 
@@ -160,29 +162,29 @@ def ring_distance(ring, level, sites, found):
     return max(least, 0.0), ended
 
 
-@njit(cache=True)
-def _block(cell, shift, i, farthest, sites, m, found):
-    """Add the sites of a grid cell, shifted by an image, that may cut; their new number, -1 beyond the room."""
-    slots = sites.slots
-    x = sites.points[i, 0] - shift[0] * sites.size[0]
-    y = sites.points[i, 1] - shift[1] * sites.size[1]
-    z = sites.points[i, 2] - shift[2] * sites.size[2]
+@njit(**PLAIN, inline="always")
+def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
+    """Add the sites of items from begin to end, shifted by an image, that may cut; their number, -1 beyond the room."""
+    x = sites.points[i, 0] - sx * sites.size[0]
+    y = sites.points[i, 1] - sy * sites.size[1]
+    z = sites.points[i, 2] - sz * sites.size[2]
     weight, bound = sites.weights[i], 4.0 * farthest * farthest
-    code = 9 * (shift[0] + 1) + 3 * (shift[1] + 1) + shift[2] + 1
-    for s in range(sites.start[cell], sites.start[cell + 1]):
-        dx, dy, dz = slots[s, 0] - x, slots[s, 1] - y, slots[s, 2] - z
+    code = 9 * (sx + 1) + 3 * (sy + 1) + sz + 1
+    for s in range(begin, end):
+        dx, dy, dz = sites.slots[s, 0] - x, sites.slots[s, 1] - y, sites.slots[s, 2] - z
         square = dx * dx + dy * dy + dz * dz
-        rise = square + weight - slots[s, 3]
+        rise = square + weight - sites.slots[s, 3]
         if rise > 0.0 and rise * rise >= bound * square:
             continue
         j = np.int64(sites.items[s])
         if j == i and code == HERE:
             continue
         # Coincident centres: the heavier hides the lighter, of equals the later number is hidden.
-        if square == 0.0 and not (slots[s, 3] > weight or (slots[s, 3] == weight and j < i)):
+        if square == 0.0 and not (sites.slots[s, 3] > weight or (sites.slots[s, 3] == weight and j < i)):
             continue
         if m == len(found.label):
-            return -1
+            m = -1
+            break
         found.label[m] = 32 * j + code
         found.offset[m, 0], found.offset[m, 1], found.offset[m, 2] = dx, dy, dz
         found.plane[m] = rise / (2.0 * np.sqrt(square)) if square > 0.0 else -np.inf
@@ -190,7 +192,7 @@ def _block(cell, shift, i, farthest, sites, m, found):
     return m
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def _beyond(step, k, found):
     """Squared distance along an axis from the site to the grid cells that many steps away."""
     if step == 0:
@@ -199,25 +201,24 @@ def _beyond(step, k, found):
     return gap * gap
 
 
-@njit(cache=True)
-def _image(c, k, level, sites):
+@njit(**PLAIN)
+def _image(c, count, periodic):
     """Which image of the box a grid cell along an axis lies in; 2 where there is none."""
-    count = sites.counts[level, k]
     if 0 <= c < count:
         return 0
-    if not sites.periodic[k] or c < -count or c >= 2 * count:
+    if not periodic or c < -count or c >= 2 * count:
         return 2
     return -1 if c < 0 else 1
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def gather_ring(i, ring, level, farthest, sites, m, found):
-    """Add the sites of a ring of grid cells that may cut a cell.
+    """Add the sites of a ring of grid cells that may cut a cell; the home belongs to ring 1.
 
     Parameters
     ----------
     i, ring, level : int
-        Site, ring (0 is the home) and level.
+        Site, ring >= 1 and level.
     farthest : float, m
         Of the cell's vertices.
     sites : Sites
@@ -232,23 +233,30 @@ def gather_ring(i, ring, level, farthest, sites, m, found):
         Candidates now there; -1 if there is no room.
     """
     limit = cutting_reach(farthest, sites.weights[i], sites.heaviest[level]) ** 2
-    home, counts = found.home, sites.counts
+    nx, ny, nz = sites.counts[level]
     for a in range(-ring, ring + 1):
-        near, sx = _beyond(a, 0, found), _image(home[0] + a, 0, level, sites)
+        near, sx = _beyond(a, 0, found), _image(found.home[0] + a, nx, sites.periodic[0])
         if sx == 2 or near >= limit:
             continue
         for b in range(-ring, ring + 1):
-            beside, sy = near + _beyond(b, 1, found), _image(home[1] + b, 1, level, sites)
+            beside, sy = near + _beyond(b, 1, found), _image(found.home[1] + b, ny, sites.periodic[1])
             if sy == 2 or beside >= limit:
                 continue
-            step = 1 if abs(a) == ring or abs(b) == ring else 2 * ring
-            for c in range(-ring, ring + 1, step):
-                sz = _image(home[2] + c, 2, level, sites)
-                if sz == 2 or beside + _beyond(c, 2, found) >= limit:
-                    continue
-                row = (home[0] + a - sx * counts[level, 0]) * counts[level, 1] + home[1] + b - sy * counts[level, 1]
-                cell = sites.first[level] + row * counts[level, 2] + home[2] + c - sz * counts[level, 2]
-                m = _block(cell, (sx, sy, sz), i, farthest, sites, m, found)
-                if m < 0:
-                    return m
+            row = (found.home[0] + a - sx * nx) * ny + found.home[1] + b - sy * ny
+            whole = ring == 1 or abs(a) == ring or abs(b) == ring
+            c = -ring
+            while c <= ring:
+                sz, last = _image(found.home[2] + c, nz, sites.periodic[2]), c
+                if sz != 2 and beside + _beyond(c, 2, found) < limit:
+                    cell = sites.first[level] + row * nz + found.home[2] + c - sz * nz
+                    # Cells in a row of the same image lie side by side.
+                    while whole and last < ring and _image(found.home[2] + last + 1, nz, sites.periodic[2]) == sz:
+                        if beside + _beyond(last + 1, 2, found) >= limit:
+                            break
+                        last += 1
+                    begin, end = sites.start[cell], sites.start[cell + last - c + 1]
+                    m = _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found)
+                    if m < 0:
+                        return m
+                c = last + 1 if whole or c == ring else ring
     return m
