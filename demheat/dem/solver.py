@@ -89,6 +89,7 @@ def solve(
     packing = wanted.packed(scene, counts)
     packed = time.perf_counter()
     network = network_of(scene, packing, law, seed=seed)
+    del packing  # twins may have been added to a copy
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
     spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}

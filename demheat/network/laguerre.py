@@ -14,8 +14,9 @@ from demheat.scene import domain_volume
 
 # Rows cut at once, some tenths of a second: bounds the scratch memory and the wait for an interrupt.
 BLOCK = 65536
-# Facets of a chunk of cells that there is room for at first, for each cell.
-ROOM = 22
+# Facets of a chunk of cells that there is room for at first: for each cell, and for a large one of which its squared
+# size, weight less the least, is so many squared mean spacings.
+ROOM, LARGE = 22, 16
 # Half the edge of the box that cells start from, and how far planes of a round wall are looked for at first, in mean
 # spacings.
 START, REACH = 4.0, 2.5
@@ -79,7 +80,7 @@ def tessellated(centers, weights, size, *, periodic=True, domain="box"):
     spacing = (domain_volume(domain, size) / len(centers)) ** (1.0 / 3.0)
     wall = round_wall(domain, size, spacing)
     _check_round(centers, wall, domain)
-    sites = _filed(centers, weights, size, periodic, spacing)
+    sites = filed(centers, weights, size, periodic, spacing)
     volumes, number, links, (particle, side, *walls), again = _cut_all(sites, wall, spacing)
     del sites
     _check_filled(volumes, domain_volume(domain, size), domain)
@@ -143,8 +144,22 @@ def _check_round(centers, wall, domain):
         )
 
 
-def _filed(centers, weights, size, periodic, spacing):
-    """The sites in grids, one for each level of weight."""
+def filed(centers, weights, size, periodic, spacing):
+    """The sites in grids, one for each level of weight.
+
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    weights : (n,) float array, m2
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    spacing : float, m
+        Mean spacing of the sites.
+
+    Returns
+    -------
+    Sites
+    """
     large = np.sqrt(weights - weights.min()) / (FIRST * spacing)
     level = np.ceil(np.log(np.maximum(large, 1.0)) / np.log(FACTOR)).astype(np.int8)
     np.minimum(level, MAX_LEVELS - 1, out=level)
@@ -222,7 +237,9 @@ def _cut_block(start, stop, sites, wall, spacing):
 
     Chunks that had too little room, or saw too little of a round wall, are cut again.
     """
-    n, reach, room, parts = stop - start, REACH * spacing, ROOM * kernels.CHUNK, []
+    n, reach, parts = stop - start, REACH * spacing, []
+    # A large cell has as many neighbours as lie on its surface.
+    room = int(ROOM * kernels.CHUNK + LARGE * (sites.weights.max() - sites.weights.min()) / spacing**2)
     todo = np.arange(-(-n // kernels.CHUNK))
     rows = [np.empty(n, kind) for kind in (np.int8, np.uint8, float, np.int32, np.int32)]
     again = np.zeros(n, dtype=bool)
@@ -237,6 +254,8 @@ def _cut_block(start, stop, sites, wall, spacing):
         parts.append((todo[~redone], cut if not redone.any() else _kept(cut, ~redone)))
         todo, room, reach = todo[redone], max(room, int(1.1 * cut.used.max())), 1.35 * reach
     return cut, parts, np.count_nonzero(again)
+
+
 def _check_filled(volumes, volume, domain):
     defect = volumes.sum() / volume - 1.0
     if abs(defect) > 1e-9:
