@@ -60,7 +60,9 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
     with stage("network"):
         # Wall areas are those of the walls: what scales is the conductance of their links.
-        facets = facets._replace(area=factor * facets.area, wall_distance=facets.wall_distance / factor)
+        if factor != 1.0:
+            facets = facets._replace(area=factor * facets.area)
+        facets = facets._replace(wall_distance=facets.wall_distance / factor)
         phase = scene.phase_at(packing.centers)
         _warn_of_lost_phases(scene, phase)
         network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)

@@ -12,6 +12,7 @@ from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
 from demheat.process_state import one_blas_thread
+from demheat.progress import stage
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
@@ -250,6 +251,11 @@ def _jacobi(system):
     return solve
 
 
+def _share(norm, first, limit):
+    """How much of the way from the first norm of the residual to its limit is done, in digits."""
+    return float(min(1.0, np.log(max(first / norm, 1.0)) / np.log(first / limit))) if first > limit > 0 else 0.0
+
+
 def matrix(network, diagonal):
     """The network's heat balance as a SciPy matrix: diagonal minus conductances.
 
@@ -276,13 +282,13 @@ def _multigrid(system):
         precondition = preconditioner(links, diagonal)
 
     def solve(r, x, limit, most):
-        with one_blas_thread():
-            return _preconditioned(links, diagonal, precondition, r, x, limit, most), x
+        with one_blas_thread(), stage("equations") as done:
+            return _preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
 
     return solve
 
 
-def _preconditioned(links, diagonal, precondition, r, x, limit, most):
+def _preconditioned(links, diagonal, precondition, r, x, limit, most, done):
     """Conjugate gradients that add to x until |r| <= limit; returns the iterations done.
 
     Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
@@ -291,9 +297,11 @@ def _preconditioned(links, diagonal, precondition, r, x, limit, most):
     z, q = np.empty_like(r), np.empty_like(r)
     norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0
     alpha = 0.0
+    first = norm
     for iteration in range(most):
         if norm <= limit:
             return iteration
+        done(_share(norm, first, limit))
         precondition(r, norm, z)
         beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
         rz = kernels.dot(r, z)

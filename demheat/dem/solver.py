@@ -95,6 +95,7 @@ def solve(
         packed = time.perf_counter()
         helper.join(cells)
         network = network_of(scene, packing, law, seed=seed)
+        del packing  # twins may have been added to a copy
         helper.join()
     connected = time.perf_counter()
     solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)

@@ -70,8 +70,10 @@ class Network(NamedTuple):
         From here on what only evaluation needs: a network that is solved but not sampled may lack it.
     periodic : (3,) bool array, optional
         Axis by axis.
-    area, distance : (m,) float arrays, m2 and m, optional
-        Of each link's facet, as in `Facets`; areas are those that conduct, C_t included.
+    area : (m,) float array, m2, optional
+        Of each link's facet, those that conduct, C_t included.
+    distance : (m,) float array, m, optional
+        As in `Facets`; radical cells do without: `link_distances` finds it from the radii.
     cells : bool
         Facets bound cells that fill the body, as those of the radical tessellation do: what is linear is exact.
     stats : dict, optional
@@ -124,6 +126,33 @@ def image_shifts(image, size):
     """
     code = np.asarray(image, dtype=np.int16)
     return np.stack([code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1], axis=1) * np.asarray(size)
+
+
+def radical_distances(square, weight, other):
+    """Distance from a site to the radical plane that parts it from another.
+
+    Parameters
+    ----------
+    square : (m,) float array, m2
+        Squared distance of the two sites.
+    weight, other : (m,) float arrays, m2
+        Weights of the two.
+
+    Returns
+    -------
+    (m,) float array, m
+    """
+    return (square + weight - other) / (2.0 * np.sqrt(square))
+
+
+def link_distances(network):
+    """Distance from each row's centre to the facet of each link, (m,) float array, m."""
+    if network.distance is not None:
+        return network.distance
+    links = network.indptr, network.indices, network.image
+    square = np.einsum("ij,ij->i", *[branches(network.centers, network.size, *links)] * 2)
+    weight = network.radii**2
+    return radical_distances(square, np.repeat(weight, np.diff(network.indptr)), weight[network.indices])
 
 
 def row_numbers(indptr):

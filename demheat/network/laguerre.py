@@ -7,15 +7,24 @@ from demheat.network.base import Facets
 from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
 from demheat.network.links_kernels import match_links
+from demheat.network.sites_kernels import Sites
 from demheat.packing.base import check_domain
+from demheat.progress import stage
 from demheat.scene import domain_volume
 
-# Rows cut at once: bounds the scratch memory (about 1.5 kB a row) without costing speed.
+# Rows cut at once, some tenths of a second: bounds the scratch memory and the wait for an interrupt.
 BLOCK = 65536
-# Planes that may cut a cell: enough for any packing; cells that need more (a large one beside small ones) are redone.
-MOST_PLANES = 80
-# Candidates that a cell may meet at first, and at last: bounds the scratch memory of a thread (about 10 MB).
-ROOM, MOST_ROOM = 256, 1 << 18
+# Facets of a chunk of cells that there is room for at first: for each cell, and for a large one of which its squared
+# size, weight less the least, is so many squared mean spacings.
+ROOM, LARGE = 22, 16
+# Half the edge of the box that cells start from, and how far planes of a round wall are looked for at first, in mean
+# spacings.
+START, REACH = 4.0, 2.5
+# Edge of grid cells in mean spacings of the sites in them.
+WIDTH = 1.1
+# Sites are as large as the root of their weight less the least. Level 0 has those of up to FIRST mean spacings, each
+# further level those of up to FACTOR times more.
+FIRST, FACTOR, MAX_LEVELS = 1.5, 3.0, 12
 # Facets below this fraction of the squared mean spacing are rounding where more than four cells meet in one point.
 SLIVER = 1e-11
 
@@ -49,21 +58,34 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     RuntimeError
         If a cell cannot be secured (too few points in a periodic box) or the cells do not fill the domain.
     """
+    return tessellated(centers, weights, size, periodic=periodic, domain=domain)[0]
+
+
+def tessellated(centers, weights, size, *, periodic=True, domain="box"):
+    """The same as `laguerre` with what the search for neighbours cost.
+
+    Parameters
+    ----------
+    centers, weights, size, periodic, domain
+        As in `laguerre`.
+
+    Returns
+    -------
+    facets : Facets
+    again : float
+        Share of the cells that were begun more than once, since the start was too narrow or the room too small.
+    """
     centers, weights, size, periodic = _checked(centers, weights, size, periodic)
     check_domain(domain, size, periodic)
-    n = len(centers)
-    spacing = (domain_volume(domain, size) / n) ** (1.0 / 3.0)
+    spacing = (domain_volume(domain, size) / len(centers)) ** (1.0 / 3.0)
     wall = round_wall(domain, size, spacing)
     _check_round(centers, wall, domain)
-    counts = np.maximum(1, (size / (1.35 * spacing)).astype(np.int64))
-    grid = counts, *bin_points(centers, size, counts)
-    sites = kernels.Sites(centers, weights, weights.max(), size, periodic, *grid)
-    volumes, number, *columns = _joined(_cut_block(start, sites, wall, spacing) for start in range(0, n, BLOCK))
+    sites = filed(centers, weights, size, periodic, spacing)
+    volumes, number, links, (particle, side, *walls), again = _cut_all(sites, wall, spacing)
+    del sites
     _check_filled(volumes, domain_volume(domain, size), domain)
-    indices, image, area, distance, row, side, wall_area, wall_distance = columns
-    links = _matched(number, indices, image, area, distance, spacing)
-    facets = Facets(*links, row, np.minimum(side, ROUND_SIDE), wall_area, wall_distance, volumes)
-    return _with_normals(facets, side, centers, wall)
+    facets = Facets(*_matched(number, links, spacing), particle, np.minimum(side, ROUND_SIDE), *walls, volumes)
+    return _with_normals(facets, side, centers, wall), again
 
 
 def drop_empty_cells(packing, facets):
@@ -122,101 +144,116 @@ def _check_round(centers, wall, domain):
         )
 
 
-def _cut_block(start, sites, wall, spacing):
-    """Facets of a block of rows, links and walls apart.
+def filed(centers, weights, size, periodic, spacing):
+    """The sites in grids, one for each level of weight.
 
-    Volumes and numbers of links by row; indices, image, area and distance of links; row, side (planes of a round wall
-    from 6 on), area and distance of walls.
+    Parameters
+    ----------
+    centers : (n, 3) float array, m
+    weights : (n,) float array, m2
+    size : (3,) float array, m
+    periodic : (3,) bool array
+    spacing : float, m
+        Mean spacing of the sites.
+
+    Returns
+    -------
+    Sites
     """
-    rows = np.arange(start, min(len(sites.points), start + BLOCK))
-    volumes, number, neighbour, image, area, distance = _cut_rows(rows, sites, wall, spacing)
-    row, big = np.repeat(np.arange(len(rows)), number), area > SLIVER * spacing**2
-    link, end = big & (neighbour >= 0), big & (neighbour < 0)
-    links = (neighbour[link].astype(np.uint32), image[link], area[link], distance[link])
-    walls = (start + row[end], -1 - neighbour[end], area[end], distance[end])
-    return volumes, np.bincount(row[link], minlength=len(rows)), *links, *walls
+    large = np.sqrt(weights - weights.min()) / (FIRST * spacing)
+    level = np.ceil(np.log(np.maximum(large, 1.0)) / np.log(FACTOR)).astype(np.int8)
+    np.minimum(level, MAX_LEVELS - 1, out=level)
+    grids, first = [], 0
+    for here in np.flatnonzero(np.bincount(level)):
+        rows = np.flatnonzero(level == here)
+        width = WIDTH * (np.prod(size) / len(rows)) ** (1.0 / 3.0)
+        counts = np.maximum(1, size / width).astype(np.int64)
+        start, items = bin_points(centers[rows] if len(rows) < len(centers) else centers, size, counts)
+        before = sum(len(grid[4]) for grid in grids)
+        items = rows.astype(np.uint32)[items]
+        grids.append((weights[rows].max(), counts, first, start + before, items))
+        first += len(start)
+    heaviest, counts, first, start, items = zip(*grids, strict=True)
+    items = np.concatenate(items)
+    slots = np.empty((len(items), 4))
+    slots[:, :3], slots[:, 3] = centers[items], weights[items]
+    grids = np.array(heaviest), np.array(counts), np.array(first), np.concatenate(start), items, slots
+    return Sites(centers, weights, size, periodic, *grids)
 
 
-def _joined(parts):
-    """Columns of all blocks; those of the blocks are let go one after the other."""
-    columns = [list(column) for column in zip(*parts, strict=True)]
-    joined = []
-    while columns:
-        joined.append(np.concatenate(columns.pop(0)))
-    return joined
+class _Columns:
+    """Columns that grow together to a size that is only guessed at first; what is not yet written takes no memory."""
+
+    def __init__(self, kinds):
+        self.used, self.columns = 0, [np.empty(0, kind) for kind in kinds]
+
+    def grow(self, count, share):
+        """Room for so many more entries, which are that share of all, as slices of the columns."""
+        wanted = self.used + count
+        for k, column in enumerate(self.columns):
+            if wanted > len(column):
+                self.columns[k] = np.empty(int(1.05 * wanted / share) + 64, column.dtype)
+                self.columns[k][: self.used] = column[: self.used]
+        self.used = wanted
+        return [column[wanted - count : wanted] for column in self.columns]
+
+    def done(self):
+        return [column[: self.used] for column in self.columns]
 
 
-def _cut_rows(rows, sites, wall, spacing):
-    """Cut some rows, again and wider where a cell was not secured; flat columns of their facets."""
-    size, periodic = sites.size, sites.periodic
-    widest = size[periodic].min() if periodic.any() else 2 * size.max()
-    limits = kernels.Limits(min(2.5 * spacing, widest), ROOM, MOST_PLANES, 1e-11 * spacing)
-    done = []
-    while len(rows):
-        out = _empty_cut(len(rows), limits.most)
-        near = tangents_within(wall, sites.points[rows], limits.reach)
-        kernels.cut_cells(rows, sites, wall, near, limits, out)
-        good = out.status == kernels.OK
-        done.append((rows[good], _columns(out, good)))
-        _check_cut(out.status, sites, spacing, limits, widest)
-        rows, limits = rows[~good], _wider(limits, widest, np.any(out.status == kernels.TANGLED))
-    return _in_order(done)
+LINKS = (np.uint32, np.uint8, float, float)  # indices, image, area, distance
+WALLS = (np.int64, np.int64, float, float)  # particle, side, area, distance
+FACETS = ("neighbour", "image", "area", "distance")  # of a Cut
 
 
-def _wider(limits, widest, tangled):
-    """Limits for the next pass over what is left."""
-    return kernels.Limits(
-        min(1.35 * limits.reach, widest),
-        min(4 * limits.room, MOST_ROOM),
-        min(3 * limits.most, 2000),
-        4 * limits.eps if tangled else limits.eps,
-    )
+def _cut_all(sites, wall, spacing):
+    """Volumes, numbers of links, columns of links and of walls, and the share of cells begun more than once."""
+    n = len(sites.points)
+    volumes, number, again = np.empty(n), np.empty(n, np.int32), 0
+    links, walls = _Columns(LINKS), _Columns(WALLS)
+    with stage("cells") as done:
+        for start in range(0, n, BLOCK):
+            stop = min(n, start + BLOCK)
+            block, parts, begun = _cut_block(start, stop, sites, wall, spacing)
+            volumes[start:stop], number[start:stop] = block.volume, block.links
+            again += begun
+            link, end = _chunk_starts(block.links), _chunk_starts(block.ends)
+            to, (particle, *ends) = links.grow(link[-1], stop / n), walls.grow(end[-1], stop / n)
+            particle[:] = np.repeat(np.arange(start, stop), block.ends)
+            for chunks, cut in parts:
+                kernels.gather_facets(chunks, link, end, cut, kernels.Gathered(*to, *ends))
+            done(stop / n)
+    return volumes, number, links.done(), walls.done(), again / n
 
 
-def _check_cut(status, sites, spacing, limits, widest):
-    """Raise RuntimeError where another pass would not help."""
-    unsecured, overfull = np.sum(status == kernels.UNSECURED), np.any(status == kernels.OVERFLOW)
-    if limits.reach >= widest and unsecured:
-        raise RuntimeError(
-            f"laguerre: {unsecured} cells reach across the periodic box of {len(sites.points)} points; use more points"
-        )
-    left = np.sum(status != kernels.OK)
-    if (limits.room == MOST_ROOM and overfull) or (limits.eps > 1e-8 * spacing and left):
-        raise RuntimeError(f"laguerre: {left} cells could not be cut")
+def _chunk_starts(number):
+    """Where the facets of each chunk of rows begin, from the number of each row."""
+    total = np.add.reduceat(number.astype(np.int64), np.arange(0, len(number), kernels.CHUNK))
+    return np.concatenate([[0], np.cumsum(total)])
 
 
-def _empty_cut(n, most):
-    shape = (n, most)
-    return kernels.Cut(
-        status=np.empty(n, np.int8),
-        volume=np.empty(n),
-        number=np.zeros(n, np.int64),
-        neighbour=np.empty(shape, np.int64),
-        image=np.empty(shape, np.uint8),
-        area=np.empty(shape),
-        distance=np.empty(shape),
-    )
+def _cut_block(start, stop, sites, wall, spacing):
+    """Cut a block of rows; what became of them, their facets in parts (chunks and Cut), and how many began anew.
 
-
-def _columns(out, good):
-    """Volumes and numbers of facets of the good rows; neighbours, images, areas and distances of their facets."""
-    used = good[:, None] & (np.arange(out.area.shape[1]) < out.number[:, None])
-    return (
-        out.volume[good],
-        out.number[good],
-        *(part[used] for part in (out.neighbour, out.image, out.area, out.distance)),
-    )
-
-
-def _in_order(done):
-    """Merge the passes over one block of rows back into row order."""
-    rows = np.concatenate([r for r, _ in done])
-    volume, number, *facets = (np.concatenate(c) for c in zip(*(c for _, c in done), strict=True))
-    if len(done) == 1:
-        return volume, number, *facets
-    order = np.argsort(rows, kind="stable")
-    facet_order = np.argsort(np.repeat(rows, number), kind="stable")
-    return volume[order], number[order], *(column[facet_order] for column in facets)
+    Chunks that had too little room, or saw too little of a round wall, are cut again.
+    """
+    n, reach, parts = stop - start, REACH * spacing, []
+    # A large cell has as many neighbours as lie on its surface.
+    room = int(ROOM * kernels.CHUNK + LARGE * (sites.weights.max() - sites.weights.min()) / spacing**2)
+    todo = np.arange(-(-n // kernels.CHUNK))
+    rows = [np.empty(n, kind) for kind in (np.int8, np.uint8, float, np.int32, np.int32)]
+    again = np.zeros(n, dtype=bool)
+    while len(todo):
+        cut = _empty_cut(rows, len(todo), room)
+        near = tangents_within(wall, sites.points[start:stop], reach)
+        kernels.cut_cells(todo, start, sites, wall, near, _limits(sites, spacing, reach), cut)
+        blind = _unseen(cut.status, len(wall.normals) and reach < 2 * sites.size.max())
+        full = cut.used > room
+        redone = full | np.isin(todo, blind)
+        again |= (cut.times > 1) | np.isin(np.arange(n) // kernels.CHUNK, todo[redone])
+        parts.append((todo[~redone], cut if not redone.any() else _kept(cut, ~redone)))
+        todo, room, reach = todo[redone], max(room, int(1.1 * cut.used.max())), 1.35 * reach
+    return cut, parts, np.count_nonzero(again)
 
 
 def _check_filled(volumes, volume, domain):
@@ -225,9 +262,45 @@ def _check_filled(volumes, volume, domain):
         raise RuntimeError(f"laguerre: the cells fill the {domain} with a relative defect of {defect:.2e}")
 
 
-def _matched(number, indices, image, area, distance, spacing):
+def _unseen(status, rounded):
+    """Chunks with cells that a plane of a round wall not yet looked at may cut; RuntimeError where that cannot be."""
+    bad = status != kernels.OK
+    if not bad.any():
+        return np.empty(0, np.int64)
+    unsecured = np.count_nonzero(status == kernels.UNSECURED)
+    if np.count_nonzero(bad) > unsecured:
+        raise RuntimeError(f"laguerre: {np.count_nonzero(bad) - unsecured} cells could not be cut")
+    if not rounded:
+        raise RuntimeError(f"laguerre: {unsecured} cells reach across the periodic box; use more points")
+    return np.unique(np.flatnonzero(bad) // kernels.CHUNK)
+
+
+def _limits(sites, spacing, reach):
+    return kernels.Limits(
+        box=START * spacing,
+        widest=2.0 * sites.size.max(),
+        eps=1e-11 * spacing,
+        coarsest=1e-8 * spacing,
+        reach=reach,
+        lightest=sites.weights.min(),
+        sliver=SLIVER * spacing**2,
+    )
+
+
+def _empty_cut(rows, chunks, room):
+    kinds = np.int64, np.uint8, float, float
+    return kernels.Cut(*rows, np.empty(chunks, np.int64), *(np.empty((chunks, room), kind) for kind in kinds))
+
+
+def _kept(cut, good):
+    """The same with the facets of some chunks only."""
+    return cut._replace(used=cut.used[good], **{name: getattr(cut, name)[good] for name in FACETS})
+
+
+def _matched(number, links, spacing):
     """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
-    indptr = np.concatenate([[0], np.cumsum(number)])
+    indices, image, area, distance = links
+    indptr = np.concatenate([[0], np.cumsum(number, dtype=np.int64)])
     matched = np.empty(len(area))
     match_links(indptr, indices, image, area, matched)
     keep = matched > 0.0

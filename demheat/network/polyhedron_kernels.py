@@ -1,13 +1,20 @@
 """Convex polyhedra that planes are cut off from, compiled.
 
-Every vertex is the meeting of three planes, kept as an oriented triple of plane slots; cutting by a plane removes the
-vertices beyond the plane and closes the hole by a fan of new ones.
+Functions here that make no array are compiled without Numba's counting of references to them, which is most of the time
+of a function this short.
+
+Every vertex is the meeting of three planes, kept as an oriented triple of plane slots with the vertices at the other
+ends of its three edges; cutting by a plane takes away the vertices beyond it and closes the hole by a rim of new ones.
+Memory grows with the number of planes, not with its square.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 from numba import njit
+
+# Options of functions that make no array: no references are counted, and no division is checked.
+PLAIN = {"cache": True, "error_model": "numpy", "_nrt": False}
 
 
 class Polyhedron(NamedTuple):
@@ -17,11 +24,14 @@ class Polyhedron(NamedTuple):
 
     Attributes
     ----------
-    vertex : (4 p, 3) float array, m
-    triple : (4 p, 3) int16 array
+    x, y, z : (4 p,) float arrays, m
+        Vertices.
+    square : (4 p,) float array, m2
+        Squared distance of each vertex from the origin.
+    triple : (4 p, 3) int32 array
         Slots of the three planes that meet in each vertex, counter-clockwise seen from outside.
-    owner : (p, p) int16 array
-        The vertex whose triple holds a and then b, cyclically, stands at [a, b].
+    edge : (4 p, 3) int32 array
+        The vertex at the other end of the edge in which planes k and k + 1 (cyclically) of the triple meet.
     normal : (p, 3) float array
         Outward unit vectors.
     distance : (p,) float array, m
@@ -32,42 +42,48 @@ class Polyhedron(NamedTuple):
         Of the facets, by `measure`.
     above : (4 p,) float array, m
         Scratch: height of each vertex above the cutting plane.
-    edge : (4 p, 4) int64 array
-        Scratch: two planes of each cut edge, its vertex beyond the plane and that on this side.
-    follow : (p,) int64 array
-        Scratch: the plane that follows another along the rim of the cut.
+    gone : (4 p,) int32 array
+        Scratch: the vertices that are cut off.
+    begins : (p,) int32 array
+        Scratch: the new vertex whose triple begins with a plane.
     """
 
-    vertex: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    z: np.ndarray
+    square: np.ndarray
     triple: np.ndarray
-    owner: np.ndarray
+    edge: np.ndarray
     normal: np.ndarray
     distance: np.ndarray
     label: np.ndarray
     area: np.ndarray
     above: np.ndarray
-    edge: np.ndarray
-    follow: np.ndarray
+    gone: np.ndarray
+    begins: np.ndarray
 
 
 @njit(cache=True)
 def empty_polyhedron(most):
-    """Uninitialised memory of a Polyhedron of up to `most` planes."""
+    """Memory of a Polyhedron of up to `most` planes."""
     return Polyhedron(
-        np.empty((4 * most, 3)),
-        np.empty((4 * most, 3), np.int16),
-        np.empty((most, most), np.int16),
+        np.empty(4 * most),
+        np.empty(4 * most),
+        np.empty(4 * most),
+        np.empty(4 * most),
+        np.empty((4 * most, 3), np.int32),
+        np.empty((4 * most, 3), np.int32),
         np.empty((most, 3)),
         np.empty(most),
         np.empty(most, np.int64),
         np.empty(most),
         np.empty(4 * most),
-        np.empty((4 * most, 4), np.int64),
-        np.empty(most, np.int64),
+        np.empty(4 * most, np.int32),
+        np.zeros(most, np.int32),
     )
 
 
-@njit(cache=True)
+@njit(**PLAIN)
 def start_box(low, high, cell):
     """Begin a polyhedron as a box; slots 2k and 2k + 1 are the low and the high side of axis k.
 
@@ -87,39 +103,106 @@ def start_box(low, high, cell):
             cell.normal[side, k] = 0.0
         cell.normal[side, side // 2] = 2 * (side % 2) - 1
         cell.distance[side] = high[side // 2] if side % 2 else -low[side // 2]
-    vertex = cell.vertex
-    v = 0
-    for a in range(2):
-        for b in range(2):
-            for c in range(2):
-                vertex[v, 0] = high[0] if a else low[0]
-                vertex[v, 1] = high[1] if b else low[1]
-                vertex[v, 2] = high[2] if c else low[2]
-                p, q, r = a, 2 + b, 4 + c
-                if (a + b + c) % 2 == 0:  # keep every triple counter-clockwise seen from outside
-                    q, r = r, q
-                _put(v, p, q, r, cell.triple, cell.owner)
-                v += 1
-    return v
+    for v in range(8):
+        total = 0.0
+        for k in range(3):
+            end = (v >> (2 - k)) & 1
+            corner = high[k] if end else low[k]
+            if k == 0:
+                cell.x[v] = corner
+            elif k == 1:
+                cell.y[v] = corner
+            else:
+                cell.z[v] = corner
+            total += corner * corner
+            cell.triple[v, k] = 2 * k + end
+        cell.square[v] = total
+        if (v ^ (v >> 1) ^ (v >> 2)) & 1 == 0:  # keep every triple counter-clockwise seen from outside
+            cell.triple[v, 1], cell.triple[v, 2] = cell.triple[v, 2], cell.triple[v, 1]
+        for k in range(3):
+            # The edge of two planes runs along the axis of the third.
+            cell.edge[v, k] = v ^ (4 >> (cell.triple[v, (k + 2) % 3] // 2))
+    return 8
 
 
-@njit(cache=True)
-def _put(v, p, q, r, triple, owner):
-    triple[v, 0], triple[v, 1], triple[v, 2] = p, q, r
-    owner[p, q] = v
-    owner[q, r] = v
-    owner[r, p] = v
+@njit(**PLAIN)
+def _end(triple, w, b):
+    """Where plane b stands in the triple of vertex w: its edge with the plane that follows."""
+    return 0 if triple[w, 0] == b else (1 if triple[w, 1] == b else 2)
 
 
-@njit(cache=True)
+@njit(**PLAIN, inline="always")
+def _heights(cell, count, slot, eps):
+    """Height of each vertex above the plane in a slot; the number of those beyond it."""
+    nx, ny, nz, h = cell.normal[slot, 0], cell.normal[slot, 1], cell.normal[slot, 2], cell.distance[slot]
+    beyond = 0
+    for v in range(count):
+        cell.above[v] = nx * cell.x[v] + ny * cell.y[v] + nz * cell.z[v] - h
+        beyond += cell.above[v] > eps
+    return beyond
+
+
+@njit(**PLAIN, inline="always")
+def _add(cell, new, v, k, slot):
+    """Put a new vertex where edge k of vertex v crosses the plane in a slot."""
+    a, b, w = cell.triple[v, k], cell.triple[v, (k + 1) % 3], cell.edge[v, k]
+    t = cell.above[v] / (cell.above[v] - min(cell.above[w], 0.0))  # what is kept within eps above the plane is on it
+    x = cell.x[v] + t * (cell.x[w] - cell.x[v])
+    y = cell.y[v] + t * (cell.y[w] - cell.y[v])
+    z = cell.z[v] + t * (cell.z[w] - cell.z[v])
+    cell.x[new], cell.y[new], cell.z[new], cell.square[new] = x, y, z, x * x + y * y + z * z
+    cell.triple[new, 0], cell.triple[new, 1], cell.triple[new, 2] = a, b, slot
+    cell.edge[new, 0] = w
+    cell.edge[w, _end(cell.triple, w, b)] = new
+    cell.begins[a] = new
+    cell.above[new] = 0.0
+
+
+@njit(**PLAIN, inline="always")
+def _close(cell, first, total):
+    """Join the new vertices from `first` on to a rim; False unless they are one simple loop."""
+    v, steps = first, 0
+    while steps < total - first:
+        b = cell.triple[v, 1]
+        w = cell.begins[b]
+        if w < first or w >= total or cell.triple[w, 0] != b:
+            break
+        cell.edge[v, 1], cell.edge[w, 2] = w, v
+        v = w
+        steps += 1
+        if v == first:
+            break
+    return v == first and steps == total - first
+
+
+@njit(**PLAIN, inline="always")
+def _fill(cell, beyond, total, eps):
+    """Move the last vertices to the places of those that are gone; the new number of vertices."""
+    left, last = total - beyond, total - 1
+    for s in range(beyond):
+        hole = cell.gone[s]
+        if hole >= left:
+            break
+        while cell.above[last] > eps:
+            last -= 1
+        cell.x[hole], cell.y[hole], cell.z[hole] = cell.x[last], cell.y[last], cell.z[last]
+        cell.square[hole] = cell.square[last]
+        for k in range(3):
+            w = cell.edge[last, k]
+            cell.triple[hole, k], cell.edge[hole, k] = cell.triple[last, k], w
+            cell.edge[w, _end(cell.triple, w, cell.triple[last, (k + 1) % 3])] = hole
+        last -= 1
+    return left
+
+
+@njit(**PLAIN)
 def cut(cell, count, slot, eps):
     """Cut a polyhedron by the plane in a slot that it does not use yet.
 
     Parameters
     ----------
     cell : Polyhedron
-        Normal and distance of the slot are set. The newest vertices stand last: the plane did cut if the last vertex
-        has it.
+        Normal and distance of the slot are set.
     count : int
         Number of vertices.
     slot : int
@@ -128,100 +211,62 @@ def cut(cell, count, slot, eps):
 
     Returns
     -------
-    int
-        The new number of vertices: the old one if the plane misses, 0 if nothing is left, -1 where rounding tangles.
+    count : int
+        The new number of vertices: 0 if nothing is left, -1 where rounding tangles, which spoils the polyhedron.
+    new : int
+        How many of them lie on the plane: 0 if it misses, and the polyhedron is as it was.
     """
-    vertex, triple, owner = cell.vertex, cell.triple, cell.owner
-    above, edge, follow = cell.above, cell.edge, cell.follow
-    nx, ny, nz, h = cell.normal[slot, 0], cell.normal[slot, 1], cell.normal[slot, 2], cell.distance[slot]
-    removed = 0
+    beyond = _heights(cell, count, slot, eps)
+    if beyond == 0 or beyond == count:
+        return count - beyond, 0
+    total, s = count, 0
     for v in range(count):
-        above[v] = nx * vertex[v, 0] + ny * vertex[v, 1] + nz * vertex[v, 2] - h
-        if above[v] > eps:
-            removed += 1
-    if removed == 0:
-        return count
-    if removed == count:
-        return 0
-    edges = 0
-    for v in range(count):
-        if above[v] > eps:
+        if cell.above[v] > eps:
+            cell.gone[s] = v
+            s += 1
             for k in range(3):
-                a, b = triple[v, k], triple[v, (k + 1) % 3]
-                if above[owner[b, a]] <= eps:
-                    edge[edges, 0], edge[edges, 1], edge[edges, 2], edge[edges, 3] = a, b, v, owner[b, a]
-                    follow[a] = b
-                    edges += 1
-    # The hole must be bounded by one simple loop.
-    a, steps = edge[0, 0], 0
-    while True:
-        a = follow[a]
-        steps += 1
-        if a == edge[0, 0] or steps > edges:
-            break
-    if steps != edges or count + edges > len(vertex):
-        return -1
-    total = count
-    for e in range(edges):
-        v, w = edge[e, 2], edge[e, 3]
-        t = above[v] / (above[v] - min(above[w], 0.0))  # a vertex kept within eps above the plane stands for it
-        for k in range(3):
-            vertex[total, k] = vertex[v, k] + t * (vertex[w, k] - vertex[v, k])
-        triple[total, 0], triple[total, 1], triple[total, 2] = edge[e, 0], edge[e, 1], slot
-        above[total] = 0.0
-        total += 1
-    kept = 0
-    for v in range(total):
-        if above[v] <= eps:
-            for k in range(3):
-                vertex[kept, k] = vertex[v, k]
-            _put(kept, triple[v, 0], triple[v, 1], triple[v, 2], triple, owner)
-            kept += 1
-    return kept
+                if cell.above[cell.edge[v, k]] <= eps:
+                    if total == len(cell.above):
+                        return -1, 0
+                    _add(cell, total, v, k, slot)
+                    total += 1
+    if total == count or not _close(cell, count, total):
+        return -1, 0
+    return _fill(cell, beyond, total, eps), total - count
 
 
-@njit(cache=True)
-def measure(cell, count):
-    """Write the facet areas of a polyhedron by slot; only those of planes that a vertex has are touched.
+@njit(**PLAIN)
+def measure(cell, count, planes):
+    """Write the facet areas of a polyhedron by slot.
 
     Parameters
     ----------
     cell : Polyhedron
     count : int
         Number of vertices.
+    planes : int
+        Slots in use: areas of those that have no facet become 0.
 
     Returns
     -------
     float, m3
         Its volume.
     """
-    vertex, triple, owner = cell.vertex, cell.triple, cell.owner
-    normal, distance, area = cell.normal, cell.distance, cell.area
+    for f in range(planes):
+        cell.area[f] = 0.0
     for v in range(count):
         for k in range(3):
-            area[triple[v, k]] = 0.0
-    for v in range(count):
-        for k in range(3):
-            f, b = triple[v, k], triple[v, (k + 2) % 3]
-            w = owner[f, b]
-            cx = vertex[v, 1] * vertex[w, 2] - vertex[v, 2] * vertex[w, 1]
-            cy = vertex[v, 2] * vertex[w, 0] - vertex[v, 0] * vertex[w, 2]
-            cz = vertex[v, 0] * vertex[w, 1] - vertex[v, 1] * vertex[w, 0]
-            area[f] += 0.5 * (normal[f, 0] * cx + normal[f, 1] * cy + normal[f, 2] * cz)
+            w = cell.edge[v, k]
+            if w < v:
+                continue
+            # Half the cross product of both ends; seen from outside plane b is on the left of the way from v to w.
+            a, b = cell.triple[v, k], cell.triple[v, (k + 1) % 3]
+            x = 0.5 * (cell.y[v] * cell.z[w] - cell.z[v] * cell.y[w])
+            y = 0.5 * (cell.z[v] * cell.x[w] - cell.x[v] * cell.z[w])
+            z = 0.5 * (cell.x[v] * cell.y[w] - cell.y[v] * cell.x[w])
+            cell.area[b] += cell.normal[b, 0] * x + cell.normal[b, 1] * y + cell.normal[b, 2] * z
+            cell.area[a] -= cell.normal[a, 0] * x + cell.normal[a, 1] * y + cell.normal[a, 2] * z
     volume = 0.0
-    for v in range(count):
-        for k in range(3):
-            f = triple[v, k]
-            # Each facet is met once per vertex: count it at its lowest vertex only.
-            first, w = True, owner[f, triple[v, (k + 2) % 3]]
-            while w != v:
-                if w < v:
-                    first = False
-                    break
-                m = 0
-                while triple[w, m] != f:
-                    m += 1
-                w = owner[f, triple[w, (m + 2) % 3]]
-            if first:
-                volume += distance[f] * area[f] / 3.0
-    return volume
+    for f in range(planes):
+        volume += cell.distance[f] * cell.area[f]
+    return volume / 3.0

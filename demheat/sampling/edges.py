@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.network.base import SIDES, branches, row_numbers, wall_normals
+from demheat.network.base import SIDES, branches, radical_distances, row_numbers, wall_normals
 
 # Facets smaller than this part of their cell's size lie away from the line between the two centres. Facets lie on an
 # interface if the phases change within this part of the cell's width on either side of them.
@@ -69,7 +69,8 @@ def _interfaces(scene, network, solution):
     row, other = row[here], other[here].astype(np.int64)
     ends = np.concatenate([[0], np.cumsum(here)])[network.indptr]
     step = branches(network.centers, network.size, ends, other, network.image[here])
-    normal, away = step / np.linalg.norm(step, axis=1)[:, None], network.distance[here]
+    normal, weight = step / np.linalg.norm(step, axis=1)[:, None], network.radii**2
+    away = radical_distances(np.einsum("ij,ij->i", step, step), weight[row], weight[other])
     rise = solution.temperature[other] - solution.temperature[row] + step @ solution.mean_gradient
     slope = network.conductance[here] * rise / (k[row] * network.area[here])
     value = solution.temperature[row] + away * (slope - normal @ solution.mean_gradient)

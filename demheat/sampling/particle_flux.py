@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.network.base import wall_normals
+from demheat.network.base import link_distances, wall_normals
 from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling import particle_flux_kernels as kernels
 
@@ -51,7 +51,7 @@ def particle_flux(network, solution, *, split="half"):
         raise ValueError(f"network, solution: must be of the same particles, not {sizes}")
     flow = np.empty((len(network.volumes), 3))
     state = links_of(network), places_of(network), solution.mean_gradient, np.nan_to_num(solution.temperature)
-    kernels.shared_moments(*state, network.radii, network.distance, SPLITS[split], flow)
+    kernels.shared_moments(*state, network.radii, link_distances(network), SPLITS[split], flow)
     if split == "cell":
         depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)
         np.add.at(flow, network.wall_particle, depth)

@@ -11,7 +11,7 @@ import demheat
 from demheat import Calibrated, Laguerre, Layer, Material, Platonic, Scene, Sphere
 from demheat.build import network_of
 from demheat.laws import LAWS, POLICIES, RULES, UNASKED, WALL_RULES
-from demheat.network.base import branches, row_numbers
+from demheat.network.base import branches, link_distances, row_numbers
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
 
@@ -185,7 +185,7 @@ def test_a_network_has_all_that_evaluation_needs(scene, law):
     network, packing = network_of(scene, packed(scene), law), packed(scene)
     n, m, w = len(network.volumes), len(network.indices), len(network.wall_particle)
     assert network.centers.shape == (n, 3) and network.radii.shape == (n,) and network.phase.shape == (n,)
-    assert network.conductance.shape == network.area.shape == network.distance.shape == (m,)
+    assert network.conductance.shape == network.area.shape == link_distances(network).shape == (m,)
     assert network.wall_area.shape == network.wall_conductance.shape == (w,) and (w > 0) == (not scene.periodic)
     assert_array_equal(network.periodic, [scene.periodic] * 3)
     assert_array_equal(network.size, packing.size)
@@ -197,7 +197,7 @@ def test_a_network_has_all_that_evaluation_needs(scene, law):
     length = np.linalg.norm(
         branches(network.centers, network.size, network.indptr, network.indices, network.image), axis=1
     )
-    share = np.clip(network.distance / length, 0.0, 1.0)
+    share = np.clip(link_distances(network) / length, 0.0, 1.0)
     series = 1.0 / (share / k[row] + (1.0 - share) / k[network.indices])
     assert_allclose(network.conductance, series * network.area / length, rtol=1e-12)  # rounding
     walls = k[network.wall_particle] * network.wall_area / network.wall_distance

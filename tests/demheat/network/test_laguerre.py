@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
 
 from demheat.network.base import branches, row_numbers
-from demheat.network.laguerre import drop_empty_cells, laguerre
+from demheat.network.laguerre import drop_empty_cells, laguerre, tessellated
 from demheat.packing.base import make_packing
 
 
@@ -101,6 +101,38 @@ def test_bits_do_not_depend_on_threads():
     finally:
         numba.set_num_threads(before)
     assert all(np.array_equal(a, b) for a, b in zip(*results, strict=True))
+
+
+def graded(ratio, n, *, seed=0):
+    """Random points with weights of spheres, one of them large, in which none of the others lies."""
+    rng = np.random.default_rng(seed)
+    small = 0.5 * n ** (-1 / 3)
+    points, radii = rng.random((n, 3)), rng.uniform(0.7, 1.3, n) * small
+    points[0], radii[0] = 0.5, ratio * small
+    kept = np.linalg.norm(points - 0.5, axis=1) > radii[0]
+    kept[0] = True
+    return points[kept], radii[kept] ** 2
+
+
+@pytest.mark.parametrize("ratio, n, periodic", [(1, 3000, True), (10, 6000, True), (30, 30_000, False)])
+def test_cells_are_rarely_begun_again(ratio, n, periodic):
+    """The large one may be, for want of room."""
+    centers, weights = graded(ratio, n)
+    facets, again = tessellated(centers, weights, (1, 1, 1), periodic=periodic)
+    assert again < 0.01
+    assert_allclose(facets.volumes.sum(), 1.0, rtol=1e-12)
+    if ratio > 1:
+        assert np.diff(facets.indptr)[0] > 80  # the large one touches very many
+
+
+def test_chunks_without_room_are_cut_again(monkeypatch):
+    centers, weights = cloud()
+    right = laguerre(centers, weights, (1, 1, 1))
+    monkeypatch.setattr("demheat.network.laguerre.ROOM", 14)
+    monkeypatch.setattr("demheat.network.laguerre.BLOCK", 256)
+    facets, again = tessellated(centers, weights, (1, 1, 1))
+    assert 0 < again < 1
+    assert all(np.array_equal(a, b) for a, b in zip(right, facets, strict=True))
 
 
 @pytest.mark.parametrize("periodic", [True, False])

@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network import laguerre_kernels as kernels
-from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import round_wall, tangents_within
+from demheat.network.laguerre import filed
 from demheat.scene import ROUND_AXES, domain_volume
 
 SIZE = np.array([2.0, 1.0, 1.0])
@@ -16,23 +16,40 @@ SIZE = np.array([2.0, 1.0, 1.0])
 TINY = 1e-9
 
 
-def cut_all(points, weights, size, periodic, wall):
-    """Cells of all points: the cutter sees all of them, and across a periodic side one image each way."""
-    n, counts = len(points), np.array([3, 2, 2])
-    grid = counts, *bin_points(points, size, counts)
-    sites = kernels.Sites(points, weights, weights.max(), size, periodic, *grid)
-    shape = (n, 60)
-    out = kernels.Cut(
-        np.full(n, -1, np.int8),
-        np.full(n, np.nan),
-        np.zeros(n, np.int64),
+def cut_all(points, weights, size, periodic, wall, *, room=60 * kernels.CHUNK, reach=9.0, box=0.5):
+    """Cells of all points, and their facets brought together: links in rows and walls."""
+    n, spacing = len(points), (size.prod() / len(points)) ** (1 / 3)
+    sites = filed(points, weights, size, periodic, spacing)
+    chunks = np.arange(-(-n // kernels.CHUNK))
+    kinds = (np.int8, np.uint8, float, np.int32, np.int32)
+    shape = (len(chunks), room)
+    cut = kernels.Cut(
+        *(np.full(n, 99, kind) for kind in kinds),
+        np.zeros(len(chunks), np.int64),
         *(np.zeros(shape, kind) for kind in (np.int64, np.uint8, float, float)),
     )
-    reach = size[periodic].min() if periodic.any() else 2 * size.max()
-    limits = kernels.Limits(reach, 300, 60, 1e-12)
-    near = tangents_within(wall, points, limits.reach)
-    kernels.cut_cells(np.arange(n), sites, wall, near, limits, out)
+    limits = kernels.Limits(box, 2 * size.max(), 1e-12, 1e-9, reach, weights.min(), 0.0)
+    kernels.cut_cells(chunks, 0, sites, wall, tangents_within(wall, points, reach), limits, cut)
+    return cut
+
+
+def gathered(cut):
+    """Facets of the first chunk, which has all cells, by `gather_facets`."""
+    zero, links, ends = np.zeros(2, np.int64), cut.links.sum(), cut.ends.sum()
+    kinds = [np.uint32, np.uint8, float, float], [np.int64, float, float]
+    columns = [np.empty(m, kind) for m, each in zip((links, ends), kinds, strict=True) for kind in each]
+    out = kernels.Gathered(*columns)
+    kernels.gather_facets(np.array([0]), zero, zero, cut, out)
     return out
+
+
+def facets_of(i, cut, out):
+    """Facets of a cell: (area, distance) by neighbour and image."""
+    e, w = (slice(number[:i].sum(), number[: i + 1].sum()) for number in (cut.links, cut.ends))
+    found = zip(out.indices[e], out.image[e], out.area[e], out.distance[e], strict=True)
+    walls = zip(out.side[w], out.wall_area[w], out.wall_distance[w], strict=True)
+    there = {(int(j), int(code)): (a, d) for j, code, a, d in found}
+    return there | {(-1 - int(s), 13): (a, d) for s, a, d in walls}
 
 
 def half_spaces(i, points, weights, size, periodic, wall):
@@ -70,54 +87,51 @@ def test_cells_are_those_of_all_half_spaces(periodic, domain):
     periodic = np.array([periodic, False, False])
     wall = round_wall(domain, size, 0.6)
     out = cut_all(points, weights, size, periodic, wall)
-    assert out.volume[-1] == 0.0 and out.number[-1] == 0
-    # A cell at a round wall may be too wide, before the wall cuts it, to know that no other point matters.
-    secured = out.status == kernels.OK
-    assert np.all(secured if domain == "box" else secured | (out.status == kernels.UNSECURED)) and secured.mean() > 0.8
-    for i in np.flatnonzero(secured)[:-1:2]:
+    assert out.volume[-1] == 0.0 and out.links[-1] == out.ends[-1] == 0
+    assert np.all(out.status == kernels.OK)
+    all_of = gathered(out)
+    for i in range(0, len(points) - 1, 2):
         labels, normals, distances = half_spaces(i, points, weights, size, periodic, wall)
         areas, volume = measured(normals, distances)
         right = {label: (a, d) for label, a, d in zip(labels, areas, distances, strict=True) if a > TINY}
-        facets = slice(0, out.number[i])
-        found = {
-            (int(j), int(code)): (a, d)
-            for j, code, a, d in zip(
-                out.neighbour[i, facets],
-                out.image[i, facets],
-                out.area[i, facets],
-                out.distance[i, facets],
-                strict=True,
-            )
-            if a > TINY
-        }
+        found = {label: pair for label, pair in facets_of(i, out, all_of).items() if pair[0] > TINY}
         assert set(found) == set(right)
         # Rounding of coordinates of order one, in planes that meet at small angles.
         assert_allclose([found[label] for label in right], list(right.values()), atol=1e-12)
         assert_allclose(out.volume[i], volume, rtol=1e-12)
-    if secured.all():
-        # They fill the body: a check of the twin as well.
-        assert_allclose(out.volume.sum(), domain_volume(domain, size), rtol=1e-12)
+    # They fill the body: a check of the twin as well.
+    assert_allclose(out.volume.sum(), domain_volume(domain, size), rtol=1e-12)
 
 
 @pytest.mark.twin
 def test_cells_that_need_more_say_so():
     rng = np.random.default_rng(0)
-    points, size = rng.random((30, 3)) * SIZE, SIZE
-    flat = round_wall("box", size, 0.5)
-    counts, none = np.array([3, 2, 2]), np.zeros(30)
-    sites = kernels.Sites(points, none, 0.0, size, np.zeros(3, bool), counts, *bin_points(points, size, counts))
-    for limits, facets, state in (
-        (kernels.Limits(0.1, 300, 60, 1e-12), 60, kernels.UNSECURED),
-        (kernels.Limits(2.0, 5, 60, 1e-12), 60, kernels.OVERFLOW),  # sites within reach
-        (kernels.Limits(2.0, 300, 8, 1e-12), 60, kernels.OVERFLOW),  # planes
-        (kernels.Limits(2.0, 300, 60, 1e-12), 3, kernels.OVERFLOW),
-    ):
-        out = kernels.Cut(
-            np.zeros(30, np.int8),
-            np.zeros(30),
-            np.zeros(30, np.int64),
-            *(np.zeros((30, facets), kind) for kind in (np.int64, np.uint8, float, float)),
-        )
-        near = tangents_within(flat, points, limits.reach)
-        kernels.cut_cells(np.arange(30), sites, flat, near, limits, out)
-        assert np.all(out.status == state)
+    points = rng.random((30, 3)) * SIZE
+    box, ball = (round_wall(domain, np.ones(3), 0.3) for domain in ("box", "sphere"))
+    whole = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box)
+    short = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box, room=20)
+    # All facets are counted where there is no room to note them.
+    assert short.used[0] == whole.used[0] > 20 and np.all(short.status == kernels.OK)
+    # A start box that is too narrow is widened.
+    narrow = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box, box=0.05)
+    assert np.all(narrow.times > whole.times)
+    assert_allclose(narrow.volume, whole.volume, rtol=1e-12)
+    pair = cut_all(points[:2], np.zeros(2), SIZE, np.ones(3, bool), box)
+    assert np.all(pair.status == kernels.UNSECURED)
+    points = points[np.linalg.norm(points - 0.5, axis=1) < 0.45]
+    blind = cut_all(points, np.zeros(len(points)), np.ones(3), np.zeros(3, bool), ball, reach=0.01)
+    assert np.any(blind.status == kernels.UNSECURED)
+
+
+@pytest.mark.twin
+def test_large_cells_find_room():
+    """A heavy site among many light ones has more neighbours than there is room for at first."""
+    rng = np.random.default_rng(0)
+    points, weights = rng.random((3000, 3)), np.zeros(3000)
+    points = points[np.linalg.norm(points - 0.5, axis=1) > 0.32]
+    points[0], weights = 0.5, np.zeros(len(points))
+    weights[0] = 0.3**2
+    out = cut_all(points, weights, np.ones(3), np.ones(3, bool), round_wall("box", np.ones(3), 0.3))
+    assert np.all(out.status == kernels.OK)
+    assert out.times[0] > 1 and out.links[0] > kernels.PLANES
+    assert_allclose(out.volume.sum(), 1.0, rtol=1e-12)

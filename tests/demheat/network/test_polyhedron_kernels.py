@@ -14,19 +14,26 @@ def box():
     return cell, start_box(LOW, HIGH, cell)
 
 
+def vertices(cell, count):
+    return np.column_stack([cell.x, cell.y, cell.z])[:count]
+
+
 def check(cell, count, planes):
-    """Corners, the planes that meet in each, facet areas and the volume."""
+    """Corners, the planes that meet in each, the edges between them, facet areas and the volume."""
     normals, distances = cell.normal[:planes], cell.distance[:planes]
     right = corners(normals, distances)
     # Rounding of coordinates of order one; planes that meet at small angles magnify it.
-    apart = np.linalg.norm(cell.vertex[:count, None] - right, axis=2)
+    apart = np.linalg.norm(vertices(cell, count)[:, None] - right, axis=2)
     assert apart.min(axis=0).max() < 1e-12 and apart.min(axis=1).max() < 1e-12
-    for vertex, triple in zip(cell.vertex[:count], cell.triple[:count], strict=True):
+    for vertex, triple in zip(vertices(cell, count), cell.triple[:count], strict=True):
         assert_allclose(normals[triple] @ vertex, distances[triple], atol=1e-13)
         assert np.linalg.det(normals[triple]) > 0  # counter-clockwise from outside
-    cell.area[:planes] = 0.0
+    for v, k in np.ndindex(count, 3):
+        a, b, w = cell.triple[v, k], cell.triple[v, (k + 1) % 3], cell.edge[v, k]
+        assert (b, a) in zip(cell.triple[w], np.roll(cell.triple[w], -1), strict=True)
+    assert_allclose(cell.square[:count], (vertices(cell, count) ** 2).sum(axis=1), rtol=1e-14)
     areas, volume = measured(normals, distances)
-    assert_allclose(measure(cell, count), volume, rtol=1e-12)
+    assert_allclose(measure(cell, count, planes), volume, rtol=1e-12)
     assert_allclose(cell.area[:planes], areas, atol=1e-12)
     return volume
 
@@ -47,14 +54,14 @@ def test_cuts_leave_what_the_half_spaces_have_in_common(seed):
     for _ in range(12):
         normal = rng.standard_normal(3)
         cell.normal[planes], cell.distance[planes] = normal / np.linalg.norm(normal), rng.uniform(0.3, 1.2)
-        misses = np.all(cell.vertex[:count] @ cell.normal[planes] <= cell.distance[planes])
-        before, count = count, cut(cell, count, planes, EPS)
+        misses = np.all(vertices(cell, count) @ cell.normal[planes] <= cell.distance[planes])
+        before, (count, new) = count, cut(cell, count, planes, EPS)
         assert count > 0
         if misses:
-            assert count == before and not np.any(cell.triple[:count] == planes)
+            assert (count, new) == (before, 0) and not np.any(cell.triple[:count] == planes)
             missed += 1
         else:
-            assert cell.triple[count - 1, 2] == planes
+            assert new == np.sum(cell.triple[:count] == planes)
             planes += 1
     assert 0 < missed < 9
     assert 0.0 < check(cell, count, planes) < np.prod(HIGH - LOW)
@@ -64,4 +71,4 @@ def test_cuts_leave_what_the_half_spaces_have_in_common(seed):
 def test_nothing_is_left_beyond_a_plane():
     cell, count = box()
     cell.normal[6], cell.distance[6] = [0.0, 1.0, 0.0], -0.8
-    assert cut(cell, count, 6, EPS) == 0
+    assert cut(cell, count, 6, EPS) == (0, 0)

@@ -17,7 +17,7 @@ from demheat.calibration import calibration, calibration_scene
 from demheat.conduction.steady import solve_steady
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre
-from demheat.network.base import branches, row_numbers
+from demheat.network.base import branches, link_distances, row_numbers
 from demheat.packing.base import make_packing
 from demheat.packing.cache import relaxed
 from demheat.sampling import halo
@@ -333,7 +333,7 @@ def test_every_split_conserves_the_flux_of_a_periodic_cell(law):
     shares = {
         "half": np.full(len(here), 0.5),
         "radii": network.radii[here] / (network.radii[here] + network.radii[there]),
-        "cell": network.distance / np.linalg.norm(step, axis=1),
+        "cell": link_distances(network) / np.linalg.norm(step, axis=1),
     }
     for split, share in shares.items():
         found = particle_flux(*parts, split=split)
