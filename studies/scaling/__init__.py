@@ -64,7 +64,7 @@ def _cases():
             yield methods.case("fft", part="elements", voxels=voxels, cores=threads)
     yield methods.case("dem", part="before", particles=PARTICLES[-1], seed=0, then=BEFORE)
     yield methods.case("dem", part="time", particles=PARTICLES[-1], seed=0)
-    for particles in PARTICLES[2:5:2]:
+    for particles in PARTICLES[2:4]:
         yield methods.case("dem", part="cutter", particles=particles, seed=0)
     yield methods.case("dem", part="start", particles=PARTICLES[2], seed=0)
 
@@ -93,9 +93,9 @@ def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
     if part in ("before", "time", "start"):
         return {"before": whole.before_row, "time": whole.time_row, "start": whole.start_row}[part](**knobs)
     if part == "cutter":
-        from studies.common.cutter import beside_voro
+        from studies.common.cutter import compared
 
-        return beside_voro(**knobs)
+        return compared(**knobs)
     scene = rows.cell() if part == "elements" else rows.scene_of(number, kind, fraction)
     if method != "dem":
         return rows.solved_row(scene, method=method, **knobs)
@@ -159,11 +159,13 @@ def _engine(df):
     rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
     if len(rows):
         yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.25
-    rows = pick(df, part="cutter", particles=MANY)
+    rows = pick(df, part="cutter", particles=PARTICLES[3])
     if len(rows):
-        yield "Cells of two threads: efficiency", rows["efficiency"].iloc[0], ">= 0.8"
-        yield "Cells that are cut again, share", rows["redone"].iloc[0], 0.01
-        yield "Cells: CPU time over that of Voro++", rows["voro_ratio"].iloc[0], 0.25
+        row = rows.iloc[0]
+        yield "Cells: efficiency of two threads", row["efficiency"], ">= 0.8"
+        yield "Cells: share begun again", row["again"], 0.01
+        if row["ratio"] == row["ratio"]:
+            yield "Cells: CPU time over that of Voro++", row["ratio"], 0.25
     rows = pick(df, part="start")
     if len(rows):
         yield "First solve, nothing compiled: wall seconds", rows["first_s"].iloc[0], 20.0
