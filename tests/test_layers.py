@@ -71,6 +71,7 @@ LAYERS = {
         "demheat.threads",
         "demheat.process_state",
         "demheat.progress",
+        "demheat.blocks",
         "demheat.compiled",
         "demheat.network",
         "demheat.conduction",

@@ -8,6 +8,7 @@ from scipy import sparse
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
@@ -246,7 +247,8 @@ def _jacobi(system):
     links = links_of(system.network)
 
     def solve(r, x, limit, most):
-        return abs(kernels.conjugate_gradients(links, system.diagonal, r, x, limit, most)), x
+        with stage("equations"):
+            return jacobi(links, system.diagonal, r, x, limit, most), x
 
     return solve
 

@@ -142,8 +142,8 @@ def _advance(alpha, p, q, inverse, x, r, z, sums):
 
 
 @njit(cache=True)
-def conjugate_gradients(links, diagonal, r, x, limit, most):
-    """Solve A dx = r by Jacobi-preconditioned conjugate gradients, adding dx to x in place.
+def conjugate_gradients(links, diagonal, r, x, limit, most, p, rz):
+    """Solve A dx = r by Jacobi-preconditioned conjugate gradients, adding dx to x in place, or go on with it.
 
     Parameters
     ----------
@@ -157,6 +157,10 @@ def conjugate_gradients(links, diagonal, r, x, limit, most):
         Stop when |r| is at most this.
     most : int
         Iterations at most.
+    p : (n,) float array, K, in and out
+        Direction of the next iteration.
+    rz : (1,) float array, W K, in and out
+        0 to begin; else p, rz, r and x are those of the call before.
 
     Returns
     -------
@@ -169,22 +173,24 @@ def conjugate_gradients(links, diagonal, r, x, limit, most):
     inverse = np.empty(n)
     for i in range(n):
         inverse[i] = 1.0 / diagonal[i] if diagonal[i] > 0.0 else 0.0
-    z = inverse * r
-    p = z.copy()
-    q = np.empty(n)
-    rz = np.sum(r * z)
-    if np.sqrt(np.sum(r * r)) <= limit:
-        return 0
+    z, q = np.empty(n), np.empty(n)
+    if rz[0] == 0.0:
+        for i in range(n):
+            p[i] = inverse[i] * r[i]
+        rz[0] = np.sum(r * p)
+        if np.sqrt(np.sum(r * r)) <= limit:
+            return 0
     for iteration in range(1, most + 1):
         _apply(links, diagonal, p, q, partial)
         pq = partial.sum()
         if pq <= 0.0:
             return -iteration
-        _advance(rz / pq, p, q, inverse, x, r, z, sums)
+        _advance(rz[0] / pq, p, q, inverse, x, r, z, sums)
         if np.sqrt(sums[1].sum()) <= limit:
             return iteration
-        before, rz = rz, sums[0].sum()
-        direct(rz / before, z, p)
+        before = rz[0]
+        rz[0] = sums[0].sum()
+        direct(rz[0] / before, z, p)
     return -most
 
 

@@ -8,16 +8,15 @@ import warnings
 
 import numpy as np
 
-from demheat.gallery import EDGE, EPOXY, SILICA
+from demheat.gallery import EPOXY, SILICA, dispersion, simple_cubic
 from studies.common import silica_epoxy
 from studies.harness import methods
 from studies.harness.cost import measured, triad_gbs
 
 # Particles in one replica of the packing, at most: what is repeated is soon made and kept.
 REPLICA = 130_000
-GAP = 0.02  # least distance of two surfaces, in diameters
-# Radius of the largest over that of the smallest sphere; their logarithms are evenly spread.
-LARGEST = 10.0
+# Radius of the largest over that of the smallest sphere.
+RATIOS = {"equal": 1.0, "polydisperse": 10.0}
 CONTRAST = SILICA.conductivity / EPOXY.conductivity
 # Where the field is asked for.
 POINTS = 10_000
@@ -40,20 +39,9 @@ def scene_of(number, kind, fraction):
     -------
     Scene
     """
-    from demheat.gallery import simple_cubic
-    from demheat.packing.dispersion import dispersion_scene
-
     if number == 1:
         return simple_cubic(CONTRAST, fraction=fraction, matrix=EPOXY)
-    return dispersion_scene(
-        number,
-        fraction=fraction,
-        size=(EDGE, EDGE, EDGE),
-        gap=GAP,
-        radii=None if kind == "equal" else np.geomspace(1.0, LARGEST, number),
-        matrix=EPOXY,
-        inclusion=SILICA,
-    )
+    return dispersion(number, fraction=fraction, ratio=RATIOS[kind])
 
 
 def cell():

@@ -7,8 +7,8 @@ from scipy import sparse
 from scipy.sparse import csgraph
 from scipy.sparse.linalg import LinearOperator, cg
 
-from demheat.conduction import steady_kernels
 from demheat.conduction.integrators import transient_kernels
+from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import CYCLE
 from demheat.network.base import row_numbers
 from demheat.process_state import one_blas_thread, seeded
@@ -105,7 +105,7 @@ def _clusters(system):
 def _jacobi(system):
     def iterate(g, r, y, limit):
         diagonal = system.diagonal + system.capacity / g
-        return abs(steady_kernels.conjugate_gradients(system.links, diagonal, r, y, limit, MOST))
+        return jacobi(system.links, diagonal, r, y, limit, MOST)
 
     return iterate
 

@@ -67,6 +67,22 @@ def textbook(a, diagonal, b, x, count):
     return x, r
 
 
+def fresh(n):
+    return np.full(n, np.nan), np.zeros(1)
+
+
+def test_conjugate_gradients_go_on_where_they_stopped():
+    n = 40
+    links, diagonal = balance(n)
+    (b, start), whole, parts = vectors(2, n), fresh(n), fresh(n)
+    b[-1] = 0.0  # no equation
+    once, twice = (b.copy(), start.copy()), (b.copy(), start.copy())
+    kernels.conjugate_gradients(links, diagonal, *once, 0.0, 7, *whole)
+    for count in (3, 1, 3):
+        kernels.conjugate_gradients(links, diagonal, *twice, 0.0, count, *parts)
+    assert np.array_equal(once, twice) and np.array_equal(whole[0], parts[0])
+
+
 def test_conjugate_gradients():
     n = 40
     links, diagonal = balance(n)
@@ -74,17 +90,17 @@ def test_conjugate_gradients():
     b[-1] = 0.0  # no equation
     for count in (1, 4):
         r, x = b.copy(), start.copy()
-        assert kernels.conjugate_gradients(links, diagonal, r, x, 0.0, count) == -count
+        assert kernels.conjugate_gradients(links, diagonal, r, x, 0.0, count, *fresh(n)) == -count
         # Rounding, before errors of directions have had time to grow.
         assert_allclose((x, r), textbook(a, diagonal, b, start, count), rtol=0, atol=1e-12)
     r, x = b.copy(), start.copy()
-    done = kernels.conjugate_gradients(links, diagonal, r, x, 1e-11, 200)
+    done = kernels.conjugate_gradients(links, diagonal, r, x, 1e-11, 200, *fresh(n))
     assert 10 < done < 60 and np.linalg.norm(r) <= 1e-11
     # The residual of 1e-11 over the least eigenvalue, which is above 1e-2.
     assert np.linalg.eigvalsh(a[:-1, :-1])[0] > 1e-2
     assert_allclose((x - start)[:-1], np.linalg.solve(a[:-1, :-1], b[:-1]), rtol=0, atol=1e-9)
     assert x[-1] == start[-1]
-    assert kernels.conjugate_gradients(links, diagonal, r, x, 1e-3, 200) == 0  # small enough as it is
+    assert kernels.conjugate_gradients(links, diagonal, r, x, 1e-3, 200, *fresh(n)) == 0  # small enough as it is
 
 
 def test_sums_of_rows():
