@@ -26,8 +26,8 @@ class Axes(NamedTuple):
     ----------
     swap : (n,) float array
         Exchange of y and z, in the order in which `lane_kernels` reads it.
-    along : (order + 1, order + 1, order + 1) float array
-        Entry [m, l', l]: from multipoles l to local coefficients l' at the distance 1 along z.
+    along : ((order + 1)^3,) float array
+        Entry [m, l', l], raveled: from multipoles l to local coefficients l' at the distance 1 along z.
     shift : (order + 1, order + 1, order + 1) float array
         Entry [m, L, l]: from multipoles l to those of degree L >= l about a point 1 below; transposed, from local
         coefficients L to those of degree l about a point 1 above.
@@ -50,7 +50,7 @@ def axes(order) -> Axes:
     -------
     Axes
     """
-    return Axes(_swap(order), _along(order), _shift(order))
+    return Axes(_swap(order), _along(order).ravel(), _shift(order))
 
 
 def _swap(order):

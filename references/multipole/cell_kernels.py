@@ -34,7 +34,7 @@ def near(order, cells, axes, sent, made, low, high):
     """
     width = (order + 1) * (order + 2) // 2
     tables, work = np.zeros((2, 2, width, LANES)), np.zeros((2, 2, order + 1, LANES))
-    turns, inverse, ratio = np.zeros((4, order + 1, LANES)), np.ones(LANES), np.zeros((2, LANES))
+    turns, inverse, ratio = np.zeros((4, order + 1, LANES)), np.ones((order + 2, LANES)), np.zeros((2, LANES))
     sender, receiver = np.zeros(LANES, dtype=np.int64), np.zeros(LANES, dtype=np.int64)
     shape, edge = cells.shape, cells.edge
     for block in range(low, high):
@@ -54,7 +54,7 @@ def near(order, cells, axes, sent, made, low, high):
                     dy = cells.places[i, 1] - cells.places[j, 1] - b * edge[1]
                     dz = cells.places[i, 2] - cells.places[j, 2] - c * edge[2]
                     r = point(lane, dx, dy, dz, turns)
-                    inverse[lane], sender[lane], receiver[lane] = 1.0 / r, j, row
+                    inverse[1, lane], sender[lane], receiver[lane] = 1.0 / r, j, row
                     ratio[0, lane] = cells.radii[j] / max(r - cells.radii[i], 1e-9 * r)
                     ratio[1, lane] = cells.radii[i] / max(r - cells.radii[j], 1e-9 * r)
                     lane += 1
@@ -76,27 +76,18 @@ def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, rec
         for entry in range((most + 1) * (most + 2) // 2):
             one[0, entry, k], one[1, entry, k] = sent[0, sender[k], entry], sent[1, sender[k], entry]
     forth(most, order, axes, turns, one, work, two)
-    power = work[0, 0, 0]
+    _raise(inverse, max(most, arrives) + 1)
     for m in range(most + 1):
-        first = max(m, 1)
-        power[:] = inverse ** (first + 1.0)
-        for n in range(first, most + 1):
-            row = column(m, order) + n
-            for k in range(LANES):
-                two[0, row, k] *= power[k]
-                two[1, row, k] *= power[k]
-                power[k] *= inverse[k]
+        for n in range(max(m, 1), most + 1):
+            _scale(two, column(m, order) + n, inverse, n + 1)
+    size = len(axes.shift)
     for m in range(arrives + 1):
         first, top = max(m, 1), column(m, order)
-        power[:] = inverse**first
         for n in range(first, arrives + 1):
-            weights = axes.along[m, n]
+            weights = (m * size + n) * size + first
             for part in range(2):
-                add_rows(one[part], top + n, two[part], top + first, 1, weights, first, max(0, most - first + 1))
-            for k in range(LANES):
-                one[0, top + n, k] *= power[k]
-                one[1, top + n, k] *= power[k]
-                power[k] *= inverse[k]
+                add_rows(one, part, top + n, two, part, top + first, 1, axes.along, weights, max(0, most - first + 1))
+            _scale(one, top + n, inverse, n)
     back(arrives, order, axes, turns, one, work, two)
     begin = 0
     while begin < lanes:
@@ -110,6 +101,21 @@ def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, rec
                     total += two[part, entry, k]
                 made[part, receiver[begin], entry] += total
         begin = end
+
+
+@compiled
+def _raise(powers, most):
+    """Powers 2, ..., most of row 1."""
+    for n in range(2, most + 1):
+        for k in range(LANES):
+            powers[n, k] = powers[n - 1, k] * powers[1, k]
+
+
+@compiled
+def _scale(table, row, powers, power):
+    for part in range(2):
+        for k in range(LANES):
+            table[part, row, k] *= powers[power, k]
 
 
 @compiled
@@ -151,7 +157,7 @@ def gather(order, degree, cells, axes, sent, made, low, high):
                 for part in range(2):
                     one[part, top + n] = 0.0
                     for of in range(max(m, 1), min(order, n) + 1):
-                        _add_shifted(one[part, top + n], two[part, top + of], powers[n - of], axes.shift[m, n, of])
+                        _add_shifted(one, part, top + n, two, top + of, powers, n - of, axes.shift[m, n, of])
         back(degree, degree, axes, turns, one, work, two)
         for k in range(lanes):
             for part in range(2):
@@ -192,7 +198,7 @@ def spread(order, degree, cells, axes, local, made, low, high):
                 for part in range(2):
                     one[part, top + n] = 0.0
                     for of in range(n, degree + 1):
-                        _add_shifted(one[part, top + n], two[part, top + of], powers[of - n], axes.shift[m, of, n])
+                        _add_shifted(one, part, top + n, two, top + of, powers, of - n, axes.shift[m, of, n])
         back(order, degree, axes, turns, one, work, two)
         for k in range(lanes):
             for part in range(2):
@@ -214,14 +220,12 @@ def _shifts(numbers, places, turns, powers):
         x, y, z = places[numbers[k]]
         powers[0, k] = 1.0
         powers[1, k] = point(k, x, y, z, turns)
-    for n in range(2, len(powers)):
-        for k in range(LANES):
-            powers[n, k] = powers[n - 1, k] * powers[1, k]
+    _raise(powers, len(powers) - 1)
     multiples(len(powers) - 1, turns)
     return len(numbers)
 
 
 @compiled
-def _add_shifted(out, row, power, weight):
+def _add_shifted(out, part, row, source, of, powers, power, weight):
     for k in range(LANES):
-        out[k] += weight * power[k] * row[k]
+        out[part, row, k] += weight * powers[power, k] * source[part, of, k]

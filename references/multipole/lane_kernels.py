@@ -29,38 +29,46 @@ def column(m, order):
 
 
 @compiled
-def add_rows(out, row, source, first, step, table, entry, count):
-    """One row of a product: out[row] = sum over i < count of table[entry + i] source[first + i step].
+def add_rows(out, part, row, source, of, first, step, table, entry, count):
+    """One row of a product: out[part, row] = sum over i < count of table[entry + i] source[of, first + i step].
+
+    Whole arrays and numbers instead of views of them: counting references to views would cost more than the sum.
 
     Parameters
     ----------
-    out : (rows, LANES) float array
-    row : int
-    source : (rows, LANES) float array
+    out : (2, rows, LANES) float array
+    part, row : int
+    source : (2, rows, LANES) float array
         Not out.
-    first, step : int
+    of, first, step : int
     table : (n,) float array
     entry, count : int
     """
-    if count % 2:
+    i = count % 4
+    one, two, three = first, first + step, first + 2 * step
+    if i == 0:
+        for k in range(LANES):
+            out[part, row, k] = 0.0
+    elif i == 1:
         a = table[entry]
         for k in range(LANES):
-            out[row, k] = a * source[first, k]
+            out[part, row, k] = a * source[of, one, k]
+    elif i == 2:
+        a, b = table[entry], table[entry + 1]
+        for k in range(LANES):
+            out[part, row, k] = a * source[of, one, k] + b * source[of, two, k]
     else:
+        a, b, c = table[entry], table[entry + 1], table[entry + 2]
         for k in range(LANES):
-            out[row, k] = 0.0
-    i = count % 2
-    if (count - i) % 4:
-        a, b, one = table[entry + i], table[entry + i + 1], first + i * step
-        for k in range(LANES):
-            out[row, k] += a * source[one, k] + b * source[one + step, k]
-        i += 2
+            out[part, row, k] = a * source[of, one, k] + b * source[of, two, k] + c * source[of, three, k]
     while i < count:
         a, b, c, d = table[entry + i], table[entry + i + 1], table[entry + i + 2], table[entry + i + 3]
         one = first + i * step
         two, three, four = one + step, one + 2 * step, one + 3 * step
         for k in range(LANES):
-            out[row, k] += (a * source[one, k] + b * source[two, k]) + (c * source[three, k] + d * source[four, k])
+            out[part, row, k] += (a * source[of, one, k] + b * source[of, two, k]) + (
+                c * source[of, three, k] + d * source[of, four, k]
+            )
         i += 4
 
 
@@ -81,9 +89,9 @@ def swap_axes(degree, swap, table, out):
     many = degree // 2 + 1
     few = degree + 1 - many
     for m in range(degree + 1):
-        source = table[(degree + m) % 2]
-        add_rows(out[0], m, source, same, 2, swap, entry, many)
-        add_rows(out[1], m, source, other, 2, swap, entry + many, few)
+        of = (degree + m) % 2
+        add_rows(out, 0, m, table, of, same, 2, swap, entry, many)
+        add_rows(out, 1, m, table, of, other, 2, swap, entry + many, few)
         entry += many + few
 
 

@@ -7,10 +7,12 @@ from itertools import pairwise
 
 import numpy as np
 
+from demheat.progress import stage
 from references.multipole.arrangement import Arrangement, smallest_gap
+from references.multipole.exchange import exchange
+from references.multipole.fast import FastMultipole, plan
 from references.multipole.sums import entries
 from references.multipole.system import homogeneous, solve_order
-from references.multipole.translations import translation
 
 FIRST_ORDER, HIGHEST_ORDER = 8, 40
 # Periodic sums are made for so many orders more than asked for at once.
