@@ -59,10 +59,26 @@ def near(order, cells, axes, sent, made, low, high):
                     ratio[1, lane] = cells.radii[i] / max(r - cells.radii[j], 1e-9 * r)
                     lane += 1
                     if lane == LANES:
-                        _exchange(lane, order, cells.negligible, axes, turns, inverse, ratio, sender, receiver, tables, work, sent, made)
+                        _exchange(
+                            lane,
+                            order,
+                            cells.negligible,
+                            axes,
+                            turns,
+                            inverse,
+                            ratio,
+                            sender,
+                            receiver,
+                            tables,
+                            work,
+                            sent,
+                            made,
+                        )
                         lane = 0
         if lane:
-            _exchange(lane, order, cells.negligible, axes, turns, inverse, ratio, sender, receiver, tables, work, sent, made)
+            _exchange(
+                lane, order, cells.negligible, axes, turns, inverse, ratio, sender, receiver, tables, work, sent, made
+            )
 
 
 @compiled

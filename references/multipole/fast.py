@@ -204,7 +204,9 @@ class FastMultipole:
         half, signs = shape // 2 + 1, mirror_parities(*entries(self.degree))
         sent, views = np.empty((int(np.prod(half)), wave_kernels.FIELDS, 2 * len(self.root))), []
         for k, flip in enumerate(reflections()):
-            place = np.ix_(range(2), range(len(self.root)), *[flip[a] * np.arange(half[a]) % shape[a] for a in range(3)])
+            place = np.ix_(
+                range(2), range(len(self.root)), *[flip[a] * np.arange(half[a]) % shape[a] for a in range(3)]
+            )
             sign = np.prod(np.where(flip[:, None] < 0, signs, 1), axis=1)[:, :, None, None, None]
             part = (waves[place] * sign).reshape(-1, len(sent)).T
             sent[:, 2 * k], sent[:, 2 * k + 1] = part.real, part.imag

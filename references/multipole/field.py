@@ -74,7 +74,6 @@ class Evaluator:
         result[outer] = part
         return result, owner
 
-
     def _owners(self, points):
         if self.cells:
             return self.cells.owners(points)

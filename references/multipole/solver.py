@@ -2,9 +2,10 @@
 
 Rayleigh (1892); McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; Sangani and Acrivos, Proc. R. Soc. A 386 (1983)
 263. The spheres may differ in radius and conductivity. The only errors are those of the highest degree kept, which
-is stated, of the linear solve, and where there are many spheres, of what their cells make at each other, below both. A scene becomes spheres in `arrangement`, their mirror images in walls included;
-periodic sums are in `sums`, what spheres make at each other in `translations`, the linear system in `system`, the
-choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
+is stated, of the linear solve, and where there are many spheres, of what their cells make at each other, below both. A
+scene becomes spheres in `arrangement`, their mirror images in walls included; who makes what at whom is chosen in
+`exchange`: periodic sums of `sums` for all pairs in `translations`, or cells in `fast`; the linear system is in
+`system`, the choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
 """
 
 from __future__ import annotations

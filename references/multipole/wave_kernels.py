@@ -45,7 +45,9 @@ def convolve(degree, sums, sent, made, low, high):
                 entry = p * (p + 1) // 2 + q
                 for field in range(0, FIELDS, 4):
                     _products(rows[0], sent[wave, field : field + 4], sign, made[wave, field : field + 4], entry)
-                    _products(rows[1], sent[wave, field : field + 4], -sign, made[wave, field : field + 4], width + entry)
+                    _products(
+                        rows[1], sent[wave, field : field + 4], -sign, made[wave, field : field + 4], width + entry
+                    )
 
 
 @compiled
