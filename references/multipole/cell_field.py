@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from references.multipole import field_kernels as kernels
 from references.multipole.fast import FastMultipole, plan
 from references.multipole.sums import entries
-from references.multipole.system import Solved, dipoles
+from references.multipole.system import Solved
 from references.multipole.translations import Spheres, scales
 from references.threads import Team
 
@@ -38,10 +36,7 @@ class CellField:
         # Both by the kernels' harmonics.
         self.local = _complex(local / exchange.root)
         self.multipoles = _complex(sent * scales(np.ones(1), solved.order).made)
-        # The uniform background of the periodic sums: see `translations.received`. A dipole p at y in its cell makes
-        # -4 pi/(3 volume) p.(x - y) at x in any cell.
-        share, moments = 4 * math.pi / (3 * float(np.prod(spheres.size))), dipoles(spheres, solved.source)[self.numbers]
-        self.slope, self.level = -share * moments.sum(axis=0), share * float(np.sum(moments * self.cells.places))
+        self.slope, self.level = exchange.background(spheres, solved.source)
 
     def owners(self, points):
         """Offsets from the nearest image of the sphere that owns a point, else the point itself, and that sphere.

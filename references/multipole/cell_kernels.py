@@ -29,7 +29,7 @@ def near(order, cells, axes, sent, made, low, high):
         Up to the order.
     sent : (2, n, entries) float array, K length^(l+1)
     made : (2, receivers, entries) float array, K length^-l
-        Out; all but degree 0.
+        Out.
     low, high : int
     """
     width = (order + 1) * (order + 2) // 2
@@ -99,7 +99,7 @@ def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, rec
     size = len(axes.shift)
     for m in range(arrives + 1):
         first, top = max(m, 1), column(m, order)
-        for n in range(first, arrives + 1):
+        for n in range(m, arrives + 1):
             weights = (m * size + n) * size + first
             for part in range(2):
                 add_rows(one, part, top + n, two, part, top + first, 1, axes.along, weights, max(0, most - first + 1))
@@ -111,7 +111,7 @@ def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, rec
         while end < lanes and receiver[end] == receiver[begin]:
             end += 1
         for part in range(2):
-            for entry in range(1, (arrives + 1) * (arrives + 2) // 2):
+            for entry in range((arrives + 1) * (arrives + 2) // 2):
                 total = 0.0
                 for k in range(begin, end):
                     total += two[part, entry, k]
@@ -194,7 +194,7 @@ def spread(order, degree, cells, axes, local, made, low, high):
         Up to the degree.
     local : (2, cells, entries) float array, K length^-L
     made : (2, receivers, entries) float array, K length^-l
-        In and out; all but degree 0.
+        In and out.
     low, high : int
     """
     tables, turns, work, powers = _shift_room(degree)
@@ -218,7 +218,7 @@ def spread(order, degree, cells, axes, local, made, low, high):
         back(order, degree, axes, turns, one, work, two)
         for k in range(lanes):
             for part in range(2):
-                for entry in range(1, (order + 1) * (order + 2) // 2):
+                for entry in range((order + 1) * (order + 2) // 2):
                     made[part, block * LANES + k, entry] += two[part, entry, k]
 
 

@@ -23,6 +23,7 @@ from references.multipole.far_sums import far_sums, mirror_parities, reflections
 from references.multipole.lane_kernels import LANES
 from references.multipole.pieces import in_pieces
 from references.multipole.sums import entries, highest_degree
+from references.multipole.system import dipoles
 from references.threads import Team
 
 # Smallest edge of a cell, in largest diameters.
@@ -155,9 +156,31 @@ class FastMultipole:
             blocks, few = -(-made.shape[1] // LANES), min(order, degree)
             in_pieces(team, cell_kernels.spread, blocks, 1e-3, few, degree, cells, axes(degree), local, made)
         made *= cells.radii[cells.receivers, None] ** n.astype(float)
+        slope, level = self.background(spheres, source)
+        made[0, :, 0] += cells.places[cells.receivers] @ slope + level
         result = np.empty_like(made)
         result[:, self.order[cells.receivers]] = made
         return result
+
+    def background(self, spheres, source):
+        """What the uniform background of the periodic sums makes of dipoles off the middles of their cells.
+
+        A dipole p at y makes -4 pi/(3 volume) p.(x - y) at x in any cell; `translations.received` adds the slope.
+
+        Parameters
+        ----------
+        spheres : Spheres
+        source : (2, n, entries) float array, K
+            b of all spheres.
+
+        Returns
+        -------
+        (3,) float array, K/length
+        float, K
+        """
+        share = 4 * math.pi / (3 * float(np.prod(spheres.size)))
+        moments = dipoles(spheres, source)[self.order]
+        return -share * moments.sum(axis=0), share * float(np.sum(moments * self.cells.places))
 
     def local(self, sent, team):
         """Local coefficients of all cells, what near cells make left out.

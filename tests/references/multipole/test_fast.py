@@ -91,10 +91,10 @@ def test_what_cells_make_is_what_all_pairs_make(sizes, shape):
     n, m = entries(order)
     source = np.random.default_rng(1).normal(size=(2, 40, len(n))) * 0.3**n * (n > 0)
     source[1][:, m == 0] = 0.0
-    expected = received(spheres, translation(spheres, 2 * order), source)[:, :, 1:]
+    expected = received(spheres, translation(spheres, 2 * order), source)
     found = received(spheres, FastMultipole(spheres, forced(shape, 22)), source)
     # By `far_degree` 4e-10 of b, which are 0.3 and less, in units of c, some times more.
-    assert_allclose(found[:, :, 1:], expected, rtol=0, atol=2e-9)
+    assert_allclose(found, expected, rtol=0, atol=2e-9)
     threads = received(spheres, FastMultipole(spheres, forced(shape, 22)), source, threads=2)
     assert np.array_equal(found, threads)
 
@@ -108,7 +108,7 @@ def test_errors_fall_with_the_degree_as_is_said():
         fast = FastMultipole(spheres, forced(SHAPE, degree, precision))
         found = solve_order(spheres, fast, gradient, order, tolerance=1e-13)
         scale = np.abs(expected.source).max()
-        assert np.abs(found.source - expected.source)[:, :, 1:].max() < precision * scale
+        assert np.abs(found.source - expected.source).max() < precision * scale
         flux = np.linalg.norm(found.mean_flux - expected.mean_flux) / np.linalg.norm(expected.mean_flux)
         assert flux < 0.1 * precision
     assert flux < 1e-11
@@ -144,7 +144,7 @@ def test_fields_by_cells_are_those_by_waves(monkeypatch):
     waves, owner = Evaluator(spheres, solved, gradient)(points)
     monkeypatch.setattr(field, "MANY", 1)
     cells, same = Evaluator(spheres, solved, gradient)(points)
-    assert np.array_equal(owner, same) and 20 < np.sum(owner >= 0) < 280
+    assert np.array_equal(owner, same) and 5 < np.sum(owner >= 0) < 280
     # `cell_field.PRECISION`, and ten times more of slopes per unit of length.
     assert_allclose(cells[:, 0], waves[:, 0], rtol=0, atol=1e-10)
     assert_allclose(cells[:, 1:], waves[:, 1:], rtol=0, atol=1e-8)
