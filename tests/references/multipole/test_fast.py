@@ -178,4 +178,8 @@ def test_smallest_gap_is_that_of_all_pairs():
         gaps = np.linalg.norm(apart, axis=2) - spheres.radii - spheres.radii[:, None]
         expected = min(gaps[~np.eye(20, dtype=bool)].min(), SIZE.min() - 2 * spheres.radii.max())
         assert smallest_gap(spheres) == pytest.approx(expected, rel=1e-12)
+    # Large ones closest to each other, small ones with their centres closer.
+    centers = np.array([[0.2, 0.2, 0.5], [0.2, 0.71, 0.5], [0.51, 0.2, 0.5], [0.51, 0.71, 0.5]])
+    pairs = unmirrored(centers, np.array([0.25, 0.25, 0.01, 0.01]), np.ones(4), SIZE)
+    assert smallest_gap(pairs) == pytest.approx(0.01, rel=1e-12)
     assert smallest_gap(arrange(gallery.simple_cubic(10.0, fraction=0.3)).spheres) > 0
