@@ -12,6 +12,7 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from demheat.scene import Sphere
 from references.multipole.translations import Spheres, unmirrored
@@ -78,12 +79,46 @@ def arrange(scene, *, any_matrix=False) -> Arrangement:
 
 def smallest_gap(spheres) -> float:
     """Least distance between two surfaces, images included, in the spheres' unit of length; infinite without any."""
-    gap = float(np.min(spheres.size)) - 2 * float(spheres.radii.max()) if len(spheres.radii) else math.inf
-    for i in range(min(spheres.count, len(spheres.radii) - 1)):
-        apart = spheres.centers[i + 1 :] - spheres.centers[i]
-        apart -= spheres.size * np.round(apart / spheres.size)
-        gap = min(gap, float(np.min(np.linalg.norm(apart, axis=1) - spheres.radii[i + 1 :])) - spheres.radii[i])
-    return float(gap)
+    if not len(spheres.radii):
+        return math.inf
+    radii, largest = spheres.radii, float(spheres.radii.max())
+    gap = float(np.min(spheres.size)) - 2 * largest
+    if len(radii) == 1:
+        return gap
+    centers = wrapped(spheres.centers, spheres.size)
+    tree = cKDTree(centers, boxsize=spheres.size)
+    own = np.arange(spheres.count)
+    # The nearest centre bounds the gap; what beats it has its centre within the gap, the own and the largest radius.
+    _, nearest = tree.query(centers[own], k=2)
+    other = np.where(nearest[:, 0] == own, nearest[:, 1], nearest[:, 0])
+    gap = min(gap, float(np.min(_gaps(spheres, own, other))))
+    if radii.min() < largest:
+        beside = tree.query_ball_point(centers[own], np.maximum(radii[own] + largest + gap, 0.0))
+        one, two = np.repeat(own, [len(each) for each in beside]), np.concatenate(beside).astype(np.int64)
+        gap = min(gap, float(np.min(_gaps(spheres, one[one != two], two[one != two]), initial=math.inf)))
+    return gap
+
+
+def _gaps(spheres, one, two):
+    apart = spheres.centers[one] - spheres.centers[two]
+    apart -= spheres.size * np.round(apart / spheres.size)
+    return np.linalg.norm(apart, axis=1) - spheres.radii[one] - spheres.radii[two]
+
+
+def wrapped(points, size):
+    """Points moved into a periodic cell, as trees want them: from 0 to below its size.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, length
+    size : (3,) float array, length
+
+    Returns
+    -------
+    (n, 3) float array, length
+    """
+    inside = points - size * np.floor(points / size)
+    return np.where(inside < size, inside, 0.0)
 
 
 def _load(scene):
@@ -139,7 +174,11 @@ def _symmetric(spheres, axis, slack):
     """Whether the spheres of a box are their own mirror image in its middle across an axis."""
     mirrored = spheres.centers.copy()
     mirrored[:, axis] = spheres.size[axis] - mirrored[:, axis]
-    same = np.abs(mirrored[:, None] - spheres.centers).max(axis=2) <= slack
-    same &= np.abs(spheres.radii[:, None] - spheres.radii) <= slack
-    same &= spheres.contrasts[:, None] == spheres.contrasts
-    return bool(same.any(axis=1).all())
+    tree, far = cKDTree(spheres.centers), 4.0 * slack
+    for i, near in enumerate(tree.query_ball_point(mirrored, far)):
+        same = np.abs(mirrored[i] - spheres.centers[near]).max(axis=1, initial=0.0) <= slack
+        same &= np.abs(spheres.radii[i] - spheres.radii[near]) <= slack
+        same &= spheres.contrasts[i] == spheres.contrasts[near]
+        if not same.any():
+            return False
+    return True

@@ -2,6 +2,7 @@
 
 In a sphere its own regular series converges. Outside, the mean gradient and the periodic multipoles of all spheres are
 summed by Ewald's splitting: screened images one by one, the smooth rest by waves, whose amplitudes are worked out once.
+Many spheres are summed by cells instead, for the waves go with their number: see `cell_field`.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ import math
 import numpy as np
 
 from references.multipole import field_kernels as kernels
+from references.multipole.cell_field import CellField
 from references.multipole.sums import entries, harmonics, splitting, wave_weights
 from references.multipole.system import Solved
 from references.multipole.translations import Spheres, scales
@@ -19,6 +21,8 @@ from references.multipole.translations import Spheres, scales
 HARMONIC, WAVE = 4.0, 4.0
 # eta radius^2 above this: waves of low degree cancel to more than a digit.
 MOST_SCREENED = 6.0
+# More spheres than this are summed by cells.
+MANY = 100
 
 
 class Evaluator:
@@ -36,8 +40,10 @@ class Evaluator:
         self.spheres, self.order, self.gradient = spheres, solved.order, np.asarray(gradient, dtype=float)
         self.regular = _regular(spheres, solved)
         self.multipoles = _complex(solved.source * scales(spheres.radii, solved.order).sent)
-        self.split = _splitting(spheres, solved.order)
-        self.amplitudes = _amplitudes(spheres, solved, self.split)
+        self.cells = CellField(spheres, solved) if len(spheres.radii) > MANY else None
+        if not self.cells:
+            self.split = _splitting(spheres, solved.order)
+            self.amplitudes = _amplitudes(spheres, solved, self.split)
 
     def __call__(self, points):
         """Temperature and its slope, and which sphere owns the point.
@@ -53,9 +59,8 @@ class Evaluator:
         (n,) int array
             Number of the sphere, or -1.
         """
-        spheres = self.spheres
-        offsets, owner = np.array(points, dtype=float), np.empty(len(points), dtype=np.int64)
-        kernels.owners(offsets, spheres, owner)
+        points = np.asarray(points, dtype=float)
+        offsets, owner = self._owners(points)
         result = np.zeros((len(points), 4))
         inner, outer = np.flatnonzero(owner >= 0), np.flatnonzero(owner < 0)
         part = np.empty((len(inner), 4))
@@ -63,13 +68,26 @@ class Evaluator:
         # The mean gradient takes the series, which is that of one cell, to where the point is.
         part[:, 0] += (points[inner] - offsets[inner]) @ self.gradient
         result[inner] = part
-        part = np.zeros((len(outer), 4))
-        kernels.near(offsets[outer], spheres, self.multipoles, self.order, self.split, part)
-        kernels.far(offsets[outer], spheres.size, self.split, self.amplitudes, part)
-        part[:, 0] += offsets[outer] @ self.gradient
+        part = self._outside(points[outer])
+        part[:, 0] += points[outer] @ self.gradient
         part[:, 1:] += self.gradient
         result[outer] = part
         return result, owner
+
+    def _owners(self, points):
+        if self.cells:
+            return self.cells.owners(points)
+        offsets, owner = points.copy(), np.empty(len(points), dtype=np.int64)
+        kernels.owners(offsets, self.spheres, owner)
+        return offsets, owner
+
+    def _outside(self, points):
+        if self.cells:
+            return self.cells.outside(points)
+        part = np.zeros((len(points), 4))
+        kernels.near(points, self.spheres, self.multipoles, self.order, self.split, part)
+        kernels.far(points, self.spheres.size, self.split, self.amplitudes, part)
+        return part
 
 
 def _complex(table):

@@ -214,6 +214,83 @@ def _add_screened(multipoles, table, screened, offset, out):
 
 
 @compiled
+def owners_by_cells(places, home, cells, owner):
+    """Sphere that a point lies in or on, or -1, and its offset from that sphere's nearest image.
+
+    Parameters
+    ----------
+    places : (n, 3) float array, length
+        From the middle of the point's cell; changed in place where a sphere owns the point: to the offset.
+    home : (n,) int array
+        The points' cells.
+    cells : Cells
+    owner : (n,) int array
+        Out: by the cells' numbers.
+    """
+    for k in range(len(places)):
+        owner[k] = -1
+        for step in range(len(cells.near)):
+            there = _cell_at(home[k], cells.near[step], cells.shape)
+            for j in range(cells.start[there], cells.start[there + 1]):
+                x, y, z = _from_sphere(places[k], cells, step, j)
+                if x * x + y * y + z * z <= cells.radii[j] ** 2:
+                    owner[k] = j
+                    break
+            if owner[k] >= 0:
+                places[k, 0], places[k, 1], places[k, 2] = x, y, z
+                break
+
+
+@compiled
+def near_by_cells(places, home, cells, multipoles, order, out):
+    """Add what spheres and images in near cells make at points outside.
+
+    Parameters
+    ----------
+    places : (n, 3) float array, length
+        From the middle of the point's cell.
+    home : (n,) int array
+        The points' cells.
+    cells : Cells
+    multipoles : (spheres, entries) complex array, K length^(l+1)
+        By the cells' numbers.
+    order : int
+        Highest degree.
+    out : (n, 4) float array, K and K/length
+        Temperature, then its slope.
+    """
+    table = np.zeros((order + 2) * (order + 3) // 2, dtype=np.complex128)
+    bare, negligible = np.zeros((2, order + 1)), math.log(cells.negligible)
+    bare[0] = 1.0
+    for k in range(len(places)):
+        for step in range(len(cells.near)):
+            there = _cell_at(home[k], cells.near[step], cells.shape)
+            for j in range(cells.start[there], cells.start[there + 1]):
+                x, y, z = _from_sphere(places[k], cells, step, j)
+                ratio = math.log(cells.radii[j] ** 2 / (x * x + y * y + z * z)) / 2
+                most = order
+                if ratio * order < negligible:
+                    most = max(1, int(math.ceil(negligible / ratio)))
+                irregular(table, x, y, z, most + 1)
+                _add_screened(multipoles[j], table, bare[:, : most + 1], (x, y, z), out[k])
+
+
+@compiled
+def _cell_at(home, step, shape):
+    x, y, z = home // (shape[1] * shape[2]), home // shape[2] % shape[1], home % shape[2]
+    x, y, z = (x + step[0]) % shape[0], (y + step[1]) % shape[1], (z + step[2]) % shape[2]
+    return (x * shape[1] + y) * shape[2] + z
+
+
+@compiled
+def _from_sphere(place, cells, step, j):
+    x = place[0] - cells.places[j, 0] - cells.near[step, 0] * cells.edge[0]
+    y = place[1] - cells.places[j, 1] - cells.near[step, 1] * cells.edge[1]
+    z = place[2] - cells.places[j, 2] - cells.near[step, 2] * cells.edge[2]
+    return x, y, z
+
+
+@compiled
 def far(points, size, split, amplitudes, out):
     """Add 2 Re(F exp(i K.x)) over half of the reciprocal vectors, and its slope.
 

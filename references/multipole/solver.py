@@ -2,9 +2,10 @@
 
 Rayleigh (1892); McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; Sangani and Acrivos, Proc. R. Soc. A 386 (1983)
 263. The spheres may differ in radius and conductivity. The only errors are those of the highest degree kept, which
-is stated, and of the linear solve. A scene becomes spheres in `arrangement`, their mirror images in walls included;
-periodic sums are in `sums`, what spheres make at each other in `translations`, the linear system in `system`, the
-choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
+is stated, of the linear solve, and where there are many spheres, of what their cells make at each other, below both. A
+scene becomes spheres in `arrangement`, their mirror images in walls included; who makes what at whom is chosen in
+`exchange`: periodic sums of `sums` for all pairs in `translations`, or cells in `fast`; the linear system is in
+`system`, the choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ def solve(
     *,
     order: int | None = None,
     accuracy: float = 1e-5,
-    tolerance: float = 1e-10,
+    tolerance: float | None = None,
     points_per_axis: int = 24,
     threads: int = 1,
 ) -> Field:
@@ -44,8 +45,8 @@ def solve(
         an order given nothing is refused: `stats["truncation"]` says what error remains.
     accuracy : float
         Relative, of the mean flux; for order = None.
-    tolerance : float
-        Relative residual of the linear system.
+    tolerance : float, optional
+        Relative residual of the linear system; by default a thousandth of the accuracy, or 1e-10 with an order given.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
     threads : int
@@ -135,6 +136,8 @@ def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
     if order is not None:
         check_order(order)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
+        if name == "tolerance" and value is None:
+            continue
         if not (isinstance(value, int | float) and 1e-14 <= value < 1):
             raise ValueError(f"{name} = {value!r}: must be a number from 1e-14 to below 1")
     check_points_per_axis(points_per_axis)

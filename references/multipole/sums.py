@@ -177,45 +177,107 @@ def periodic_irregular(offsets, degree, size, contact, *, eta=None):
     """
     cut = splitting(size, contact, degree, eta)
     offsets = offsets - size * np.round(offsets / size)
-    vectors, table = _wave_table(degree, size, cut)
+    vectors, table = wave_table(degree, size, cut)
     result = np.zeros((len(offsets), (degree + 1) * (degree + 2) // 2), dtype=complex)
     for low in range(0, len(offsets), CHUNK):
         part = slice(low, low + CHUNK)
         _add_images(result[part], offsets[part], degree, size, cut)
-        _add_waves(result[part], offsets[part] @ vectors.T, table)
+        add_waves(result[part], offsets[part] @ vectors.T, table)
     result[:, 0] = 0.0
     return result
 
 
 def _add_images(result, offsets, degree, size, cut):
-    spans = [np.arange(-int(n), int(n) + 1) for n in cut.reach / size + 0.5]
+    apart, square = images(offsets, size, cut.reach)
+    owner, image = np.nonzero((square <= cut.reach**2) & (square > 0))
+    add_screened(result, owner, apart[owner, image], degree, lambda n, x: gammaincc(n + 0.5, cut.eta * x))
+
+
+def images(offsets, size, reach):
+    """Offsets of the images that may be within reach.
+
+    Parameters
+    ----------
+    offsets : (n, 3) float array, length
+        Of the nearest ones.
+    size : (3,) float array, length
+        Of the cell.
+    reach : float, length
+
+    Returns
+    -------
+    (n, images, 3) float array, length
+    (n, images) float array, length^2
+        Their squares.
+    """
+    spans = [np.arange(-int(n), int(n) + 1) for n in reach / size + 0.5]
     cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3) * size
     apart = offsets[:, None] + cells
-    square = np.einsum("ijk,ijk->ij", apart, apart)
-    owner, image = np.nonzero((square <= cut.reach**2) & (square > 0))
-    apart, r = apart[owner, image], np.sqrt(square[owner, image])
+    return apart, np.einsum("ijk,ijk->ij", apart, apart)
+
+
+def add_screened(result, owner, apart, degree, screen):
+    """Add I_L^M of many offsets to the rows of a table, each times a factor of its degree and distance.
+
+    Parameters
+    ----------
+    result : (n, entries) complex array, length^-(L+1)
+    owner : (k,) int array
+        Row to which each offset adds.
+    apart : (k, 3) float array, length
+        Not zero.
+    degree : int
+        Highest L.
+    screen : callable int, (k,) float array, length^2 -> (k,) float array
+        Factor of the degree and r^2.
+    """
+    square = np.einsum("ik,ik->i", apart, apart)
+    r = np.sqrt(square)
     x, y, z = (apart / r[:, None]).T
-    screened = [gammaincc(n + 0.5, cut.eta * r**2) * r ** -(n + 1.0) for n in range(degree + 1)]
+    screened = [screen(n, square) * r ** -(n + 1.0) for n in range(degree + 1)]
     phase = np.ones(len(r), dtype=complex)
     for m in range(degree + 1):
         for n, values in enumerate(legendre(z, np.ones_like(z), degree, m), start=m):
             terms = values * screened[n]
             entry = n * (n + 1) // 2 + m
-            result[:, entry].real += np.bincount(owner, terms * phase.real, len(offsets))
-            result[:, entry].imag += np.bincount(owner, terms * phase.imag, len(offsets))
+            result[:, entry].real += np.bincount(owner, terms * phase.real, len(result))
+            result[:, entry].imag += np.bincount(owner, terms * phase.imag, len(result))
         phase = phase * (x + 1j * y)
 
 
-def _wave_table(degree, size, cut):
-    """Reciprocal vectors, (w, 3), and what each adds without its phase, (w, entries) complex array."""
+def wave_table(degree, size, cut):
+    """Reciprocal vectors and what each adds without its phase.
+
+    Parameters
+    ----------
+    degree : int
+        Highest L.
+    size : (3,) float array, length
+        Of the cell.
+    cut : Splitting
+
+    Returns
+    -------
+    (w, 3) float array, length^-1
+    (w, entries) complex array, length^-(L+1)
+    """
     weights, vectors = wave_weights(cut.waves, size, cut.eta, degree)
     table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], degree)
     n, _ = entries(degree)
     return vectors, table * weights[:, n]
 
 
-def _add_waves(result, angle, table):
-    """K and -K together give 2 Re((-i)^L exp(i K.X)): a cosine where L is even, a sine where it is odd."""
+def add_waves(result, angle, table):
+    """Add the waves: K and -K together give 2 Re((-i)^L exp(i K.X)), a cosine where L is even, a sine where it is odd.
+
+    Parameters
+    ----------
+    result : (n, entries) complex array, length^-(L+1)
+    angle : (n, w) float array
+        K.X.
+    table : (w, entries) complex array, length^-(L+1)
+        As `wave_table` makes it.
+    """
     n, _ = entries(highest_degree(table.shape[1]))
     for parity, wave in ((0, np.cos(angle)), (1, np.sin(angle))):
         chosen = np.flatnonzero(n % 2 == parity)

@@ -129,14 +129,14 @@ def dipoles(spheres, source):
     )
 
 
-def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threads=1) -> Solved:
+def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threads=1, heard=None) -> Solved:
     """Solve for multipoles up to one degree.
 
     Parameters
     ----------
     spheres : Spheres
-    table : Translation
-        Up to degree 2 order at least.
+    table : Translation or FastMultipole
+        The former up to degree 2 order at least.
     gradient : (3,) float array, K/length
         Along one axis if there are mirror images.
     order : int
@@ -145,6 +145,8 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
     guess : Solved, optional
         Of a lower order.
     threads : int
+    heard : callable, optional
+        Called with the share done.
 
     Returns
     -------
@@ -171,7 +173,7 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
     load, start = (-alpha * applied).ravel(), np.zeros(shape)
     if guess is not None and guess.order <= order:
         start[:, :, : guess.source.shape[2]] = guess.source[:, :count]
-    b, iterations = gmres(system, load, start.ravel(), tolerance)
+    b, iterations = gmres(system, load, start.ravel(), tolerance, heard)
     source = b.reshape(shape)
     local = received(spheres, table, everywhere(source), threads) + applied
     left, norm = float(np.linalg.norm(source + alpha * local)), float(np.linalg.norm(load))
@@ -184,7 +186,7 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
     return Solved(order, everywhere(source), everywhere(local), -mean, iterations, residual)
 
 
-def gmres(system, load, start, tolerance):
+def gmres(system, load, start, tolerance, heard=None):
     """Full GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856), without restarts.
 
     Parameters
@@ -194,6 +196,8 @@ def gmres(system, load, start, tolerance):
     load, start : (n,) float arrays
     tolerance : float
         Of the residual over the norm of the load.
+    heard : callable, optional
+        Called with the share done, by the logarithm of the residual.
 
     Returns
     -------
@@ -204,15 +208,15 @@ def gmres(system, load, start, tolerance):
     size, wanted = float(np.linalg.norm(first)), tolerance * float(np.linalg.norm(load))
     if size <= wanted:
         return start, 0
-    basis, columns = np.empty((MOST_ITERATIONS + 1, len(load))), np.zeros((MOST_ITERATIONS + 1, MOST_ITERATIONS))
-    basis[0] = first / size
+    # One vector after another: few are needed, and all of them would fill the memory.
+    basis, columns = [first / size], np.zeros((MOST_ITERATIONS + 1, MOST_ITERATIONS))
     for k in range(MOST_ITERATIONS):
         vector = system(basis[k])
         # Twice, for orthogonality to rounding; einsum, for BLAS would wake its threads for so little.
         for _ in range(2):
-            parts = np.einsum("ij,j->i", basis[: k + 1], vector)
+            parts = [float(np.einsum("i,i", other, vector)) for other in basis]
             columns[: k + 1, k] += parts
-            vector = vector - np.einsum("i,ij->j", parts, basis[: k + 1])
+            vector = vector - _combined(parts, basis)
         norm = columns[k + 1, k] = math.sqrt(np.einsum("i,i", vector, vector))
         target = np.zeros(k + 2)
         target[0] = size
@@ -220,5 +224,14 @@ def gmres(system, load, start, tolerance):
         left = float(np.linalg.norm(target - columns[: k + 2, : k + 1] @ weights))
         if left <= wanted or norm <= 1e-15 * size:
             break
-        basis[k + 1] = vector / norm
-    return start + np.einsum("i,ij->j", weights, basis[: k + 1]), k + 1
+        if heard:
+            heard(math.log(min(left / size, 1.0)) / math.log(wanted / size))
+        basis.append(vector / norm)
+    return start + _combined(weights, basis), k + 1
+
+
+def _combined(weights, basis):
+    total = np.zeros_like(basis[0])
+    for weight, vector in zip(weights, basis, strict=False):
+        total += weight * vector
+    return total

@@ -8,11 +8,14 @@ import numpy as np
 
 from demheat.scene import Scene
 from references.multipole.arrangement import arrange, smallest_gap
+from references.multipole.fast import FastMultipole, plan
 from references.multipole.sums import entries
 from references.multipole.translations import received, translation
 
 # What the table of translations may cost, in bytes.
 MOST_BYTES = 3e9
+# More spheres than this exchange by cells, up to that order, with that relative error of what dipoles make.
+MANY, HIGHEST_BY_CELLS, PRECISION = 100, 40, 1e-12
 # At 150 square roots of factorials overflow; small spheres add powers.
 HIGHEST_ORDER = 80
 # Neglected share of what a dipole makes at its nearest neighbour, without the powers of the degree that come with it.
@@ -57,7 +60,7 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
             "zeta_2 is defined for one or more spheres of one material"
         )
     order = _order(spheres, unit, order)
-    table = translation(spheres, order + 1)
+    table = _exchange(spheres, order)
     n, m = entries(order)
     weight = np.where(n > 0, 3 * n / (2 * n + 1), 0.0) * np.where(m > 0, 2.0, 1.0) * spheres.radii[:, None]
     volume, total = float(np.prod(spheres.size)), 0.0
@@ -68,6 +71,12 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
         total += 4 * math.pi / volume * np.sum(weight * received(spheres, table, dipoles) ** 2) / 3
     phi = 4 / 3 * math.pi * np.sum(spheres.radii**3) / volume
     return float((total - 3 * phi**3) / (6 * phi * (1 - phi)))
+
+
+def _exchange(spheres, order):
+    if len(spheres.radii) > MANY:
+        return FastMultipole(spheres, plan(spheres, order, PRECISION))
+    return translation(spheres, order + 1)
 
 
 def check_order(order) -> None:
@@ -81,7 +90,7 @@ def _order(spheres, unit, order):
     count = len(spheres.radii)
     # Entries of degree order + 1 for each pair.
     memory = math.sqrt(2 * MOST_BYTES / (16 * (1 + count * (count - 1) / 2))) - 3
-    highest = min(HIGHEST_ORDER, int(memory))
+    highest = HIGHEST_BY_CELLS if count > MANY else min(HIGHEST_ORDER, int(memory))
     if order is not None:
         check_order(order)
         if order > highest:

@@ -7,16 +7,25 @@ from itertools import pairwise
 
 import numpy as np
 
+from demheat.progress import stage
 from references.multipole.arrangement import Arrangement, smallest_gap
+from references.multipole.exchange import exchange
+from references.multipole.fast import FastMultipole, plan
 from references.multipole.sums import entries
 from references.multipole.system import homogeneous, solve_order
-from references.multipole.translations import translation
 
 FIRST_ORDER, HIGHEST_ORDER = 8, 40
-# Periodic sums are made for so many orders more than asked for at once.
+# Periodic sums of all pairs are made for so many orders more than asked for at once.
 AHEAD = 6
 # What one product with the translations (in multiplications, some 1e9 a second) and their table (in bytes) may cost.
 MOST_WORK, MOST_BYTES = 2e10, 3e9
+# And by cells: seconds of one product; iterations whose vectors must fit into the memory.
+MOST_SECONDS, ITERATIONS = 20.0, 50
+# Of the accuracy asked for: error of b allowed where spheres exchange by cells, and residual of the linear system. That
+# of the conductivity is a hundred times less than of b.
+PRECISION, RESIDUAL = 0.1, 1e-3
+# The same where an order is given.
+EXACT = 1e-10
 # Bounds on the ratio of successive changes, of two degrees each, by which the rest is extrapolated.
 RATIOS = (0.2, 0.95)
 
@@ -31,8 +40,8 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1
         The last one; None raises it until the mean flux is known to the accuracy.
     accuracy : float
         Relative; for order = None.
-    tolerance : float
-        Relative residual of each.
+    tolerance : float or None
+        Relative residual of each; None for one that follows from the accuracy.
     threads : int
 
     Returns
@@ -50,26 +59,40 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1
     highest = highest_order(spheres)
     if order is not None and order > highest:
         raise ValueError(f"order = {order}: must be <= {highest} for {len(spheres.radii)} spheres in memory and time")
+    if tolerance is None:
+        tolerance = EXACT if order is not None else max(RESIDUAL * accuracy, 1e-14)
+    precision = EXACT if order is not None else max(PRECISION * accuracy, 1e-13)
     wanted = FIRST_ORDER if order is None else order
     orders = [n for n in (wanted - 6, wanted - 4, wanted - 2, wanted) if n >= 1]
     history, table, reach = [homogeneous(spheres, arrangement.gradient)], None, 0
-    while spheres.count:
-        for n in orders:
-            if n > reach:
-                reach = wanted if order is not None else min(n + AHEAD, highest)
-                table = translation(spheres, 2 * reach)
-            options = {"tolerance": tolerance, "guess": history[-1], "threads": threads}
-            history.append(solve_order(spheres, table, arrangement.gradient, n, **options))
-        if order is not None or truncation(history) <= accuracy:
-            return history
-        _refuse_hopeless(history, accuracy, highest, smallest_gap(spheres) * arrangement.unit)
-        orders = [history[-1].order + 2]
+    with stage("multipoles") as done:
+        while spheres.count:
+            for n in orders:
+                if n > reach:
+                    reach = wanted if order is not None else min(n + AHEAD, highest)
+                    table = exchange(spheres, reach, precision)
+                    # Cells know no order.
+                    reach = highest if isinstance(table, FastMultipole) else reach
+                options = {"tolerance": tolerance, "guess": history[-1], "threads": threads}
+                heard = _share(history, n, max(wanted, n), done)
+                history.append(solve_order(spheres, table, arrangement.gradient, n, heard=heard, **options))
+            if order is not None or truncation(history) <= accuracy:
+                break
+            _refuse_hopeless(history, accuracy, highest, smallest_gap(spheres) * arrangement.unit)
+            orders = [history[-1].order + 2]
+            wanted = max(wanted + 2, _needed(history, accuracy))
     return history
 
 
+def _share(history, order, last, done):
+    """Tell what share is done from a solve's own, if the work goes with the cube of the order."""
+    total = sum(n**3 for n in range(last, 0, -2))
+    before = sum(solved.order**3 for solved in history)
+    return lambda share: done(min(1.0, (before + share * order**3) / total))
+
+
 def _refuse_hopeless(history, accuracy, highest, gap):
-    now, left = history[-1].order, truncation(history)
-    needed = now + 2 * math.ceil(math.log(accuracy / left) / math.log(_ratio(_changes(history))))
+    now, left, needed = history[-1].order, truncation(history), _needed(history, accuracy)
     # The prediction at low orders is rough: half as much again is allowed for.
     if now + 2 > highest or (now >= 10 and needed > 1.5 * highest):
         raise RuntimeError(
@@ -77,6 +100,12 @@ def _refuse_hopeless(history, accuracy, highest, gap):
             f"{now} the mean flux is known to {left:.1e}, and {highest} is the highest order. Give order=... to accept "
             "less, or a larger accuracy"
         )
+
+
+def _needed(history, accuracy):
+    """The order that the accuracy asks for if changes go on as they do."""
+    steps = math.log(accuracy / truncation(history)) / math.log(_ratio(_changes(history)))
+    return history[-1].order + 2 * math.ceil(steps)
 
 
 def _changes(history):
@@ -127,9 +156,15 @@ def field_truncation(spheres, solved, gradient) -> float:
 
 
 def highest_order(spheres) -> int:
-    """Highest order that memory and time allow."""
+    """Highest order that memory and time allow, between all pairs or by cells."""
     count, everything = spheres.count, max(len(spheres.radii), 1)
     pairs = count * everything - count * (count + 1) / 2
     work = (MOST_WORK / (4 * max(count, 1) * everything)) ** 0.25 - 1
     memory = math.sqrt(MOST_BYTES / (16 * (1 + pairs))) / math.sqrt(2) - 1
-    return max(1, min(HIGHEST_ORDER, int(work), int(memory)))
+    highest = min(work, memory)
+    if count:
+        fits = int(math.sqrt(MOST_BYTES / (8 * ITERATIONS * count))) - 1
+        rising = range(1, min(HIGHEST_ORDER, fits) + 1)
+        by_cells = [order for order in rising if plan(spheres, order, EXACT).product <= MOST_SECONDS]
+        highest = max(highest, *by_cells, 1)
+    return max(1, min(HIGHEST_ORDER, int(highest)))

@@ -80,3 +80,10 @@ def test_zeta2_refuses_a_default_order_that_is_too_high(monkeypatch):
         multipole.zeta2(scene)
     with pytest.raises(ValueError, match="order = 20: must be <= 10 for 4 spheres"):  # sqrt(2e4/16/7) - 3
         multipole.zeta2(scene, order=20)
+
+
+def test_zeta2_of_many_spheres_by_cells(monkeypatch):
+    scene = gallery.random_dispersion(30, fraction=0.1, gap=0.5, seed=1)
+    expected = multipole.zeta2(scene)
+    monkeypatch.setattr(third_order, "MANY", 20)
+    assert_allclose(multipole.zeta2(scene), expected, rtol=1e-9)  # `third_order.PRECISION`, amplified

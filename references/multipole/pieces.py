@@ -1,0 +1,28 @@
+"""Compiled loops in pieces of well under a second, between which the interpreter hears an interrupt."""
+
+from __future__ import annotations
+
+# Seconds that a piece takes, about.
+PIECE = 0.3
+
+
+def in_pieces(team, kernel, planes, cost, *arguments):
+    """Call kernel(*arguments, low, high) on chunks that make up range(planes).
+
+    Parameters
+    ----------
+    team : Team
+    kernel : callable
+    planes : int
+    cost : float, s
+        Of one plane, about.
+    *arguments
+        Handed on.
+    """
+    most = max(1, int(PIECE * team.threads / cost))
+    for first in range(0, planes, most):
+
+        def piece(low, high, first=first):
+            kernel(*arguments, first + low, first + high)
+
+        team.run(piece, min(most, planes - first))
