@@ -66,8 +66,9 @@ def _level(links, diagonal, scale):
     """The matrix times a scale, arranged for sweeps."""
     n, inverse = len(diagonal), np.zeros(len(diagonal), np.float32)
     inverse[diagonal > 0] = 1.0 / (scale * diagonal[diagonal > 0])
-    columns, values = np.empty(len(links.indices), np.uint32), np.empty(len(links.indices), np.float32)
-    level = kernels.Level(links.indptr, np.empty((n, 2), np.int64), columns, values, inverse)
+    small, m = np.min_scalar_type(int(np.diff(links.indptr).max(initial=0))), len(links.indices)
+    ends, place, values = np.empty((n, 2), small), np.empty(m, small), np.empty(m, np.float32)
+    level = kernels.Level(links.indptr, links.indices, ends, place, values, inverse)
     kernels.arrange(links, scale, level)
     return level
 

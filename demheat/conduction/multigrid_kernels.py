@@ -40,9 +40,12 @@ class Level(NamedTuple):
     Attributes
     ----------
     indptr : (n + 1,) int64 array
-    ends : (n, 2) int64 array
-        Where the lower ones of each row stop, and where the higher ones begin.
-    columns : (m,) uint32 array
+    indices : (m,) uint32 array
+        Of the links, in their own order.
+    ends : (n, 2) unsigned array
+        How many links of each row are lower ones, and how many come before the higher ones.
+    place : (m,) unsigned array
+        Place of each link in its row of the indices: a byte where a copy of the index would take four.
     values : (m,) float32 array
         Minus the entries off the diagonal.
     inverse : (n,) float32 array
@@ -50,8 +53,9 @@ class Level(NamedTuple):
     """
 
     indptr: np.ndarray
+    indices: np.ndarray
     ends: np.ndarray
-    columns: np.ndarray
+    place: np.ndarray
     values: np.ndarray
     inverse: np.ndarray
 
@@ -240,25 +244,26 @@ def arrange(links, scale, level):
         All but its inverse diagonal; its pointers are those of the links.
     """
     indptr, indices, conductance = links
-    ends, columns, values = level.ends, level.columns, level.values
+    ends, place, values = level.ends, level.place, level.values
     n = len(ends)
     for block in prange((n + ROWS - 1) // ROWS):
         first, last = block * ROWS, min(n, (block + 1) * ROWS)
         for i in range(first, last):
-            low, high = indptr[i], indptr[i + 1]
-            for e in range(indptr[i], indptr[i + 1]):
+            begin = indptr[i]
+            low, high = begin, indptr[i + 1]
+            for e in range(begin, indptr[i + 1]):
                 j = indices[e]
                 if first <= j < i:
-                    columns[low], values[low] = j, scale * conductance[e]
+                    place[low], values[low] = e - begin, scale * conductance[e]
                     low += 1
                 elif i < j < last:
                     high -= 1
-                    columns[high], values[high] = j, scale * conductance[e]
-            ends[i, 0], ends[i, 1] = low, high
-            for e in range(indptr[i], indptr[i + 1]):
+                    place[high], values[high] = e - begin, scale * conductance[e]
+            ends[i, 0], ends[i, 1] = low - begin, high - begin
+            for e in range(begin, indptr[i + 1]):
                 j = indices[e]
                 if not (first <= j < last) or j == i:
-                    columns[low], values[low] = j, scale * conductance[e]
+                    place[low], values[low] = e - begin, scale * conductance[e]
                     low += 1
 
 
@@ -273,13 +278,13 @@ def forward(level, r, x):
         Right-hand side.
     x : (n,) float32 array, out
     """
-    indptr, ends, columns, values, inverse = level
+    indptr, indices, ends, place, values, inverse = level
     n = len(x)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(block * ROWS, min(n, (block + 1) * ROWS)):
-            flow = r[i]
-            for e in range(indptr[i], ends[i, 0]):
-                flow += values[e] * x[columns[e]]
+            flow, begin = r[i], np.uint64(indptr[i])
+            for e in range(begin, begin + ends[i, 0]):
+                flow += values[e] * x[indices[begin + place[e]]]
             x[i] = flow * inverse[i]
 
 
@@ -294,11 +299,11 @@ def defect(level, x, d):
         Of `forward`.
     d : (n,) float32 array, out
     """
-    indptr, ends, columns, values, _ = level
+    indptr, indices, ends, place, values, _ = level
     for i in prange(len(x)):
-        flow = np.float32(0.0)
-        for e in range(ends[i, 0], indptr[i + 1]):
-            flow += values[e] * x[columns[e]]
+        flow, begin = np.float32(0.0), np.uint64(indptr[i])
+        for e in range(begin + ends[i, 0], np.uint64(indptr[i + 1])):
+            flow += values[e] * x[indices[begin + place[e]]]
         d[i] = flow
 
 
@@ -350,15 +355,15 @@ def backward(level, r, x, y):
         Where it starts from.
     y : (n,) float32 array, out
     """
-    indptr, ends, columns, values, inverse = level
+    indptr, indices, ends, place, values, inverse = level
     n = len(x)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(min(n, (block + 1) * ROWS) - 1, block * ROWS - 1, -1):
-            flow = r[i]
-            for e in range(indptr[i], ends[i, 1]):
-                flow += values[e] * x[columns[e]]
-            for e in range(ends[i, 1], indptr[i + 1]):
-                flow += values[e] * y[columns[e]]
+            flow, begin = r[i], np.uint64(indptr[i])
+            for e in range(begin, begin + ends[i, 1]):
+                flow += values[e] * x[indices[begin + place[e]]]
+            for e in range(begin + ends[i, 1], np.uint64(indptr[i + 1])):
+                flow += values[e] * y[indices[begin + place[e]]]
             y[i] = flow * inverse[i]
 
 

@@ -39,16 +39,6 @@ def _spent(name, number):
 
 
 def _cases():
-    for name in ("dem", "fft", "multipole", "fem"):
-        for number in NUMBERS:
-            if number <= MOST.get(name, NUMBERS[-1]):
-                scene = {"part": "inclusions", "number": number, "kind": "equal", "fraction": 0.3}
-                yield methods.case(name, **scene, **_spent(name, number))
-    for kind, fraction in KINDS:
-        for number in (1000, GOAL, NUMBERS[-1]):
-            for name in ("dem", "fft"):
-                scene = {"part": "kinds", "number": number, "kind": kind, "fraction": fraction}
-                yield methods.case(name, **scene, **_spent(name, number))
     for name, number, knobs in (
         ("dem", 1, {"particles": MANY, "seed": 0}),
         ("dem", GOAL, {"particles": MANY, "seed": 0}),
@@ -56,17 +46,27 @@ def _cases():
         ("multipole", GOAL, {"accuracy": ACCURACY}),
     ):
         yield methods.case(name, part="goal", number=number, kind="equal", fraction=0.3, **knobs)
+    yield methods.case("dem", part="before", particles=PARTICLES[-1], seed=0, then=BEFORE)
+    for particles in PARTICLES[2:4]:
+        yield methods.case("dem", part="cutter", particles=particles, seed=0)
+    yield methods.case("dem", part="start", particles=PARTICLES[2], seed=0)
+    for number in NUMBERS:
+        for name in ("dem", "fft", "multipole", "fem"):
+            if number <= MOST.get(name, NUMBERS[-1]):
+                scene = {"part": "inclusions", "number": number, "kind": "equal", "fraction": 0.3}
+                yield methods.case(name, **scene, **_spent(name, number))
     for particles in PARTICLES:
-        for threads in THREADS if particles < PARTICLES[-1] else THREADS[-1:]:
+        for threads in THREADS if particles in PARTICLES[2:5:2] else THREADS[-1:]:
             yield methods.case("dem", part="elements", particles=particles, seed=0, cores=threads)
     for voxels in VOXELS:
         for threads in THREADS if voxels < VOXELS[-1] else THREADS[-1:]:
             yield methods.case("fft", part="elements", voxels=voxels, cores=threads)
-    yield methods.case("dem", part="before", particles=PARTICLES[-1], seed=0, then=BEFORE)
     yield methods.case("dem", part="time", particles=PARTICLES[-1], seed=0)
-    for particles in PARTICLES[2:4]:
-        yield methods.case("dem", part="cutter", particles=particles, seed=0)
-    yield methods.case("dem", part="start", particles=PARTICLES[2], seed=0)
+    for kind, fraction in KINDS:
+        for number in (1000, GOAL):
+            for name in ("dem", "fft"):
+                scene = {"part": "kinds", "number": number, "kind": kind, "fraction": fraction}
+                yield methods.case(name, **scene, **_spent(name, number))
 
 
 CASES = list(_cases())

@@ -31,8 +31,9 @@ def grouped(links, top):
 
 def level_of(links, inverse, scale=1.0):
     n = len(inverse)
-    columns, values = np.empty(len(links.indices), np.uint32), np.empty(len(links.indices), np.float32)
-    level = kernels.Level(links.indptr, np.empty((n, 2), np.int64), columns, values, inverse.astype(np.float32))
+    place, values = np.empty(len(links.indices), np.uint8), np.empty(len(links.indices), np.float32)
+    ends = np.empty((n, 2), np.uint8)
+    level = kernels.Level(links.indptr, links.indices, ends, place, values, inverse.astype(np.float32))
     kernels.arrange(links, scale, level)
     return level
 
@@ -98,8 +99,8 @@ def test_arranged_links():
         low, own, high = np.flatnonzero(j < i), np.flatnonzero(j == i), np.flatnonzero(j > i)
         # One block holds all rows: lower ones as they come, then links to own images, higher ones from the end.
         order = [*low, *own, *high[::-1]]
-        assert np.array_equal(level.columns[here], j[order]) and np.array_equal(level.values[here], g[order])
-        assert level.ends[i].tolist() == [here.start + len(low), here.stop - len(high)]
+        assert np.array_equal(level.place[here], order) and np.array_equal(level.values[here], g[order])
+        assert level.ends[i].tolist() == [len(low), len(j) - len(high)]
         loops += len(own)
     assert loops > 0
 
