@@ -91,10 +91,10 @@ def limited(threads: int | None):
     Parameters
     ----------
     threads : int or None
-        From 1 to the number that the process began with; None changes nothing.
+        At most the number that the process began with are used; None changes nothing.
     """
     before = numba.get_num_threads()
-    numba.set_num_threads(before if threads is None else threads)
+    numba.set_num_threads(before if threads is None else min(threads, numba.config.NUMBA_NUM_THREADS))
     try:
         yield
     finally:
