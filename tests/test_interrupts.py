@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
-# Each runs for over five minutes with one thread, most of it in the compiled loop that says `begun`; the calls before
-# are for compiling.
+# Each runs for over half a minute with one thread, most of it in the compiled loop that says `begun`, and would end
+# with status 0; the calls before are for compiling.
 HEAD = """
 import numpy as np
 from demheat.packing.base import make_packing
@@ -45,7 +45,7 @@ def average(n, radius):
     halo_average(x, x, np.ones(n), radius=radius, size=(1.0, 1.0, 1.0), periodic=True, phases=(phase, phase))
 average(100, 0.2)
 announced(kernels, "ball_means")
-average(700_000, 0.49)
+average(700_000, 0.13)
 """,
     "neighbours": """
 from demheat.packing.neighbours import kernels, near_rows
@@ -54,7 +54,7 @@ def search(n, skin):
     near_rows(np.column_stack((packing.centers, packing.radii)), packing.size, packing.periodic, skin=skin, guess=0.01)
 search(100, 0.1)
 announced(kernels, "near_rows")
-search(600_000, 0.45)
+search(600_000, 0.25)
 """,
     "time steps": """
 from demheat import Material, Scene, evolve

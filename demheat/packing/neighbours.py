@@ -18,7 +18,7 @@ PER_CELL = 4.0
 # Factor 2 was 20 % slower at a size ratio of 7 and no faster at 40.
 FACTOR, MAX_LEVELS = 4.0, 12
 # Chunks of particles in the first block of a search.
-FIRST = 64
+FIRST = 4
 # First guess of a gap that holds enough contacts: 7.5 of them were found within 0.07 at phi = 0.64.
 FIRST_GAP = 0.12
 

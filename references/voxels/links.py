@@ -10,7 +10,7 @@ from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
 from references.voxels.paint import voxelise
-from references.voxels.spheres import Spheres, groups, windows
+from references.voxels.spheres import Balls, groups, windows
 
 # A sphere's surface nearer to a node than this part of a link is taken this far away.  It moves the surface by 2e-4 of
 # a voxel in the mean (k changes by less than 0.002 % at 32^3) and saves half of the iterations at contrast 1e4, two
@@ -68,7 +68,7 @@ def _resistances(scene, shape, axis, resistivity):
 
 def _cut_group(group, resistance, axis, change, spacing):
     """Each inclusion replaces the resistivity it was painted on."""
-    if isinstance(group, Spheres):
+    if isinstance(group, Balls):
         _cut_spheres(group, resistance, axis, change, spacing)
     else:
         number, shape = group
@@ -132,7 +132,7 @@ def _cut_spheres(spheres, resistance, axis, change, spacing):
 
 @cut.register
 def _(shape: Sphere, resistance, axis, change, spacing):
-    one = Spheres(np.zeros(1, np.int64), np.array([shape.center]), np.array([shape.radius]))
+    one = Balls(np.zeros(1, np.int64), np.array([shape.center]), np.array([shape.radius]))
     _cut_spheres(one, resistance, axis, np.array([change]), spacing)
 
 

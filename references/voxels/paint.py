@@ -17,7 +17,7 @@ import numpy as np
 from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
-from references.voxels.spheres import Spheres, groups, windows
+from references.voxels.spheres import Balls, groups, windows
 
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
 MOST_PHASES = 2**16
@@ -196,7 +196,7 @@ def _paint(scene, grid, spacing, cutting):
     found, inclusions = [_none()], list(enumerate(scene.inclusions, start=1))
     with stage("voxels") as done:
         for group in groups(inclusions, scene.size, periodic=scene.periodic):
-            if isinstance(group, Spheres):
+            if isinstance(group, Balls):
                 found += _paint_spheres(group, grid, spacing, cutting, lambda n: done(n / len(inclusions)))
             else:
                 number, shape = group
@@ -264,7 +264,7 @@ def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
 
 @paint.register
 def _(shape: Sphere, grid, spacing, number, *, cutting):
-    one = Spheres(np.array([number]), np.array([shape.center]), np.array([shape.radius]))
+    one = Balls(np.array([number]), np.array([shape.center]), np.array([shape.radius]))
     found = _paint_spheres(one, grid, spacing, cutting, lambda _: None)
     return Cuts(*(np.concatenate(column) for column in zip(_none(), *found, strict=True)))
 

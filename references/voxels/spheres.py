@@ -14,7 +14,7 @@ from demheat.scene import Shape, Sphere
 MOST_LOOKED_AT = 2**20
 
 
-class Spheres(NamedTuple):
+class Balls(NamedTuple):
     """Images of spheres as they meet the box, in painting order.
 
     Attributes
@@ -36,7 +36,7 @@ class Windows(NamedTuple):
     Attributes
     ----------
     number, center, radius
-        As in `Spheres`, of the sphere that each is a piece of.
+        As in `Balls`, of the sphere that each is a piece of.
     low, high : (n, 3) int64 array
         Voxels to look at, low <= index < high.
     """
@@ -48,7 +48,7 @@ class Windows(NamedTuple):
     high: np.ndarray
 
 
-def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> Iterator[Spheres | tuple[int, Shape]]:
+def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> Iterator[Balls | tuple[int, Shape]]:
     """Inclusions that meet the box: spheres that follow one another as arrays, images of other shapes one by one.
 
     Parameters
@@ -61,7 +61,7 @@ def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> 
 
     Yields
     ------
-    Spheres, or tuple of int and Shape
+    Balls, or tuple of int and Shape
     """
     # What only derives from a sphere may be registered with a painting of its own.
     for spheres, group in groupby(inclusions, key=lambda pair: type(pair[1]) is Sphere):
@@ -71,7 +71,7 @@ def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> 
             yield from ((n, image) for n, shape in group for image in shape.images(size, periodic=periodic))
 
 
-def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Spheres:
+def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Balls:
     """All images of spheres, as `Shape.images` finds them one by one.
 
     Parameters
@@ -87,15 +87,15 @@ def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Sp
     centers = (center % size if periodic else center)[:, None] + shifts * size
     gap = np.maximum(0.0, np.maximum(-centers, centers - size))
     which, shift = np.nonzero(gap[..., 0] ** 2 + gap[..., 1] ** 2 + gap[..., 2] ** 2 < radius[:, None] ** 2)
-    return Spheres(number[which], centers[which, shift], radius[which])
+    return Balls(number[which], centers[which, shift], radius[which])
 
 
-def windows(spheres: Spheres, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT) -> list[Windows]:
+def windows(spheres: Balls, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT) -> list[Windows]:
     """The voxels that spheres may fill or cut, in blocks of not many voxels.
 
     Parameters
     ----------
-    spheres : Spheres
+    spheres : Balls
     shape : (3,) tuple of int
         Voxels along each side.
     spacing : (3,) float array, m

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from demheat import referee
 from studies.harness.pick import order, pick
 
 # Stages of the DEM from the scene to the conductivity, and those of the field at points.
@@ -102,7 +103,7 @@ def errors(df):
     for _, row in pick(df[df["status"] == "ok"], name="multipole").iterrows():
         known[row["number"], row["kind"], row["fraction"]] = row["k_ratio"]
     exact = [known.get((n, k, f), math.nan) for n, k, f in zip(df["number"], df["kind"], df["fraction"], strict=True)]
-    return df.assign(error_percent=100 * (df["k_ratio"] / np.array(exact, dtype=float) - 1))
+    return df.assign(error_percent=100 * referee.value_error(df["k_ratio"], np.array(exact, dtype=float)))
 
 
 def billion(df):

@@ -147,5 +147,6 @@ def _hierarchy(a) -> LinearOperator:
     import pyamg
 
     with one_blas_thread(), seeded():
-        levels = pyamg.smoothed_aggregation_solver(a, improve_candidates=None, **CYCLE)
+        # By SuperLU: the bits of a pseudo-inverse were others in the main thread than beside it.
+        levels = pyamg.smoothed_aggregation_solver(a, improve_candidates=None, coarse_solver="splu", **CYCLE)
         return levels.aspreconditioner(cycle="V")

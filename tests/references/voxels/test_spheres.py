@@ -1,4 +1,4 @@
-"""Spheres as arrays: images and windows beside those of one sphere after the other, and how much is looked at."""
+"""Balls as arrays: images and windows beside those of one sphere after the other, and how much is looked at."""
 
 import numpy as np
 import pytest
@@ -7,13 +7,13 @@ from numpy.testing import assert_allclose
 from demheat.scene import Layer, Material, Scene, Sphere
 from references.voxels import kernels, paint
 from references.voxels.links import links
-from references.voxels.spheres import Spheres, Windows, groups, images, windows
+from references.voxels.spheres import Balls, Windows, groups, images, windows
 
 SIZE, GOOD = (1.0, 1.3, 0.8), Material(7.0)
 
 
 def spheres(count, largest=0.3, seed=0):
-    """Spheres anywhere in the box and a little beyond, numbered from 1; they may overlap."""
+    """Balls anywhere in the box and a little beyond, numbered from 1; they may overlap."""
     rng = np.random.default_rng(seed)
     centers, radii = rng.uniform(-0.1, 1.1, (count, 3)) * SIZE, largest * rng.uniform(0.1, 1, count)
     return [(n, Sphere(tuple(c), r, GOOD)) for n, (c, r) in enumerate(zip(centers, radii, strict=True), start=1)]
@@ -43,7 +43,7 @@ def test_groups_keep_the_painting_order():
     layer, odd = Layer(0, 0.2, 0.3, GOOD), Odd((0.5, 0.5, 0.5), 0.1, GOOD)
     shapes = [*(s for _, s in spheres(3, 0.05)), layer, odd, Sphere((0.7, 0.7, 0.5), 0.1, GOOD)]
     found = list(groups(list(enumerate(shapes, start=1)), SIZE, periodic=False))
-    assert [type(group) for group in found] == [Spheres, tuple, tuple, Spheres]
+    assert [type(group) for group in found] == [Balls, tuple, tuple, Balls]
     assert found[1] == (4, layer) and found[2] == (5, odd)
     assert found[3].number.tolist() == [6]
 
