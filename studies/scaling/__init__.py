@@ -48,8 +48,7 @@ def _cases():
     ):
         yield methods.case(name, part="goal", number=number, kind="equal", fraction=0.3, **knobs)
     yield methods.case("dem", part="before", particles=PARTICLES[-1], seed=0, then=BEFORE)
-    for particles in PARTICLES[2:4]:
-        yield methods.case("dem", part="cutter", particles=particles, seed=0)
+    yield methods.case("dem", part="cutter", particles=PARTICLES[2], seed=0)
     yield methods.case("dem", part="start", particles=PARTICLES[2], seed=0)
     for number in NUMBERS:
         for name in ("dem", "fft", "multipole", "fem"):
@@ -168,7 +167,7 @@ def _engine(df):
     rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
     if len(rows):
         yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.25
-    rows = pick(df, part="cutter", particles=PARTICLES[3])
+    rows = pick(df, part="cutter")
     if len(rows):
         row = rows.iloc[0]
         yield "Cells: efficiency of two threads", row["efficiency"], ">= 0.8"
