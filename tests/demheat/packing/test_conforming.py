@@ -134,3 +134,20 @@ def test_inscribed_radius_of_a_cube():
 def test_inscribed_radius_of_many_normals_tends_to_one():
     defects = [1 - inscribed_radius(fibonacci_sphere(n)) for n in (400, 1600)]
     assert_allclose(defects[0] / defects[1], 4.0, rtol=0.02)  # falls with the area of a facet
+
+
+def test_a_wide_margin_halves_errors(monkeypatch):
+    from demheat import gallery, solve
+    from demheat.packing import conforming
+    from references import multipole
+
+    given = gallery.dispersion(20, fraction=0.3, seed=3)
+    exact = multipole.solve(given, accuracy=1e-3).conductivity
+    wide = solve(given, particles=4000).conductivity
+    # The least that keeps facets off the interface.
+    least = (conforming.COVER * conforming.SPACING) ** 2 - conforming.EXCESS
+    monkeypatch.setattr(conforming, "_margin", lambda radius: least * radius**2)
+    narrow = solve(given, particles=4000).conductivity
+    # Found on others: .3 to .6 of the error; 1e-3 is the witness's own.
+    assert abs(wide / exact - 1) < 0.75 * abs(narrow / exact - 1)
+    assert abs(narrow / exact - 1) > 4e-3
