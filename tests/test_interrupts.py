@@ -77,6 +77,8 @@ def test_ctrl_c(stage, tmp_path):
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
+        # Where SIGINT is ignored, as in the background of a script, children would ignore it too.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     try:
         assert run.stdout.readline() == "begun\n", run.communicate()[1]

@@ -101,7 +101,9 @@ except KeyboardInterrupt:
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_ctrl_c_ends_meshing_and_the_mesher():
-    with subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
+    # Where SIGINT is ignored, as in the background of a script, children would ignore it too.
+    how = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL), "stdout": subprocess.PIPE, "text": True}
+    with subprocess.Popen([sys.executable, "-c", SCRIPT], cwd=ROOT, **how) as parent:
         child = int(parent.stdout.readline())
         assert parent.stdout.readline() == "mesh\n"
         parent.send_signal(signal.SIGINT)

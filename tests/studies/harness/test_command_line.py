@@ -86,6 +86,8 @@ def test_ctrl_c_ends_a_run_with_a_line_and_no_process_left(tiny, tmp_path):
         stderr=subprocess.PIPE,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(tmp_path)])},
         text=True,
+        # Where SIGINT is ignored, as in the background of a script, children would ignore it too.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     log = tmp_path / "log"
     while not (log.exists() and "run sleeps" in log.read_text()):
