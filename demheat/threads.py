@@ -13,6 +13,7 @@ before this module is imported do not know the gate.
 
 import ctypes
 import os
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 
 import llvmlite.binding as llvm
@@ -82,6 +83,34 @@ def _gate(lock, functions):
             code.call(leave, [word(lock)])
     code.ret_void()
     return module
+
+
+def shared_out(work, count: int, *, piece: int) -> None:
+    """Let Python threads, as many as compiled loops use, take pieces of some work until all of it is done.
+
+    For compiled functions that let go of Python's lock and do not use a parallel loop: pieces of unlike length even
+    out, and one thread takes them in order, without another. After an exception no further piece is begun.
+
+    Parameters
+    ----------
+    work : callable (first, last)
+        Does what has the numbers from first to last, without the latter.
+    count : int
+    piece : int
+        Numbers in a piece.
+    """
+    pieces = [(first, min(count, first + piece)) for first in range(0, count, piece)]
+    threads = min(numba.get_num_threads(), len(pieces))
+    if threads < 2:
+        for each in pieces:
+            work(*each)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        try:
+            for future in [pool.submit(work, *each) for each in pieces]:
+                future.result()
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 @contextmanager

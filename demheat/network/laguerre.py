@@ -11,9 +11,12 @@ from demheat.network.sites_kernels import Sites
 from demheat.packing.base import check_domain
 from demheat.progress import stage
 from demheat.scene import domain_volume
+from demheat.threads import shared_out
 
 # Rows cut at once, some tenths of a second: bounds the scratch memory and the wait for an interrupt.
 BLOCK = 65536
+# Chunks of cells that a thread takes at once, some hundredths of a second.
+PIECE = 16
 # Facets of a chunk of cells that there is room for at first: for each cell, and for a large one of which its squared
 # size, weight less the least, is so many squared mean spacings.
 ROOM, LARGE = 22, 16
@@ -246,7 +249,8 @@ def _cut_block(start, stop, sites, wall, spacing):
     while len(todo):
         cut = _empty_cut(rows, len(todo), room)
         near = tangents_within(wall, sites.points[start:stop], reach)
-        kernels.cut_cells(todo, start, sites, wall, near, _limits(sites, spacing, reach), cut)
+        what = todo, start, sites, wall, near, _limits(sites, spacing, reach), cut
+        shared_out(lambda first, last, what=what: kernels.cut_cells(first, last, *what), len(todo), piece=PIECE)
         blind = _unseen(cut.status, len(wall.normals) and reach < 2 * sites.size.max())
         full = cut.used > room
         redone = full | np.isin(todo, blind)

@@ -9,9 +9,24 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit, prange
 
-from demheat.network.polyhedron_kernels import PLAIN, cut, empty_polyhedron, measure, start_box
+from demheat.network.polyhedron_kernels import (
+    AREA,
+    DISTANCE,
+    PLAIN,
+    X,
+    Y,
+    Z,
+    beyond,
+    cut,
+    empty_polyhedron,
+    measure,
+    start_box,
+)
 from demheat.network.sites_kernels import (
     HERE,
+    HIGH,
+    LOW,
+    arrange,
     cutting_reach,
     empty_candidates,
     find_home,
@@ -26,6 +41,10 @@ CHUNK = 128
 PLANES, ROOM = 96, 192
 # Times that a cell is begun at most; each time what was lacking is doubled or more.
 MOST_TIMES = 40
+
+
+# Of functions called in one place: what Numba inlines itself it compiles once, not at every level of its callers.
+ONCE = {**PLAIN, "inline": "always"}
 
 
 class Limits(NamedTuple):
@@ -93,29 +112,12 @@ class Cut(NamedTuple):
     distance: np.ndarray
 
 
-@njit(**PLAIN)
-def _sift(heap, key, root, count):
-    """Restore the heap (least key first) below root."""
-    item = heap[root]
-    while True:
-        child = 2 * root + 1
-        if child >= count:
-            break
-        if child + 1 < count and key[heap[child + 1]] < key[heap[child]]:
-            child += 1
-        if key[heap[child]] >= key[item]:
-            break
-        heap[root] = heap[child]
-        root = child
-    heap[root] = item
-
-
-@njit(**PLAIN)
+@njit(**ONCE)
 def _farthest(cell, count):
     """Distance of the farthest vertex from the site."""
-    square, most = cell.square, 0.0
+    most = 0.0
     for v in range(count):
-        most = square[v] if square[v] > most else most
+        most = max(most, cell.vertex[X, v] ** 2 + cell.vertex[Y, v] ** 2 + cell.vertex[Z, v] ** 2)
     return np.sqrt(most)
 
 
@@ -129,11 +131,12 @@ def _cut_wall(cell, count, planes, center, eps, wall, tangents, skip):
     for q in tangents:
         if q == skip:
             continue
-        if planes == len(cell.distance):
+        if planes == len(cell.label):
             return OVERFLOW, 0, 0
-        x, y, z = normals[q]
-        h = wall.radius - x * (center[0] - middle[0]) - y * (center[1] - middle[1]) - z * (center[2] - middle[2])
-        cell.normal[planes, 0], cell.normal[planes, 1], cell.normal[planes, 2], cell.distance[planes] = x, y, z, h
+        cell.plane[planes, DISTANCE] = wall.radius
+        for k in range(3):
+            cell.plane[planes, k] = normals[q, k]
+            cell.plane[planes, DISTANCE] -= normals[q, k] * (center[k] - middle[k])
         count, new = cut(cell, count, planes, eps)
         if count < 0:
             return TANGLED, 0, 0
@@ -145,7 +148,7 @@ def _cut_wall(cell, count, planes, center, eps, wall, tangents, skip):
     return OK, count, planes
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _misses_tangents(cell, count, reach, center, wall):
     """Whether a plane of a round wall farther than reach from the centre might still cut the cell.
 
@@ -153,16 +156,16 @@ def _misses_tangents(cell, count, reach, center, wall):
     distance from the body's middle or axis.
     """
     for v in range(count):
-        off = wall.across[0] * (center[0] + cell.x[v] - wall.middle[0]) ** 2
-        off += wall.across[1] * (center[1] + cell.y[v] - wall.middle[1]) ** 2
-        off += wall.across[2] * (center[2] + cell.z[v] - wall.middle[2]) ** 2
-        off -= wall.radius**2
-        if off > 0.0 and np.sqrt(cell.square[v]) + np.sqrt(off) > reach:
+        off, square = -(wall.radius**2), 0.0
+        for k in range(3):
+            off += wall.across[k] * (center[k] + cell.vertex[k, v] - wall.middle[k]) ** 2
+            square += cell.vertex[k, v] ** 2
+        if off > 0.0 and np.sqrt(square) + np.sqrt(off) > reach:
             return True
     return False
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _nearest(center, tangents, wall):
     """Where among the listed planes of a round wall that nearest to the centre stands; -1 for an empty list."""
     best, found = -np.inf, -1
@@ -175,10 +178,10 @@ def _nearest(center, tangents, wall):
     return found
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _start(i, half, sites, wall, found, cell):
     """Begin the cell of site i as a box of that half edge, within walls; the vertex count."""
-    low, high = found.gap[0], found.gap[1]
+    low, high = found.frame[LOW], found.frame[HIGH]
     for k in range(3):
         low[k], high[k] = -half, half
         # Tangent planes enclose as much as the round body: their corners stand out of its box.
@@ -189,43 +192,39 @@ def _start(i, half, sites, wall, found, cell):
     return start_box(low, high, cell)
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _cut_sites(cell, count, planes, farthest, found, m, eps):
-    """Cut by the radical planes of the m candidates, nearest first, until the next is beyond the cell.
+    """Cut by the radical planes of the m candidates, the nearest first.
 
     Returns (status, vertex count, number of planes, distance of the farthest vertex).
     """
-    heap, plane, offset = found.heap, found.plane, found.offset
-    for c in range(m):
-        heap[c] = c
-    for root in range(m // 2 - 1, -1, -1):
-        _sift(heap, plane, root, m)
-    while m > 0 and plane[heap[0]] < farthest:
-        c, h = heap[0], plane[heap[0]]
-        m -= 1
-        heap[0] = heap[m]
-        _sift(heap, plane, 0, m)
-        if planes == len(cell.distance):
-            return OVERFLOW, 0, 0, farthest
-        if h == -np.inf:
-            return OK, 0, 0, farthest
-        d = 1.0 / np.sqrt(offset[c, 0] ** 2 + offset[c, 1] ** 2 + offset[c, 2] ** 2)
-        for k in range(3):
-            cell.normal[planes, k] = offset[c, k] * d
-        cell.distance[planes] = h
-        count, new = cut(cell, count, planes, eps)
+    plane, state = found.plane, OK
+    arrange(found, m)
+    for rank in range(m):
+        c = found.order[rank]
+        h = plane[c, 3]
+        if h >= farthest:
+            continue
+        # Most planes miss: that is found here, where it costs least.
+        gone = beyond(cell, count, plane[c, 0], plane[c, 1], plane[c, 2], h + eps) if h > -np.inf else count
+        if gone == 0:
+            continue
+        if gone == count or planes == len(cell.label):
+            state, count = OK if gone == count else OVERFLOW, 0
+            break
+        for k in range(4):
+            cell.plane[planes, k] = plane[c, k]
+        cell.label[planes] = found.label[c]
+        count, _ = cut(cell, count, planes, eps)
         if count < 0:
-            return TANGLED, 0, 0, farthest
-        if count == 0:
-            return OK, 0, 0, farthest
-        if new > 0:
-            cell.label[planes] = found.label[c]
-            planes += 1
-            farthest = _farthest(cell, count)
-    return OK, count, planes, farthest
+            state, count = TANGLED, 0
+            break
+        planes += 1
+        farthest = _farthest(cell, count)
+    return state, count, planes, farthest
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _cut_level(i, level, sites, cell, count, planes, found, eps):
     """Cut by the sites of a level, ring by ring, until those left cannot; (status, vertex count, number of planes)."""
     farthest, ring = _farthest(cell, count), 1
@@ -246,7 +245,7 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
             return UNSECURED, 0, 0
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
     center = sites.points[i]
@@ -269,23 +268,24 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     return state, count, planes
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _narrow(cell, count):
     """Whether a side of the start box that is no wall still bounds the cell."""
     for v in range(count):
         for k in range(3):
-            side = cell.triple[v, k]
+            side = cell.corner[v, k]
             if side < 6 and cell.label[side] == NARROW:
                 return True
     return False
 
 
-@njit(**PLAIN)
+@njit(**ONCE)
 def _note_facets(row, chunk, planes, cell, sliver, out):
     """Note the facets of more than a sliver's area at the end of a chunk's."""
     e, links, ends = out.used[chunk], 0, 0
     for f in range(planes):
-        if cell.area[f] <= sliver:
+        area = cell.plane[f, AREA]
+        if area <= sliver:
             continue
         label = cell.label[f]
         inner = f >= 6 and label >= 0
@@ -296,51 +296,21 @@ def _note_facets(row, chunk, planes, cell, sliver, out):
                 out.neighbour[chunk, e], out.image[chunk, e] = label >> 5, label & 31
             else:
                 out.neighbour[chunk, e], out.image[chunk, e] = -1 - f if f < 6 else label - 6, HERE
-            out.area[chunk, e], out.distance[chunk, e] = cell.area[f], cell.distance[f]
+            out.area[chunk, e], out.distance[chunk, e] = area, cell.plane[f, DISTANCE]
         e += 1
     out.used[chunk], out.links[row], out.ends[row] = e, links, ends
 
 
-@njit(cache=True)
-def _cut_chunk(chunk, place, start, sites, wall, near, limits, out):
-    """Cut the cells of one chunk of rows with one scratch memory, which grows where a cell needs more.
+@njit(cache=True, error_model="numpy", nogil=True)
+def cut_cells(first, last, chunks, start, sites, wall, near, limits, out):
+    """Cut the cells of some chunks of CHUNK rows, those in places from first to last in a list.
 
-    Not within the parallel loop: there Numba mixes up arrays that it meets as parts of a tuple made in the loop.
-    """
-    found, cell = empty_candidates(ROOM), empty_polyhedron(PLANES)
-    out.used[place] = 0
-    for row in range(chunk * CHUNK, min(len(out.status), (chunk + 1) * CHUNK)):
-        i = start + row
-        tangents = near.planes[near.pointers[row] : near.pointers[row + 1]]
-        half = min(limits.box + 2.0 * np.sqrt(sites.weights[i] - limits.lightest), limits.widest)
-        eps, state, count, planes = limits.eps, OK, 0, 0
-        for times in range(1, MOST_TIMES):
-            state, count, planes = _cell(i, half, sites, wall, tangents, eps, limits.reach, found, cell)
-            if state == OK and half < limits.widest and _narrow(cell, count):
-                state = NARROW
-            out.times[row] = times
-            if state == CROWDED:
-                found = empty_candidates(4 * len(found.label))
-            elif state == OVERFLOW:
-                cell = empty_polyhedron(4 * len(cell.distance))
-            elif state == NARROW:
-                half = min(4.0 * half, limits.widest)
-            elif state == TANGLED and eps < limits.coarsest:
-                eps *= 4.0
-            else:
-                break
-        out.status[row], out.volume[row], out.links[row], out.ends[row] = state, 0.0, 0, 0
-        if state == OK and count > 0:
-            out.volume[row] = measure(cell, count, planes)
-            _note_facets(row, place, planes, cell, limits.sliver, out)
-
-
-@njit(cache=True, parallel=True)
-def cut_cells(chunks, start, sites, wall, near, limits, out):
-    """Cut the cells of some chunks of CHUNK rows; each thread writes its own rows and chunks only.
+    Each chunk has scratch memory of its own, which grows where a cell needs more, and writes its own rows and facets.
+    Python's lock is not held: threads may cut other chunks meanwhile.
 
     Parameters
     ----------
+    first, last : int
     chunks : (c,) int64 array
         Numbers of the chunks among the rows of `out`.
     start : int
@@ -353,8 +323,33 @@ def cut_cells(chunks, start, sites, wall, near, limits, out):
     limits : Limits
     out : Cut, out
     """
-    for place in prange(len(chunks)):
-        _cut_chunk(chunks[place], place, start, sites, wall, near, limits, out)
+    for place in range(first, last):
+        found, cell = empty_candidates(ROOM), empty_polyhedron(PLANES)
+        out.used[place] = 0
+        for row in range(chunks[place] * CHUNK, min(len(out.status), (chunks[place] + 1) * CHUNK)):
+            i = start + row
+            tangents = near.planes[near.pointers[row] : near.pointers[row + 1]]
+            half = min(limits.box + 2.0 * np.sqrt(sites.weights[i] - limits.lightest), limits.widest)
+            eps, state, count, planes = limits.eps, OK, 0, 0
+            for times in range(1, MOST_TIMES):
+                state, count, planes = _cell(i, half, sites, wall, tangents, eps, limits.reach, found, cell)
+                if state == OK and half < limits.widest and _narrow(cell, count):
+                    state = NARROW
+                out.times[row] = times
+                if state == CROWDED:
+                    found = empty_candidates(4 * len(found.label))
+                elif state == OVERFLOW:
+                    cell = empty_polyhedron(4 * len(cell.label))
+                elif state == NARROW:
+                    half = min(4.0 * half, limits.widest)
+                elif state == TANGLED and eps < limits.coarsest:
+                    eps *= 4.0
+                else:
+                    break
+            out.status[row], out.volume[row], out.links[row], out.ends[row] = state, 0.0, 0, 0
+            if state == OK and count > 0:
+                out.volume[row] = measure(cell, count, planes)
+                _note_facets(row, place, planes, cell, limits.sliver, out)
 
 
 class Gathered(NamedTuple):

@@ -15,6 +15,10 @@ from numba import njit
 
 # Options of functions that make no array: no references are counted, and no division is checked.
 PLAIN = {"cache": True, "error_model": "numpy", "_nrt": False}
+# Where things stand in the arrays of a Polyhedron: few arrays are quick to hand on, and quick to compile.
+X, Y, Z, ABOVE = range(4)
+EDGE, GONE, BEGINS = 3, 6, 7
+DISTANCE, AREA = 3, 4
 
 
 class Polyhedron(NamedTuple):
@@ -24,62 +28,33 @@ class Polyhedron(NamedTuple):
 
     Attributes
     ----------
-    x, y, z : (4 p,) float arrays, m
-        Vertices.
-    square : (4 p,) float array, m2
-        Squared distance of each vertex from the origin.
-    triple : (4 p, 3) int32 array
-        Slots of the three planes that meet in each vertex, counter-clockwise seen from outside.
-    edge : (4 p, 3) int32 array
-        The vertex at the other end of the edge in which planes k and k + 1 (cyclically) of the triple meet.
-    normal : (p, 3) float array
-        Outward unit vectors.
-    distance : (p,) float array, m
-        Of the planes from the origin.
+    vertex : (4, 4 p) float array, m
+        Places of the vertices in rows X, Y and Z; row ABOVE is scratch: heights above the cutting plane.
+    corner : (4 p, 8) uint32 array
+        Of each vertex: the slots of the three planes that meet there, counter-clockwise seen from outside; from EDGE on
+        the vertices at the other ends of the edges in which planes k and k + 1 (cyclically) of the three meet. Columns
+        GONE and BEGINS are scratch lists: vertices that are cut off, and for each plane the new vertex that begins with
+        it.
+    plane : (p, 5) float array, m and m2
+        Outward unit normals, DISTANCE from the origin, and AREA of the facets by `measure`.
     label : (p,) int64 array
         What a plane is of, for who cuts.
-    area : (p,) float array, m2
-        Of the facets, by `measure`.
-    above : (4 p,) float array, m
-        Scratch: height of each vertex above the cutting plane.
-    gone : (4 p,) int32 array
-        Scratch: the vertices that are cut off.
-    begins : (p,) int32 array
-        Scratch: the new vertex whose triple begins with a plane.
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
-    square: np.ndarray
-    triple: np.ndarray
-    edge: np.ndarray
-    normal: np.ndarray
-    distance: np.ndarray
+    vertex: np.ndarray
+    corner: np.ndarray
+    plane: np.ndarray
     label: np.ndarray
-    area: np.ndarray
-    above: np.ndarray
-    gone: np.ndarray
-    begins: np.ndarray
 
 
 @njit(cache=True)
 def empty_polyhedron(most):
     """Memory of a Polyhedron of up to `most` planes."""
     return Polyhedron(
-        np.empty(4 * most),
-        np.empty(4 * most),
-        np.empty(4 * most),
-        np.empty(4 * most),
-        np.empty((4 * most, 3), np.int32),
-        np.empty((4 * most, 3), np.int32),
-        np.empty((most, 3)),
-        np.empty(most),
+        np.empty((4, 4 * most)),
+        np.zeros((4 * most, 8), np.uint32),
+        np.empty((most, 5)),
         np.empty(most, np.int64),
-        np.empty(most),
-        np.empty(4 * most),
-        np.empty(4 * most, np.int32),
-        np.zeros(most, np.int32),
     )
 
 
@@ -98,76 +73,85 @@ def start_box(low, high, cell):
     int
         Number of vertices, 8.
     """
+    corner = cell.corner
     for side in range(6):
         for k in range(3):
-            cell.normal[side, k] = 0.0
-        cell.normal[side, side // 2] = 2 * (side % 2) - 1
-        cell.distance[side] = high[side // 2] if side % 2 else -low[side // 2]
+            cell.plane[side, k] = 0.0
+        cell.plane[side, side // 2] = 2 * (side % 2) - 1
+        cell.plane[side, DISTANCE] = high[side // 2] if side % 2 else -low[side // 2]
     for v in range(8):
-        total = 0.0
         for k in range(3):
             end = (v >> (2 - k)) & 1
-            corner = high[k] if end else low[k]
-            if k == 0:
-                cell.x[v] = corner
-            elif k == 1:
-                cell.y[v] = corner
-            else:
-                cell.z[v] = corner
-            total += corner * corner
-            cell.triple[v, k] = 2 * k + end
-        cell.square[v] = total
+            cell.vertex[k, v] = high[k] if end else low[k]
+            corner[v, k] = 2 * k + end
         if (v ^ (v >> 1) ^ (v >> 2)) & 1 == 0:  # keep every triple counter-clockwise seen from outside
-            cell.triple[v, 1], cell.triple[v, 2] = cell.triple[v, 2], cell.triple[v, 1]
+            corner[v, 1], corner[v, 2] = corner[v, 2], corner[v, 1]
         for k in range(3):
             # The edge of two planes runs along the axis of the third.
-            cell.edge[v, k] = v ^ (4 >> (cell.triple[v, (k + 2) % 3] // 2))
+            corner[v, EDGE + k] = v ^ (4 >> (corner[v, (k + 2) % 3] // 2))
     return 8
 
 
+@njit(**PLAIN, inline="always")
+def beyond(cell, count, x, y, z, limit):
+    """How many of the vertices have a larger product with a vector than that.
+
+    Parameters
+    ----------
+    cell : Polyhedron
+    count : int
+        Number of vertices.
+    x, y, z : float
+    limit : float, m
+
+    Returns
+    -------
+    int
+    """
+    number = 0
+    for v in range(count):
+        number += x * cell.vertex[X, v] + y * cell.vertex[Y, v] + z * cell.vertex[Z, v] > limit
+    return number
+
+
 @njit(**PLAIN)
-def _end(triple, w, b):
+def _end(corner, w, b):
     """Where plane b stands in the triple of vertex w: its edge with the plane that follows."""
-    return 0 if triple[w, 0] == b else (1 if triple[w, 1] == b else 2)
+    return 0 if corner[w, 0] == b else (1 if corner[w, 1] == b else 2)
 
 
 @njit(**PLAIN, inline="always")
-def _heights(cell, count, slot, eps):
-    """Height of each vertex above the plane in a slot; the number of those beyond it."""
-    nx, ny, nz, h = cell.normal[slot, 0], cell.normal[slot, 1], cell.normal[slot, 2], cell.distance[slot]
-    beyond = 0
+def _heights(cell, count, slot):
+    """Note the height of each vertex above the plane in a slot."""
+    x, y, z, h = cell.plane[slot, 0], cell.plane[slot, 1], cell.plane[slot, 2], cell.plane[slot, DISTANCE]
     for v in range(count):
-        cell.above[v] = nx * cell.x[v] + ny * cell.y[v] + nz * cell.z[v] - h
-        beyond += cell.above[v] > eps
-    return beyond
+        cell.vertex[ABOVE, v] = x * cell.vertex[X, v] + y * cell.vertex[Y, v] + z * cell.vertex[Z, v] - h
 
 
 @njit(**PLAIN, inline="always")
 def _add(cell, new, v, k, slot):
     """Put a new vertex where edge k of vertex v crosses the plane in a slot."""
-    a, b, w = cell.triple[v, k], cell.triple[v, (k + 1) % 3], cell.edge[v, k]
-    t = cell.above[v] / (cell.above[v] - min(cell.above[w], 0.0))  # what is kept within eps above the plane is on it
-    x = cell.x[v] + t * (cell.x[w] - cell.x[v])
-    y = cell.y[v] + t * (cell.y[w] - cell.y[v])
-    z = cell.z[v] + t * (cell.z[w] - cell.z[v])
-    cell.x[new], cell.y[new], cell.z[new], cell.square[new] = x, y, z, x * x + y * y + z * z
-    cell.triple[new, 0], cell.triple[new, 1], cell.triple[new, 2] = a, b, slot
-    cell.edge[new, 0] = w
-    cell.edge[w, _end(cell.triple, w, b)] = new
-    cell.begins[a] = new
-    cell.above[new] = 0.0
+    vertex, corner = cell.vertex, cell.corner
+    a, b, w = corner[v, k], corner[v, (k + 1) % 3], corner[v, EDGE + k]
+    t = vertex[ABOVE, v] / (vertex[ABOVE, v] - min(vertex[ABOVE, w], 0.0))  # what is kept within eps above is on it
+    for axis in range(3):
+        vertex[axis, new] = vertex[axis, v] + t * (vertex[axis, w] - vertex[axis, v])
+    vertex[ABOVE, new] = 0.0
+    corner[new, 0], corner[new, 1], corner[new, 2], corner[new, EDGE] = a, b, slot, w
+    corner[w, EDGE + _end(corner, w, b)] = new
+    corner[a, BEGINS] = new
 
 
 @njit(**PLAIN, inline="always")
-def _close(cell, first, total):
+def _close(corner, first, total):
     """Join the new vertices from `first` on to a rim; False unless they are one simple loop."""
     v, steps = first, 0
     while steps < total - first:
-        b = cell.triple[v, 1]
-        w = cell.begins[b]
-        if w < first or w >= total or cell.triple[w, 0] != b:
+        b = corner[v, 1]
+        w = np.int64(corner[b, BEGINS])
+        if w < first or w >= total or corner[w, 0] != b:
             break
-        cell.edge[v, 1], cell.edge[w, 2] = w, v
+        corner[v, EDGE + 1], corner[w, EDGE + 2] = w, v
         v = w
         steps += 1
         if v == first:
@@ -176,21 +160,22 @@ def _close(cell, first, total):
 
 
 @njit(**PLAIN, inline="always")
-def _fill(cell, beyond, total, eps):
+def _fill(cell, gone, total, eps):
     """Move the last vertices to the places of those that are gone; the new number of vertices."""
-    left, last = total - beyond, total - 1
-    for s in range(beyond):
-        hole = cell.gone[s]
+    vertex, corner = cell.vertex, cell.corner
+    left, last = total - gone, total - 1
+    for s in range(gone):
+        hole = corner[s, GONE]
         if hole >= left:
             break
-        while cell.above[last] > eps:
+        while vertex[ABOVE, last] > eps:
             last -= 1
-        cell.x[hole], cell.y[hole], cell.z[hole] = cell.x[last], cell.y[last], cell.z[last]
-        cell.square[hole] = cell.square[last]
+        for axis in range(3):
+            vertex[axis, hole] = vertex[axis, last]
         for k in range(3):
-            w = cell.edge[last, k]
-            cell.triple[hole, k], cell.edge[hole, k] = cell.triple[last, k], w
-            cell.edge[w, _end(cell.triple, w, cell.triple[last, (k + 1) % 3])] = hole
+            w = corner[last, EDGE + k]
+            corner[hole, k], corner[hole, EDGE + k] = corner[last, k], w
+            corner[w, EDGE + _end(corner, w, corner[last, (k + 1) % 3])] = hole
         last -= 1
     return left
 
@@ -216,23 +201,24 @@ def cut(cell, count, slot, eps):
     new : int
         How many of them lie on the plane: 0 if it misses, and the polyhedron is as it was.
     """
-    beyond = _heights(cell, count, slot, eps)
-    if beyond == 0 or beyond == count:
-        return count - beyond, 0
-    total, s = count, 0
+    _heights(cell, count, slot)
+    vertex, corner = cell.vertex, cell.corner
+    total, gone = count, 0
     for v in range(count):
-        if cell.above[v] > eps:
-            cell.gone[s] = v
-            s += 1
+        if vertex[ABOVE, v] > eps:
+            corner[gone, GONE] = v
+            gone += 1
             for k in range(3):
-                if cell.above[cell.edge[v, k]] <= eps:
-                    if total == len(cell.above):
+                if vertex[ABOVE, corner[v, EDGE + k]] <= eps:
+                    if total == vertex.shape[1]:
                         return -1, 0
                     _add(cell, total, v, k, slot)
                     total += 1
-    if total == count or not _close(cell, count, total):
+    if gone == 0 or gone == count:
+        return count - gone, 0
+    if total == count or not _close(corner, count, total):
         return -1, 0
-    return _fill(cell, beyond, total, eps), total - count
+    return _fill(cell, gone, total, eps), total - count
 
 
 @njit(**PLAIN)
@@ -252,21 +238,22 @@ def measure(cell, count, planes):
     float, m3
         Its volume.
     """
+    vertex, corner, plane = cell.vertex, cell.corner, cell.plane
     for f in range(planes):
-        cell.area[f] = 0.0
+        plane[f, AREA] = 0.0
     for v in range(count):
         for k in range(3):
-            w = cell.edge[v, k]
+            w = corner[v, EDGE + k]
             if w < v:
                 continue
             # Half the cross product of both ends; seen from outside plane b is on the left of the way from v to w.
-            a, b = cell.triple[v, k], cell.triple[v, (k + 1) % 3]
-            x = 0.5 * (cell.y[v] * cell.z[w] - cell.z[v] * cell.y[w])
-            y = 0.5 * (cell.z[v] * cell.x[w] - cell.x[v] * cell.z[w])
-            z = 0.5 * (cell.x[v] * cell.y[w] - cell.y[v] * cell.x[w])
-            cell.area[b] += cell.normal[b, 0] * x + cell.normal[b, 1] * y + cell.normal[b, 2] * z
-            cell.area[a] -= cell.normal[a, 0] * x + cell.normal[a, 1] * y + cell.normal[a, 2] * z
+            a, b = corner[v, k], corner[v, (k + 1) % 3]
+            x = 0.5 * (vertex[Y, v] * vertex[Z, w] - vertex[Z, v] * vertex[Y, w])
+            y = 0.5 * (vertex[Z, v] * vertex[X, w] - vertex[X, v] * vertex[Z, w])
+            z = 0.5 * (vertex[X, v] * vertex[Y, w] - vertex[Y, v] * vertex[X, w])
+            plane[b, AREA] += plane[b, 0] * x + plane[b, 1] * y + plane[b, 2] * z
+            plane[a, AREA] -= plane[a, 0] * x + plane[a, 1] * y + plane[a, 2] * z
     volume = 0.0
     for f in range(planes):
-        volume += cell.distance[f] * cell.area[f]
+        volume += plane[f, DISTANCE] * plane[f, AREA]
     return volume / 3.0

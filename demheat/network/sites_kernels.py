@@ -14,6 +14,9 @@ from demheat.network.polyhedron_kernels import PLAIN
 
 # Code of the image in the box itself: no shift along any axis.
 HERE = 13
+LOW, HIGH, WIDTH = range(3)
+# Bins that candidates are put in order by.
+BINS = 32
 
 
 class Sites(NamedTuple):
@@ -58,27 +61,26 @@ class Candidates(NamedTuple):
     ----------
     label : (room,) int64 array
         32 times the number of a site, plus the code of its image.
-    offset : (room, 3) float array, m
-        From the cell's own site.
-    plane : (room,) float array, m
-        Distance of the radical plane; minus infinity for a site that hides the cell's own.
-    heap : (room,) int64 array
-        Scratch: candidates, nearest plane first.
+    plane : (room, 4) float array, m
+        The radical plane: unit vector towards the site, distance from the cell's own; that is minus infinity for a site
+        that hides the cell's own.
+    order : (room,) uint32 array
+        The candidates, nearest plane first as far as `arrange` tells.
+    bin : (room,) uint32 array
+        Scratch of `arrange`.
     home : (3,) int64 array
         Grid cell of the cell's site.
-    width : (3,) float array, m
-        Of a grid cell.
-    gap : (2, 3) float array, m
-        From the site to the low and the high side of its grid cell.
+    frame : (3, 3) float array, m
+        From the site to the low and to the high side of its grid cell, and the width of a grid cell, in rows LOW, HIGH
+        and WIDTH.
     """
 
     label: np.ndarray
-    offset: np.ndarray
     plane: np.ndarray
-    heap: np.ndarray
+    order: np.ndarray
+    bin: np.ndarray
     home: np.ndarray
-    width: np.ndarray
-    gap: np.ndarray
+    frame: np.ndarray
 
 
 @njit(cache=True)
@@ -86,12 +88,11 @@ def empty_candidates(room):
     """Uninitialised memory of up to `room` Candidates."""
     return Candidates(
         np.empty(room, np.int64),
-        np.empty((room, 3)),
-        np.empty(room),
-        np.empty(room, np.int64),
+        np.empty((room, 4)),
+        np.empty(room, np.uint32),
+        np.empty(room + BINS, np.uint32),
         np.empty(3, np.int64),
-        np.empty(3),
-        np.empty((2, 3)),
+        np.empty((3, 3)),
     )
 
 
@@ -125,12 +126,13 @@ def find_home(i, level, sites, found):
     found : Candidates, out
     """
     for k in range(3):
-        found.width[k] = sites.size[k] / sites.counts[level, k]
+        width = sites.size[k] / sites.counts[level, k]
         # As points are filed: rounding may put one a hair beyond its cell, and the gap is then negative.
         home = np.int64(sites.points[i, k] / sites.size[k] * sites.counts[level, k])
         found.home[k] = min(max(home, 0), sites.counts[level, k] - 1)
-        found.gap[0, k] = sites.points[i, k] - found.home[k] * found.width[k]
-        found.gap[1, k] = found.width[k] - found.gap[0, k]
+        found.frame[LOW, k] = sites.points[i, k] - found.home[k] * width
+        found.frame[HIGH, k] = width - found.frame[LOW, k]
+        found.frame[WIDTH, k] = width
 
 
 @njit(**PLAIN)
@@ -158,7 +160,7 @@ def ring_distance(ring, level, sites, found):
             if ring <= cells + images:
                 ended = False
             if ring <= cells + images or images:
-                least = min(least, found.gap[end, k] + (min(ring, cells + images + 1) - 1) * found.width[k])
+                least = min(least, found.frame[end, k] + (min(ring, cells + images + 1) - 1) * found.frame[WIDTH, k])
     return max(least, 0.0), ended
 
 
@@ -170,7 +172,8 @@ def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
     z = sites.points[i, 2] - sz * sites.size[2]
     weight, bound = sites.weights[i], 4.0 * farthest * farthest
     code = 9 * (sx + 1) + 3 * (sy + 1) + sz + 1
-    for s in range(begin, end):
+    for item in range(begin, end):
+        s = np.uint64(item)  # not counted from the end
         dx, dy, dz = sites.slots[s, 0] - x, sites.slots[s, 1] - y, sites.slots[s, 2] - z
         square = dx * dx + dy * dy + dz * dz
         rise = square + weight - sites.slots[s, 3]
@@ -186,8 +189,12 @@ def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
             m = -1
             break
         found.label[m] = 32 * j + code
-        found.offset[m, 0], found.offset[m, 1], found.offset[m, 2] = dx, dy, dz
-        found.plane[m] = rise / (2.0 * np.sqrt(square)) if square > 0.0 else -np.inf
+        if square > 0.0:
+            one = 1.0 / np.sqrt(square)
+            found.plane[m, 0], found.plane[m, 1], found.plane[m, 2] = dx * one, dy * one, dz * one
+            found.plane[m, 3] = 0.5 * rise * one
+        else:
+            found.plane[m, 3] = -np.inf
         m += 1
     return m
 
@@ -197,7 +204,8 @@ def _beyond(step, k, found):
     """Squared distance along an axis from the site to the grid cells that many steps away."""
     if step == 0:
         return 0.0
-    gap = found.gap[1, k] + (step - 1) * found.width[k] if step > 0 else found.gap[0, k] - (step + 1) * found.width[k]
+    gap = found.frame[HIGH, k] if step > 0 else found.frame[LOW, k]
+    gap += (abs(step) - 1) * found.frame[WIDTH, k]
     return gap * gap
 
 
@@ -260,3 +268,32 @@ def gather_ring(i, ring, level, farthest, sites, m, found):
                         return m
                 c = last + 1 if whole or c == ring else ring
     return m
+
+
+@njit(**PLAIN)
+def arrange(found, m):
+    """Put candidates in the order of their planes' distances, as far as bins tell: enough, and linear.
+
+    Parameters
+    ----------
+    found : Candidates, in and out
+    m : int
+        Their number.
+    """
+    plane, bins, ends = found.plane, found.bin, found.bin[len(found.label) :]
+    most = 0.0
+    for c in range(m):
+        most = max(most, plane[c, 3])
+    scale = (BINS - 1) / most if most > 0.0 else 0.0
+    for b in range(BINS):
+        ends[b] = 0
+    for c in range(m):
+        bins[c] = np.uint32(plane[c, 3] * scale) if plane[c, 3] > 0.0 else 0
+        ends[bins[c]] += 1
+    total = 0
+    for b in range(BINS):
+        total += ends[b]
+        ends[b] = total
+    for c in range(m - 1, -1, -1):
+        ends[bins[c]] -= 1
+        found.order[ends[bins[c]]] = c
