@@ -245,7 +245,7 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
             return UNSECURED, 0, 0
 
 
-@njit(**ONCE)
+@njit(**PLAIN)
 def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
     center = sites.points[i]
@@ -268,7 +268,7 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     return state, count, planes
 
 
-@njit(**ONCE)
+@njit(**PLAIN)
 def _narrow(cell, count):
     """Whether a side of the start box that is no wall still bounds the cell."""
     for v in range(count):
@@ -279,7 +279,7 @@ def _narrow(cell, count):
     return False
 
 
-@njit(**ONCE)
+@njit(**PLAIN)
 def _note_facets(row, chunk, planes, cell, sliver, out):
     """Note the facets of more than a sliver's area at the end of a chunk's."""
     e, links, ends = out.used[chunk], 0, 0
