@@ -137,9 +137,11 @@ def _checked(centers, weights, size, periodic):
 
 def _check_round(centers, wall, domain):
     """Raise ValueError for a centre on or beyond a round wall."""
+    if not len(wall.normals):
+        return
     off = np.linalg.norm((centers - wall.middle) * wall.across, axis=1)
     radius = (wall.middle * wall.across).max()
-    if len(wall.normals) and off.max() >= radius:
+    if off.max() >= radius:
         which = int(np.argmax(off))
         raise ValueError(
             f"centers[{which}] = {centers[which].tolist()}: {off[which]:.6g} m off the middle of the {domain}; must be "

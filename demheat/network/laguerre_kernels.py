@@ -227,10 +227,10 @@ def _cut_sites(cell, count, planes, farthest, found, m, eps):
 @njit(**ONCE)
 def _cut_level(i, level, sites, cell, count, planes, found, eps):
     """Cut by the sites of a level, ring by ring, until those left cannot; (status, vertex count, number of planes)."""
-    farthest, ring = _farthest(cell, count), 1
+    farthest, ring = _farthest(cell, count), np.int64(1)
     find_home(i, level, sites, found)
     while True:
-        m = gather_ring(i, ring, level, farthest, sites, 0, found)
+        m = gather_ring(i, ring, level, farthest, sites, found)
         if m < 0:
             return CROWDED, 0, 0
         if m > 0:
@@ -249,11 +249,12 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
 def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
     center = sites.points[i]
-    count, planes, state = _start(i, half, sites, wall, found, cell), 6, OK
+    count, planes, state = _start(i, half, sites, wall, found, cell), np.int64(6), OK
     # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
     first = _nearest(center, tangents, wall)
     if first >= 0:
-        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents[first : first + 1], -1)
+        one, none = tangents[first : first + 1], np.int64(-1)
+        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, one, none)
     for level in range(len(sites.heaviest)):
         if state != OK or count == 0:
             return state, 0, 0
@@ -261,7 +262,7 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     if state != OK or count == 0:
         return state, 0, 0
     if len(wall.normals):
-        skip = tangents[first] if first >= 0 else -1
+        skip = tangents[first] if first >= 0 else np.int64(-1)
         state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)
         if state == OK and count > 0 and _misses_tangents(cell, count, reach, center, wall):
             state = UNSECURED
@@ -401,4 +402,4 @@ def gather_facets(chunks, link, end, cut, out):
     out : Gathered, out
     """
     for place in prange(len(chunks)):
-        _gather_chunk(place, link[chunks[place]], end[chunks[place]], cut, out)
+        _gather_chunk(np.int64(place), link[chunks[place]], end[chunks[place]], cut, out)

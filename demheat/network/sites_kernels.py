@@ -199,7 +199,7 @@ def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
     return m
 
 
-@njit(**PLAIN)
+@njit(**PLAIN, inline="always")
 def _beyond(step, k, found):
     """Squared distance along an axis from the site to the grid cells that many steps away."""
     if step == 0:
@@ -220,8 +220,8 @@ def _image(c, count, periodic):
 
 
 @njit(**PLAIN)
-def gather_ring(i, ring, level, farthest, sites, m, found):
-    """Add the sites of a ring of grid cells that may cut a cell; the home belongs to ring 1.
+def gather_ring(i, ring, level, farthest, sites, found):
+    """Find the sites of a ring of grid cells that may cut a cell; the home belongs to ring 1.
 
     Parameters
     ----------
@@ -230,18 +230,17 @@ def gather_ring(i, ring, level, farthest, sites, m, found):
     farthest : float, m
         Of the cell's vertices.
     sites : Sites
-    m : int
-        Candidates already there.
     found : Candidates, in and out
         After `find_home` for this level.
 
     Returns
     -------
     int
-        Candidates now there; -1 if there is no room.
+        Their number; -1 if there is no room.
     """
     limit = cutting_reach(farthest, sites.weights[i], sites.heaviest[level]) ** 2
     nx, ny, nz = sites.counts[level]
+    m = 0
     for a in range(-ring, ring + 1):
         near, sx = _beyond(a, 0, found), _image(found.home[0] + a, nx, sites.periodic[0])
         if sx == 2 or near >= limit:

@@ -29,7 +29,8 @@ def cut_all(points, weights, size, periodic, wall, *, room=60 * kernels.CHUNK, r
         *(np.zeros(shape, kind) for kind in (np.int64, np.uint8, float, float)),
     )
     limits = kernels.Limits(box, 2 * size.max(), 1e-12, 1e-9, reach, weights.min(), 0.0)
-    kernels.cut_cells(chunks, 0, sites, wall, tangents_within(wall, points, reach), limits, cut)
+    near = tangents_within(wall, points, reach)
+    kernels.cut_cells(0, len(chunks), chunks, 0, sites, wall, near, limits, cut)
     return cut
 
 

@@ -32,6 +32,12 @@ def brute(i, level, sites, farthest):
     return found
 
 
+def offset_of(label, i, sites):
+    """From site i to the image of a site that a label names."""
+    j, code = divmod(label, 32)
+    return sites.points[j] + (np.array([code // 9, code // 3 % 3, code % 3]) - 1) * SIZE - sites.points[i]
+
+
 def level_of(sites):
     """Level of each item."""
     cells = sites.counts.prod(axis=1)
@@ -49,10 +55,12 @@ def test_rings_find_every_site_that_cuts_and_keep_their_distance(periodic):
         kernels.find_home(i, level, sites, found)
         right, got, ring, distance = brute(i, level, sites, farthest), {}, 1, 0.0
         while True:
-            m = kernels.gather_ring(i, ring, level, farthest, sites, 0, found)
-            for label, offset, plane in zip(found.label[:m], found.offset, found.plane, strict=False):
+            m = kernels.gather_ring(i, ring, level, farthest, sites, found)
+            for label, plane in zip(found.label[:m], found.plane, strict=False):
+                offset = offset_of(label, i, sites)
                 assert label not in got and np.linalg.norm(offset) >= distance
-                got[int(label)] = plane
+                np.testing.assert_allclose(plane[:3], offset / np.linalg.norm(offset), atol=1e-12)
+                got[int(label)] = plane[3]
             ring += 1
             distance, ended = kernels.ring_distance(ring, level, sites, found)
             reach = kernels.cutting_reach(farthest, sites.weights[i], sites.heaviest[level])
@@ -78,4 +86,19 @@ def test_no_site_beyond_the_reach_cuts():
 def test_candidates_without_room():
     sites, found = cloud((True, True, True)), kernels.empty_candidates(3)
     kernels.find_home(7, 0, sites, found)
-    assert kernels.gather_ring(7, 1, 0, 1.0, sites, 0, found) == -1
+    assert kernels.gather_ring(7, 1, 0, 1.0, sites, found) == -1
+
+
+@pytest.mark.twin
+def test_candidates_come_nearest_plane_first_but_for_those_of_a_bin():
+    rng, found = np.random.default_rng(1), kernels.empty_candidates(80)
+    for plane in (rng.uniform(-0.5, 2.0, 80), np.full(5, -np.inf), np.append(rng.random(30), -np.inf), np.ones(1)):
+        m = len(plane)
+        found.plane[:m, 3] = plane
+        kernels.arrange(found, m)
+        order = found.order[:m]
+        assert sorted(order) == list(range(m))
+        # Within a bin they stay as they were; those that are not before the site itself share the first bin.
+        widest = max(plane.max(), 0.0) / (kernels.BINS - 1)
+        steps = np.diff(np.maximum(plane[order], 0.0))
+        assert np.all((steps > 0) | (-steps <= widest) & (np.diff(order.astype(int)) > 0))
