@@ -74,7 +74,8 @@ def test_images_of_a_sphere_are_turned_alike(other):
         def rotate(self, tags, *numbers):
             self.turns.append(numbers[3:])
 
-    layer = Layer(2, 0.4, 0.6, METAL)
+    # Its lower plane cuts the spheres, above the face that they cross, where their images have none.
+    layer = Layer(2, 0.12, 0.6, METAL)
     spheres = [Sphere(other, RADIUS, METAL), Sphere((0.5, 0.5, 0.05), RADIUS, METAL)]
     of = Scene((1.0, 1.0, 1.0), Material(1.0), [layer, *spheres], gradient=(1.0, 0.0, 0.0))
     geometry, occ = cad._Geometry(of.images(), of.size, of.periodic), Recorded()
