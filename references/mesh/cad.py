@@ -80,16 +80,6 @@ class _Geometry(NamedTuple):
     def box(self):
         return np.array(self.size) / self.scale
 
-    @property
-    def planes(self):
-        """Coordinates of the faces and of the layers' planes across each axis; periodic ones once more on each side."""
-        planes = []
-        for axis, length in enumerate(self.box):
-            ends = [(x.start, x.stop) for _, x in self.images if not x.bounded and x.axis == axis]
-            across = np.unique([0.0, length, *np.ravel(ends) / self.scale])
-            planes.append(np.unique([across - length, across, across + length]) if self.periodic else across)
-        return planes
-
 
 def _attempt(scene, sizes, elements, done):
     """One try: geometry, mesh, arrays, checks."""
@@ -142,13 +132,13 @@ def _cut_geometry(gmsh, geometry):
 
 
 def _turn_spheres(occ, geometry, tags):
-    """Turn spheres about their centres, all images of one alike."""
-    planes, turns = geometry.planes, {}
+    """Turn spheres about their centres, all images of one alike; layers cut none."""
+    faces, turns = [np.array([0.0, length]) for length in geometry.box], {}
     for (phase, shape), tag in zip(geometry.images, tags, strict=True):
         if isinstance(shape, Sphere):
             center = np.array(shape.center) / geometry.scale
             if phase not in turns:
-                turns[phase] = turn(center, shape.radius / geometry.scale, planes)
+                turns[phase] = turn(center, shape.radius / geometry.scale, faces)
             *axis, angle = turns[phase]
             occ.rotate([(3, tag)], *center, *axis, angle)
 
