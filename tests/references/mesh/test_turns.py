@@ -70,7 +70,7 @@ def test_images_of_a_sphere_are_turned_alike():
         def rotate(self, tags, *numbers):
             self.append(numbers[3:])
 
-    spheres = [Sphere(c, RADIUS, METAL) for c in ((0.05, 0.02, 0.08), (0.5, 0.5, 0.02))]
+    spheres = [Sphere(c, RADIUS, METAL) for c in ((0.05, 0.02, 0.08), (0.5, 0.5, 0.48))]
     of = Scene((1.0, 1.0, 0.5), Material(1.0), spheres, gradient=(1.0, 0.0, 0.0))
     geometry, turns = cad._Geometry(of.images(), of.size, of.periodic), Recorded()
     cad._turn_spheres(turns, geometry, range(len(geometry.images)))
@@ -78,7 +78,7 @@ def test_images_of_a_sphere_are_turned_alike():
     assert phases == [1] * 8 + [2] * 2
     assert len(set(turns[:8])) == 1 and turns[8] == turns[9] != turns[0]
     faces = [np.array([0.0, length]) for length in of.size]
-    assert turns[0] == turn(np.array(spheres[0].center), RADIUS, faces)
+    assert [turns[0], turns[8]] == [turn(np.array(s.center), RADIUS, faces) for s in spheres]
 
 
 def test_a_sphere_whose_pole_was_near_a_periodic_face_is_meshed_at_once():
