@@ -17,6 +17,7 @@ from demheat.scene import WALLS, Layer, Shape, Sphere
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
+from references.mesh.turns import turn
 
 # Balls and shells that gmsh's own fields look through for each point; more are looked up in a table.
 MOST_FIELDS = 400
@@ -117,6 +118,7 @@ def _cut_geometry(gmsh, geometry):
     """Cut box, layers and spheres into one another; {volume tag: phase}."""
     occ, box = gmsh.model.occ, geometry.box
     tools = [(phase, (3, solid(shape, occ, box, geometry.scale))) for phase, shape in geometry.images]
+    _turn_spheres(occ, geometry, [tag for _, (_, tag) in tools])
     body = (3, occ.addBox(0, 0, 0, *box))
     phases = {body[1]: 0}
     if tools:
@@ -127,6 +129,18 @@ def _cut_geometry(gmsh, geometry):
             phases.update({tag: phase for _, tag in part if tag in phases})
     occ.synchronize()
     return phases
+
+
+def _turn_spheres(occ, geometry, tags):
+    """Turn spheres about their centres, all images of one alike; layers cut none."""
+    faces, turns = [np.array([0.0, length]) for length in geometry.box], {}
+    for (phase, shape), tag in zip(geometry.images, tags, strict=True):
+        if isinstance(shape, Sphere):
+            center = np.array(shape.center) / geometry.scale
+            if phase not in turns:
+                turns[phase] = turn(center, shape.radius / geometry.scale, faces)
+            *axis, angle = turns[phase]
+            occ.rotate([(3, tag)], *center, *axis, angle)
 
 
 @singledispatch
@@ -165,11 +179,7 @@ def _(shape: Layer, occ, box, scale):
 
 @solid.register
 def _(shape: Sphere, occ, box, scale):
-    center = np.array(shape.center) / scale
-    tag = occ.addSphere(*center, shape.radius / scale)
-    # A generic turn keeps poles and seam off the faces, edges and symmetry planes of the scene.
-    occ.rotate([(3, tag)], *center, 1, 2, 3, 1.0)
-    return tag
+    return occ.addSphere(*(np.array(shape.center) / scale), shape.radius / scale)
 
 
 def _tie_faces(gmsh, box):

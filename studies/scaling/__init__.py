@@ -4,10 +4,10 @@ Spheres of silica in epoxy, k ratio 7.692, in a periodic cell under a mean gradi
 spends on an inclusion and adds inclusions: equal spheres, three tenths of the volume. `kinds` has denser ones and sizes
 in a ratio of 10. `goal` sets the scene of 5000 spheres beside one sphere with as many particles, and each method's
 conductivity beside the multipoles'. `elements` refines one cell of 83 spheres, with one thread and with two. `before`
-runs the same 8e6 particles with the code of an earlier commit, taken from the history, right after today's.
+runs the same 8e6 particles with the code of an earlier commit, taken from the history, right after today's: what they
+cost is compared, not what they say, for the network beside interfaces was made more accurate in between.
 """
 
-from demheat import referee
 from studies.harness import methods
 from studies.harness.pick import largest, pick, present
 from studies.scaling.means import errors, fitted
@@ -61,6 +61,7 @@ def _cases():
     for voxels in VOXELS:
         for threads in THREADS if voxels < VOXELS[-1] else THREADS[-1:]:
             yield methods.case("fft", part="elements", voxels=voxels, cores=threads)
+    yield methods.case("multipole", part="elements", accuracy=ACCURACY)
     yield methods.case("dem", part="time", particles=PARTICLES[-1], seed=0)
     for kind, fraction in KINDS:
         for number in (1000, GOAL):
@@ -163,9 +164,9 @@ def _engine(df):
         row = rows.iloc[0]
         yield "DEM, 8e6: CPU time over that of the code before", row["cpu_s"] / row["then_cpu_s"], 0.6
         yield "DEM, 8e6: peak memory per unknown, bytes", row["peak_mib"] * 2**20 / row["unknowns"], 600.0
-        yield "DEM, 8e6: change of the conductivity, %", 100 * abs(referee.value_error(row["k"], row["then_k"])), 0.001
     rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
     if len(rows):
+        yield "DEM, 8e6: error against the multipoles, %", largest(rows, "error_percent"), 0.1
         yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.25
     rows = pick(df, part="cutter")
     if len(rows):
@@ -183,8 +184,10 @@ def table(df):
     """CPU and wall seconds of every row, of the DEM by stages, then fits.
 
     GiB are the peak over what was there before. Errors are those of k against the multipoles' of the same spheres;
-    coarse rows are there for their costs. Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more.
-    The last lines say what 1e9 unknowns would take if the fits went on.
+    coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
+    vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
+    Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more. The last lines say what 1e9 unknowns
+    would take if the fits went on.
     """
     from studies.scaling.tables import lines
 

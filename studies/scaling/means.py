@@ -99,11 +99,17 @@ def efficiencies(df):
 
 def errors(df):
     """The rows with their error against the multipoles' conductivity of the same spheres, %, where that is known."""
-    known = {}
-    for _, row in pick(df[df["status"] == "ok"], name="multipole").iterrows():
-        known[row["number"], row["kind"], row["fraction"]] = row["k_ratio"]
-    exact = [known.get((n, k, f), math.nan) for n, k, f in zip(df["number"], df["kind"], df["fraction"], strict=True)]
+    solved = pick(df[df["status"] == "ok"], name="multipole")
+    known = dict(zip(_spheres(solved), solved["k_ratio"], strict=True))
+    exact = [known.get(spheres, math.nan) for spheres in _spheres(df)]
     return df.assign(error_percent=100 * referee.value_error(df["k_ratio"], np.array(exact, dtype=float)))
+
+
+def _spheres(df):
+    """What tells the spheres of each row from others; all rows of `elements` have the same."""
+    drawn = zip(df["number"], df["kind"], df["fraction"], strict=True)
+    parts = df["part"] if "part" in df else [None] * len(df)
+    return ["cell" if part == "elements" else one for part, one in zip(parts, drawn, strict=True)]
 
 
 def billion(df):

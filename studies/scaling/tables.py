@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
 from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
+
+# Characters of a note on the page; the rows' file has them all.
+NOTE = 100
 
 
 def lines(df):
@@ -13,10 +17,13 @@ def lines(df):
 
     df = df.reindex(columns=[*dict.fromkeys([*df.columns, *COLUMNS])])
     solved = errors(df[df["part"].isin(("inclusions", "kinds", "goal", "elements"))])
-    return pd.DataFrame([_line(row) for _, row in solved.iterrows()] + [*_fits(df)])
+    return pd.DataFrame([_line(row) for _, row in solved.iterrows()] + [*_before(df), *_fits(df)])
 
 
-COLUMNS = ("number", "spheres", "kind", "fraction", "particles", "voxels", "cores", "k_ratio", "unknowns", "peak_mib")
+COLUMNS = (
+    *("number", "spheres", "kind", "fraction", "particles", "voxels", "cores", "k_ratio", "unknowns", "peak_mib"),
+    *("product_gbs", "triad_here_gbs"),
+)
 
 
 def _line(row):
@@ -30,7 +37,27 @@ def _line(row):
     line |= {"GiB": row["peak_mib"] / 1024, "bytes each": row["peak_mib"] * 2**20 / row["unknowns"]}
     costs = {name: row.get(f"{name}_cpu_s") for name in STAGES}
     line["stages, CPU s"] = ", ".join(f"{k} {v:.2g}" for k, v in costs.items() if v is not None and v == v)
-    return line | {"error, %": row["error_percent"], "note": row["note"] if row["status"] != "ok" else ""}
+    line["of triad"] = row["product_gbs"] / row["triad_here_gbs"]
+    return line | {"error, %": row["error_percent"], "note": _cut(row["note"]) if row["status"] != "ok" else ""}
+
+
+def _cut(note):
+    return note if len(note) <= NOTE else note[: NOTE - 3].rstrip() + "..."
+
+
+def _before(df):
+    """Today's code and the earlier one."""
+    for _, row in pick(df[df["status"] == "ok"], part="before").iterrows():
+        change = 100 * referee.value_error(row["k"], row["then_k"])
+        reason = f"k {change:+.4f} % from the code before, whose margin beside twins was narrower"
+        for code, before, note in (("today", "", reason), (row["then"], "then_", "")):
+            cost = {key: row[before + key] for key in ("unknowns", "cpu_s", "wall_s", "peak_mib")}
+            yield (
+                {"what": "before", "method": LOOK[row["name"]][0], "of": f"code of {code}"}
+                | {"unknowns": cost["unknowns"], "CPU, s": cost["cpu_s"], "wall, s": cost["wall_s"]}
+                | {"GiB": cost["peak_mib"] / 1024, "bytes each": cost["peak_mib"] * 2**20 / cost["unknowns"]}
+                | {"note": note}
+            )
 
 
 def _fits(df):

@@ -6,7 +6,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from studies import scaling
-from studies.scaling import means, rows
+from studies.scaling import means, rows, tables
 
 
 def made_up():
@@ -49,6 +49,51 @@ def test_errors_are_those_against_the_multipoles_of_the_same_spheres():
     found = (("multipole", 5, 2.0), ("dem", 5, 2.02), ("dem", 6, 2.0))
     df = pd.DataFrame([same | {"name": n, "number": k, "k_ratio": v} for n, k, v in found])
     assert_allclose(means.errors(df)["error_percent"], [0.0, 1.0, np.nan])
+
+
+def cell_rows():
+    """One cell, by the multipoles and by the DEM; its finest row is a hundredth off."""
+    same = {"part": "elements", "status": "ok", "cpu_s": 1.0, "wall_s": 1.0, "peak_mib": 1.0, "note": ""}
+    dem = same | {"name": "dem", "packing_cpu_s": 0.1, "packing_wall_s": 0.1, "unknowns": 9e6}
+    exact = same | {"name": "multipole", "k_ratio": 2.0, "number": np.nan, "kind": np.nan, "fraction": np.nan}
+    finest = {"particles": 8_000_000, "k_ratio": 2.02, "product_gbs": 6.0, "triad_here_gbs": 8.0}
+    return pd.DataFrame([exact, dem | {"particles": 10_000, "k_ratio": 1.9}, dem | finest])
+
+
+def test_every_row_of_one_cell_has_its_error():
+    assert_allclose(means.errors(cell_rows())["error_percent"], [0.0, -5.0, 1.0])
+
+
+def test_the_finest_cell_is_judged_by_the_multipoles():
+    def judged(df):
+        return {name: (value, limit) for name, value, limit in scaling.claims(df)}[
+            "DEM, 8e6: error against the multipoles, %"
+        ]
+
+    df = cell_rows()
+    value, limit = judged(df)
+    assert value == pytest.approx(1.0) and limit == 0.1
+    # Without them nothing is known, and nothing holds.
+    assert np.isnan(judged(df[df["name"] != "multipole"])[0])
+
+
+def test_the_page_has_the_share_of_bandwidth_and_short_notes():
+    failed = {"part": "elements", "name": "dem", "status": "failed", "note": "x" * 800, "particles": 10_000}
+    df = pd.concat([cell_rows(), pd.DataFrame([failed])], ignore_index=True)
+    made = tables.lines(df)
+    assert_allclose(made["of triad"].to_numpy(float), [np.nan, np.nan, 0.75, np.nan])
+    assert made["note"].str.len().max() == tables.NOTE
+    assert df["note"].str.len().max() == 800
+
+
+def test_the_page_has_both_codes_and_says_why_their_conductivities_differ():
+    cost = {"cpu_s": 3.0, "wall_s": 2.0, "peak_mib": 2**10, "unknowns": 2**20, "k": 1.001}
+    before = {f"then_{key}": 2 * value for key, value in cost.items()} | {"then_k": 1.0, "then": "b4da0d3"}
+    row = {"part": "before", "name": "dem", "status": "ok", "note": ""} | cost | before
+    made = tables.lines(pd.concat([cell_rows(), pd.DataFrame([row])], ignore_index=True))
+    now, then = (line for _, line in made.iterrows() if line["what"] == "before")
+    assert (now["CPU, s"], then["CPU, s"], now["bytes each"]) == (3.0, 6.0, 1024)
+    assert now["note"].startswith("k +0.1000 %") and "margin" in now["note"] and then["of"] == "code of b4da0d3"
 
 
 def test_what_a_billion_takes_goes_on_from_the_largest_row():
