@@ -14,6 +14,7 @@ from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.network.platonic import platonic_facets
 from demheat.packing.base import Packing
 from demheat.packing.conforming import conform
+from demheat.packing.gate import check_packing
 from demheat.progress import stage
 from demheat.scene import Scene
 
@@ -51,6 +52,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     """
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
+    check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:
         packing = conform(packing, scene, seed=seed)

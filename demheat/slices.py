@@ -85,7 +85,7 @@ def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np
         Instead of the Field's own, for instance a halo's.
     """
     points, mask = plane(field.scene, axis=axis, at=at, n=n)
-    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points)))
+    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points.copy())))
 
 
 def filled(mask, values):

@@ -15,17 +15,20 @@ OURS = ("demheat", "references", "studies", "tests")
 # The longest prefix that fits a module is its room; a prefix stands for itself and all below it. A module adds a line.
 LAYERS = {
     "demheat.scene.inputs": (),
+    "demheat.scene.frozen": (),
     "demheat.scene.bodies": (),
     "demheat.scene.material": ("demheat.scene.inputs",),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
+        "demheat.scene.frozen",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.parts",
         "demheat.scene.shapes",
     ),
     "demheat.scene.needs": ("demheat.scene.parts",),
+    "demheat.scene.functions": ("demheat.scene.inputs", "demheat.scene.parts"),
     "demheat.scene.scene": (
         "demheat.scene.inputs",
         "demheat.scene.bodies",
@@ -34,6 +37,7 @@ LAYERS = {
         "demheat.scene.shapes",
         "demheat.scene.checks",
         "demheat.scene.needs",
+        "demheat.scene.functions",
     ),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from dataclasses import dataclass, fields
 
@@ -11,9 +12,11 @@ from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
+from demheat.packing.gate import check_packing
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 from demheat.scene import Scene
+from demheat.scene.inputs import flag, whole
 
 # Old keywords of `solve` and `evolve`.
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
@@ -45,11 +48,11 @@ class Particles:
     allow_few: bool = False
 
     def __post_init__(self):
-        if not isinstance(self.allow_few, bool | np.bool_):
-            raise ValueError(f"allow_few = {self.allow_few!r}: must be True or False")
-        number = self.particles
-        if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
-            raise ValueError(f"particles = {number!r}: must be an integer >= 1")
+        flag("allow_few", self.allow_few)
+        number = whole("particles", self.particles, "an integer >= 1", lambda v: v >= 1)
+        whole("seed", self.seed, "an integer >= 0", lambda v: v >= 0)
+        if self.packing is not None:
+            check_packing(self.packing)
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
         if self.packing is not None and self.replicas is not None:
@@ -94,7 +97,7 @@ class Particles:
             Replicas along each axis.
         """
         if self.packing is not None:
-            return self.packing
+            return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
         if counts.prod() > 1:
             return replicated(self.particles, counts, **body)
@@ -137,6 +140,12 @@ def _law(law, knobs):
     if not isinstance(law, str) or law not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}, or a law such as Laguerre()")
     return LAWS[law].short(**knobs)
+
+
+def _own(packing):
+    """A copy of a packing that is given: what its owner does to it later is none of the field's."""
+    arrays = {name: getattr(packing, name).copy() for name in ("centers", "radii", "size", "periodic")}
+    return packing._replace(**arrays, provenance=copy.deepcopy(dict(packing.provenance)))
 
 
 def _check_body(packing, scene):

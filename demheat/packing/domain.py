@@ -9,6 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
+from demheat.packing.gate import check_packing
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
 
 KEEP = ("inside", "center")
@@ -113,6 +114,7 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
     ValueError
         If a number is not an integer >= 1, or an axis with walls is to be repeated.
     """
+    check_packing(packing)
     counts = np.array(repeats)
     if counts.shape != (3,) or counts.dtype.kind not in "iu" or np.any(counts < 1):
         raise ValueError(f"repeats = {repeats!r}: must be three integers >= 1")
@@ -181,6 +183,7 @@ def walled(packing: Packing) -> Packing:
     than `DRAWN[0]`: cells at the wall are no slivers. Particles there overlap, and some reach beyond the walls: this
     serves tessellations, not laws of contacts.
     """
+    check_packing(packing)
     centers, mean = packing.centers.copy(), packing.radii.mean()
     for k in np.flatnonzero(packing.periodic):
         least, depth = np.array(DRAWN) * min(mean, 0.5 * packing.size[k] / DRAWN[1])
@@ -194,6 +197,7 @@ def walled(packing: Packing) -> Packing:
 
 
 def _check_box_packing(packing):
+    check_packing(packing)
     if packing.domain != "box":
         raise ValueError(f"packing in a {packing.domain}: must be in a box to be cut")
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from demheat.packing.base import Packing, check_box, check_domain, make_packing
+from demheat.packing.gate import check_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
@@ -179,8 +180,7 @@ def _share(motion, begun, phi, limit):
 
 def _check_alone(start, number, size, radii, periodic, domain):
     """A start brings its own spheres and domain: raise ValueError for anything else that says so too."""
-    if not isinstance(start, Packing):
-        raise ValueError(f"start = {start!r}: must be a Packing")
+    check_packing(start, "start")
     given = {"number": number not in (None, start.number), "size": tuple(size) != (1.0, 1.0, 1.0)}
     given |= {"radii": radii is not None, "periodic": periodic is not True, "domain": domain != "box"}
     if any(given.values()):

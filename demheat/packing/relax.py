@@ -15,6 +15,7 @@ import numpy as np
 
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
+from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
 from demheat.progress import stage
@@ -152,8 +153,9 @@ def settle(
     Raises
     ------
     ValueError
-        If `fixed`, `steps` or `overlap` is not as described, or a sphere is too large for the box.
+        If an argument is not as described, or a sphere is too large for the box.
     """
+    check_packing(packing)
     n = packing.number
     fixed = np.zeros(n, dtype=bool) if fixed is None else np.asarray(fixed)
     if fixed.dtype != bool or fixed.shape != (n,):

@@ -199,7 +199,7 @@ def _compared(field, points, values, mask, name):
     points = np.asarray(points, dtype=float).reshape(-1, 3)
     if values is not None and len(values) != len(points):
         raise ValueError(f"values of length {len(values)}: must be one for each of {len(points)} points")
-    keep = mask(points) if callable(mask) else mask
+    keep = mask(np.array(points)) if callable(mask) else mask
     if keep is not None:
         keep = np.asarray(keep)
         if keep.dtype != bool or keep.shape != (len(points),):

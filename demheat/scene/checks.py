@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from demheat.scene.bodies import ROUND_AXES, check_name, wall_names
+from demheat.scene.frozen import ReadOnly
 from demheat.scene.inputs import finite, vector
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
 from demheat.scene.shapes import Shape
@@ -52,7 +53,7 @@ def checked_load(scene) -> dict[str, object]:
         return {"gradient": gradient}
     walls = {} if scene.walls is None else scene.walls
     _check_walls(walls, wall_names(scene.domain), or_none=transient)
-    return {"walls": dict(walls)}
+    return {"walls": ReadOnly(walls)}
 
 
 def _check_walls(walls, valid, *, or_none):

@@ -20,7 +20,8 @@ from demheat.scene.checks import (
     checked_load,
     checked_sources,
 )
-from demheat.scene.inputs import finite, vector
+from demheat.scene.functions import load_at
+from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
@@ -178,8 +179,7 @@ class Scene:
             return self
         walls = {}
         for name, load in self.walls.items():
-            value = load.value if isinstance(load, Flux) else load
-            value = finite(f"Scene.walls[{name!r}] at {time} s", value(time), "finite") if callable(value) else value
+            value = load_at(name, load, time)
             walls[name] = Flux(value) if isinstance(load, Flux) else value
         return replace(self, walls=walls)
 

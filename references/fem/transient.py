@@ -11,6 +11,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.scene import Scene
+from demheat.scene.functions import initial_at
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
@@ -96,7 +97,7 @@ def evolve(
 
 def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
     space = _space(scene, elements, order, size)
-    initial = _initial(scene, space.points)
+    initial = initial_at(scene, space.points)
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
@@ -151,19 +152,6 @@ def _space(scene, elements, order, size):
         size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     mesh = make(scene, size=size, order=order) if scene.domain == "box" else make_round(scene, size=size, order=order)
     return tetrahedra(scene, mesh)
-
-
-def _initial(scene, points):
-    """Temperature of the nodes at time 0."""
-    if not callable(scene.initial):
-        return np.full(len(points), float(scene.initial))
-    initial = np.asarray(scene.initial(points), dtype=float)
-    if initial.shape != (len(points),) or not np.all(np.isfinite(initial)):
-        raise ValueError(
-            f"Scene.initial: gave values of shape {initial.shape} for points of shape {points.shape}; must be "
-            f"{(len(points),)}, all finite"
-        )
-    return initial
 
 
 def _number(value):
