@@ -20,6 +20,8 @@ from demheat.scene.inputs import flag, whole
 
 # Old keywords of `solve` and `evolve`.
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
+# Packing fraction below which a packing that is given is called loose: crystals of equal spheres begin at .34, diamond.
+LOOSE = 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,4 +157,10 @@ def _check_body(packing, scene):
         raise ValueError(
             f"packing of size {packing.size.tolist()} in a {packing.domain}, periodic {packing.periodic.tolist()}: "
             f"must be {kind}, in the scene's {scene.domain} of size {scene.size}"
+        )
+    if packing.phi < LOOSE:
+        warnings.warn(
+            f"packing: its spheres fill {packing.phi:.3g} of the body: too far apart for many contacts and for "
+            "round cells, so that results may be off by percents; at 0.5 and more the method is at home",
+            stacklevel=4,
         )

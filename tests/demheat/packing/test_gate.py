@@ -22,7 +22,7 @@ NONE = np.zeros(9, dtype=np.int64), np.empty(0, dtype=np.int64)
 def good(**changed):
     """Eight spheres, two apart along each axis."""
     sites = np.stack(np.meshgrid(*[[0.25, 0.75]] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-    return make_packing(sites, np.full(8, 0.2), (1.0, 1.0, 1.0), True, {})._replace(**changed)
+    return make_packing(sites, np.full(8, 0.22), (1.0, 1.0, 1.0), True, {})._replace(**changed)
 
 
 def changed(field, at, value):
@@ -153,3 +153,29 @@ def test_make_packing_makes_what_passes():
         packing = make_packing(points, rng.random(300) + 0.1, (1, 1, 1), periodic, {}, domain=body)
         assert isinstance(packing, Packing)
         check_packing(packing)
+
+
+@pytest.mark.parametrize("law", ["calibrated", "platonic"])
+def test_centres_that_coincide_are_named(law):
+    """Facets between cells do not need a distance; contacts do, and gave not-a-number."""
+    packing = changed("centers", 3, good().centers[4])
+    with pytest.raises(ValueError, match="packing.centers: 3 and 4 coincide"):
+        demheat.solve(CELL, packing=packing, law=law, gap=0.3)
+
+
+def test_loose_packings_are_named():
+    loose = good(radii=np.full(8, 0.05))
+    with pytest.warns(UserWarning, match="packing: its spheres fill 0.00419 of the body"):
+        assert demheat.solve(CELL, packing=loose).conductivity == pytest.approx(33.0, rel=1e-9)  # to rounding
+
+
+def test_a_given_packing_may_be_changed_later():
+    packing = good()
+    points = np.random.default_rng(1).random((20, 3))
+    field = demheat.solve(CELL, packing=packing)
+    expected = demheat.solve(CELL, packing=good()).temperature_at(points)
+    packing.centers[:] *= 0.1
+    packing.radii[:] = np.nan
+    packing.provenance["algorithm"] = "mine"
+    np.testing.assert_array_equal(field.temperature_at(points), expected)
+    assert "algorithm" not in field.stats["packing"]
