@@ -174,6 +174,19 @@ class Field:
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
 
 
+def check_field(field, name="field") -> None:
+    """Raise ValueError unless a value is a Field, or has its scene and its temperature as one does.
+
+    Parameters
+    ----------
+    field : Field
+    name : str
+        Of the argument, for the message.
+    """
+    if not isinstance(getattr(field, "scene", None), Scene) or not hasattr(field, "temperature_at"):
+        raise ValueError(f"{name} = {field!r}: must be a Field, as methods return it")
+
+
 def _in_turn(evaluate, lock):
     def at(*points):
         with lock:

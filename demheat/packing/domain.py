@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Sequence
 
@@ -11,6 +10,7 @@ import numpy as np
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
 from demheat.packing.gate import check_packing
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
+from demheat.scene.inputs import chosen, vector
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
@@ -71,8 +71,7 @@ def cut(
     """
     _check_box_packing(packing)
     check_name("domain", domain)
-    if keep not in KEEP:
-        raise ValueError(f"keep = {keep!r}: must be one of {', '.join(KEEP)}")
+    chosen("keep", keep, KEEP)
     axes = list(ROUND_AXES[domain])
     sides, full = _checked_size(packing, size, axes)
     whole = full & ~np.isin(np.arange(3), axes)
@@ -216,9 +215,7 @@ def _checked_size(packing, size, axes):
 
 
 def _checked_center(packing, center, sides):
-    middle = packing.size / 2 if center is None else np.array(center, dtype=float)
-    if middle.shape != (3,) or not all(map(math.isfinite, middle)):
-        raise ValueError(f"center = {center!r}: must be three finite coordinates in metres")
+    middle = packing.size / 2 if center is None else np.array(vector("center", center))
     least, room = sides / 2, ROUNDING * packing.size
     beyond = ~packing.periodic & ((middle < least - room) | (middle > packing.size - least + room))
     if beyond.any():

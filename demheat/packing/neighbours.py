@@ -11,7 +11,7 @@ from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
 from demheat.packing.gate import check_packing
 from demheat.packing.walls import bulk
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, flag
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0
@@ -92,6 +92,7 @@ def contacts(
         If an argument is not as described, no particle is bulk, or there are too few particles for that coordination.
     """
     check_packing(packing)
+    flag("additive", additive)
     if gap is not None:
         finite("gap", gap, "a finite part of r_i + r_j > -1", lambda v: v > -1)
         return *_closer(packing, 1.0 + gap, additive)[:2], float(gap)

@@ -16,6 +16,7 @@ from demheat.scene.checks import (
     check_domain,
     check_geometry,
     check_initial,
+    check_reached,
     checked_inclusions,
     checked_load,
     checked_sources,
@@ -84,6 +85,7 @@ class Scene:
         object.__setattr__(self, "sources", checked_sources(self.sources))
         check_initial(self.initial)
         check_geometry(self)
+        check_reached(self)
 
     @property
     def periodic(self) -> bool:
@@ -225,6 +227,19 @@ class Scene:
             (check_steady if steady else check_transient)(self)
         for found in refusals(self, walls=walls, domain=domain, shapes=shapes, nested=nested, pores=pores):
             raise NotImplementedError(f"{found}: {knows}")
+
+
+def check_scene(scene, name="scene") -> None:
+    """Raise ValueError unless a value is a Scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the argument, for the message.
+    """
+    if not isinstance(scene, Scene):
+        raise ValueError(f"{name} = {scene!r}: must be a Scene")
 
 
 def _plain(load):

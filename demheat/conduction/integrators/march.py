@@ -12,6 +12,7 @@ from demheat.conduction.integrators.pace import ANY, Pace
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
 from demheat.network.base import SIDES
+from demheat.scene.inputs import reals
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 # An implicit solve may leave an error of this part of the accuracy asked for. What solves leave adds up over the steps,
@@ -93,10 +94,10 @@ def check_request(times, integrator, accuracy, step):
 def _numbers(values):
     """A sequence of numbers as a (k,) float array; None if it is anything else, or empty."""
     try:
-        array = np.asarray(values)
+        array = reals("times", values, "numbers")
     except ValueError:
         return None
-    return array.astype(float) if array.ndim == 1 and len(array) and array.dtype.kind in "iuf" else None
+    return array.copy() if array.ndim == 1 and len(array) else None
 
 
 def _real(value):

@@ -18,7 +18,7 @@ from demheat.packing.statistics import correlations_kernels as kernels
 from demheat.packing.statistics.regions import core_volume, inscribed_box, spheres_in_box
 from demheat.packing.walls import check_margin, wall_distances
 from demheat.progress import stage
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, flag, reals, whole
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
@@ -112,6 +112,7 @@ def radial_distribution(
     """
     check_packing(packing)
     _check_count("bins", bins, 1)
+    flag("scaled", scaled)
     if packing.number < 2:
         raise ValueError(f"packing of {packing.number} particle: must have at least 2")
     radii = packing.radii
@@ -245,10 +246,7 @@ def _mean_cubed_sums(radii):
 
 def _unit_directions(along):
     """Cast directions to unit vectors, (k, 3) float array."""
-    try:
-        vectors = np.array(along, dtype=float)
-    except (TypeError, ValueError):
-        vectors = np.empty(0)
+    vectors = reals("along", along, "a (k, 3) list of finite directions")
     if vectors.ndim != 2 or vectors.shape[1] != 3 or not len(vectors) or not np.all(np.isfinite(vectors)):
         raise ValueError(f"along = {along!r}: must be a (k, 3) list of finite directions")
     lengths = np.linalg.norm(vectors, axis=1)
@@ -258,8 +256,7 @@ def _unit_directions(along):
 
 
 def _check_count(name, value, least):
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < least:
-        raise ValueError(f"{name} = {value!r}: must be an integer >= {least}")
+    whole(name, value, f"an integer >= {least}", lambda v: v >= least)
 
 
 def _check_r_max(packing, r_max, unit):

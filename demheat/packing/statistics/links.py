@@ -14,7 +14,7 @@ from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import as_graph
 from demheat.packing.statistics import links_kernels as kernels
 from demheat.packing.walls import bulk, outward, wall_distance, walls
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import chosen, finite
 
 
 class Coordination(NamedTuple):
@@ -176,8 +176,7 @@ def backbone(
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
     finite("gap", gap, "a finite part of the radius > -1", lambda v: v > -1)
-    if rule not in ("count", "half-space"):
-        raise ValueError(f"rule = {rule!r}: must be 'count' or 'half-space'")
+    chosen("rule", rule, ("count", "half-space"))
     vectors = _unit_vectors(packing, indptr, indices)
     touching = kernels.Contacts(indptr, indices, vectors, *_wall_contacts(packing, gap))
     held, before, rounds = np.ones(packing.number, dtype=bool), packing.number + 1, 0
