@@ -99,9 +99,9 @@ class _Contacts:
         chosen("sparse", self.sparse, POLICIES)
         chosen("wall", self.wall, WALL_RULES)
         if self.coordination is not None:
-            finite("coordination", self.coordination, "a finite number > 0", lambda v: v > 0.0)
+            _keep(self, "coordination", "a finite number > 0", above=0.0)
         if self.gap is not None:
-            finite("gap", self.gap, "a finite part of r_i + r_j > -1", lambda v: v > -1.0)
+            _keep(self, "gap", "a finite part of r_i + r_j > -1", above=-1.0)
         if self.gap is not None and self.coordination is not None:
             raise ValueError(
                 f"gap = {self.gap!r}, coordination = {self.coordination!r}: one gives the other; pass one of them"
@@ -193,7 +193,7 @@ class Calibrated(_Contacts):
         chosen("mean", self.mean, MEANS)
         flag("additive", self.additive)
         if self.factor is not None:
-            finite("factor", self.factor, "a finite number > 0", lambda v: v > 0.0)
+            _keep(self, "factor", "a finite number > 0", above=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -227,6 +227,11 @@ class Platonic(_Contacts):
 
 
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}
+
+
+def _keep(law, name, valid, *, above):
+    """Check a number of a law, and keep it as a float."""
+    object.__setattr__(law, name, finite(name, getattr(law, name), valid, lambda v: v > above))
 
 
 def _known(kind, knobs):
