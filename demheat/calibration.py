@@ -7,6 +7,7 @@ import numpy as np
 
 from demheat.conduction.steady import solve_steady
 from demheat.packing.cache import relaxed
+from demheat.packing.gate import check_packing
 from demheat.packing.relax import FEWEST
 from demheat.sampling.fluxes import mean_flux
 from demheat.scene import WALLS, Flux, Material, Scene
@@ -69,6 +70,7 @@ def cube_like(packing, *, seed=0):
     -------
     Packing
     """
+    check_packing(packing)
     size = (packing.volume ** (1 / 3),) * 3
     few = packing.number < FEWEST
     return relaxed(

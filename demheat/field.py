@@ -20,7 +20,8 @@ import numpy as np
 
 from demheat.scene import Scene
 from demheat.scene.bodies import inside
-from demheat.scene.inputs import axis_number, finite
+from demheat.scene.frozen import ReadOnly, read_only
+from demheat.scene.inputs import axis_number, finite, reals
 
 # Of the box: points computed to lie on a wall may be so far beyond it.
 ON_WALL = 1e-9
@@ -94,6 +95,11 @@ class Field:
     through: Callable[[int, float], float] | None = None
 
     def __post_init__(self):
+        # What is handed out cannot be changed: what is worked out later would be wrong without a word.
+        for name in ("mean_flux", "fractions"):
+            object.__setattr__(self, name, read_only(np.array(getattr(self, name))))
+        for name in ("wall_temperature", "wall_heat", "stats"):
+            object.__setattr__(self, name, ReadOnly(getattr(self, name)))
         # What is made when first asked for, and kept, is made once: by one thread, the others wait.
         lock = threading.RLock()
         object.__setattr__(self, "sampler", _in_turn(self.sampler, lock))
@@ -110,12 +116,12 @@ class Field:
 
     @cached_property
     def samples(self) -> Samples:
-        """The method's own values at its own points."""
-        own = self.sampler()
+        """The method's own values at its own points, in arrays that cannot be written to."""
+        own = Samples(*map(read_only, self.sampler()))
         if not self._has_pores:
             return own
         solid = self.scene.conductivities[own.phase] > 0
-        return own._replace(temperature=np.where(solid, own.temperature, np.nan))
+        return own._replace(temperature=read_only(np.where(solid, own.temperature, np.nan)))
 
     def heat_through(self, axis, position) -> float:
         """Heat that crosses a section of the body, W, by the method's own balance.
@@ -168,6 +174,19 @@ class Field:
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
 
 
+def check_field(field, name="field") -> None:
+    """Raise ValueError unless a value is a Field, or has its scene and its temperature as one does.
+
+    Parameters
+    ----------
+    field : Field
+    name : str
+        Of the argument, for the message.
+    """
+    if not isinstance(getattr(field, "scene", None), Scene) or not hasattr(field, "temperature_at"):
+        raise ValueError(f"{name} = {field!r}: must be a Field, as methods return it")
+
+
 def _in_turn(evaluate, lock):
     def at(*points):
         with lock:
@@ -180,7 +199,7 @@ def _guarded(evaluate, scene):
     """The same function of points behind one check of them."""
 
     def at(points):
-        points = np.asarray(points, dtype=float)
+        points = reals("points", points, "(n, 3) finite coordinates in metres")
         points = points[None] if points.shape == (3,) else points
         if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
             raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")

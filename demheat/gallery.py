@@ -9,6 +9,8 @@ import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
 from demheat.scene import Layer, Material, Scene, Sphere
+from demheat.scene.inputs import axis_number, chosen, finite, flag, vector, whole
+from demheat.scene.material import check_material
 
 # The cube of Haddad et al. 2021, section 4: a steel-like matrix, 0.1 m, 25 and 35 degrees C. (Their Table 1 prints a
 # specific heat of 0.9 J/(kg K), a thousand times too small for a metal; it is kept so that their figures come out.)
@@ -30,6 +32,7 @@ def slab(*, size: Sequence[float] = (EDGE, EDGE, EDGE), material: Material = HAD
     **load
         As those of `loaded`, in all scenes here.
     """
+    check_material("material", material)
     return Scene(size, material, **loaded(size, **load))
 
 
@@ -55,12 +58,10 @@ def laminate(
     edge : float, m
     matrix : Material
     """
-    if direction not in ("across", "along"):
-        raise ValueError(f"direction = {direction!r}: must be 'across' or 'along'")
-    if not isinstance(layers, int) or layers < 1:
-        raise ValueError(f"layers = {layers!r}: must be an integer >= 1")
-    size = (edge,) * 3
-    drive, axis = loaded(size, **load), load.get("axis", AXIS)
+    chosen("direction", direction, ("across", "along"))
+    whole("layers", layers, "an integer >= 1", lambda v: v >= 1)
+    size = _cube(edge, matrix=matrix)
+    drive, axis = loaded(size, **load), int(load.get("axis", AXIS))
     normal = axis if direction == "across" else (axis + 1) % 3
     second, pitch = scaled(matrix, contrast), edge / layers
     # Centred in its period, so that no interface lies on a wall.
@@ -92,9 +93,11 @@ def sphere_in_cube(
     """
     if radius is not None and fraction is not None:
         raise ValueError(f"radius = {radius!r}, fraction = {fraction!r}: give one of them, not both")
+    size = _cube(edge, matrix=matrix)
     if fraction is not None:
         radius = _radius(fraction, 1, edge)
-    size = (edge,) * 3
+    if radius is not None:
+        finite("radius", radius, "a finite number > 0 m", lambda v: v > 0)
     sphere = Sphere((edge / 2,) * 3, edge / 3 if radius is None else radius, scaled(matrix, contrast))
     return Scene(size, matrix, [sphere], **loaded(size, **load))
 
@@ -171,13 +174,16 @@ def coated_sphere(
         In units of the edge.
     edge : float, m
     """
-    if not 0 < core_fraction < 1:
-        raise ValueError(f"core_fraction = {core_fraction!r}: must lie between 0 and 1")
+    finite("core_fraction", core_fraction, "a number between 0 and 1", lambda v: 0 < v < 1)
+    finite("radius", radius, "a finite number > 0, in edges of the box", lambda v: v > 0)
+    for name, value in (("core", core), ("shell", shell)):
+        finite(name, value, "a finite number >= 0 W/(m K)", lambda v: v >= 0)
+    size = _cube(edge)
     k1, k2 = Material(shell).conductivity, Material(core).conductivity
     # The quotient above times (k2 + 2 k1), so that nothing divides by zero as long as one conductivity is not.
     weight = k2 + 2 * k1 - (k2 - k1) * core_fraction
     neutral = k1 * (k2 + 2 * k1 + 2 * (k2 - k1) * core_fraction) / weight if weight else 0.0
-    middle, size = tuple(c * edge for c in center), (edge,) * 3
+    middle = tuple(c * edge for c in vector("center", center))
     spheres = [
         Sphere(middle, radius * edge, Material(k1)),
         Sphere(middle, radius * edge * core_fraction ** (1 / 3), Material(k2)),
@@ -226,9 +232,10 @@ def random_dispersion(
     RuntimeError
         If 200 000 trials in a row found no room.
     """
+    size = _cube(edge, matrix=matrix, inclusion=inclusion)
     count, diameter = _dispersion(count, fraction, diameter)
-    if not (math.isfinite(gap) and gap >= 0):
-        raise ValueError(f"gap = {gap!r}: must be a finite number >= 0, in diameters")
+    finite("gap", gap, "a finite number >= 0, in diameters", lambda v: v >= 0)
+    whole("seed", seed, "an integer >= 0", lambda v: v >= 0)
     filled = count * math.pi / 6 * (diameter * (1 + gap)) ** 3
     if filled > MOST_FILLED:
         raise ValueError(
@@ -236,12 +243,12 @@ def random_dispersion(
             f"adding one by one reaches at most {MOST_FILLED}"
         )
     load = {"periodic": True} | load
+    flag("periodic", load["periodic"])
     margin = 0.0 if load["periodic"] else diameter * (0.5 + gap)
     if 2 * margin >= 1:
         raise ValueError(f"diameter = {diameter!r}: spheres and gaps must fit between the walls")
     wide, rng = np.full(count, diameter * (1 + gap) / 2), np.random.default_rng(seed)
     centers = add_spheres(wide, np.ones(3), rng, periodic=load["periodic"], margin=margin, reuse=True)
-    size = (edge,) * 3
     spheres = [Sphere(center, diameter * edge / 2, inclusion) for center in centers * edge]
     return Scene(size, matrix, spheres, **loaded(size, **load))
 
@@ -287,11 +294,10 @@ def dispersion(
     """
     from demheat.packing.dispersion import dispersion as placed
 
-    if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 2:
-        raise ValueError(f"count = {count!r}: must be an integer >= 2")
-    if not 1 <= ratio <= 100:
-        raise ValueError(f"ratio = {ratio!r}: must lie between 1 and 100")
-    load, size = {"periodic": True} | load, (edge,) * 3
+    whole("count", count, "an integer >= 2", lambda v: v >= 2)
+    finite("ratio", ratio, "a number between 1 and 100", lambda v: 1 <= v <= 100)
+    load, size = {"periodic": True} | load, _cube(edge, matrix=matrix, inclusion=inclusion)
+    flag("periodic", load["periodic"])
     radii = float(ratio) ** np.linspace(0.0, 1.0, count)
     how = {"fraction": fraction, "gap": gap, "seed": seed, "periodic": load["periodic"]}
     centers, radii = placed(int(count), size=size, radii=radii, **how)
@@ -307,6 +313,8 @@ def scaled(material: Material, contrast: float) -> Material:
     material : Material
     contrast : float
     """
+    check_material("material", material)
+    finite("contrast", contrast, "a finite number >= 0", lambda v: v >= 0)
     return Material(material.conductivity * contrast, material.density, material.heat_capacity)
 
 
@@ -330,37 +338,42 @@ def loaded(
         Of its low and its high wall. In a periodic cell their difference over the length of the box is the mean
         gradient, so both loads drive the same mean flux.
     """
-    if axis not in (0, 1, 2):
-        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
-    low, high = temperatures
-    if periodic:
+    size, axis = vector("size", size), axis_number(axis)
+    low, high = vector("temperatures", temperatures, length=2)
+    if flag("periodic", periodic):
         gradient = [0.0, 0.0, 0.0]
         gradient[axis] = (high - low) / size[axis]
         return {"gradient": gradient}
     return {"walls": {"xyz"[axis] + "-": low, "xyz"[axis] + "+": high}}
 
 
+def _cube(edge, **materials):
+    """Sides of a cube, when its edge and its materials are what they should be."""
+    finite("edge", edge, "a finite number > 0 m", lambda v: v > 0)
+    for name, material in materials.items():
+        check_material(name, material)
+    return (edge,) * 3
+
+
 def _radius(fraction, spheres, edge):
-    if not (math.isfinite(fraction) and fraction > 0):
-        raise ValueError(f"fraction = {fraction!r}: must be a finite number > 0")
+    finite("fraction", fraction, "a finite number > 0", lambda v: v > 0)
     return edge * (3 * fraction / (4 * math.pi * spheres)) ** (1 / 3)
 
 
 def _array(sites, contrast, fraction, edge, matrix, **load):
+    size = _cube(edge, matrix=matrix)
     radius, material = _radius(fraction, len(sites), edge), scaled(matrix, contrast)
     spheres = [Sphere(tuple(c * edge for c in site), radius, material) for site in sites]
-    size = (edge,) * 3
     return Scene(size, matrix, spheres, **loaded(size, periodic=True, **load))
 
 
 def _dispersion(count, fraction, diameter):
     """Number of spheres and their diameter in edges."""
-    if fraction is not None and not 0 < fraction < 1:
-        raise ValueError(f"fraction = {fraction!r}: must lie between 0 and 1")
-    if count is not None and (not isinstance(count, int | np.integer) or count < 1):
-        raise ValueError(f"count = {count!r}: must be an integer >= 1")
-    if not 0 < diameter < 1:
-        raise ValueError(f"diameter = {diameter!r}: must lie between 0 and 1, in edges of the box")
+    if fraction is not None:
+        finite("fraction", fraction, "a number between 0 and 1", lambda v: 0 < v < 1)
+    if count is not None:
+        whole("count", count, "an integer >= 1", lambda v: v >= 1)
+    finite("diameter", diameter, "a number between 0 and 1, in edges of the box", lambda v: 0 < v < 1)
     if count is None:
         return max(1, round((0.2 if fraction is None else fraction) * 6 / (math.pi * diameter**3))), diameter
     return count, diameter if fraction is None else (6 * fraction / (math.pi * count)) ** (1 / 3)

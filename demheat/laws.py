@@ -5,14 +5,11 @@ They are declared here and at work in `demheat.build`, so that naming a law load
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass, fields
-from numbers import Real
 from typing import ClassVar
 
-import numpy as np
-
 from demheat.scene import Scene
+from demheat.scene.inputs import chosen, finite, flag
 
 RULES = ("harmonic", "arithmetic")
 MEANS = ("arithmetic", "harmonic", "geometric")
@@ -49,8 +46,8 @@ class Laguerre:
     holds_centers: ClassVar[bool] = False
 
     def __post_init__(self):
-        _flag("conforming", self.conforming)
-        _choice("interface", self.interface, RULES)
+        flag("conforming", self.conforming)
+        chosen("interface", self.interface, RULES)
 
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
@@ -98,13 +95,13 @@ class _Contacts:
     conforming: ClassVar[bool] = False
 
     def __post_init__(self):
-        _choice("interface", self.interface, RULES)
-        _choice("sparse", self.sparse, POLICIES)
-        _choice("wall", self.wall, WALL_RULES)
+        chosen("interface", self.interface, RULES)
+        chosen("sparse", self.sparse, POLICIES)
+        chosen("wall", self.wall, WALL_RULES)
         if self.coordination is not None:
-            _number("coordination", self.coordination, 0.0, "a finite number > 0")
+            _keep(self, "coordination", "a finite number > 0", above=0.0)
         if self.gap is not None:
-            _number("gap", self.gap, -1.0, "a finite part of r_i + r_j > -1")
+            _keep(self, "gap", "a finite part of r_i + r_j > -1", above=-1.0)
         if self.gap is not None and self.coordination is not None:
             raise ValueError(
                 f"gap = {self.gap!r}, coordination = {self.coordination!r}: one gives the other; pass one of them"
@@ -129,7 +126,7 @@ class _Contacts:
             If the law does not know a keyword.
         """
         if conforming is not None:
-            _flag("conforming", conforming)
+            flag("conforming", conforming)
         if conforming:
             raise ValueError(
                 f"conforming = True with law = {cls.name!r}: twins need not touch; must be False, or law 'laguerre'"
@@ -193,10 +190,10 @@ class Calibrated(_Contacts):
 
     def __post_init__(self):
         super().__post_init__()
-        _choice("mean", self.mean, MEANS)
-        _flag("additive", self.additive)
+        chosen("mean", self.mean, MEANS)
+        flag("additive", self.additive)
         if self.factor is not None:
-            _number("factor", self.factor, 0.0, "a finite number > 0")
+            _keep(self, "factor", "a finite number > 0", above=0.0)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -232,19 +229,9 @@ class Platonic(_Contacts):
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}
 
 
-def _flag(name, value):
-    if not isinstance(value, bool | np.bool_):
-        raise ValueError(f"{name} = {value!r}: must be True or False")
-
-
-def _choice(name, value, valid):
-    if value not in valid:
-        raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
-
-
-def _number(name, value, low, valid):
-    if not (isinstance(value, Real) and not isinstance(value, bool) and low < value < math.inf):
-        raise ValueError(f"{name} = {value!r}: must be {valid}")
+def _keep(law, name, valid, *, above):
+    """Check a number of a law, and keep it as a float."""
+    object.__setattr__(law, name, finite(name, getattr(law, name), valid, lambda v: v > above))
 
 
 def _known(kind, knobs):

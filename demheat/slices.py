@@ -8,9 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.field import Field
+from demheat.field import Field, check_field
+from demheat.scene import check_scene
 from demheat.scene.bodies import inside
-from demheat.scene.inputs import axis_number
+from demheat.scene.inputs import axis_number, finite, whole
 
 
 class Slice(NamedTuple):
@@ -55,11 +56,11 @@ def plane(scene, *, axis, at, n=61):
     ValueError
         If an argument is not as described, the plane misses the box, or no middle of a pixel lies in the body.
     """
+    check_scene(scene)
     axis = axis_number(axis)
-    if not (isinstance(at, int | float | np.number) and 0 <= at <= scene.size[axis]):
-        raise ValueError(f"at = {at!r}: must lie between 0 and {scene.size[axis]} m, the box along axis {axis}")
-    if isinstance(n, bool) or not isinstance(n, int | np.integer) or n < 1:
-        raise ValueError(f"n = {n!r}: must be an integer >= 1")
+    length = scene.size[axis]
+    finite("at", at, f"between 0 and {length} m, the box along axis {axis}", lambda v: 0 <= v <= length)
+    whole("n", n, "an integer >= 1", lambda v: v >= 1)
     across = [other for other in range(3) if other != axis]
     pixel = max(scene.size[other] for other in across) / n
     middles = [_middles(scene.size[other], pixel) for other in across]
@@ -84,8 +85,11 @@ def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2, optional
         Instead of the Field's own, for instance a halo's.
     """
+    check_field(field)
+    if flux_at is not None and not callable(flux_at):
+        raise ValueError(f"flux_at = {flux_at!r}: must be a function of points, or None")
     points, mask = plane(field.scene, axis=axis, at=at, n=n)
-    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points)))
+    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points.copy())))
 
 
 def filled(mask, values):

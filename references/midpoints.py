@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.scene.inputs import whole
+
 
 def check_points_per_axis(points_per_axis) -> None:
     """Raise ValueError unless a number of points along each axis is an integer of 1 or more."""
-    integer = isinstance(points_per_axis, int | np.integer) and not isinstance(points_per_axis, bool)
-    if not integer or points_per_axis < 1:
-        raise ValueError(f"points_per_axis = {points_per_axis!r}: must be an integer >= 1")
+    whole("points_per_axis", points_per_axis, "an integer >= 1", lambda v: v >= 1)
 
 
 def midpoints(scene, points_per_axis):

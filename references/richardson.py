@@ -11,6 +11,8 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import brentq
 
+from demheat.scene.inputs import reals
+
 # Orders looked for. Below the lowest an error hardly falls, beyond the highest rounding and noise are what is seen.
 LOWEST, HIGHEST = 0.1, 8.0
 
@@ -97,7 +99,8 @@ def _powers(order):
 
 
 def _checked(values, sizes):
-    values, sizes = np.asarray(values, dtype=float), np.asarray(sizes, dtype=float)
+    valid = "a list of finite numbers"
+    values, sizes = reals("values", values, valid), reals("sizes", sizes, valid)
     if values.ndim != 1 or values.shape != sizes.shape or not np.all(np.isfinite(values)):
         raise ValueError(f"values = {values.tolist()}: must be as many finite numbers as sizes = {sizes.tolist()}")
     if not np.all(np.isfinite(sizes)) or np.any(sizes <= 0) or len(np.unique(sizes)) < len(sizes):

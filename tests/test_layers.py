@@ -15,17 +15,22 @@ OURS = ("demheat", "references", "studies", "tests")
 # The longest prefix that fits a module is its room; a prefix stands for itself and all below it. A module adds a line.
 LAYERS = {
     "demheat.scene.inputs": (),
+    "demheat.scene.frozen": (),
     "demheat.scene.bodies": (),
+    "demheat.scene.crossing": ("demheat.scene.bodies",),
     "demheat.scene.material": ("demheat.scene.inputs",),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
+        "demheat.scene.frozen",
+        "demheat.scene.crossing",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.parts",
         "demheat.scene.shapes",
     ),
     "demheat.scene.needs": ("demheat.scene.parts",),
+    "demheat.scene.functions": ("demheat.scene.inputs", "demheat.scene.parts"),
     "demheat.scene.scene": (
         "demheat.scene.inputs",
         "demheat.scene.bodies",
@@ -34,7 +39,9 @@ LAYERS = {
         "demheat.scene.shapes",
         "demheat.scene.checks",
         "demheat.scene.needs",
+        "demheat.scene.functions",
     ),
+    "demheat.scene.thickness": (),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
     "demheat.field": ("demheat.scene",),
@@ -135,9 +142,9 @@ LAYERS = {
     "demheat": ("demheat.scene", "demheat.field", "demheat.laws", "demheat.progress", "demheat.dem"),
     # Witnesses know the engine's nouns and not the engine.
     "references.threads": (),
-    "references.times": (),
-    "references.midpoints": ("demheat.field",),
-    "references.richardson": (),
+    "references.times": ("demheat.scene",),
+    "references.midpoints": ("demheat.scene", "demheat.field"),
+    "references.richardson": ("demheat.scene",),
     "references.voxels": ("demheat.scene", "demheat.progress", "references.voxels"),
     "references.mesh": ("demheat.scene", "demheat.progress", "references.mesh"),
     "references.exact": (

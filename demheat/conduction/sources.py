@@ -10,6 +10,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.scene import ROUND_AXES, MovingCylinder, UniformSource
+from demheat.scene.crossing import touching
 
 # A rim may stick out by so much of the body: rounding of the time at which it arrives at the edge.
 EDGE_SLACK = 1e-9
@@ -145,52 +146,11 @@ def transits(scene):
     for source in scene.sources:
         if isinstance(source, MovingCylinder):
             _check_through(scene, source)
-            between = _touching(scene, source)
+            between = touching(source, scene.size, scene.domain)
             speed = math.hypot(*source.velocity)
             if between:
                 found.append((*between, source.diameter / speed if speed > 0 else math.inf))
     return found
-
-
-def _touching(scene, source):
-    """First and last time at which the rim touches the body, s; None if never.
-
-    The axis is then in the body's outline grown by the radius, which is convex, and made of rectangles and discs.
-    """
-    place, velocity, radius = source.position(0.0), np.array(source.velocity), source.diameter / 2
-    sides = np.array(scene.size)[_across(source)]
-    if ROUND_AXES[scene.domain]:
-        return _in_disc(place - sides / 2, velocity, sides[0] / 2 + radius)
-    pieces = [_in_disc(place - sides * corner, velocity, radius) for corner in ((0, 0), (0, 1), (1, 0), (1, 1))]
-    pieces += [_in_rectangle(place, velocity, -grown, sides + grown) for grown in radius * np.eye(2)]
-    met = [piece for piece in pieces if piece]
-    return (min(start for start, _ in met), max(stop for _, stop in met)) if met else None
-
-
-def _in_disc(place, velocity, radius):
-    """Times between which a moving point is within a disc around the origin, or None."""
-    a, b, c = velocity @ velocity, velocity @ place, place @ place - radius**2
-    if a == 0.0:
-        return (-math.inf, math.inf) if c <= 0 else None
-    # The reach of the line inside, from its distance to the origin: no digits are lost far away.
-    along = radius**2 - (place[0] * velocity[1] - place[1] * velocity[0]) ** 2 / a
-    if along < 0:
-        return None
-    half = math.sqrt(along / a)
-    return -b / a - half, -b / a + half
-
-
-def _in_rectangle(place, velocity, low, high):
-    """Times between which a moving point is in a rectangle, or None."""
-    start, stop = -math.inf, math.inf
-    for x, v, a, b in zip(place, velocity, low, high, strict=True):
-        if v == 0.0:
-            if not a <= x <= b:
-                return None
-            continue
-        first, last = sorted(((a - x) / v, (b - x) / v))
-        start, stop = max(start, first), min(stop, last)
-    return (start, stop) if start <= stop else None
 
 
 def _check_through(scene, source):

@@ -6,10 +6,11 @@ import numpy as np
 
 from demheat.conduction.integrators.march import march
 from demheat.conduction.integrators.pace import pace_of
-from demheat.conduction.integrators.system import load_at, loaded_areas, semi_discrete
+from demheat.conduction.integrators.system import loaded_areas, semi_discrete
 from demheat.conduction.steady import Solution
 from demheat.network.base import SIDES
 from demheat.scene import Flux
+from demheat.scene.functions import initial_at, load_at
 
 
 def capacities(network, scene):
@@ -64,7 +65,7 @@ def evolve(network, scene, times, *, power=None, transits=(), held_centers=None,
     RuntimeError
         If steps or linear solves do not converge.
     """
-    start, capacity = initial_temperature(scene, network.centers), capacities(network, scene)
+    start, capacity = initial_at(scene, network.centers), capacities(network, scene)
     system = semi_discrete(network, scene, capacity, power=power, held_centers=held_centers, level=float(start.mean()))
     pace = pace_of(changing_loads(scene), transits, float(times[-1]), accuracy)
     for state in march(system, start, times, accuracy=accuracy, pace=pace, **knobs):
@@ -80,36 +81,6 @@ def changing_loads(scene):
     ]
 
 
-def initial_temperature(scene, points):
-    """Temperature at time 0.
-
-    Parameters
-    ----------
-    scene : Scene
-    points : (n, 3) float array, m
-
-    Returns
-    -------
-    (n,) float array, K
-
-    Raises
-    ------
-    ValueError
-        If a function gives anything but a finite number for each point.
-    """
-    if not callable(scene.initial):
-        return np.full(len(points), float(scene.initial))
-    values = np.asarray(scene.initial(points))
-    if values.shape != (len(points),) or values.dtype.kind not in "iuf":
-        what = f"shape {values.shape} of {values.dtype}"
-        raise ValueError(f"Scene.initial: gives {what} for {len(points)} points; must be real numbers, (n,)")
-    odd = np.flatnonzero(~np.isfinite(values))
-    if len(odd):
-        where = points[odd[0]].tolist()
-        raise ValueError(f"Scene.initial = {values[odd[0]]} at {where} m: must be finite at all points of the body")
-    return values.astype(float)
-
-
 def check_callables(scene):
     """Raise ValueError unless the functions of a scene give numbers at time 0, in the middle of the body and near it.
 
@@ -118,7 +89,7 @@ def check_callables(scene):
     for load in changing_loads(scene):
         load(0.0)
     # Within a sphere inscribed in the box as well.
-    initial_temperature(scene, np.array(scene.size) * [[0.5, 0.5, 0.5], [0.4, 0.5, 0.6], [0.7, 0.4, 0.5]])
+    initial_at(scene, np.array(scene.size) * [[0.5, 0.5, 0.5], [0.4, 0.5, 0.6], [0.7, 0.4, 0.5]])
 
 
 def _walls(network, scene, system, state):

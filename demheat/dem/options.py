@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import warnings
 from dataclasses import dataclass, fields
 
@@ -11,12 +12,16 @@ from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
+from demheat.packing.gate import check_packing
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 from demheat.scene import Scene
+from demheat.scene.inputs import flag, whole
 
 # Old keywords of `solve` and `evolve`.
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
+# Packing fraction below which a packing that is given is called loose: crystals of equal spheres begin at .34, diamond.
+LOOSE = 0.3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,11 +50,11 @@ class Particles:
     allow_few: bool = False
 
     def __post_init__(self):
-        if not isinstance(self.allow_few, bool | np.bool_):
-            raise ValueError(f"allow_few = {self.allow_few!r}: must be True or False")
-        number = self.particles
-        if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
-            raise ValueError(f"particles = {number!r}: must be an integer >= 1")
+        flag("allow_few", self.allow_few)
+        number = whole("particles", self.particles, "an integer >= 1", lambda v: v >= 1)
+        whole("seed", self.seed, "an integer >= 0", lambda v: v >= 0)
+        if self.packing is not None:
+            check_packing(self.packing)
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
         if self.packing is not None and self.replicas is not None:
@@ -94,7 +99,7 @@ class Particles:
             Replicas along each axis.
         """
         if self.packing is not None:
-            return self.packing
+            return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
         if counts.prod() > 1:
             return replicated(self.particles, counts, **body)
@@ -139,6 +144,12 @@ def _law(law, knobs):
     return LAWS[law].short(**knobs)
 
 
+def _own(packing):
+    """A copy of a packing that is given: what its owner does to it later is none of the field's."""
+    arrays = {name: getattr(packing, name).copy() for name in ("centers", "radii", "size", "periodic")}
+    return packing._replace(**arrays, provenance=copy.deepcopy(dict(packing.provenance)))
+
+
 def _check_body(packing, scene):
     like = packing.domain == scene.domain and set(packing.periodic.tolist()) == {scene.periodic}
     if not (like and np.allclose(packing.size, scene.size, rtol=1e-9)):
@@ -146,4 +157,10 @@ def _check_body(packing, scene):
         raise ValueError(
             f"packing of size {packing.size.tolist()} in a {packing.domain}, periodic {packing.periodic.tolist()}: "
             f"must be {kind}, in the scene's {scene.domain} of size {scene.size}"
+        )
+    if packing.phi < LOOSE:
+        warnings.warn(
+            f"packing: its spheres fill {packing.phi:.3g} of the body: too far apart for many contacts and for "
+            "round cells, so that results may be off by percents; at 0.5 and more the method is at home",
+            stacklevel=4,
         )

@@ -18,7 +18,7 @@ from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
 from demheat.warm import Helper, cells, parts_of
 
 
@@ -84,6 +84,7 @@ def solve(
         If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
         holds no particle.
     """
+    check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(steady=True)
@@ -169,6 +170,7 @@ def evolve(
     RuntimeError
         If steps or linear solves do not converge.
     """
+    check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(steady=False)

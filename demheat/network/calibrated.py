@@ -86,6 +86,7 @@ def joined_facets(packing, links, *, sparse) -> Facets:
         walls = [column[alive[walls[0]]] for column in walls]
     particle, side = walls
     length, image = _lengths(packing, indptr, indices)
+    _check_apart(indptr, indices, length)
     here, there = np.repeat(packing.radii, np.diff(indptr)), packing.radii[indices]
     length *= here / (here + there)
     volumes = np.where(alive, packing.radii, 0.0) ** 3
@@ -254,6 +255,16 @@ def _lengths(packing, indptr, indices):
         squares += (step + shift * packing.size[k]) ** 2
         code = 3 * code + (shift + 1.0).astype(np.uint8)
     return np.sqrt(squares), code
+
+
+def _check_apart(indptr, indices, length):
+    """Two centres in one place would be a link of no length, and all temperatures not-a-number."""
+    if len(length) and not length.min() > 0:
+        link = int(np.argmin(length))
+        row = int(np.searchsorted(indptr, link, side="right")) - 1
+        raise ValueError(
+            f"packing.centers: {row} and {indices[link]} coincide, contacts need a distance; leave one out"
+        )
 
 
 def _flat_walls(packing):

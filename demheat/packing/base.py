@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.scene.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
+from demheat.scene.inputs import finite, reals
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21
@@ -53,8 +55,7 @@ class Packing(NamedTuple):
 
     def scaled(self, factor: float) -> Packing:
         """The same packing with every length multiplied by `factor`, which must be > 0."""
-        if not (np.isfinite(factor) and factor > 0):
-            raise ValueError(f"factor = {factor!r}: must be a finite number > 0")
+        finite("factor", factor, "a finite number > 0", lambda v: v > 0)
         return self._replace(centers=self.centers * factor, radii=self.radii * factor, size=self.size * factor)
 
 
@@ -79,8 +80,10 @@ def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: st
     """
     size, periodic = check_box(size, periodic)
     check_domain(domain, size, periodic)
-    centers = np.array(centers, dtype=float)
-    radii = np.array(radii, dtype=float)
+    centers = np.array(reals("centers", centers, "(n, 3) finite numbers, n > 0"))
+    radii = np.array(reals("radii", radii, "finite numbers > 0, one for each centre"))
+    if not isinstance(provenance, Mapping):
+        raise ValueError(f"provenance = {provenance!r}: must be a dict")
     if centers.ndim != 2 or centers.shape[1] != 3 or len(centers) == 0 or not np.all(np.isfinite(centers)):
         raise ValueError(f"centers of shape {centers.shape}: must be (n, 3) finite numbers, n > 0")
     if radii.shape != (len(centers),) or not np.all(np.isfinite(radii)) or np.any(radii <= 0):
@@ -118,12 +121,11 @@ def check_box(size, periodic):
     ValueError
         If they are not as described, or a side is not > 0.
     """
-    try:
-        sides = np.array(size, dtype=float)
-    except (TypeError, ValueError):
-        sides = np.empty(0)
-    if sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0):
-        raise ValueError(f"size = {size!r}: must be three finite lengths > 0")
+    valid = "three finite lengths > 0"
+    sides = np.array(reals("size", size, valid))
+    odd = sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0)
+    if odd or any(isinstance(side, bool | np.bool_) for side in size):
+        raise ValueError(f"size = {size!r}: must be {valid}")
     flags = np.asarray(periodic)
     if flags.dtype != bool or flags.shape not in ((), (3,)):
         raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")

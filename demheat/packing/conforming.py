@@ -12,9 +12,10 @@ from scipy.spatial import cKDTree
 
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.gaps import Interfaces
+from demheat.packing.gate import check_packing
 from demheat.packing.patterns import GAP_SPACING, LEAST_OFFSET, LEAST_SPACING, SPACING, patterns
 from demheat.progress import stage
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
 
 # In mean radii of the packing. Twins at half a radius make cells centred between the interface and the next layer,
 # which is what the two-point flux needs where the interface is curved; found best of offsets .3 to .95 and spacings 1.2
@@ -58,6 +59,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     NotImplementedError
         If there is an inclusion of a shape whose surface is not known; see `demheat.packing.interfaces.surfaces`.
     """
+    check_packing(packing)
+    check_scene(scene)
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()

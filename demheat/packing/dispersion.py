@@ -21,6 +21,7 @@ from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.scene import Material, Scene, Sphere
 from demheat.scene.inputs import axis_number, finite, vector
+from demheat.scene.material import check_material
 
 # Whose source decides what a dispersion is.
 CODE = (*LSA, "demheat.addition", __name__)
@@ -172,6 +173,8 @@ def dispersion_scene(
         As `dispersion`; if the axis or the temperatures are not as described; and if walls are asked for
         a periodic dispersion, whose spheres cross the faces.
     """
+    for name, material in (("matrix", matrix), ("inclusion", inclusion)):
+        check_material(name, material)
     walls = _load(load, axis, temperatures, size, periodic)
     centers, radii = dispersion(number, size=size, periodic=periodic, **knobs)
     spheres = [Sphere(center, radius, inclusion) for center, radius in zip(centers, radii, strict=True)]

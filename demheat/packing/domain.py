@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
+from demheat.packing.gate import check_packing
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
+from demheat.scene.inputs import chosen, vector
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.
@@ -70,8 +71,7 @@ def cut(
     """
     _check_box_packing(packing)
     check_name("domain", domain)
-    if keep not in KEEP:
-        raise ValueError(f"keep = {keep!r}: must be one of {', '.join(KEEP)}")
+    chosen("keep", keep, KEEP)
     axes = list(ROUND_AXES[domain])
     sides, full = _checked_size(packing, size, axes)
     whole = full & ~np.isin(np.arange(3), axes)
@@ -113,6 +113,7 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
     ValueError
         If a number is not an integer >= 1, or an axis with walls is to be repeated.
     """
+    check_packing(packing)
     counts = np.array(repeats)
     if counts.shape != (3,) or counts.dtype.kind not in "iu" or np.any(counts < 1):
         raise ValueError(f"repeats = {repeats!r}: must be three integers >= 1")
@@ -181,6 +182,7 @@ def walled(packing: Packing) -> Packing:
     than `DRAWN[0]`: cells at the wall are no slivers. Particles there overlap, and some reach beyond the walls: this
     serves tessellations, not laws of contacts.
     """
+    check_packing(packing)
     centers, mean = packing.centers.copy(), packing.radii.mean()
     for k in np.flatnonzero(packing.periodic):
         least, depth = np.array(DRAWN) * min(mean, 0.5 * packing.size[k] / DRAWN[1])
@@ -194,6 +196,7 @@ def walled(packing: Packing) -> Packing:
 
 
 def _check_box_packing(packing):
+    check_packing(packing)
     if packing.domain != "box":
         raise ValueError(f"packing in a {packing.domain}: must be in a box to be cut")
 
@@ -212,9 +215,7 @@ def _checked_size(packing, size, axes):
 
 
 def _checked_center(packing, center, sides):
-    middle = packing.size / 2 if center is None else np.array(center, dtype=float)
-    if middle.shape != (3,) or not all(map(math.isfinite, middle)):
-        raise ValueError(f"center = {center!r}: must be three finite coordinates in metres")
+    middle = packing.size / 2 if center is None else np.array(vector("center", center))
     least, room = sides / 2, ROUNDING * packing.size
     beyond = ~packing.periodic & ((middle < least - room) | (middle > packing.size - least + room))
     if beyond.any():

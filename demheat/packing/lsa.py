@@ -14,11 +14,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from demheat.packing.base import Packing, check_box, check_domain, make_packing
+from demheat.packing.gate import check_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
 from demheat.progress import stage
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, flag, reals, whole
 
 # Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the
 # spheres have no time to arrange themselves: 1e4 of them with spread 0.3 then jam at 0.6538 (start at 0.55) or 0.651
@@ -71,6 +72,8 @@ class Growth:
             valid = f">= {LEAST_PRESSURE:g}; give phi for a thinner gas"
             pressure = finite("pressure", pressure, valid, lambda v: v >= LEAST_PRESSURE)
         object.__setattr__(self, "pressure", pressure)
+        if self.progress is not None and not callable(self.progress):
+            raise ValueError(f"progress = {self.progress!r}: must be a function, or None")
 
     def rate(self, reached: float) -> float:
         """Growth rate of the last stage whose pressure is reached, of the first before that."""
@@ -179,8 +182,7 @@ def _share(motion, begun, phi, limit):
 
 def _check_alone(start, number, size, radii, periodic, domain):
     """A start brings its own spheres and domain: raise ValueError for anything else that says so too."""
-    if not isinstance(start, Packing):
-        raise ValueError(f"start = {start!r}: must be a Packing")
+    check_packing(start, "start")
     given = {"number": number not in (None, start.number), "size": tuple(size) != (1.0, 1.0, 1.0)}
     given |= {"radii": radii is not None, "periodic": periodic is not True, "domain": domain != "box"}
     if any(given.values()):
@@ -189,8 +191,8 @@ def _check_alone(start, number, size, radii, periodic, domain):
 
 
 def _check_request(number, size, periodic, domain, radii, allow_few):
-    if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 2:
-        raise ValueError(f"number = {number!r}: must be an integer >= 2")
+    whole("number", number, "an integer >= 2", lambda v: v >= 2)
+    flag("allow_few", allow_few)
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} spheres; pass allow_few=True if you mean it")
     if isinstance(radii, Listed) and len(radii.values) != number:
@@ -201,19 +203,18 @@ def _check_request(number, size, periodic, domain, radii, allow_few):
 
 
 def _check_seed(seed):
-    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
-        raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
+    whole("seed", seed, "an integer >= 0", lambda v: v >= 0)
 
 
 def _checked_stages(growth):
     """Growth as a list of stages, [reduced pressure from which it holds, rate]."""
-    try:
-        stages = np.array([(0.0, growth)] if np.ndim(growth) == 0 else growth, dtype=float)
-    except (TypeError, ValueError):
-        stages = np.empty(0)
+    valid = "a rate > 0, or pairs of ascending pressures and rates > 0"
+    if np.ndim(growth) == 0:
+        growth = [(0.0, finite("growth", growth, valid))]
+    stages = reals("growth", growth, valid)
     good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
     if not (good and np.all(stages[:, 1] > 0) and np.all(np.diff(stages[:, 0]) > 0)):
-        raise ValueError(f"growth = {growth!r}: must be a rate > 0, or pairs of ascending pressures and rates > 0")
+        raise ValueError(f"growth = {growth!r}: must be {valid}")
     return stages.tolist()
 
 

@@ -9,8 +9,9 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.blocks import blocks
 from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
+from demheat.packing.gate import check_packing
 from demheat.packing.walls import bulk
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, flag
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.
 PER_CELL = 4.0
@@ -41,8 +42,9 @@ def neighbours(packing: Packing, *, scale: float = 1.0, skin: float = 0.0) -> tu
     Raises
     ------
     ValueError
-        If scale or skin is negative or not finite.
+        If the packing is not what it should be, or scale or skin is negative or not finite.
     """
+    check_packing(packing)
     for name, value in (("scale", scale), ("skin", skin)):
         finite(name, value, "a finite number >= 0", lambda v: v >= 0)
     points = np.column_stack((packing.centers, packing.radii))
@@ -87,8 +89,10 @@ def contacts(
     Raises
     ------
     ValueError
-        If an argument is out of range, or no particle is bulk, or there are too few particles for that coordination.
+        If an argument is not as described, no particle is bulk, or there are too few particles for that coordination.
     """
+    check_packing(packing)
+    flag("additive", additive)
     if gap is not None:
         finite("gap", gap, "a finite part of r_i + r_j > -1", lambda v: v > -1)
         return *_closer(packing, 1.0 + gap, additive)[:2], float(gap)

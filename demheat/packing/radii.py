@@ -9,6 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from demheat.scene.inputs import finite, reals
+
 
 @dataclass(frozen=True)
 class Gaussian:
@@ -26,9 +28,9 @@ class Gaussian:
     cut: float = 2.5
 
     def __post_init__(self):
-        _check("Gaussian.cut", self.cut, self.cut > 0, "a finite number > 0")
+        finite("Gaussian.cut", self.cut, "a finite number > 0", lambda v: v > 0)
         valid = f">= 0 and < 1/cut = {1 / self.cut:.3g}, else some radii are not positive"
-        _check("Gaussian.spread", self.spread, 0 <= self.spread * self.cut < 1, valid)
+        finite("Gaussian.spread", self.spread, valid, lambda v: 0 <= v * self.cut < 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
         """Draw radii of mean 1 (expectation).
@@ -52,7 +54,7 @@ class Uniform:
     half_width: float = 0.075
 
     def __post_init__(self):
-        _check("Uniform.half_width", self.half_width, 0 <= self.half_width < 1, ">= 0 and < 1")
+        finite("Uniform.half_width", self.half_width, ">= 0 and < 1", lambda v: 0 <= v < 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
         """Draw radii of mean 1 (expectation).
@@ -85,8 +87,8 @@ class Lognormal:
     cut: float = 2.5
 
     def __post_init__(self):
-        _check("Lognormal.spread", self.spread, self.spread >= 0, "a finite number >= 0")
-        _check("Lognormal.cut", self.cut, self.cut > 0, "a finite number > 0")
+        finite("Lognormal.spread", self.spread, "a finite number >= 0", lambda v: v >= 0)
+        finite("Lognormal.cut", self.cut, "a finite number > 0", lambda v: v > 0)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
         """Draw radii of mean 1 (expectation).
@@ -122,8 +124,8 @@ class Bidisperse:
     fraction: float = 0.5
 
     def __post_init__(self):
-        _check("Bidisperse.ratio", self.ratio, self.ratio >= 1, ">= 1")
-        _check("Bidisperse.fraction", self.fraction, 0 <= self.fraction <= 1, "between 0 and 1")
+        finite("Bidisperse.ratio", self.ratio, "a finite number >= 1", lambda v: v >= 1)
+        finite("Bidisperse.fraction", self.fraction, "a number between 0 and 1", lambda v: 0 <= v <= 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
         """Draw radii of mean 1 (within the rounding of the fraction).
@@ -149,7 +151,7 @@ class Listed:
     values: tuple[float, ...]
 
     def __post_init__(self):
-        values = np.array(self.values, dtype=float)
+        values = reals("Listed.values", self.values, "a list of finite numbers > 0")
         if values.ndim != 1 or len(values) == 0 or not np.all(np.isfinite(values)) or np.any(values <= 0):
             raise ValueError(f"Listed.values of shape {values.shape}: must be a list of finite numbers > 0")
         object.__setattr__(self, "values", tuple(values.tolist()))
@@ -186,17 +188,14 @@ def distribution(radii):
     """A radius distribution as it is, or the list of radii that an array is; raises ValueError for anything else."""
     if hasattr(radii, "draw"):
         return radii
+    valid = "a distribution such as Gaussian(0.3), or numbers > 0"
+    values = reals("radii", radii, valid)
     try:
-        return Listed(tuple(np.asarray(radii, dtype=float).tolist()))
+        return Listed(tuple(values.tolist()))
     except (TypeError, ValueError) as error:
-        raise ValueError(f"radii = {radii!r}: must be a distribution such as Gaussian(0.3), or numbers > 0") from error
+        raise ValueError(f"radii = {radii!r}: must be {valid}") from error
 
 
 def _cut_normal(number, cut, rng):
     """Standard normal numbers given that they lie within +-cut, by inversion."""
     return ndtri(rng.uniform(ndtr(-cut), ndtr(cut), number))
-
-
-def _check(name, value, good, valid):
-    if not (math.isfinite(value) and good):
-        raise ValueError(f"{name} = {value!r}: must be {valid}")

@@ -15,11 +15,12 @@ import numpy as np
 
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
+from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
 from demheat.progress import stage
 from demheat.scene.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, flag, whole
 
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).
@@ -59,8 +60,9 @@ class Relaxation:
 
     def __post_init__(self):
         finite("overlap", self.overlap, "a finite part of the mean diameter >= 0", lambda v: v >= 0)
-        if not isinstance(self.steps, int | np.integer) or self.steps < 0:
-            raise ValueError(f"steps = {self.steps!r}: must be an integer >= 0")
+        whole("steps", self.steps, "an integer >= 0", lambda v: v >= 0)
+        if self.progress is not None and not callable(self.progress):
+            raise ValueError(f"progress = {self.progress!r}: must be a function, or None")
 
 
 def relax(
@@ -152,8 +154,9 @@ def settle(
     Raises
     ------
     ValueError
-        If `fixed`, `steps` or `overlap` is not as described, or a sphere is too large for the box.
+        If an argument is not as described, or a sphere is too large for the box.
     """
+    check_packing(packing)
     n = packing.number
     fixed = np.zeros(n, dtype=bool) if fixed is None else np.asarray(fixed)
     if fixed.dtype != bool or fixed.shape != (n,):
@@ -302,10 +305,9 @@ def _jittered_grid(number, size, periodic, rng):
 
 
 def _check_request(number, phi, seed, allow_few):
-    if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
-        raise ValueError(f"number = {number!r}: must be an integer >= 1")
+    whole("number", number, "an integer >= 1", lambda v: v >= 1)
+    flag("allow_few", allow_few)
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} particles; pass allow_few=True if you mean it")
     finite("phi", phi, "> 0 and <= 0.74, the densest packing of equal spheres", lambda v: 0 < v <= 0.74)
-    if not isinstance(seed, int | np.integer) or seed < 0:
-        raise ValueError(f"seed = {seed!r}: must be an integer >= 0")
+    whole("seed", seed, "an integer >= 0", lambda v: v >= 0)

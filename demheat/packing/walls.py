@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from demheat.packing.base import Packing
+from demheat.packing.gate import check_packing
 from demheat.scene import bodies
+from demheat.scene.inputs import finite
 
 
 def walls(packing: Packing) -> tuple[str, ...]:
     """Names of the walls of a packing."""
+    check_packing(packing)
     return bodies.wall_names(packing.domain, packing.periodic)
 
 
@@ -24,12 +25,15 @@ def wall_distance(packing: Packing, wall) -> np.ndarray:
     wall : str
         One of `walls`.
     """
+    check_packing(packing)
+    _check_wall(packing, wall)
     return bodies.wall_distance(packing.centers, wall, packing.domain, packing.size)
 
 
 def wall_distances(packing: Packing) -> np.ndarray:
     """Distance of each centre from the nearest wall, (n,) float array, m; infinite where there is none."""
-    return bodies.nearest_wall(packing.centers, walls(packing), packing.domain, packing.size)
+    names = walls(packing)
+    return bodies.nearest_wall(packing.centers, names, packing.domain, packing.size)
 
 
 def outward(packing: Packing, wall) -> np.ndarray:
@@ -41,6 +45,8 @@ def outward(packing: Packing, wall) -> np.ndarray:
     wall : str
         One of `walls`.
     """
+    check_packing(packing)
+    _check_wall(packing, wall)
     return bodies.outward(packing.centers, wall, packing.domain, packing.size)
 
 
@@ -64,17 +70,13 @@ def check_margin(packing: Packing, margin, name="margin") -> float:
     ValueError
         If the margin is not a number >= 0, or leaves no core; the message says the largest valid one.
     """
-    try:
-        good = math.isfinite(margin) and margin >= 0
-    except TypeError:
-        good = False
-    if not good:
-        raise ValueError(f"{name} = {margin!r}: must be a finite number of mean radii >= 0")
+    check_packing(packing)
+    margin = finite(name, margin, "a finite number of mean radii >= 0", lambda v: v >= 0)
     mean = float(np.mean(packing.radii))
     largest = float(np.min(np.where(packing.periodic, np.inf, packing.size / 2)))
     if margin * mean >= largest:
         raise ValueError(f"{name} = {margin!r}: must be < {largest / mean:.6g} mean radii, where no core is left")
-    return float(margin) * mean
+    return margin * mean
 
 
 def bulk(packing: Packing, margin) -> np.ndarray:
@@ -99,3 +101,9 @@ def bulk(packing: Packing, margin) -> np.ndarray:
     if not deep.any():
         raise ValueError(f"margin = {margin!r}: no particle is that many mean radii away from all walls")
     return deep
+
+
+def _check_wall(packing, wall):
+    known = bodies.wall_names(packing.domain)
+    if wall not in known:
+        raise ValueError(f"wall = {wall!r}: must be one of {', '.join(known)}")

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from numbers import Real
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from demheat.field import check_field
 
 if TYPE_CHECKING:
     from demheat.field import Field
@@ -19,6 +22,7 @@ def heat_balance(field: Field) -> float:
     ValueError
         In a periodic cell, where heat crosses no wall.
     """
+    check_field(field)
     if field.scene.periodic:
         raise ValueError("field.scene is periodic: no heat enters through walls, there is no balance to check")
     heats = np.array(list(field.wall_heat.values()))
@@ -46,9 +50,15 @@ def bound_violation(field: Field | float, lower: float, upper: float) -> float:
     ValueError
         Unless 0 <= lower <= upper.
     """
+    for name, value in (("lower", lower), ("upper", upper)):
+        if isinstance(value, bool) or not isinstance(value, Real):
+            raise ValueError(f"{name} = {value!r}: must be a number, W/(m K)")
     if not 0 <= lower <= upper:
         raise ValueError(f"lower = {lower!r}, upper = {upper!r}: must be 0 <= lower <= upper")
-    k = float(getattr(field, "conductivity", field))
+    k = getattr(field, "conductivity", field)
+    if isinstance(k, bool) or not isinstance(k, Real):
+        raise ValueError(f"field = {field!r}: must be a Field, or a conductivity")
+    k = float(k)
     if k < lower:
         return k / lower - 1.0
     if k > upper:

@@ -7,7 +7,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from demheat.field import check_field
 from demheat.referee.values import rms, value_error, vector_error, worst
+from demheat.scene import check_scene
+from demheat.scene.inputs import chosen, finite, flag, reals
 
 if TYPE_CHECKING:
     from demheat.field import Field
@@ -66,9 +69,9 @@ def conductivity_error(field: Field, reference: Field | float) -> float:
     ValueError
         Unless the reference's conductivity is finite and positive.
     """
-    exact = float(getattr(reference, "conductivity", reference))
-    if not (np.isfinite(exact) and exact > 0):
-        raise ValueError(f"reference conductivity = {exact}: must be finite and > 0, a relative error follows from it")
+    check_field(field)
+    exact = getattr(reference, "conductivity", reference)
+    finite("reference conductivity", exact, "finite and > 0, a relative error follows from it", lambda v: v > 0)
     return value_error(field.conductivity, exact)
 
 
@@ -90,6 +93,9 @@ def span(scene: Scene, reference: Field | None = None) -> float:
     ValueError
         If there is no difference: relative errors of temperature do not follow.
     """
+    check_scene(scene)
+    if reference is not None:
+        check_field(reference, "reference")
     if scene.periodic:
         return float(np.abs(scene.gradient) @ np.array(scene.size))
     time = None if reference is None else reference.time
@@ -130,7 +136,9 @@ def temperature_error(
     -------
     Error
     """
-    _check_unit(unit, ("span", "%", "K"))
+    check_field(field)
+    check_field(reference, "reference")
+    chosen("unit", unit, ("span", "%", "K"))
     points, weights, values = _compared(field, points, values, mask, "temperature")
     difference = values - reference.temperature_at(points)
     if field.scene.periodic:
@@ -173,7 +181,10 @@ def flux_error(
     ValueError
         If the reference has no mean flux.
     """
-    _check_unit(unit, ("mean", "%"))
+    check_field(field)
+    check_field(reference, "reference")
+    chosen("unit", unit, ("mean", "%"))
+    flag("along", along)
     scale = np.linalg.norm(reference.mean_flux)
     if scale == 0:
         raise ValueError("reference.mean_flux = 0: no relative error of the flux follows")
@@ -184,11 +195,6 @@ def flux_error(
     return Error(vector_error(values, right) * (percent / scale), points, weights)
 
 
-def _check_unit(unit, valid):
-    if unit not in valid:
-        raise ValueError(f"unit = {unit!r}: must be one of {', '.join(map(repr, valid))}")
-
-
 def _compared(field, points, values, mask, name):
     """Points, weights (None where all are the same) and the field's values there."""
     weights = None
@@ -196,10 +202,13 @@ def _compared(field, points, values, mask, name):
         samples = field.samples
         points, weights = samples.points, samples.volumes
         values = getattr(samples, name) if values is None else values
-    points = np.asarray(points, dtype=float).reshape(-1, 3)
-    if values is not None and len(values) != len(points):
-        raise ValueError(f"values of length {len(values)}: must be one for each of {len(points)} points")
-    keep = mask(points) if callable(mask) else mask
+    points = np.atleast_2d(reals("points", points, "(n, 3) coordinates in metres"))
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise ValueError(f"points of shape {points.shape}: must be (n, 3) coordinates in metres")
+    values = None if values is None else reals("values", values, "numbers, one for each point")
+    if values is not None and (values.ndim == 0 or len(values) != len(points)):
+        raise ValueError(f"values of shape {values.shape}: must be one for each of {len(points)} points")
+    keep = mask(np.array(points)) if callable(mask) else mask
     if keep is not None:
         keep = np.asarray(keep)
         if keep.dtype != bool or keep.shape != (len(points),):

@@ -10,6 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from demheat.scene.inputs import finite, reals
+
+NUMBERS = "real numbers"
 Values = float | np.ndarray  # or a column of a data frame
 
 
@@ -49,6 +52,8 @@ def value_error(found: Values, exact: Values, *, scale: Values | None = None) ->
     -------
     float or array
     """
+    for name, value in (("found", found), ("exact", exact)) + (() if scale is None else (("scale", scale),)):
+        reals(name, value, NUMBERS)
     if scale is None:
         return found / exact - 1
     return (found - exact) / scale
@@ -67,7 +72,11 @@ def vector_error(found: ArrayLike, exact: ArrayLike, *, scale: float = 1.0) -> n
     -------
     (...) float array
     """
-    return np.linalg.norm(np.asarray(found) - np.asarray(exact), axis=-1) / scale
+    found, exact = (reals(name, value, NUMBERS) for name, value in (("found", found), ("exact", exact)))
+    finite("scale", scale, "a finite number > 0", lambda v: v > 0)
+    if found.ndim == 0 or exact.ndim == 0 or found.shape[-1] != exact.shape[-1]:
+        raise ValueError(f"found of shape {found.shape}, exact of shape {exact.shape}: must be vectors of one length")
+    return np.linalg.norm(found - exact, axis=-1) / scale
 
 
 def rms(errors: ArrayLike, weights: np.ndarray | None = None) -> float:
@@ -84,14 +93,17 @@ def rms(errors: ArrayLike, weights: np.ndarray | None = None) -> float:
     float, unit of the errors
         Not finite if one of the errors is not.
     """
-    squares = np.asarray(errors) ** 2
+    squares = _some("errors", errors) ** 2
+    if weights is not None:
+        weights = _weights(weights, squares)
     return float(np.sqrt(np.mean(squares) if weights is None else weights @ squares / weights.sum()))
 
 
 def worst(errors: ArrayLike) -> tuple[int, float]:
     """Index and signed value of the largest |error|; those of the first not-a-number if there is one."""
+    errors = _some("errors", errors)
     at = int(np.argmax(np.abs(errors)))
-    return at, float(np.asarray(errors)[at])
+    return at, float(errors[at])
 
 
 def curve_error(curve: ArrayLike, reference: ArrayLike) -> CurveError:
@@ -106,7 +118,9 @@ def curve_error(curve: ArrayLike, reference: ArrayLike) -> CurveError:
     -------
     CurveError
     """
-    curve, reference = np.asarray(curve, dtype=float), np.asarray(reference, dtype=float)
+    curve, reference = _some("curve", curve), _some("reference", reference)
+    if curve.ndim != 1 or curve.shape != reference.shape:
+        raise ValueError(f"curve of shape {curve.shape}, reference of shape {reference.shape}: must be (n,) both")
     at, off = worst(curve - reference)
     local, highest = off / reference[at], abs(off) / reference.max()
     return CurveError(at, float(local), float(highest), float((curve[-1] - reference[-1]) / reference[-1]))
@@ -121,7 +135,9 @@ def dispersion(curves: ArrayLike) -> float:
     ----------
     curves : (realisations, times) float array, degrees Celsius
     """
-    curves = np.asarray(curves, dtype=float)
+    curves = _some("curves", curves)
+    if curves.ndim != 2:
+        raise ValueError(f"curves of shape {curves.shape}: must be (realisations, times)")
     highest = curves.max(axis=0)
     return float(np.mean((highest - curves.min(axis=0)) / highest))
 
@@ -135,5 +151,23 @@ def variation(values: np.ndarray, weights: np.ndarray | None = None) -> float:
     weights : (n,) float array, optional
         Volumes; by default all weigh the same.
     """
+    values = _some("values", values)
+    if weights is not None:
+        weights = _weights(weights, values)
     mean = np.average(values, weights=weights)
     return float(np.sqrt(np.average((values - mean) ** 2, weights=weights)) / mean)
+
+
+def _some(name, values):
+    """Numbers as a float array that is not empty."""
+    array = reals(name, values, NUMBERS)
+    if array.size == 0 or array.ndim == 0:
+        raise ValueError(f"{name} of shape {array.shape}: must be an array with a number in it, at least")
+    return array
+
+
+def _weights(weights, values):
+    array = reals("weights", weights, "numbers >= 0")
+    if array.shape != values.shape or np.any(array < 0) or not array.sum() > 0:
+        raise ValueError(f"weights of shape {array.shape}: must be {values.shape} numbers >= 0, not all of them 0")
+    return array

@@ -11,12 +11,13 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.blocks import blocks
-from demheat.field import Field
+from demheat.field import Field, check_field
 from demheat.network.bins_kernels import bin_points
 from demheat.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 from demheat.scene.bodies import inside
+from demheat.scene.inputs import chosen, finite, flag, reals, vector
 
 # Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
 # and 1 to 8 for 1e5 points and radii of 2 to 15 mean radii; sides of a whole or a third of the radius cost up to twice.
@@ -127,12 +128,11 @@ def halo_flux(
     NotImplementedError
         For mirrors in round bodies.
     """
+    check_field(field)
     scene = field.scene
     radius = _halo_radius(field, ratio)
-    if walls not in WALLS:
-        raise ValueError(f"walls = {walls!r}: must be one of {', '.join(WALLS)}")
-    if not isinstance(same_phase, bool | np.bool_):
-        raise ValueError(f"same_phase = {same_phase!r}: must be True or False")
+    chosen("walls", walls, WALLS)
+    flag("same_phase", same_phase)
     if walls == "mirror" and ROUND_AXES[scene.domain]:
         raise NotImplementedError("walls = 'mirror': round walls do not mirror a lattice; use walls = 'clip'")
     at = None if at is None else _checked_at(at, scene)
@@ -208,8 +208,7 @@ def _with_values(cells, values):
 
 
 def _halo_radius(field, ratio):
-    if not (isinstance(ratio, int | float | np.number) and np.isfinite(ratio) and ratio > 0):
-        raise ValueError(f"ratio = {ratio!r}: must be a finite number > 0, the halo's radius in mean particle radii")
+    finite("ratio", ratio, "a finite number > 0, the halo's radius in mean particle radii", lambda v: v > 0)
     if "mean_radius" not in field.stats:
         raise ValueError("field: its stats have no mean_radius; halos need the field of a method of particles")
     return float(ratio * field.stats["mean_radius"])
@@ -228,8 +227,8 @@ def _checked_at(at, scene):
 
 
 def _checked_box(size, periodic):
-    size, flags = np.array(size, dtype=float), np.asarray(periodic)
-    if size.shape != (3,) or not np.all(np.isfinite(size)) or np.any(size <= 0):
+    size, flags = np.array(vector("size", size)), np.asarray(periodic)
+    if np.any(size <= 0):
         raise ValueError(f"size = {size.tolist()}: must be three finite lengths > 0 m")
     if flags.dtype != bool or flags.shape not in ((), (3,)):
         raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")
@@ -237,8 +236,7 @@ def _checked_box(size, periodic):
 
 
 def _checked_radius(radius, size, periodic):
-    if not (isinstance(radius, int | float | np.number) and np.isfinite(radius) and radius > 0):
-        raise ValueError(f"radius = {radius!r}: must be a finite length > 0 m")
+    finite("radius", radius, "a finite length > 0 m", lambda v: v > 0)
     if np.any(2 * radius > size[periodic]):
         raise ValueError(
             f"radius = {radius:g} m: a halo's diameter must be <= the periodic sides of the box, {size.tolist()} m"
@@ -247,7 +245,7 @@ def _checked_radius(radius, size, periodic):
 
 
 def _checked_points(name, points):
-    points = np.asarray(points, dtype=float)
+    points = reals(name, points, "(n, 3) finite coordinates in metres")
     points = points[None] if points.shape == (3,) else points
     if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
         raise ValueError(f"{name} of shape {points.shape}: must be (n, 3) finite coordinates in metres")
@@ -272,7 +270,8 @@ def _inside(points, size, periodic):
 
 
 def _checked_values(n, values, volumes):
-    values, volumes = np.asarray(values, dtype=float), np.asarray(volumes, dtype=float)
+    values = reals("values", values, f"({n},) or ({n}, d) finite numbers")
+    volumes = reals("volumes", volumes, f"{n} finite numbers >= 0, one per sample")
     if values.ndim not in (1, 2) or len(values) != n or not np.all(np.isfinite(values)):
         raise ValueError(f"values of shape {values.shape}: must be ({n},) or ({n}, d) finite numbers")
     if volumes.shape != (n,) or not np.all(np.isfinite(volumes)) or np.any(volumes < 0):

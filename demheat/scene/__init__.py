@@ -3,7 +3,7 @@
 from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.scene.material import Material
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
-from demheat.scene.scene import Scene
+from demheat.scene.scene import Scene, check_scene
 from demheat.scene.shapes import Layer, Shape, Sphere
 
 __all__ = [
@@ -17,6 +17,7 @@ __all__ = [
     "Shape",
     "Sphere",
     "UniformSource",
+    "check_scene",
     "domain_volume",
     "wall_names",
 ]

@@ -6,7 +6,9 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from demheat.scene.bodies import ROUND_AXES, check_name, wall_names
+from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius, wall_names
+from demheat.scene.crossing import touching
+from demheat.scene.frozen import ReadOnly
 from demheat.scene.inputs import finite, vector
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
 from demheat.scene.shapes import Shape
@@ -52,7 +54,7 @@ def checked_load(scene) -> dict[str, object]:
         return {"gradient": gradient}
     walls = {} if scene.walls is None else scene.walls
     _check_walls(walls, wall_names(scene.domain), or_none=transient)
-    return {"walls": dict(walls)}
+    return {"walls": ReadOnly(walls)}
 
 
 def _check_walls(walls, valid, *, or_none):
@@ -94,7 +96,27 @@ def check_geometry(scene) -> None:
             )
         if not scene.periodic and not shape.meets(scene.size):
             raise ValueError(f"Scene.inclusions[{number}]: {shape} lies outside the box {scene.size}")
+        if ROUND_AXES[scene.domain] and _beyond_round_wall(shape, scene):
+            raise ValueError(f"Scene.inclusions[{number}]: {shape} lies outside the {scene.domain} in {scene.size}")
     check_pairs(scene.inclusions, scene.size, periodic=scene.periodic)
+
+
+def check_reached(scene) -> None:
+    """Raise ValueError if a clipped source of a Scene never meets the body: it would heat nothing."""
+    for number, source in enumerate(scene.sources):
+        through = isinstance(source, MovingCylinder) and scene.domain in ("box", "cylinder-" + "xyz"[source.axis])
+        if through and source.clip:
+            between = touching(source, scene.size, scene.domain)
+            if between is None or between[1] < 0:
+                raise ValueError(
+                    f"Scene.sources[{number}] = {source}: after time 0 never meets the {scene.domain} of size "
+                    f"{scene.size} and heats nothing; must cross it, or be left out"
+                )
+
+
+def _beyond_round_wall(shape, scene):
+    center, radius = shape.ball()
+    return bool(from_middle(center, scene.domain, scene.size) >= round_radius(scene.domain, scene.size) + radius)
 
 
 def _check_reach(name, shape, size):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral, Real
 
 import numpy as np
@@ -26,13 +26,91 @@ def vector(name: str, value, *, length: int = 3) -> tuple[float, ...]:
     ValueError
         If the value is anything else.
     """
+    valid = f"{WORDS[length]} finite numbers"
+    array = reals(name, value, valid)
+    # Flags among numbers have become numbers there.
+    flags = isinstance(value, Sequence) and any(isinstance(part, bool | np.bool_) for part in value)
+    if flags or array.shape != (length,) or not np.all(np.isfinite(array)):
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return tuple(array.tolist())
+
+
+def reals(name: str, value, valid: str) -> np.ndarray:
+    """Real numbers as a float array of any shape: no text, flags, complex numbers or masks, which NumPy would cast.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : array_like
+        A float array is returned as it is.
+    valid : str
+        What would be valid, for the message.
+
+    Raises
+    ------
+    ValueError
+        If the value is anything else.
+    """
     try:
-        array = np.asarray(value, dtype=float)
+        array = np.asarray(value)
+        good = array.dtype.kind in "iuf" or (array.dtype.kind == "O" and all(map(_is_real, array.flat)))
+        array = np.asarray(array, dtype=float) if good and not np.ma.is_masked(value) else None
     except (TypeError, ValueError, OverflowError):
         array = None
-    if array is None or array.shape != (length,) or not np.all(np.isfinite(array)):
-        raise ValueError(f"{name} = {value!r}: must be {WORDS[length]} finite numbers")
-    return tuple(array.tolist())
+    if array is None:
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return array
+
+
+def whole(name: str, value, valid: str, accept: Callable[[int], bool] = lambda v: True) -> int:
+    """A whole number as an int.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : int
+        No flags, and no floats.
+    valid, accept
+        As those of `finite`.
+
+    Raises
+    ------
+    ValueError
+        If the value is anything else.
+    """
+    if isinstance(value, bool) or not isinstance(value, Integral) or not accept(value):
+        raise ValueError(f"{name} = {value!r}: must be {valid}")
+    return int(value)
+
+
+def chosen(name: str, value, valid: Iterable[str]) -> None:
+    """Raise ValueError unless a value is one of some words.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : str
+    valid : iterable of str
+    """
+    if not isinstance(value, str) or value not in valid:
+        raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
+
+
+def flag(name: str, value) -> bool:
+    """A flag as a bool, or a ValueError: numbers and text are none.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    value : bool
+    """
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} = {value!r}: must be True or False")
+    return bool(value)
 
 
 def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambda v: True) -> float:
@@ -43,7 +121,7 @@ def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambd
     name : str
         Of the argument, for the message.
     value : float
-        No strings, arrays or huge integers.
+        No strings, flags, arrays or huge integers.
     valid : str
         What would be valid, for the message.
     accept : callable (value) -> bool
@@ -55,7 +133,7 @@ def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambd
         If the value is anything else.
     """
     try:
-        good = isinstance(value, Real) and math.isfinite(value) and accept(value)
+        good = _is_real(value) and math.isfinite(value) and accept(value)
     except OverflowError:
         good = False
     if not good:
@@ -65,9 +143,7 @@ def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambd
 
 def axis_number(axis) -> int:
     """An axis as an int, or a ValueError."""
-    if isinstance(axis, bool) or not isinstance(axis, Integral) or axis not in (0, 1, 2):
-        raise ValueError(f"axis = {axis!r}: must be 0, 1 or 2")
-    return int(axis)
+    return whole("axis", axis, "0, 1 or 2", lambda v: 0 <= v <= 2)
 
 
 def number(owner, field: str, valid: str, accept: Callable[[float], bool] = lambda v: True) -> None:
@@ -83,3 +159,7 @@ def number(owner, field: str, valid: str, accept: Callable[[float], bool] = lamb
     """
     name = f"{type(owner).__name__}.{field}"
     object.__setattr__(owner, field, finite(name, getattr(owner, field), valid, accept))
+
+
+def _is_real(value):
+    return isinstance(value, Real) and not isinstance(value, bool)

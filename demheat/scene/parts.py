@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from numbers import Integral
 
 import numpy as np
 
-from demheat.scene.inputs import number, vector
+from demheat.scene.inputs import number, vector, whole
 
 
 @dataclass(frozen=True)
@@ -72,9 +71,8 @@ class MovingCylinder:
     clip: bool = False
 
     def __post_init__(self):
-        if not isinstance(self.axis, Integral) or self.axis not in (0, 1, 2):
-            raise ValueError(f"MovingCylinder.axis = {self.axis!r}: must be 0, 1 or 2")
-        object.__setattr__(self, "axis", int(self.axis))
+        axis = whole("MovingCylinder.axis", self.axis, "0, 1 or 2", lambda v: 0 <= v <= 2)
+        object.__setattr__(self, "axis", axis)
         number(self, "diameter", "a finite number > 0 m", lambda v: v > 0)
         number(self, "power_density", "a finite number > 0 W/m3", lambda v: v > 0)
         for name in ("start", "velocity"):

@@ -16,11 +16,13 @@ from demheat.scene.checks import (
     check_domain,
     check_geometry,
     check_initial,
+    check_reached,
     checked_inclusions,
     checked_load,
     checked_sources,
 )
-from demheat.scene.inputs import finite, vector
+from demheat.scene.functions import load_at
+from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
@@ -83,6 +85,7 @@ class Scene:
         object.__setattr__(self, "sources", checked_sources(self.sources))
         check_initial(self.initial)
         check_geometry(self)
+        check_reached(self)
 
     @property
     def periodic(self) -> bool:
@@ -178,8 +181,7 @@ class Scene:
             return self
         walls = {}
         for name, load in self.walls.items():
-            value = load.value if isinstance(load, Flux) else load
-            value = finite(f"Scene.walls[{name!r}] at {time} s", value(time), "finite") if callable(value) else value
+            value = load_at(name, load, time)
             walls[name] = Flux(value) if isinstance(load, Flux) else value
         return replace(self, walls=walls)
 
@@ -225,6 +227,19 @@ class Scene:
             (check_steady if steady else check_transient)(self)
         for found in refusals(self, walls=walls, domain=domain, shapes=shapes, nested=nested, pores=pores):
             raise NotImplementedError(f"{found}: {knows}")
+
+
+def check_scene(scene, name="scene") -> None:
+    """Raise ValueError unless a value is a Scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    name : str
+        Of the argument, for the message.
+    """
+    if not isinstance(scene, Scene):
+        raise ValueError(f"{name} = {scene!r}: must be a Scene")
 
 
 def _plain(load):

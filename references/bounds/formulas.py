@@ -288,7 +288,7 @@ def third_order(
     -------
     lower, upper : (...) float arrays, W/(m K)
     """
-    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2)
+    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2=zeta2)
     weighted = np.stack([1 - z2, z2], axis=-1)
     stacked = np.stack([k1, k2], axis=-1)
     return mixed(k1, k2, p2, 2 * reuss(stacked, weighted)), mixed(k1, k2, p2, 2 * voigt(stacked, weighted))
@@ -317,7 +317,7 @@ def torquato(k_matrix: ArrayLike, k_inclusion: ArrayLike, fraction: ArrayLike, z
     ValueError
         As for all functions here; and for zeta2 above 1/2, where the estimate lies above that bound.
     """
-    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2)
+    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2=zeta2)
     if np.any(z2 > 0.5):
         raise ValueError(f"zeta2 = {zeta2!r}: must be <= 1/2, beyond which the estimate passes the upper bound")
     beta = contrast(k1, k2, 2.0)
@@ -339,7 +339,7 @@ def zeta2_hard_spheres(fraction: ArrayLike) -> float | np.ndarray:
     -------
     (...) float array
     """
-    p = np.asarray(fraction, dtype=float)
+    p = checked_fraction("fraction", fraction)
     if not np.all((p >= 0) & (p <= 0.6)):
         raise ValueError(f"fraction = {fraction!r}: must lie in 0 to 0.6, where the fit was made")
     return (0.21068 * p - 0.04693 * p**2 + 0.00247 * p**3)[()]

@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.scene.inputs import reals
+
 # Fractions worked out by a method sum to 1 within this, by rounding of sums over millions of cells.
 SUM_TOLERANCE = 1e-8
 
@@ -25,39 +27,44 @@ def checked_phases(conductivities, fractions):
     -------
     tuple of two (..., phases) float arrays
     """
-    k, p = np.broadcast_arrays(
-        _conductivity("conductivities", conductivities), checked_fraction("fractions", fractions)
-    )
+    given = {"conductivities": _conductivity("conductivities", conductivities)}
+    k, p = _alike(given | {"fractions": checked_fraction("fractions", fractions)})
     if k.ndim == 0 or not np.all(np.abs(p.sum(axis=-1) - 1) <= SUM_TOLERANCE):
         raise ValueError(f"fractions = {fractions!r}: must sum to 1 along the last axis, that of the phases")
     return k, p
 
 
-def checked_pair(k_matrix, k_inclusion, fraction, zeta2=None):
+def checked_pair(k_matrix, k_inclusion, fraction, **more):
     """Arguments of a two-phase function as arrays, or ValueError.
 
     Parameters
     ----------
     k_matrix, k_inclusion : (...) array-like, W/(m K)
     fraction : (...) array-like
-    zeta2 : (...) array-like, optional
+    **more : (...) array-like
+        Other parts of 0 to 1, by their names: zeta2.
 
     Returns
     -------
     tuple of three or four (...) float arrays
     """
-    arrays = [
-        _conductivity("k_matrix", k_matrix),
-        _conductivity("k_inclusion", k_inclusion),
-        checked_fraction("fraction", fraction),
-    ]
-    if zeta2 is not None:
-        arrays.append(checked_fraction("zeta2", zeta2))
-    return np.broadcast_arrays(*arrays)
+    given = {name: _conductivity(name, k) for name, k in (("k_matrix", k_matrix), ("k_inclusion", k_inclusion))}
+    given["fraction"] = checked_fraction("fraction", fraction)
+    given |= {name: checked_fraction(name, value) for name, value in more.items()}
+    return _alike(given)
+
+
+def _alike(given):
+    """Arrays by their names, broadcast, or ValueError."""
+    try:
+        return np.broadcast_arrays(*given.values())
+    except ValueError:
+        shapes = ", ".join(f"{name} {array.shape}" for name, array in given.items())
+        raise ValueError(f"arguments of shapes {shapes}: must be alike, or broadcast") from None
 
 
 def _conductivity(name, value):
-    array = np.asarray(value, dtype=float)
+    array = reals(name, value, "numbers >= 0, infinity included")
     if not np.all(array >= 0):
         raise ValueError(f"{name} = {value!r}: must be >= 0, infinity included")
     return array
@@ -76,7 +83,7 @@ def checked_fraction(name, value):
     -------
     (...) float array
     """
-    array = np.asarray(value, dtype=float)
+    array = reals(name, value, "numbers from 0 to 1")
     if not np.all((array >= 0) & (array <= 1)):
         raise ValueError(f"{name} = {value!r}: must lie in 0 to 1")
     return array
@@ -95,7 +102,7 @@ def checked_positive(name, value):
     -------
     (...) float array
     """
-    array = np.asarray(value, dtype=float)
+    array = reals(name, value, "finite numbers > 0")
     if not np.all((array > 0) & np.isfinite(array)):
         raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
     return array

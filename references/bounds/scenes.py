@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from demheat.scene import Scene, Sphere
+from demheat.scene import Scene, Sphere, check_scene
+from demheat.scene.inputs import chosen
 from references.bounds.formulas import bruggeman, bruggeman_differential, maxwell, rayleigh
 from references.exact.solver import fractions
 
@@ -34,8 +35,8 @@ def estimate(scene: Scene, *, formula: str = "maxwell") -> float:
     NotImplementedError
         For other shapes, unlike spheres, and spheres that a wall cuts.
     """
-    if formula not in FORMULAS:
-        raise ValueError(f"formula = {formula!r}: must be one of {', '.join(FORMULAS)}")
+    chosen("formula", formula, FORMULAS)
+    check_scene(scene)
     scene.require("bounds: formulas are of spheres in a matrix", shapes=(Sphere,))
     found = {inclusion.material.conductivity for inclusion in scene.inclusions}
     if len(found) > 1:

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource
+from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource, check_scene
 from references.exact.responses import CROSSOVER, response, sphere_response
 from references.midpoints import check_points_per_axis
 from references.times import checked_times
@@ -94,6 +94,7 @@ def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -
     NotImplementedError
         If the scene has no series here.
     """
+    check_scene(scene)
     scene.require(steady=False)
     times = checked_times(times)
     check_points_per_axis(points_per_axis)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
 from references.midpoints import check_points_per_axis, midpoints
 
@@ -40,6 +40,7 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     NotImplementedError
         If the scene has no closed form here.
     """
+    check_scene(scene)
     check_points_per_axis(points_per_axis)
     scene.require(steady=True)
     closed = laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)

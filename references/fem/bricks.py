@@ -12,6 +12,7 @@ from scipy.sparse import dia_matrix
 
 from demheat.field import Samples
 from demheat.scene import WALLS, Layer, Scene
+from demheat.scene.inputs import finite
 from references.fem.separable import MASS, STIFFNESS, separable
 from references.fem.space import Space, WallNodes, capacities
 
@@ -198,8 +199,7 @@ def checked_size(scene, size) -> float:
     """
     if size is None:
         return scene.volume ** (1 / 3) / EDGES
-    if isinstance(size, bool) or not isinstance(size, int | float) or not (math.isfinite(size) and size > 0):
-        raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
+    finite("size", size, "a finite number > 0 m", lambda v: v > 0)
     if math.prod(math.ceil(length / size * (1 - SAME)) for length in scene.size) > MOST_CELLS:
         least = (scene.volume / MOST_CELLS) ** (1 / 3)
         raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} bricks; must be >= about {least:.3g} m")

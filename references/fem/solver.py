@@ -5,7 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
+from demheat.scene.inputs import finite
 from references.fem.lookup import NodalField
 from references.fem.system import solve_nodes
 from references.mesh import make
@@ -50,8 +51,8 @@ def solve(
     ImportError
         If gmsh or a system library that it needs is missing.
     """
-    if not (isinstance(tolerance, float | int) and 0 < tolerance < 1):
-        raise ValueError(f"tolerance = {tolerance!r}: must be a number between 0 and 1")
+    check_scene(scene)
+    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
     solved = solve_nodes(scene, mesh, tolerance)

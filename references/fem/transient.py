@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import math
 import time as clock
 from collections.abc import Iterator, Sequence
-from numbers import Real
 
 import numpy as np
 
 from demheat.field import Field
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
+from demheat.scene.functions import initial_at
+from demheat.scene.inputs import chosen, finite, whole
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
@@ -80,14 +80,14 @@ def evolve(
     RuntimeError
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
     """
+    check_scene(scene)
     scene.require("heat would not move in pores; transients do without", steady=False, pores=False)
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
-        if not (_number(value) and 0 < value < 1):
-            raise ValueError(f"{name} = {value!r}: must be a number between 0 and 1")
-    if step is not None and not (_number(step) and step > 0):
-        raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
+        finite(name, value, "a number between 0 and 1", lambda v: 0 < v < 1)
+    if step is not None:
+        finite("step", step, "a finite number > 0 s", lambda v: v > 0)
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
@@ -96,7 +96,7 @@ def evolve(
 
 def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
     space = _space(scene, elements, order, size)
-    initial = _initial(scene, space.points)
+    initial = initial_at(scene, space.points)
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
@@ -153,29 +153,9 @@ def _space(scene, elements, order, size):
     return tetrahedra(scene, mesh)
 
 
-def _initial(scene, points):
-    """Temperature of the nodes at time 0."""
-    if not callable(scene.initial):
-        return np.full(len(points), float(scene.initial))
-    initial = np.asarray(scene.initial(points), dtype=float)
-    if initial.shape != (len(points),) or not np.all(np.isfinite(initial)):
-        raise ValueError(
-            f"Scene.initial: gave values of shape {initial.shape} for points of shape {points.shape}; must be "
-            f"{(len(points),)}, all finite"
-        )
-    return initial
-
-
-def _number(value):
-    return isinstance(value, Real) and not isinstance(value, bool) and math.isfinite(value)
-
-
 def _checked_order(order, elements):
-    if elements not in ("tetrahedra", "hexahedra"):
-        raise ValueError(f"elements = {elements!r}: must be 'tetrahedra' or 'hexahedra'")
+    chosen("elements", elements, ("tetrahedra", "hexahedra"))
     valid = (1, 2) if elements == "tetrahedra" else (1,)
     if order is None:
         return valid[-1]
-    if order not in valid:
-        raise ValueError(f"order = {order!r}: must be {' or '.join(map(str, valid))} with {elements}")
-    return order
+    return whole("order", order, f"{' or '.join(map(str, valid))} with {elements}", lambda v: v in valid)

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache
-from numbers import Integral, Real
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.field import Field
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
+from demheat.scene.inputs import chosen, finite, whole
+from demheat.scene.thickness import coats, extents
 from references.fft import cg, eyre_milton
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
@@ -92,6 +94,11 @@ def solve(
         If the load is another, or the scheme or rule cannot do with a zero conductivity that leaves heat a way.
     RuntimeError
         If the iteration does not converge.
+
+    Warns
+    -----
+    UserWarning
+        If an inclusion or its coat is so thin that voxels cannot hold it.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations)
     threads = thread_count(threads)
@@ -102,6 +109,8 @@ def solve(
     if rule == "auto":
         knobs = knobs._replace(rule=_automatic(scheme, scene))
     _check_grid(box, knobs.rule, shape)
+    if scene.inclusions:
+        _warn_of_thin(box, shape, knobs.rule)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(box, shape, laminate=knobs.rule != "plain")
     slope, level = _linear_part(box)
@@ -145,24 +154,37 @@ class _Units(NamedTuple):
 
 
 def _checked(scheme, rule, precision, tolerance, max_iterations):
-    if scheme not in RULES:
-        raise ValueError(f"scheme = {scheme!r}: must be one of {', '.join(RULES)}")
-    if rule not in RULES[scheme]:
+    chosen("scheme", scheme, RULES)
+    if not isinstance(rule, str) or rule not in RULES[scheme]:
         raise ValueError(f"rule = {rule!r}: must be one of {', '.join(RULES[scheme])} for scheme {scheme!r}")
-    if precision not in PRECISIONS:
-        raise ValueError(f"precision = {precision!r}: must be one of {', '.join(PRECISIONS)}")
+    chosen("precision", precision, PRECISIONS)
     least = float(np.finfo(PRECISIONS[precision]).eps)
-    if tolerance is not None and not (isinstance(tolerance, Real) and least <= tolerance < 1):
-        raise ValueError(
-            f"tolerance = {tolerance!r}: must be a number from {least:.2g}, the rounding of {precision}, to below 1"
-        )
-    if not isinstance(max_iterations, Integral) or isinstance(max_iterations, bool) or max_iterations < 1:
-        raise ValueError(f"max_iterations = {max_iterations!r}: must be a whole number >= 1")
+    if tolerance is not None:
+        valid = f"a number from {least:.2g}, the rounding of {precision}, to below 1"
+        finite("tolerance", tolerance, valid, lambda v: least <= v < 1)
+    whole("max_iterations", max_iterations, "a whole number >= 1", lambda v: v >= 1)
     tolerance = TOLERANCES[scheme] if tolerance is None else tolerance
     return _Knobs(scheme, rule, precision, tolerance, max_iterations)
 
 
+def _warn_of_thin(scene, shape, rule):
+    """Two interfaces in one voxel are more than it can hold, but for layers where voxels hold laminates."""
+    voxel = float(np.max(np.array(scene.size) / shape))
+    thickness = coats(scene)
+    if rule == "plain":
+        thickness = np.minimum(thickness, extents(scene))
+    thin = np.flatnonzero(thickness < voxel)
+    if len(thin):
+        warnings.warn(
+            f"inclusions {thin[:8].tolist()}{' and more' if len(thin) > 8 else ''}, or their coats, are thinner than a "
+            f"voxel of {voxel:.3g} m (the thinnest is {thickness[thin].min():.3g} m): errors may be percents; use more "
+            "voxels",
+            stacklevel=3,
+        )
+
+
 def _check_load(scene):
+    check_scene(scene)
     scene.require(
         "fft.solve knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
         "homogeneous problem is inverted by sines and cosines here",

@@ -20,7 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Material, Scene
+from demheat.scene import Material, Scene, check_scene
+from demheat.scene.inputs import flag
 from references.fft.transforms import fourier
 from references.threads import thread_count
 from references.voxels.paint import Voxels, grid_shape, voxelise
@@ -105,6 +106,8 @@ def zeta2(
     NotImplementedError
         For a box with walls.
     """
+    check_scene(scene)
+    flag("extrapolate", extrapolate)
     threads = thread_count(threads)
     cell = _two_phases(scene)
     shapes = _shapes(scene, voxels, extrapolate)

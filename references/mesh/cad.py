@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import WALLS, Layer, Shape, Sphere
+from demheat.scene import WALLS, Layer, Shape, Sphere, check_scene
+from demheat.scene.inputs import flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
@@ -52,6 +53,8 @@ def make(scene, *, size=None, order=2, curved=True):
     ImportError
         If gmsh or a system library that it needs is missing; the message lists the packages.
     """
+    check_scene(scene)
+    flag("curved", curved)
     scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
     size = checked_size(scene, size, order)
     wanted = wanted_sizes(scene, size)

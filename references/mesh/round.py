@@ -6,6 +6,7 @@ from itertools import combinations
 
 import numpy as np
 
+from demheat.scene import check_scene
 from references.mesh.cells import EDGE_COLUMN, Mesh, Wall, bent, snap, straighten, volumes_of
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, session, tetrahedra
 from references.mesh.sizes import CELLS, checked_size
@@ -42,6 +43,7 @@ def make_round(scene, *, size, order):
     ImportError
         If gmsh or a system library that it needs is missing.
     """
+    check_scene(scene)
     scene.require("only boxes can have them here", shapes=())
     size = checked_size(scene, size, order)
 

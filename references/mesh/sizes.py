@@ -10,6 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.scene.inputs import finite, whole
+
 # How much longer edges may be one metre farther from a feature, in metres.
 GROWTH = 0.3
 # Numbers at the head of a `table`.
@@ -77,17 +79,11 @@ def checked_size(scene, size, order):
     ValueError
         If the order or the size is not as described, or asks for more than 3e7 elements.
     """
-    if order not in (1, 2):
-        raise ValueError(f"order = {order!r}: must be 1 or 2")
+    whole("order", order, "1 or 2", lambda v: v in (1, 2))
     if size is None:
         bounded = sum(shape.bounded for shape in scene.inclusions)
         return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
-    try:
-        good = math.isfinite(size) and size > 0
-    except TypeError:
-        good = False
-    if not good:
-        raise ValueError(f"size = {size!r}: must be a finite number > 0 m")
+    finite("size", size, "a finite number > 0 m", lambda v: v > 0)
     least = (CELLS * math.prod(scene.size) / MOST_CELLS) ** (1 / 3)
     if size < least:
         raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} tetrahedra; must be >= {least:.3g} m")

@@ -15,7 +15,8 @@ import math
 import numpy as np
 
 from demheat.field import Field, Samples
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
+from demheat.scene.inputs import finite, whole
 from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.at_rest import at_rest
@@ -70,6 +71,7 @@ def solve(
         If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
+    check_scene(scene)
     scene.require(steady=True)
     arrangement = arrange(scene, any_matrix=True)
     if scene.matrix.conductivity == 0:
@@ -138,8 +140,6 @@ def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
         if name == "tolerance" and value is None:
             continue
-        if not (isinstance(value, int | float) and 1e-14 <= value < 1):
-            raise ValueError(f"{name} = {value!r}: must be a number from 1e-14 to below 1")
+        finite(name, value, "a number from 1e-14 to below 1", lambda v: 1e-14 <= v < 1)
     check_points_per_axis(points_per_axis)
-    if not isinstance(threads, int | np.integer) or isinstance(threads, bool) or threads < 1:
-        raise ValueError(f"threads = {threads!r}: must be an integer >= 1")
+    whole("threads", threads, "an integer >= 1", lambda v: v >= 1)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from demheat.scene import Scene
+from demheat.scene import Scene, check_scene
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.fast import FastMultipole, plan
 from references.multipole.sums import entries
@@ -51,6 +51,7 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
     RuntimeError
         If the order that the gaps and radii ask for is too high.
     """
+    check_scene(scene)
     if not scene.periodic:
         raise NotImplementedError("multipole: walls; zeta_2 is that of a periodic cell")
     spheres, _, _, unit = arrange(scene, any_matrix=True)

@@ -114,6 +114,8 @@ def grid_shape(scene: Scene, voxels) -> tuple[int, int, int]:
         counts = np.array(voxels if np.ndim(voxels) else [voxels])
     except ValueError:
         raise ValueError(message) from None
+    if np.ndim(voxels) and any(isinstance(count, bool) for count in voxels):
+        raise ValueError(message)
     if counts.dtype.kind not in "iu" or counts.shape not in ((1,), (3,)) or counts.min() < 1:
         raise ValueError(message)
     if len(counts) == 1:

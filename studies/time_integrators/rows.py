@@ -19,6 +19,7 @@ from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 from demheat.scene import Material, Scene
+from demheat.scene.functions import initial_at
 from studies.common.slab import packing_of, slab
 from studies.harness.cost import measured, triad_gbs
 from studies.harness.provenance import threads
@@ -50,7 +51,7 @@ def system_of(body, particles):
         scene = Scene(size=(0.1,) * 3, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
         packing = relaxed(particles, size=scene.size, periodic=False, domain="sphere", seed=0)
     network = network_of(scene, packing, Laguerre())
-    start = transient.initial_temperature(scene, network.centers)
+    start = initial_at(scene, network.centers)
     return semi_discrete(network, scene, transient.capacities(network, scene), level=float(start.mean())), start
 
 

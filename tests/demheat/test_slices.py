@@ -95,7 +95,7 @@ def test_outside_is_not_a_number_and_another_flux_may_stand_in():
     [
         ({"axis": 3, "at": 0.05}, "axis = 3: must be 0, 1 or 2"),
         ({"axis": True, "at": 0.05}, "axis = True"),
-        ({"axis": 0, "at": 0.11}, "at = 0.11: must lie between 0 and 0.1 m"),
+        ({"axis": 0, "at": 0.11}, "at = 0.11: must be between 0 and 0.1 m"),
         ({"axis": 0, "at": float("nan")}, "at = nan"),
         ({"axis": 0, "at": "middle"}, "at = 'middle'"),
         ({"axis": 0, "at": 0.05, "n": 0}, "n = 0: must be an integer >= 1"),

@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from numbers import Real
 from typing import NamedTuple
 
 import numpy as np
@@ -12,6 +11,7 @@ from demheat.conduction.integrators.pace import ANY, Pace
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
 from demheat.network.base import SIDES
+from demheat.scene.inputs import chosen, finite, reals
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 # An implicit solve may leave an error of this part of the accuracy asked for. What solves leave adds up over the steps,
@@ -81,26 +81,20 @@ def check_request(times, integrator, accuracy, step):
     array = _numbers(times)
     if array is None or not np.all(np.isfinite(array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
         raise ValueError(f"times = {times!r}: must be a sequence of numbers, finite, >= 0 s and increasing")
-    if integrator not in choose.INTEGRATORS:
-        raise ValueError(f"integrator = {integrator!r}: must be one of {', '.join(choose.INTEGRATORS)}")
-    if not (_real(accuracy) and 1e-9 <= accuracy <= 0.1):
-        raise ValueError(f"accuracy = {accuracy!r}: must lie between 1e-9 and 0.1 of the temperature span")
-    if step is not None and not (_real(step) and math.isfinite(step) and step > 0):
-        raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
+    chosen("integrator", integrator, choose.INTEGRATORS)
+    finite("accuracy", accuracy, "between 1e-9 and 0.1 of the temperature span", lambda v: 1e-9 <= v <= 0.1)
+    if step is not None:
+        finite("step", step, "a finite number > 0 s", lambda v: v > 0)
     return array
 
 
 def _numbers(values):
     """A sequence of numbers as a (k,) float array; None if it is anything else, or empty."""
     try:
-        array = np.asarray(values)
+        array = reals("times", values, "numbers")
     except ValueError:
         return None
-    return array.astype(float) if array.ndim == 1 and len(array) and array.dtype.kind in "iuf" else None
-
-
-def _real(value):
-    return isinstance(value, Real) and not isinstance(value, bool)
+    return array.copy() if array.ndim == 1 and len(array) else None
 
 
 def integrate(

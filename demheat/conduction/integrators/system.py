@@ -14,8 +14,8 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.network.base import SIDES, row_numbers
 from demheat.network.links_kernels import Links
-from demheat.scene import ROUND_AXES, Flux
-from demheat.scene.inputs import finite
+from demheat.scene import ROUND_AXES
+from demheat.scene.functions import load_at
 
 # Columns of every account of heat: one per side, then the sources.
 ACCOUNTS = len(SIDES) + 1
@@ -190,32 +190,6 @@ def _ties(links, side_of):
     ties = np.flatnonzero(side_of[links.indices] >= 0)
     node = links.indices[ties].astype(np.int64)
     return kernels.Ties(row_numbers(links.indptr)[ties], node, links.conductance[ties], side_of[node])
-
-
-def load_at(name, load, time):
-    """Value of a wall's load.
-
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    load : float, Flux or callable (time, s) -> float
-        Temperature, K, or flux density, W/m2.
-    time : float, s
-
-    Returns
-    -------
-    float, K or W/m2
-
-    Raises
-    ------
-    ValueError
-        If a function gives no finite number.
-    """
-    value = load.value if isinstance(load, Flux) else load
-    if not callable(value):
-        return float(value)
-    return finite(f"Scene.walls[{name!r}] at {time} s", value(time), "a finite number")
 
 
 def _held_at(scene, sides, level):

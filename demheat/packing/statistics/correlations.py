@@ -12,11 +12,13 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.blocks import blocks
 from demheat.packing.base import Packing
 from demheat.packing.cells_kernels import Reach
+from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import build_grid, wrapped
 from demheat.packing.statistics import correlations_kernels as kernels
 from demheat.packing.statistics.regions import core_volume, inscribed_box, spheres_in_box
 from demheat.packing.walls import check_margin, wall_distances
 from demheat.progress import stage
+from demheat.scene.inputs import finite, flag, reals, whole
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.
 ALONG = ((1, 0, 0), (0, 1, 0), (0, 0, 1), (1, 1, 1), (-1, 1, 1), (1, -1, 1), (1, 1, -1))
@@ -108,7 +110,9 @@ def radial_distribution(
     ValueError
         If an argument is not as described, there is one particle only, or walls leave no origin.
     """
+    check_packing(packing)
     _check_count("bins", bins, 1)
+    flag("scaled", scaled)
     if packing.number < 2:
         raise ValueError(f"packing of {packing.number} particle: must have at least 2")
     radii = packing.radii
@@ -182,6 +186,7 @@ def two_point(
     ValueError
         If an argument is not as described, or a period is shorter than twice the largest diameter.
     """
+    check_packing(packing)
     mean = 2 * float(np.mean(packing.radii))
     depth = check_margin(packing, margin)
     along = _unit_directions(along)
@@ -241,10 +246,7 @@ def _mean_cubed_sums(radii):
 
 def _unit_directions(along):
     """Cast directions to unit vectors, (k, 3) float array."""
-    try:
-        vectors = np.array(along, dtype=float)
-    except (TypeError, ValueError):
-        vectors = np.empty(0)
+    vectors = reals("along", along, "a (k, 3) list of finite directions")
     if vectors.ndim != 2 or vectors.shape[1] != 3 or not len(vectors) or not np.all(np.isfinite(vectors)):
         raise ValueError(f"along = {along!r}: must be a (k, 3) list of finite directions")
     lengths = np.linalg.norm(vectors, axis=1)
@@ -254,20 +256,14 @@ def _unit_directions(along):
 
 
 def _check_count(name, value, least):
-    if not isinstance(value, int | np.integer) or isinstance(value, bool) or value < least:
-        raise ValueError(f"{name} = {value!r}: must be an integer >= {least}")
+    whole(name, value, f"an integer >= {least}", lambda v: v >= least)
 
 
 def _check_r_max(packing, r_max, unit):
     """Raise ValueError unless r_max is > 0 and, in metres, at most half of each period."""
-    try:
-        good = math.isfinite(r_max) and r_max > 0
-    except TypeError:
-        good = False
     largest = float(np.min(np.where(packing.periodic, packing.size, np.inf))) / 2 / unit
-    if not good or r_max > largest:
-        limit = f" and <= {largest:.6g}, half of the shortest period" if math.isfinite(largest) else ""
-        raise ValueError(f"r_max = {r_max!r}: must be a finite number > 0{limit}")
+    limit = f" and <= {largest:.6g}, half of the shortest period" if math.isfinite(largest) else ""
+    finite("r_max", r_max, f"a finite number > 0{limit}", lambda v: 0 < v <= largest)
 
 
 def _check_lines(packing, along, sides, r_max, mean):

@@ -10,9 +10,11 @@ from scipy.sparse.csgraph import connected_components
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing.base import Packing
+from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import as_graph
 from demheat.packing.statistics import links_kernels as kernels
 from demheat.packing.walls import bulk, outward, wall_distance, walls
+from demheat.scene.inputs import chosen, finite
 
 
 class Coordination(NamedTuple):
@@ -173,10 +175,8 @@ def backbone(
         If the rows are not as described, two linked centres coincide, gap is not > -1, or rule is unknown.
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
-    if not (math.isfinite(gap) and gap > -1):
-        raise ValueError(f"gap = {gap!r}: must be a finite part of the radius > -1")
-    if rule not in ("count", "half-space"):
-        raise ValueError(f"rule = {rule!r}: must be 'count' or 'half-space'")
+    finite("gap", gap, "a finite part of the radius > -1", lambda v: v > -1)
+    chosen("rule", rule, ("count", "half-space"))
     vectors = _unit_vectors(packing, indptr, indices)
     touching = kernels.Contacts(indptr, indices, vectors, *_wall_contacts(packing, gap))
     held, before, rounds = np.ones(packing.number, dtype=bool), packing.number + 1, 0
@@ -260,6 +260,7 @@ def directions(
 
 def _checked_rows(packing, indptr, indices):
     """Cast compressed rows, or raise ValueError unless they list each pair of distinct particles twice, ascending."""
+    check_packing(packing)
     indptr, indices, n = np.asarray(indptr), np.asarray(indices), packing.number
     if indptr.shape != (n + 1,) or indptr.dtype.kind not in "iu" or indptr[0] != 0 or np.any(indptr[1:] < indptr[:-1]):
         raise ValueError(f"indptr of shape {indptr.shape}: must be {n + 1} integers that rise from 0")

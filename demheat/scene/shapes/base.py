@@ -14,6 +14,9 @@ from demheat.scene.material import Material
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
+# What a class derived from a finished shape must leave as it is.
+GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
+GEOMETRY |= {"images", "point_in", "volume_in", "fills_bounds", "fills_ball"}
 
 
 class Shape(ABC):
@@ -43,6 +46,18 @@ class Shape(ABC):
     fills_bounds = False
     # Whether it is all of its `ball`: balls are looked at all at once.
     fills_ball = False
+
+    def __init_subclass__(cls, **knobs):
+        """Refuse a class that changes the geometry of a finished shape: what knows that by its type would not ask."""
+        super().__init_subclass__(**knobs)
+        for base in cls.__mro__[1:]:
+            finished = issubclass(base, Shape) and base is not Shape and not base.__abstractmethods__
+            changed = sorted(GEOMETRY & vars(cls).keys()) if finished else []
+            if changed:
+                raise TypeError(
+                    f"class {cls.__name__} changes {', '.join(changed)} of {base.__name__}, which methods know by its "
+                    "type: must derive from Shape instead"
+                )
 
     @abstractmethod
     def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:

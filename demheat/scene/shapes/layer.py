@@ -5,11 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from numbers import Integral
 
 import numpy as np
 
-from demheat.scene.inputs import number
+from demheat.scene.inputs import number, whole
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import TOUCH, Shape
 
@@ -33,9 +32,7 @@ class Layer(Shape):
     fills_bounds = True
 
     def __post_init__(self):
-        if not isinstance(self.axis, Integral) or self.axis not in (0, 1, 2):
-            raise ValueError(f"Layer.axis = {self.axis!r}: must be 0, 1 or 2")
-        object.__setattr__(self, "axis", int(self.axis))
+        object.__setattr__(self, "axis", whole("Layer.axis", self.axis, "0, 1 or 2", lambda v: 0 <= v <= 2))
         number(self, "start", "a finite number of metres")
         number(self, "stop", f"a finite number > start = {self.start}", lambda v: v > self.start)
         check_material("Layer.material", self.material)

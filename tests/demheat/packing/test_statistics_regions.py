@@ -7,7 +7,8 @@ from numpy.testing import assert_allclose
 
 from demheat.packing.statistics import packing_fraction
 from demheat.packing.statistics.regions import _lens_areas, _spheres_in_cylinder, spheres_in_box
-from demheat.packing.walls import wall_distances
+from demheat.packing.walls import walls
+from demheat.scene.bodies import nearest_wall
 
 
 def test_spheres_are_cut_exactly():
@@ -65,7 +66,7 @@ def test_fraction_of_round_cores(domain):
     margin = 0.1 / packing.radii.mean()
     m = 100
     at = (np.indices((m, m, m)).reshape(3, -1).T + 0.5) / m
-    depth = wall_distances(packing._replace(centers=at))
+    depth = nearest_wall(at, walls(packing), domain, packing.size)
     at, found = at[depth >= 0.1], 0.0
     for c, r in zip(packing.centers, packing.radii, strict=True):
         found += np.count_nonzero(((at - c) ** 2).sum(axis=1) < r * r)

@@ -33,8 +33,9 @@ def test_bulk():
     assert_array_equal(deep, wall_distances(packing) >= 2.0 * packing.radii.mean())
     assert 0 < deep.sum() < 300
     # Rounding may put a centre that touches the wall beyond it; without a margin it counts all the same.
-    beyond = packing._replace(size=packing.size - 0.05)
-    assert np.any(wall_distances(beyond) < 0) and bulk(beyond, 0.0).all() and not bulk(beyond, 1e-9).all()
+    farthest = 0.5 - wall_distances(packing).min()
+    beyond = packing._replace(centers=0.5 + (packing.centers - 0.5) * (0.5 + 1e-10) / farthest)
+    assert np.any(wall_distances(beyond) < 0) and bulk(beyond, 0.0).all() and not bulk(beyond, 1e-12).all()
     assert bulk(random_packing(1, 50), 1e9).all()  # a periodic packing is bulk throughout
 
 
@@ -46,6 +47,6 @@ def test_margins_are_checked():
             check_margin(packing, margin)
     with pytest.raises(ValueError, match="depth = 5.0: must be < 5 mean radii"):
         check_margin(packing, 5.0, "depth")
-    lone = packing._replace(centers=packing.centers - [0.3, 0, 0])
+    lone = packing._replace(centers=packing.centers * [0.4, 1, 1])
     with pytest.raises(ValueError, match="margin = 4.5: no particle is that many mean radii away"):
         bulk(lone, 4.5)

@@ -95,9 +95,9 @@ def test_units_are_of_one_error(reference):
         found = referee.temperature_error(wrong, reference, unit=unit)
         assert_allclose([found.rms, found.max], [kelvin.rms / scale, 3 / scale], rtol=1e-12)
     assert_allclose(referee.flux_error(wrong, reference, unit="%").max, 20.0, rtol=1e-12)
-    with pytest.raises(ValueError, match="unit = 'C': must be one of 'span', '%', 'K'"):
+    with pytest.raises(ValueError, match="unit = 'C': must be one of span, %, K"):
         referee.temperature_error(wrong, reference, unit="C")
-    with pytest.raises(ValueError, match="unit = 'K': must be one of 'mean', '%'"):
+    with pytest.raises(ValueError, match="unit = 'K': must be one of mean, %"):
         referee.flux_error(wrong, reference, unit="K")
 
 
@@ -106,7 +106,7 @@ def test_values_at_hand_stand_in_for_the_fields_own(reference):
     assert_allclose(found.values, 0.1, rtol=1e-12)
     sideways = exact_flux(POINTS) + [0.0, 0.0, 15.0]
     assert_allclose(referee.flux_error(reference, reference, values=sideways).values, 0.5, rtol=1e-12)
-    with pytest.raises(ValueError, match="values of length 2: must be one for each of 3 points"):
+    with pytest.raises(ValueError, match=r"values of shape \(2,\): must be one for each of 3 points"):
         referee.temperature_error(reference, reference, POINTS, values=np.zeros(2))
 
 

@@ -277,7 +277,7 @@ def test_what_is_not_known_is_refused():
 
 
 def test_an_initial_temperature_of_wrong_shape_is_named():
-    with pytest.raises(ValueError, match=r"Scene.initial: gave values of shape \(3,\)"):
+    with pytest.raises(ValueError, match=r"Scene.initial: gives shape \(3,\)"):
         last(cube(initial=lambda x: np.zeros(3)), [1.0], elements="hexahedra", size=0.5)
 
 

@@ -14,8 +14,9 @@ from demheat.conduction.integrators.march import linear_tolerance
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.conduction.integrators.transient_kernels import Ties
-from demheat.conduction.transient import capacities, initial_temperature
+from demheat.conduction.transient import capacities
 from demheat.network.links_kernels import Links
+from demheat.scene.functions import initial_at
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 END = 1.0
@@ -42,7 +43,7 @@ def swinging():
     """Walls, a flux and sources that all change in time, on a small Laguerre network; the state to start from."""
     network = network_of("laguerre", SOURCED)
     system = semi_discrete(network, SWINGING, capacities(network, SWINGING), power=power, level=4.0)
-    return system, initial_temperature(SWINGING, network.centers)
+    return system, initial_at(SWINGING, network.centers)
 
 
 @cache

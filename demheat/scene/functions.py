@@ -1,0 +1,66 @@
+"""Functions that users give in a scene, called in one place: with copies, and errors that say where they arose."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.scene.inputs import finite
+from demheat.scene.parts import Flux
+
+
+def load_at(name, load, time) -> float:
+    """Value of a wall's load at a time, K or W/m2.
+
+    Parameters
+    ----------
+    name : str
+        Of the wall.
+    load : float, Flux or callable (time, s) -> float
+        Temperature, K, or flux density, W/m2.
+    time : float, s
+
+    Raises
+    ------
+    ValueError
+        If a function fails, or gives no finite number.
+    """
+    value = load.value if isinstance(load, Flux) else load
+    if not callable(value):
+        return float(value)
+    what = f"Scene.walls[{name!r}] at {time} s"
+    try:
+        found = value(time)
+    except Exception as error:
+        raise ValueError(f"{what}: the function raises {type(error).__name__}: {error}") from error
+    return finite(what, found, "a finite number")
+
+
+def initial_at(scene, points) -> np.ndarray:
+    """Temperature of a scene at time 0, (n,) float array, K.
+
+    Parameters
+    ----------
+    scene : Scene
+    points : (n, 3) float array, m
+        A function gets a copy: it may do with it as it likes.
+
+    Raises
+    ------
+    ValueError
+        If a function fails, or gives anything but a finite number for each point.
+    """
+    if not callable(scene.initial):
+        return np.full(len(points), float(scene.initial))
+    try:
+        values = np.array(scene.initial(np.array(points, dtype=float)))
+    except Exception as error:
+        what = f"{type(error).__name__}: {error}"
+        raise ValueError(f"Scene.initial: the function raises {what} for {len(points)} points (n, 3)") from error
+    if values.shape != (len(points),) or values.dtype.kind not in "iuf":
+        what = f"shape {values.shape} of {values.dtype}"
+        raise ValueError(f"Scene.initial: gives {what} for {len(points)} points; must be real numbers, (n,)")
+    odd = np.flatnonzero(~np.isfinite(values))
+    if len(odd):
+        where = points[odd[0]].tolist()
+        raise ValueError(f"Scene.initial = {values[odd[0]]} at {where} m: must be finite at all points of the body")
+    return values.astype(float)

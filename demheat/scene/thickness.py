@@ -1,0 +1,35 @@
+"""How thin the inclusions of a scene are, and the coats that inclusions within them leave: what a grid may not see."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def extents(scene) -> np.ndarray:
+    """Least length of each inclusion along the axes, (number of inclusions,) float array, m."""
+    return np.array([_least(shape.bounds()) for shape in scene.inclusions])
+
+
+def coats(scene) -> np.ndarray:
+    """What is left of each inclusion around one that lies in it, (number of inclusions,) float array, m.
+
+    The widest place of it, along the axes: a coat as thin as that is thin all round. Infinite without one in it.
+    """
+    left = np.full(len(scene.inclusions), np.inf)
+    parents = scene.parents()[1:]
+    for number in np.flatnonzero(parents):
+        outer = parents[number] - 1
+        (low, high), (start, stop) = scene.inclusions[outer].bounds(), scene.inclusions[number].bounds()
+        ends = np.isfinite(low) & np.isfinite(start)
+        gaps = np.stack([start - low, high - stop])[:, ends]
+        if scene.periodic:
+            # The image whose middle is nearest.
+            turns = np.round((gaps[0] - gaps[1]) / 2 / np.array(scene.size)[ends]) * np.array(scene.size)[ends]
+            gaps += np.stack([-turns, turns])
+        left[outer] = min(left[outer], gaps.max(initial=-np.inf) if gaps.size else np.inf)
+    return left
+
+
+def _least(bounds):
+    low, high = bounds
+    return float(np.min((high - low)[np.isfinite(low)], initial=np.inf))
