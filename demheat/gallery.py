@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
+from demheat.limits import check_memory
 from demheat.scene import Layer, Material, Scene, Sphere
 
 # The cube of Haddad et al. 2021, section 4: a steel-like matrix, 0.1 m, 25 and 35 degrees C. (Their Table 1 prints a
@@ -16,6 +17,8 @@ HADDAD = Material(conductivity=33.0, density=7800.0, heat_capacity=0.9)
 EDGE = 0.1
 TEMPERATURES = (25.0, 35.0)
 AXIS = 1
+# Least bytes that a sphere takes, here and in a scene.
+BYTES = 500
 # Silica spheres in epoxy, Haddad et al. 2021, section 4.3.
 EPOXY, SILICA = Material(conductivity=0.195), Material(conductivity=1.5)
 
@@ -289,6 +292,7 @@ def dispersion(
 
     if not isinstance(count, int | np.integer) or isinstance(count, bool) or count < 2:
         raise ValueError(f"count = {count!r}: must be an integer >= 2")
+    check_memory("count", count, BYTES * int(count))
     if not 1 <= ratio <= 100:
         raise ValueError(f"ratio = {ratio!r}: must lie between 1 and 100")
     load, size = {"periodic": True} | load, (edge,) * 3
@@ -359,6 +363,7 @@ def _dispersion(count, fraction, diameter):
         raise ValueError(f"fraction = {fraction!r}: must lie between 0 and 1")
     if count is not None and (not isinstance(count, int | np.integer) or count < 1):
         raise ValueError(f"count = {count!r}: must be an integer >= 1")
+    check_memory("count", count or 1, BYTES * int(count or 1))
     if not 0 < diameter < 1:
         raise ValueError(f"diameter = {diameter!r}: must lie between 0 and 1, in edges of the box")
     if count is None:

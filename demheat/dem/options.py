@@ -8,6 +8,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.limits import check_memory
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
@@ -17,6 +18,8 @@ from demheat.scene import Scene
 
 # Old keywords of `solve` and `evolve`.
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
+# Least bytes that a particle takes, found from 560 to 800 where they are many.
+BYTES = 500
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -52,6 +55,8 @@ class Particles:
             raise ValueError(f"particles = {number!r}: must be an integer >= 1")
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
+        if self.packing is None:
+            check_memory("particles", number, BYTES * int(number))
         if self.packing is not None and self.replicas is not None:
             raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 

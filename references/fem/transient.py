@@ -10,6 +10,7 @@ from numbers import Real
 import numpy as np
 
 from demheat.field import Field
+from demheat.limits import check_steps
 from demheat.scene import Scene
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.implicit import Shifted
@@ -24,6 +25,8 @@ from references.times import checked_times
 EDGES = {1: 30, 2: 16}
 # Or if that is more, this times the cube root of the number of spheres, or other bounded inclusions.
 EDGES_APART = 8
+# That a step takes, of the smallest mesh.
+LEAST_SECONDS = 5e-4
 
 
 def evolve(
@@ -88,6 +91,8 @@ def evolve(
             raise ValueError(f"{name} = {value!r}: must be a number between 0 and 1")
     if step is not None and not (_number(step) and step > 0):
         raise ValueError(f"step = {step!r}: must be a finite number > 0 s")
+    if step is not None:
+        check_steps("step", step, times[-1] / step, LEAST_SECONDS, remedy="larger")
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)

@@ -22,6 +22,7 @@ from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
 from references.multipole.truncation import converged, field_truncation, truncation
+from references.threads import MOST_THREADS
 
 
 def solve(
@@ -141,5 +142,5 @@ def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
         if not (isinstance(value, int | float) and 1e-14 <= value < 1):
             raise ValueError(f"{name} = {value!r}: must be a number from 1e-14 to below 1")
     check_points_per_axis(points_per_axis)
-    if not isinstance(threads, int | np.integer) or isinstance(threads, bool) or threads < 1:
-        raise ValueError(f"threads = {threads!r}: must be an integer >= 1")
+    if not isinstance(threads, int | np.integer) or isinstance(threads, bool) or not 1 <= threads <= MOST_THREADS:
+        raise ValueError(f"threads = {threads!r}: must be an integer >= 1; at most {MOST_THREADS}")
