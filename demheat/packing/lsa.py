@@ -82,7 +82,7 @@ class Growth:
             object.__setattr__(self, "phi", finite("phi", self.phi, "> 0 and < 1", lambda v: 0 < v < 1))
         pressure = JAMMED if self.phi is None and self.pressure is None else self.pressure
         if pressure is not None:
-            valid = f"{LEAST_PRESSURE:g} to {MOST_PRESSURE:g}; give phi for a thinner gas"
+            valid = f">= {LEAST_PRESSURE:g} and <= {MOST_PRESSURE:g}; give phi for a thinner gas"
             pressure = finite("pressure", pressure, valid, lambda v: LEAST_PRESSURE <= v <= MOST_PRESSURE)
         object.__setattr__(self, "pressure", pressure)
         finite("most", self.most, "a finite number of collisions > 0", lambda v: v > 0)
