@@ -1,3 +1,4 @@
+import json
 import warnings
 
 import numpy as np
@@ -183,7 +184,7 @@ def test_no_flipped_bit_loads_another_packing_or_raises(tmp_path):
     """A bit of each seventh byte, names and shapes of the arrays included: the file is whole or made again."""
     made = cached(Maker(), {}, folder=tmp_path)
     (path,) = tmp_path.iterdir()
-    raw, text = path.read_bytes(), '{"format": %d}' % cache.FORMAT
+    raw, text = path.read_bytes(), json.dumps({"format": cache.FORMAT})
     noticed = 0
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
