@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
+from demheat.limits import check_memory
 from demheat.scene import Layer, Material, Scene, Sphere
 from demheat.scene.inputs import axis_number, chosen, finite, flag, vector, whole
 from demheat.scene.material import check_material
@@ -18,6 +19,8 @@ HADDAD = Material(conductivity=33.0, density=7800.0, heat_capacity=0.9)
 EDGE = 0.1
 TEMPERATURES = (25.0, 35.0)
 AXIS = 1
+# Least bytes that a sphere takes, here and in a scene.
+BYTES = 500
 # Silica spheres in epoxy, Haddad et al. 2021, section 4.3.
 EPOXY, SILICA = Material(conductivity=0.195), Material(conductivity=1.5)
 
@@ -295,6 +298,7 @@ def dispersion(
     from demheat.packing.dispersion import dispersion as placed
 
     whole("count", count, "an integer >= 2", lambda v: v >= 2)
+    check_memory("count", count, BYTES * int(count))
     finite("ratio", ratio, "a number between 1 and 100", lambda v: 1 <= v <= 100)
     load, size = {"periodic": True} | load, _cube(edge, matrix=matrix, inclusion=inclusion)
     flag("periodic", load["periodic"])
@@ -373,6 +377,7 @@ def _dispersion(count, fraction, diameter):
         finite("fraction", fraction, "a number between 0 and 1", lambda v: 0 < v < 1)
     if count is not None:
         whole("count", count, "an integer >= 1", lambda v: v >= 1)
+        check_memory("count", count, BYTES * int(count))
     finite("diameter", diameter, "a number between 0 and 1, in edges of the box", lambda v: 0 < v < 1)
     if count is None:
         return max(1, round((0.2 if fraction is None else fraction) * 6 / (math.pi * diameter**3))), diameter

@@ -9,9 +9,13 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field, check_field
+from demheat.limits import check_memory
 from demheat.scene import check_scene
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import axis_number, finite, whole
+
+# Least bytes that a pixel takes: its middle, and where it is in the body.
+BYTES = 50
 
 
 class Slice(NamedTuple):
@@ -62,7 +66,10 @@ def plane(scene, *, axis, at, n=61):
     finite("at", at, f"between 0 and {length} m, the box along axis {axis}", lambda v: 0 <= v <= length)
     whole("n", n, "an integer >= 1", lambda v: v >= 1)
     across = [other for other in range(3) if other != axis]
-    pixel = max(scene.size[other] for other in across) / n
+    sides = [scene.size[other] for other in across]
+    # In whole numbers, which do not overflow.
+    check_memory("n", n, BYTES * int(n) * max(1, int(n) * int(1000 * min(sides) / max(sides)) // 1000), power=2)
+    pixel = max(sides) / n
     middles = [_middles(scene.size[other], pixel) for other in across]
     grid = np.empty((len(middles[1]), len(middles[0]), 3))
     grid[..., axis] = at

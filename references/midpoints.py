@@ -4,12 +4,17 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.limits import check_memory
 from demheat.scene.inputs import whole
+
+# Least bytes that a sample takes: place, volume, temperature, phase and flux.
+BYTES = 70
 
 
 def check_points_per_axis(points_per_axis) -> None:
-    """Raise ValueError unless a number of points along each axis is an integer of 1 or more."""
+    """Raise ValueError unless a number of points along each axis is an integer of 1 or more, and fits into memory."""
     whole("points_per_axis", points_per_axis, "an integer >= 1", lambda v: v >= 1)
+    check_memory("points_per_axis", points_per_axis, BYTES * int(points_per_axis) ** 3, power=3)
 
 
 def midpoints(scene, points_per_axis):

@@ -6,6 +6,9 @@ import os
 from concurrent.futures import ThreadPoolExecutor
 from numbers import Integral
 
+# Beyond it threads would only wait for each other on any machine.
+MOST_THREADS = 1024
+
 
 def thread_count(threads: int | None) -> int:
     """Number of threads, one per processor for None.
@@ -13,12 +16,13 @@ def thread_count(threads: int | None) -> int:
     Raises
     ------
     ValueError
-        If it is neither None nor a whole number >= 1.
+        If it is neither None nor a whole number from 1 to 1024.
     """
     if threads is None:
         return os.cpu_count() or 1
-    if not isinstance(threads, Integral) or isinstance(threads, bool) or threads < 1:
-        raise ValueError(f"threads = {threads!r}: must be a whole number >= 1, or None for one per processor")
+    if not isinstance(threads, Integral) or isinstance(threads, bool) or not 1 <= threads <= MOST_THREADS:
+        valid = f"a whole number >= 1, or None for one per processor; at most {MOST_THREADS}"
+        raise ValueError(f"threads = {threads!r}: must be {valid}")
     return int(threads)
 
 

@@ -22,7 +22,7 @@ def main(words=None):
     arguments = _parser().parse_args(words)
     try:
         return arguments.action(arguments)
-    except ValueError as error:
+    except (ValueError, OSError) as error:
         print(f"studies: {error}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -72,8 +72,10 @@ def _list(arguments):
         study = runner.load(name)
         quick = sum(bool(study.QUICK(case)) for case in study.CASES)
         rows = runner.state(study, read_rows(arguments.out / f"{name}.csv"))
+        # Without docstrings (python -OO) the name must do.
+        title = (study.__doc__ or name).strip().splitlines()[0]
         stored = ", ".join(f"{count:3} {word}" for word, count in rows.items())
-        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick; {stored}   {study.__doc__.splitlines()[0]}")
+        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick; {stored}   {title}")
     print(f"Rows stored in {arguments.out}: held, made by this code; stale, by other code; missing, not made.")
     return 0
 

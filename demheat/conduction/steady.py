@@ -20,6 +20,8 @@ SOLVERS = ("auto", "cg", "amg")
 # Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
 # many or fewer at 1e5.
 AMG_UNKNOWNS = 50_000
+# Beyond this contrast rounding may keep residuals above a tolerance below that.
+HIGH_CONTRAST, LOOSER = 1e7, 1e-6
 
 
 class Solution(NamedTuple):
@@ -116,7 +118,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
     if not size <= tolerance:
         raise RuntimeError(
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
-            f"asked for {tolerance:.1e}"
+            f"asked for {tolerance:.1e}{_advice(scene, tolerance)}"
         )
     if scene.periodic and bodies is None:
         x -= np.average(x, weights=network.volumes)
@@ -134,6 +136,16 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
     }
     still = None if bodies is None else bodies.still
     return Solution(x, system.gradient, *_at_walls(system, scene, x), stats, still)
+
+
+def _advice(scene, tolerance):
+    """What may help where rounding keeps the residual up: found from contrast 1e8 on."""
+    conducting = scene.conductivities[scene.conductivities > 0]
+    contrast = conducting.max() / conducting.min()
+    if contrast < HIGH_CONTRAST:
+        return ""
+    looser = f"tolerance = {LOOSER:g}, which is mostly met, or " if tolerance < LOOSER else ""
+    return f"; rounding keeps it up at a contrast of {contrast:.1e}: must be {looser}a lower contrast"
 
 
 def check_solver(solver, tolerance):

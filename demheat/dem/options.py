@@ -9,6 +9,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.limits import check_memory
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
@@ -22,6 +23,8 @@ from demheat.scene.inputs import flag, whole
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
 # Packing fraction below which a packing that is given is called loose: crystals of equal spheres begin at .34, diamond.
 LOOSE = 0.3
+# Least bytes that a particle takes, found from 560 to 800 where they are many.
+BYTES = 500
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,6 +60,8 @@ class Particles:
             check_packing(self.packing)
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
+        if self.packing is None:
+            check_memory("particles", number, BYTES * int(number))
         if self.packing is not None and self.replicas is not None:
             raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 

@@ -8,7 +8,6 @@ import json
 import os
 import tempfile
 import warnings
-import zipfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
@@ -16,12 +15,14 @@ import numpy as np
 
 from demheat.packing.base import Packing, check_box
 from demheat.packing.domain import replicate, walled
+from demheat.packing.io import npz
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
-FORMAT = 2
+FORMAT = 3
+ARRAYS = ("centers", "radii", "size", "periodic", "provenance", "domain")
 RELAX = (
     "demheat.scene.bodies",
     *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
@@ -186,15 +187,14 @@ def _plain(value):
 def _load(path, text):
     """Load the packing at `path` if it is whole and its key is `text`, else None."""
     try:
-        # A file that is no archive would be left open by NumPy.
-        with path.open("rb") as file, np.load(file, allow_pickle=False) as stored:
-            if str(stored["key"]) != text:
-                return None
-            arrays = (stored[name] for name in ("centers", "radii", "size", "periodic"))
-            return Packing(*arrays, json.loads(str(stored["provenance"])), str(stored["domain"]))
+        stored = npz.load(path, (*ARRAYS, npz.CHECKSUM, "key"))
+        if str(stored["key"]) != text:
+            return None
+        stored["provenance"], stored["domain"] = npz.parsed(str(stored["provenance"])), str(stored["domain"])
+        return Packing(*(stored[name] for name in ARRAYS))
     except (FileNotFoundError, NotADirectoryError):
         return None
-    except (OSError, EOFError, KeyError, ValueError, zipfile.BadZipFile) as error:
+    except (OSError, ValueError) as error:
         warnings.warn(f"cached packing {path} cannot be read and is made again: {error}", stacklevel=3)
         return None
 
@@ -206,7 +206,7 @@ def _store(path, text, packing):
     try:
         with os.fdopen(handle, "wb") as file:
             arrays = packing._asdict() | {"provenance": json.dumps(packing.provenance), "key": text}
-            np.savez(file, **arrays)
+            npz.save(file, arrays)
         os.replace(name, path)
     except BaseException:
         Path(name).unlink(missing_ok=True)

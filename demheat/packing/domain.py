@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.limits import check_memory
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
 from demheat.packing.gate import check_packing
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
@@ -18,6 +20,8 @@ ROUNDING = 1e-12
 # Beyond so many particles a packing is replicas of so many at most: a few CPU-seconds to make one of them, instead of
 # 90 for each million.
 UNREPEATED, REPLICA, LEAST_REPLICA = 2_000_000, 250_000, 1000
+# Least bytes that a particle takes.
+BYTES = 32
 # Least distance of a centre to a wall, and depth down to which particles are drawn off it, in mean radii. Found on the
 # centred sphere, 3e4 particles, contrasts 0.01, 5, 100: -.002, -.002, -.006 % in replicas, -.006, -.006, -.016 %
 # relaxed between walls; at (0.5, 4) it is -.004, -.004, -.010 %.
@@ -122,6 +126,7 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
             f"repeats = {repeats!r} of a packing with periodic = {packing.periodic.tolist()}: must be 1 along axes "
             "with walls"
         )
+    check_memory("repeats", counts.tolist(), BYTES * packing.number * math.prod(counts.tolist()), power=3)
     cells = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
     cells = cells[morton_order(cells + 0.5, counts.astype(float))]
     n, size = packing.number, packing.size * counts

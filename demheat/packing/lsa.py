@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from demheat.limits import check_memory
 from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.motion import Motion
@@ -27,10 +28,19 @@ from demheat.scene.inputs import finite, flag, reals, whole
 START, START_OF_TARGET, START_OVERLAP = 0.4, 0.6, 1e-4
 # Reduced pressure at which packings count as jammed: the radii could grow by some 1e-6 more.
 JAMMED = 1e6
+# Beyond it gaps are the rounding of places.
+MOST_PRESSURE = 1e12
+# Spheres that grow so much faster than they move do not move at all.
+FASTEST = 1e3
 # Below this the first windows of 10 collisions per sphere, from the start at phi = 0.4, are beyond it already.
 LEAST_PRESSURE = 10.0
 # No mixture of up to 1 : 10 was found to jam denser.
 DENSEST = 0.85
+# Collisions per sphere until a reduced pressure p are COLLISIONS log10(p / 5) / growth: found within a fifth for growth
+# 0.002 to 0.1 and pressures 30 to 1e12. A collision takes some 2 microseconds.
+COLLISIONS, FIRST_PRESSURE = 3.4, 5.0
+# Least bytes that a sphere takes.
+BYTES = 200
 # Sides over the largest radius, for a periodic axis or walls: spheres must not meet both ways round a period.
 LEAST_SIDES = {True: 4.2, False: 2.0}
 
@@ -44,12 +54,15 @@ class Growth:
     phi : float, optional
         Stop at this packing fraction, met to rounding.
     pressure : float, optional
-        Stop after the first 10 collisions per sphere whose mean reduced pressure P V / (N k T) reaches this; at least
-        10, default 1e6 (jammed) unless `phi` is given. With both, what comes first stops. Radii of very unequal
+        Stop after the first 10 collisions per sphere whose mean reduced pressure P V / (N k T) reaches this; 10 to
+        1e12, default 1e6 (jammed) unless `phi` is given. With both, what comes first stops. Radii of very unequal
         spheres, of which few collide often, overshoot.
     growth : float or sequence of (reduced pressure, rate)
         Growth rate of the mean diameter over the thermal velocity; of a sequence, each rate holds from its pressure on.
         Slower growth jams denser and takes longer.
+    most : float
+        Collisions, of all spheres, that it may take: half an hour for 1e9, the default. What is estimated to take more
+        is refused; twice as many end it.
     progress : callable (collisions per sphere, packing fraction, reduced pressure), optional
 
     Raises
@@ -62,6 +75,7 @@ class Growth:
     pressure: float | None = None
     growth: float | Sequence[tuple[float, float]] = 0.02
     progress: Callable[[float, float, float], None] | None = None
+    most: float = 1e9
 
     def __post_init__(self):
         object.__setattr__(self, "growth", _checked_stages(self.growth))
@@ -69,15 +83,33 @@ class Growth:
             object.__setattr__(self, "phi", finite("phi", self.phi, "> 0 and < 1", lambda v: 0 < v < 1))
         pressure = JAMMED if self.phi is None and self.pressure is None else self.pressure
         if pressure is not None:
-            valid = f">= {LEAST_PRESSURE:g}; give phi for a thinner gas"
-            pressure = finite("pressure", pressure, valid, lambda v: v >= LEAST_PRESSURE)
+            valid = f">= {LEAST_PRESSURE:g} and <= {MOST_PRESSURE:g}; give phi for a thinner gas"
+            pressure = finite("pressure", pressure, valid, lambda v: LEAST_PRESSURE <= v <= MOST_PRESSURE)
         object.__setattr__(self, "pressure", pressure)
         if self.progress is not None and not callable(self.progress):
             raise ValueError(f"progress = {self.progress!r}: must be a function, or None")
+        finite("most", self.most, "a finite number of collisions > 0", lambda v: v > 0)
 
     def rate(self, reached: float) -> float:
         """Growth rate of the last stage whose pressure is reached, of the first before that."""
         return max((stage for stage in self.growth if stage[0] <= reached), default=self.growth[0])[1]
+
+    def check_length(self, number: int) -> None:
+        """Raise ValueError if so many spheres are estimated to collide more often than `most`."""
+        reach = JAMMED if self.pressure is None else self.pressure
+        if self.phi is not None:  # Carnahan and Starling, J. Chem. Phys. 51 (1969) 635
+            reach = min(reach, (1 + self.phi + self.phi**2 - self.phi**3) / (1 - self.phi) ** 3)
+        ends = [min(from_, reach) for from_, _ in self.growth[1:]] + [reach]
+        count, begin = 0.0, FIRST_PRESSURE
+        for (_, rate), end in zip(self.growth, ends, strict=True):
+            if end > begin:
+                count, begin = count + COLLISIONS * math.log10(end / begin) / rate, end
+        if count * number > self.most:
+            raise ValueError(
+                f"growth = {self.growth if len(self.growth) > 1 else self.growth[0][1]}: takes some {count:.2g} "
+                f"collisions for each of {number} spheres, {count * number:.2g} in all; must be faster by "
+                f"{count * number / self.most:.2g}, or give most, now {self.most:g}"
+            )
 
 
 def lsa(
@@ -102,7 +134,7 @@ def lsa(
         Begin from these spheres in their domain (`number`, `size`, `radii`, `periodic` and `domain` are then left out)
         instead of a relaxed packing at phi = 0.4 or 0.6 of the one asked for. All radii are shrunk until no two
         overlap, at most by half.
-    phi, pressure, growth, progress
+    phi, pressure, growth, progress, most
         As in `Growth`: when to stop, and how fast to get there.
 
     Returns
@@ -116,10 +148,10 @@ def lsa(
     ------
     ValueError
         If an argument is not as described, the box is too small for the largest spheres, or those of `start` overlap
-        by more than half.
+        by more than half; or if more collisions than `most` are to be expected.
     RuntimeError
         If the spheres jam (reduced pressure 1e6) before `phi`; the message says at which packing fraction. If events
-        go on without end.
+        go on without end, or collisions beyond twice `most`.
 
     Warns
     -----
@@ -131,6 +163,7 @@ def lsa(
     if start is None:
         radii = Gaussian() if radii is None else distribution(radii)
         size, periodic = _check_request(number, size, periodic, domain, radii, allow_few)
+        goal.check_length(number)
         begin = START if goal.phi is None else min(START, START_OF_TARGET * goal.phi)
         start = relax(
             number, size=size, phi=begin, radii=radii, periodic=periodic, domain=domain, seed=seed,
@@ -138,6 +171,7 @@ def lsa(
         )  # fmt: skip
     else:
         _check_alone(start, number, size, radii, periodic, domain)
+        goal.check_length(start.number)
     motion = Motion(start, np.random.default_rng([seed, 1]))
     _check_room(start, motion.phi, goal.phi)
     with stage("growing") as done:
@@ -159,6 +193,11 @@ def _grow(motion, goal, done):
         if not motion.run(goal.rate(reached), phi):
             continue
         windows += 1
+        if motion.collisions > 2 * goal.most:
+            raise RuntimeError(
+                f"phi = {motion.phi:.6f}, reduced pressure {motion.pressure:.2e} after {motion.collisions} collisions: "
+                f"twice most = {goal.most:g}; let the spheres grow faster"
+            )
         done(_share(motion, begun, phi, limit))
         if goal.progress is not None:
             goal.progress(motion.collisions / len(motion.spheres), motion.phi, motion.pressure)
@@ -195,6 +234,7 @@ def _check_request(number, size, periodic, domain, radii, allow_few):
     flag("allow_few", allow_few)
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} spheres; pass allow_few=True if you mean it")
+    check_memory("number", number, BYTES * int(number))
     if isinstance(radii, Listed) and len(radii.values) != number:
         raise ValueError(f"radii: {len(radii.values)} of them for number = {number} spheres; must be one each")
     sides, flags = check_box(size, periodic)
@@ -213,7 +253,9 @@ def _checked_stages(growth):
         growth = [(0.0, finite("growth", growth, valid))]
     stages = reals("growth", growth, valid)
     good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
-    if not (good and np.all(stages[:, 1] > 0) and np.all(np.diff(stages[:, 0]) > 0)):
+    rates = stages[:, 1] if good else np.empty(0)
+    if not (good and np.all((rates > 0) & (rates <= FASTEST)) and np.all(np.diff(stages[:, 0]) > 0)):
+        valid += f"; all at most {FASTEST:g}"
         raise ValueError(f"growth = {growth!r}: must be {valid}")
     return stages.tolist()
 

@@ -13,6 +13,7 @@ from itertools import product
 
 import numpy as np
 
+from demheat.limits import check_memory
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
 from demheat.packing.gate import check_packing
@@ -34,6 +35,8 @@ MIX, MIX_FADE, DELAY = 0.25, 0.99, 1
 # vector, <n_x^4> off by 6 standard deviations), which the fabric tensor cannot see: it is isotropic on a cubic grid.
 JITTER = 1.0
 FEWEST = 100
+# Least bytes that a particle takes while it is packed.
+BYTES = 150
 
 
 @dataclass(frozen=True)
@@ -309,5 +312,6 @@ def _check_request(number, phi, seed, allow_few):
     flag("allow_few", allow_few)
     if number < FEWEST and not allow_few:
         raise ValueError(f"number = {number}: fewer than {FEWEST} particles; pass allow_few=True if you mean it")
+    check_memory("number", number, BYTES * int(number))
     finite("phi", phi, "> 0 and <= 0.74, the densest packing of equal spheres", lambda v: 0 < v <= 0.74)
     whole("seed", seed, "an integer >= 0", lambda v: v >= 0)

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from demheat.field import Field
+from demheat.limits import check_steps
 from demheat.scene import Scene, check_scene
 from demheat.scene.functions import initial_at
 from demheat.scene.inputs import chosen, finite, whole
@@ -24,6 +25,8 @@ from references.times import checked_times
 EDGES = {1: 30, 2: 16}
 # Or if that is more, this times the cube root of the number of spheres, or other bounded inclusions.
 EDGES_APART = 8
+# That a step takes, of the smallest mesh.
+LEAST_SECONDS = 5e-4
 
 
 def evolve(
@@ -88,6 +91,7 @@ def evolve(
         finite(name, value, "a number between 0 and 1", lambda v: 0 < v < 1)
     if step is not None:
         finite("step", step, "a finite number > 0 s", lambda v: v > 0)
+        check_steps("step", step, times[-1] / step, LEAST_SECONDS, remedy="larger")
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field
+from demheat.limits import check_memory
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
 from demheat.scene.thickness import coats, extents
@@ -37,6 +38,8 @@ MEASURED = {
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
+# Least bytes that a voxel takes, in double precision.
+BYTES = {"cg": 30, "eyre-milton": 48}
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
@@ -109,6 +112,8 @@ def solve(
     if rule == "auto":
         knobs = knobs._replace(rule=_automatic(scheme, scene))
     _check_grid(box, knobs.rule, shape)
+    needed = BYTES[scheme] * math.prod(shape) * np.dtype(PRECISIONS[precision]).itemsize / 8
+    check_memory("voxels", voxels, needed, power=3)
     if scene.inclusions:
         _warn_of_thin(box, shape, knobs.rule)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.

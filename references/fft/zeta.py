@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.limits import check_memory
 from demheat.scene import Material, Scene, check_scene
 from demheat.scene.inputs import flag
 from references.fft.transforms import fourier
@@ -31,6 +32,8 @@ from references.voxels.paint import Voxels, grid_shape, voxelise
 POWERS = (0, 1, 3)
 # Coarsest grid of an extrapolation.
 FEWEST = 8
+# Least bytes that a voxel takes.
+BYTES = 30
 # Of zeta_2, amplified from that of sums over the voxels.
 ROUNDING = 1e-12
 # The tangent at the Nyquist frequency: infinite, as far as its square can be told from 1 in floating point.
@@ -111,6 +114,7 @@ def zeta2(
     threads = thread_count(threads)
     cell = _two_phases(scene)
     shapes = _shapes(scene, voxels, extrapolate)
+    check_memory("voxels", voxels, BYTES * math.prod(shapes[-1]), power=3)
     found = [_on_grid(voxelise(cell, shape, laminate=True), threads) for shape in shapes]
     values, fractions = (list(column) for column in zip(*found, strict=True))
     value, error = _extrapolated(values, shapes) if extrapolate else (values[-1], None)

@@ -138,12 +138,22 @@ def _turn_spheres(occ, geometry, tags):
     """Turn spheres about their centres, all images of one alike; layers cut none."""
     faces, turns = [np.array([0.0, length]) for length in geometry.box], {}
     for (phase, shape), tag in zip(geometry.images, tags, strict=True):
-        if isinstance(shape, Sphere):
-            center = np.array(shape.center) / geometry.scale
+        if ball := round_about(shape):
+            center, radius = (np.array(each) / geometry.scale for each in ball)
             if phase not in turns:
-                turns[phase] = turn(center, shape.radius / geometry.scale, faces)
+                turns[phase] = turn(center, radius, faces)
             *axis, angle = turns[phase]
             occ.rotate([(3, tag)], *center, *axis, angle)
+
+
+@singledispatch
+def round_about(shape: Shape):
+    """Centre and radius of a shape that looks alike from all sides, m; None of any other."""
+
+
+@round_about.register
+def _(shape: Sphere):
+    return shape.center, shape.radius
 
 
 @singledispatch

@@ -23,6 +23,7 @@ from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
 from references.multipole.truncation import converged, field_truncation, truncation
+from references.threads import MOST_THREADS
 
 
 def solve(
@@ -142,4 +143,5 @@ def _check_knobs(order, accuracy, tolerance, points_per_axis, threads):
             continue
         finite(name, value, "a number from 1e-14 to below 1", lambda v: 1e-14 <= v < 1)
     check_points_per_axis(points_per_axis)
-    whole("threads", threads, "an integer >= 1", lambda v: v >= 1)
+    valid = f"an integer >= 1; at most {MOST_THREADS}"
+    whole("threads", threads, valid, lambda v: 1 <= v <= MOST_THREADS)

@@ -33,7 +33,7 @@ from pathlib import Path
 from demheat.progress import stage
 from studies.harness.cost import measured, triad_gbs
 from studies.harness.provenance import SAME, code_hash, module_of, provenance
-from studies.harness.store import TAIL, case_key, read_rows, write_rows
+from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows
 
 TIMEOUT = 1800.0
 KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
@@ -48,6 +48,8 @@ def load(name):
         If there is no such study, two of its cases have the same parameters, or one is called as a column that every
         row has.
     """
+    if not all(part.isidentifier() for part in name.split(".")):
+        raise ValueError(f"no study {name!r}; must be a name, and `python -m studies list` shows them all")
     for path in (f"studies.{name}", name):
         try:
             study = importlib.import_module(path)
@@ -104,24 +106,30 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
         Told of each row as it ends.
     compute : callable (name, study, case) -> dict
         Default `spawn_row`: each row in a fresh process, so that its cost means something.
+
+    Raises
+    ------
+    ValueError
+        If there is no such study, or its file cannot be read or written.
     """
     compute = compute or spawn_row
     study = load(name)
     path = Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
-    known = {case_key(case) for case in study.CASES}
-    rows = {key: row for key, row in read_rows(path).items() if key in known}
+    keys, rows, made = [case_key(case) for case in study.CASES], read_rows(path), {}
     wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
     todo = [case for case in wanted if force or not _holds(rows.get(case_key(case)), study, case)]
     say(f"{name}: {len(wanted)} rows, {len(wanted) - len(todo)} already there, {len(todo)} to run")
+    if todo:
+        check_writable(path.parent)
     bandwidth = round(triad_gbs(), 1) if todo else None
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
         key = case_key(case)
         with stage(f"{name} {number}/{len(todo)}, {_short(key)}", before=time.perf_counter() - start) as done:
             done((number - 1) / len(todo))
-            rows[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
-        write_rows(path, (rows[case_key(c)] for c in study.CASES if case_key(c) in rows))
-        say(_progress(number, len(todo), rows[key], time.perf_counter() - start))
+            made[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
+        add_rows(path, made, keys)
+        say(_progress(number, len(todo), made[key], time.perf_counter() - start))
     return path
 
 
@@ -146,15 +154,15 @@ def state(study, rows):
     for case in study.CASES:
         row = rows.get(case_key(case))
         code = code_hash(study.__file__, module_of(study, case.get("method", "")))
-        found["missing" if row is None else "held" if row["code"] == code else "stale"] += 1
+        found["missing" if row is None else "held" if row.get("code") == code else "stale"] += 1
     return found
 
 
 def _holds(row, study, case):
-    if row is None or row["status"] not in KEPT:
+    if row is None or row.get("status") not in KEPT:
         return False
     now = provenance(study, case)
-    return all(row[name] == str(now[name]) for name in SAME)
+    return all(row.get(name) == str(now[name]) for name in SAME)
 
 
 def _progress(number, total, row, elapsed):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import os
 import tempfile
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
@@ -15,6 +15,8 @@ TAIL = (
     *COST,
     *("status", "note", "code", "commit", "when", "machine", "threads", "versions", "load", "triad_gbs"),
 )
+# Bytes that must be free before a run begins.
+ROOM = 2**20
 
 
 def case_key(case):
@@ -23,12 +25,85 @@ def case_key(case):
 
 
 def read_rows(path):
-    """Rows of a CSV file as {case key: {column: text}}; empty if there is no such file."""
+    """Rows of a CSV file as {case key: {column: text}}; empty if there is no such file.
+
+    Raises
+    ------
+    ValueError
+        If it holds anything else.
+    """
     path = Path(path)
     if not path.exists():
         return {}
-    with path.open(newline="") as file:
-        return {row["case"]: row for row in csv.DictReader(file)}
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file, strict=True)
+            rows, columns = list(reader), reader.fieldnames or ()
+        if "case" not in columns:
+            raise ValueError("no column 'case'")
+        odd = next((k for k, row in enumerate(rows, start=1) if None in row or None in row.values()), None)
+        if odd is not None:
+            raise ValueError(f"row {odd} has not as many values as there are columns")
+    except (OSError, ValueError, csv.Error) as error:
+        raise ValueError(f"{path}: must hold rows of a study as CSV: {error}; mend it or move it away") from None
+    return {row["case"]: row for row in rows}
+
+
+def check_writable(folder):
+    """Raise ValueError unless rows can be written into a folder, which is made if need be: before an hour's solve."""
+    folder = Path(folder)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as file:
+            file.write(bytes(ROOM))
+    except OSError as error:
+        raise ValueError(f"{folder}: must be a folder that can be written, with some room: {error}") from None
+
+
+@contextmanager
+def locked(folder):
+    """Wait for other runs that write into a folder, and let them wait; without locks where the system has none."""
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):
+        yield
+        return
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)
+
+
+def add_rows(path, rows, keys):
+    """Add rows to those of a file as it is now: other runs may have added theirs.
+
+    Parameters
+    ----------
+    path : path
+    rows : dict of str to dict
+        By their cases; they take the place of older ones.
+    keys : sequence of str
+        All cases of the study, in order; rows of others are left out.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be written: the rows are then in a file of temporary ones, which is named.
+    """
+    path = Path(path)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        with locked(path.parent):
+            rows = read_rows(path) | rows
+            write_rows(path, (rows[key] for key in keys if key in rows))
+    except (OSError, ValueError) as error:
+        rescued = Path(tempfile.mkdtemp(prefix="demheat-rows-")) / path.name
+        write_rows(rescued, rows.values())
+        raise ValueError(f"{path}: cannot be written: {error}; the rows are in {rescued}") from None
 
 
 def write_rows(path, rows):

@@ -8,9 +8,11 @@ import traceback
 from pathlib import Path
 from typing import NamedTuple
 
-from studies.harness.store import case_key, replaced
+from studies.harness.store import case_key, read_rows, replaced
 
 OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": float.__gt__, "=": float.__eq__}
+# What every row has.
+NEEDED = ("case", "status", "note", "code", "commit", "when", "machine", "threads", "versions", "load")
 
 
 class Claim(NamedTuple):
@@ -64,9 +66,18 @@ def read_frame(study, csv_path):
     Returns
     -------
     data frame
+
+    Raises
+    ------
+    ValueError
+        If the file does not hold rows of a study.
     """
     import pandas as pd
 
+    rows = read_rows(csv_path)
+    lacking = [name for name in NEEDED if any(name not in row for row in rows.values())]
+    if lacking or not rows:
+        raise ValueError(f"{csv_path}: {f'lacks the columns {lacking}' if lacking else 'has no rows'}; run the study")
     df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
     df = df[df["case"].isin([case_key(case) for case in study.CASES])].reset_index(drop=True)
     return df.fillna({"note": ""})
@@ -165,7 +176,7 @@ def _page(study, df, claims, figure):
         }
     )
     make = getattr(study, "table", _all_rows)
-    table, caption = make(df), " ".join(make.__doc__.split())
+    table, caption = make(df), " ".join((make.__doc__ or "").split())
     return "\n\n".join(
         [
             f"# {title}",

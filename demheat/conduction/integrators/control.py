@@ -22,8 +22,9 @@ from demheat.progress import in_parts
 SAFETY, DAMPED, USUAL = 0.3, 0.5, 1e-3
 # Step factors: cautious, and at most and least from one step to the next.
 CAUTION, GROW, CUT = 0.9, 4.0, 0.2
-# Give up when steps become smaller than this part of the interval.
-TINIEST = 1e-12
+# Give up when steps become smaller than this part of the interval, and of the first one tried: intervals far beyond the
+# steady state begin with smaller ones.
+TINIEST, TINIEST_OF_FIRST = 1e-12, 1e-6
 
 
 @dataclass
@@ -185,7 +186,7 @@ def adaptive_steps(advance, system, x, times, *, accuracy, span, first, pace=ANY
                 if accepted:
                     x, memory, now = done.x, done.memory, now + size
                     said(now / times[-1])
-                elif not wanted > TINIEST * end:
+                elif not wanted > min(TINIEST * end, TINIEST_OF_FIRST * first):
                     raise RuntimeError(
                         f"steps of {wanted:.1e} s at {now:.3e} s after {ledger.rejected} rejections: error not met"
                     )

@@ -10,6 +10,7 @@ from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
 from demheat.conduction.integrators.pace import ANY, Pace
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
+from demheat.limits import check_steps
 from demheat.network.base import SIDES
 from demheat.scene.inputs import chosen, finite, reals
 
@@ -20,6 +21,8 @@ LINEAR = 0.2
 # Loads that change in time may force more steps than the accuracy does. Beyond so many of them the part falls as their
 # number grows: where little heat flows, nothing damps what each solve has left.
 FEW = 4.0
+# Least seconds that a step takes, and a pass over a link.
+STEP, LINK = 1e-5, 5e-10
 
 
 def linear_tolerance(accuracy, steps=1):
@@ -85,7 +88,17 @@ def check_request(times, integrator, accuracy, step):
     finite("accuracy", accuracy, "between 1e-9 and 0.1 of the temperature span", lambda v: 1e-9 <= v <= 0.1)
     if step is not None:
         finite("step", step, "a finite number > 0 s", lambda v: v > 0)
+        _check_steps(float(array[-1]), float(step), 0)
     return array
+
+
+def _check_steps(end, step, links, limit=None):
+    """Refuse more steps than a day holds, of a size that was asked for, or of the largest stable one."""
+    if limit is None:
+        check_steps("step", step, end / step, STEP + LINK * links, remedy="larger")
+    else:
+        what = f"explicit Euler, stable up to {limit:.3g} s"
+        check_steps("times, the last", end, end / step, STEP + LINK * links, remedy=f"less, or not {what}")
 
 
 def _numbers(values):
@@ -165,6 +178,13 @@ def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=
     largest = method.largest_step(rates)
     if step is not None and step > largest * (1 + 1e-12):
         raise ValueError(f"step = {step!r}: explicit Euler is unstable above {largest:.6g} s on this network")
+    if step is not None or not method.ESTIMATES:
+        limit = None if step is not None else largest
+        _check_steps(float(times[-1]), largest if step is None else step, len(system.links.indices), limit)
+    elif integrator == "rkl2":
+        work = choose.costs(rates, float(times[-1]), accuracy, len(times))[integrator]
+        remedy = "less, or tr-bdf2 the integrator"
+        check_steps("times, the last", float(times[-1]), work, STEP + LINK * len(system.links.indices), remedy=remedy)
     x = initial_state(system, temperature, 0.0)
     span = control.span_of(system, x)
     advance = _stepper(system, rates, integrator, linear_tolerance(accuracy, needed), span)

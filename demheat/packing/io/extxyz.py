@@ -11,7 +11,9 @@ from demheat.packing.io.found import Found
 from demheat.packing.io.text import Lines, flags, floats, numerals, read_table, whole, write_rows
 from demheat.scene.bodies import ROUND_AXES
 
-PAIR = re.compile(r"""([\w-]+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"']+))""")
+# Names begin where words do: else a long word would be tried from each of its letters.
+PAIR = re.compile(r"""(?<![\w-])([\w-]+)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"']+))""")
+MOST_COLUMNS = 10_000
 TRUE, FALSE = ("T", "TRUE", "1"), ("F", "FALSE", "0")
 
 
@@ -96,7 +98,9 @@ def _names(lines, properties):
         raise lines.broken(f"Properties={properties}" if properties else "no Properties", expected)
     names = []
     for name, _, width in zip(fields[::3], fields[1::3], fields[2::3], strict=True):
-        width = whole(lines, width, expected)
+        width = whole(lines, width, expected, least=1)
+        if len(names) + width > MOST_COLUMNS:
+            raise lines.broken(f"Properties={properties}", f"{MOST_COLUMNS} columns at most")
         names += [name] if width == 1 else [f"{name}{k}" for k in range(width)]
     if "pos2" not in names or "radius" not in [name.lower() for name in names]:
         raise lines.broken(f"Properties={properties}", expected)

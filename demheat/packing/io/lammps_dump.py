@@ -90,8 +90,7 @@ def _bounds(lines, words):
     """(3, 2) bounds in metres, and the periodicity or None."""
     if words[:2] == ["abc", "origin"]:
         raise lines.broken("BOX BOUNDS abc origin", "bounds without tilt: triclinic boxes are not read")
-    tilted = words[:3] == ["xy", "xz", "yz"]
-    rows = []
+    tilted, number, rows = words[:3] == ["xy", "xz", "yz"], lines.number, []
     for axis in "xyz":
         line = lines.take()
         expected = f"{axis}lo {axis}hi, {axis}lo < {axis}hi"
@@ -104,8 +103,15 @@ def _bounds(lines, words):
             raise lines.broken(repr(line), "a tilt of 0: triclinic boxes are not read")
         rows.append(row[:2])
     ends = words[3:] if tilted else words
-    periodic = np.array([end.startswith("p") for end in ends]) if len(ends) == 3 else None
-    return np.array(rows), periodic
+    return np.array(rows), _periodic(lines, ends, number) if len(ends) == 3 else None
+
+
+def _periodic(lines, ends, number):
+    """Which axes are periodic: both ends of them are, or neither."""
+    wrong = [end for end in ends if not (end == "pp" or (len(end) == 2 and set(end) <= set("fsm")))]
+    if wrong:
+        raise lines.broken(f"the boundary {wrong[0]!r}", "pp, or two of f, s, m, for each axis", number=number)
+    return np.array([end == "pp" for end in ends])
 
 
 def _atoms(lines, header, rows) -> Found:

@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-import gzip
 import re
+import sys
+from functools import partial
 from itertools import chain, islice
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-# Rows formatted at once: their Python numbers stay few.
-CHUNK = 10_000
+from demheat.packing.io.source import ALWAYS, check_free, text_of
+
+# Rows formatted at once, and read: their Python objects stay few, and what they take is looked at.
+CHUNK, PIECE = 10_000, 100_000
+# Characters of a line, and bytes of its text besides them.
+LONGEST_LINE, OBJECT = 1_000_000, 57
 MARK = re.compile(
     r"demheat packing: size {0} {0} {0}, periodic ([TF]) ([TF]) ([TF]), domain ([\w-]+)".format(
-        r"(\d+\.?\d*(?:e[+-]?\d+)?)"
-    )
+        # One way only to match digits: with two, a line of them would take the square of its length.
+        r"(\d+(?:\.\d*)?(?:e[+-]?\d+)?)"
+    ),
+    re.ASCII,
 )
 
 
@@ -43,10 +50,8 @@ class Lines:
 
     def __init__(self, path):
         self.path, self.number = Path(path), 0
-        # Foreign comments may be in any encoding; what is read from them is not.
-        opened = gzip.open if self.path.suffix.lower() == ".gz" else open
-        self._file = opened(self.path, "rt", encoding="utf-8", errors="replace")
-        self._stream = iter(self._file)
+        self._file = text_of(self.path)
+        self._stream = iter(partial(self._file.readline, LONGEST_LINE), "")
 
     def __enter__(self):
         return self
@@ -57,8 +62,12 @@ class Lines:
     def take(self):
         """Return the next line without the blanks around it, or None at the end of the file."""
         line = next(self._stream, None)
-        self.number += line is not None
-        return None if line is None else line.strip()
+        if line is None:
+            return None
+        self.number += 1
+        if len(line) >= LONGEST_LINE:
+            self._check_lengths([line], self.number)
+        return line.strip()
 
     def put_back(self, line):
         """Undo the last `take`, which gave `line`."""
@@ -67,9 +76,23 @@ class Lines:
 
     def take_rows(self, count=None) -> Rows:
         """Take up to `count` lines (all that are left if None) as they are, fewer only at the end of the file."""
-        rows = Rows(list(islice(self._stream, count)), self.number + 1, count)
-        self.number += len(rows.texts)
-        return rows
+        texts, used, left = [], 0, sys.maxsize if count is None else count
+        first = self.number + 1
+        while piece := list(islice(self._stream, min(PIECE, left - len(texts)))):
+            self._check_lengths(piece, self.number + 1)
+            self.number += len(piece)
+            texts += piece
+            more = used + sum(map(len, piece)) + OBJECT * len(piece)
+            if more // ALWAYS > used // ALWAYS:
+                # Their numbers take about a third of that besides.
+                check_free(self.path, max(more / 3, ALWAYS + 1))
+            used = more
+        return Rows(texts, first, count)
+
+    def _check_lengths(self, lines, first):
+        if max(map(len, lines)) >= LONGEST_LINE:
+            number = first + next(k for k, line in enumerate(lines) if len(line) >= LONGEST_LINE)
+            raise self.broken(f"a line of {LONGEST_LINE} characters or more", "a shorter one", number=number)
 
     def broken(self, found, expected, *, number=None) -> ValueError:
         """The error to raise for a line.
@@ -142,6 +165,8 @@ def whole(lines, word, expected, *, least=None) -> int:
         value = int(word)
     except (TypeError, ValueError):
         raise lines.broken(repr(word) if word is not None else None, expected) from None
+    if abs(value) > sys.maxsize:
+        raise lines.broken(repr(word), f"{expected}, at most {sys.maxsize}")
     if least is not None and value < least:
         raise lines.broken(repr(word), f"{expected}, >= {least}")
     return value

@@ -10,18 +10,23 @@ import zlib
 import numpy as np
 
 from demheat.packing.io.found import Found
+from demheat.packing.io.source import ALWAYS, check_free, length_of, most_of
 from demheat.packing.io.text import broken
 from demheat.scene.bodies import ROUND_AXES
 
 TYPES = {"Float64": "f8", "Float32": "f4", "UInt8": "u1", "Int8": "i1", "String": "u1"}
 HEADERS = {"UInt32": "u4", "UInt64": "u8"}
 RADII = ("radius", "radii", "diameter")
+# Elements of a file; bytes of the longest field; and memory over the length of a file.
+MOST_ELEMENTS, MOST_FIELD, COPIES = 10_000, 10_000, 4
 
 
 def read(path) -> Found:
     """Read points and radii; the box is known only where `write` has noted it."""
+    length = length_of(path)
+    check_free(path, COPIES * length)
     with open(path, "rb") as stream:
-        content = stream.read()
+        content = stream.read(length)
     try:
         return _found(_File(content, path))
     except (ET.ParseError, binascii.Error, zlib.error, ValueError, KeyError, IndexError) as error:
@@ -58,9 +63,10 @@ class _File:
 
     def __init__(self, content, path):
         head, tag, rest = content.partition(b"<AppendedData")
-        self.root = ET.fromstring(head + b"</VTKFile>" if tag else head)
+        self.root = _parsed(head + b"</VTKFile>" if tag else head)
         self.encoding = "base64" if b'"base64"' in rest.partition(b">")[0] else "raw"
         self.appended = rest[rest.index(b"_") + 1 :] if tag else b""
+        self.most = most_of(len(content))
         self.order = "<" if self.root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
         self.header = np.dtype(self.order + HEADERS[self.root.get("header_type", "UInt32")])
         self.packed = self.root.get("compressor")
@@ -85,12 +91,14 @@ class _File:
             raw, coded = (element.text or "").strip().encode(), True
             if format == "appended":
                 raw, coded = self.appended[int(element.get("offset")) :], self.encoding == "base64"
-            values = np.frombuffer(self._bytes(raw, coded), dtype=self.order + TYPES[kind]).astype(float)
+            dtype = np.dtype(self.order + TYPES[kind])
+            most = MOST_FIELD if count is None else min(count * dtype.itemsize, self.most)
+            values = np.frombuffer(self._bytes(raw, coded, most), dtype=dtype).astype(float)
         if count is not None and len(values) != count:
             raise ValueError(f"found {len(values)} values of {name}; expected {count}")
         return values
 
-    def _bytes(self, raw, coded):
+    def _bytes(self, raw, coded, most):
         """One block: a header of integers (base64 on its own if the data are packed), then the data."""
         if not self.packed:
             width = self.header.itemsize
@@ -98,11 +106,10 @@ class _File:
             length = int(np.frombuffer(head, self.header)[0])
             return _whole(_decode(raw, width + length, 0)[width:] if coded else raw[width : width + length], length)
         blocks, head, start = self._packed_header(raw, coded)
-        lengths = np.frombuffer(head, self.header)[3 : 3 + blocks].astype(int)
-        body = _decode(raw, int(lengths.sum()), start) if coded else raw[start : start + int(lengths.sum())]
-        body = _whole(body, int(lengths.sum()))
-        ends = np.cumsum(lengths)
-        return b"".join(zlib.decompress(body[end - n : end]) for end, n in zip(ends, lengths, strict=True))
+        lengths = np.frombuffer(head, self.header)[3 : 3 + blocks].tolist()
+        total = sum(lengths)
+        body = _whole(_decode(raw, total, start) if coded else raw[start : start + total], total)
+        return _unpacked(body, lengths, most)
 
     def _packed_header(self, raw, coded):
         """Number of packed blocks, the header that lists their lengths, and where the data start."""
@@ -111,6 +118,35 @@ class _File:
         blocks = int(np.frombuffer(first, self.header)[0])
         length = width * (3 + blocks)
         return blocks, _decode(raw, length, 0) if coded else raw[:length], _coded(length) if coded else length
+
+
+def _parsed(text):
+    """The XML, unless it has a document type, whose entities might expand without end, or very many elements."""
+    if b"<!DOCTYPE" in text:
+        raise ValueError("found a document type; expected none")
+    parser, first, count = ET.XMLPullParser(("start",)), None, 0
+    for begin in range(0, len(text), ALWAYS >> 8):
+        parser.feed(text[begin : begin + (ALWAYS >> 8)])
+        for _, root in parser.read_events():
+            first, count = root if first is None else first, count + 1
+        if count > MOST_ELEMENTS:
+            raise ValueError(f"found more than {MOST_ELEMENTS} elements; expected fewer")
+    parser.close()
+    return first
+
+
+def _unpacked(body, lengths, most):
+    """Packed blocks one behind the other, unpacked: no more than `most` bytes."""
+    parts, left, begin = [], most, 0
+    for length in lengths:
+        unpacker = zlib.decompressobj()
+        parts.append(unpacker.decompress(body[begin : begin + length], left + 1))
+        left, begin = left - len(parts[-1]), begin + length
+        if left < 0:
+            raise ValueError(f"found more than {most} bytes of an array; expected {most} at most")
+        if not unpacker.eof:
+            raise ValueError("found a packed block that does not end; expected whole ones")
+    return b"".join(parts)
 
 
 def _coded(length):

@@ -124,3 +124,16 @@ def test_only_fluxes_fix_no_level():
     scene = Scene(size=(1, 1, 1), matrix=ONE, walls={"y-": Flux(1.0), "y+": Flux(-1.0)})
     with pytest.raises(ValueError, match="at least one wall"):
         solve_steady(built(ball(1.0, **WALLS)), scene)
+
+
+def test_high_contrast_asks_for_a_looser_tolerance():
+    scene = ball(1e12, **WALLS)
+    network = built(scene, number=300)
+    with pytest.raises(
+        RuntimeError, match=r"at a contrast of 1\.0e\+12: must be tolerance = 1e-06, which is mostly met"
+    ):
+        solve_steady(network, scene)
+    assert solve_steady(network, scene, tolerance=1e-6).stats["residual"] <= 1e-6
+    # A failure at a mild contrast is another matter.
+    with pytest.raises(RuntimeError, match=r"asked for 1\.0e-08$"):
+        solve_steady(network, ball(10.0, **WALLS), max_iterations=1)

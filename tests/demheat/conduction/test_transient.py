@@ -377,3 +377,15 @@ def test_what_is_not_supported_says_why():
     with pytest.raises(NotImplementedError, match="two held walls meet|held walls meet"):
         corner = Scene(size=BOX, matrix=METAL, walls={"x-": 1.0, "y-": 2.0}, initial=25.0)
         evolve(corner, [1.0], law="calibrated")
+
+
+@pytest.mark.parametrize("integrator", ["tr-bdf2", "tr-bdf2-multigrid"])
+@pytest.mark.parametrize(("accuracy", "relaxations"), [(1e-3, 1e7), (1e-3, 1e12), (1e-6, 1e12)])
+def test_far_beyond_the_steady_state(integrator, accuracy, relaxations):
+    """The bound on what a solve leaves grows with the step; what it leaves does not."""
+    settled = BOX[0] ** 2 * METAL.density * METAL.heat_capacity / METAL.conductivity
+    knobs = {"particles": 300, "integrator": integrator, "accuracy": accuracy}
+    field = last(SLAB, [relaxations * settled], **knobs)
+    # k A (35 - 25) / L, to the accuracy; and no heat is lost, to rounding.
+    assert field.wall_heat["y+"] == pytest.approx(33.0, rel=accuracy)
+    assert field.stats["energy_error"] < 1e-12

@@ -1,3 +1,4 @@
+import json
 import warnings
 
 import numpy as np
@@ -177,3 +178,36 @@ def test_nothing_is_cached_of_bad_input(tmp_path):
     with pytest.raises(ValueError, match="phi"):
         relaxed(200, phi=2.0, folder=tmp_path)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_no_flipped_bit_loads_another_packing_or_raises(tmp_path):
+    """A bit of each seventh byte, names and shapes of the arrays included: the file is whole or made again."""
+    made = cached(Maker(), {}, folder=tmp_path)
+    (path,) = tmp_path.iterdir()
+    raw, text = path.read_bytes(), json.dumps({"format": cache.FORMAT})
+    noticed = 0
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for place in range(0, len(raw), 7):
+            path.write_bytes(raw[:place] + bytes([raw[place] ^ 1 << place % 8]) + raw[place + 1 :])
+            found = cache._load(path, text)
+            noticed += found is None
+            if found is not None:
+                same(made, found)
+                assert found.provenance == {"a": [1]} and found.domain == "box"
+    # The rest are dates of members and the like.
+    assert noticed > 0.5 * len(raw) / 7
+
+
+def test_a_changed_archive_that_is_whole_is_noticed(tmp_path):
+    """Its members fit their own checksums, but not the one over all."""
+    cached(Maker(), {}, folder=tmp_path)
+    (path,) = tmp_path.iterdir()
+    raw = path.read_bytes()
+    with np.load(path) as stored:
+        arrays = dict(stored)
+    np.savez(path, **arrays | {"radii": arrays["radii"] * 2})
+    make = Maker()
+    with pytest.warns(UserWarning, match="made again: the checksum does not fit"):
+        cached(make, {}, folder=tmp_path)
+    assert make.calls == 1 and path.read_bytes() == raw

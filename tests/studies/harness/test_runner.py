@@ -1,5 +1,6 @@
 """Rows are run, reused and resumed, on a study small enough to break on purpose."""
 
+import errno
 import importlib
 import os
 import shutil
@@ -11,6 +12,7 @@ from pathlib import Path
 
 import pytest
 
+from studies.__main__ import main
 from studies.harness import methods, provenance, runner, store
 
 
@@ -198,3 +200,75 @@ def test_state_tells_held_from_stale_from_missing(tiny):
     tiny.write()
     store.write_rows(tiny.out / f"{tiny.name}.csv", [row | {"machine": "another"} for row in tiny.rows().values()])
     assert state() == {"held": 1, "stale": 0, "missing": 1}
+
+
+def test_two_runs_on_one_folder_lose_no_row(tiny):
+    """While one computes its row another run makes both: the first one must not write its older view."""
+
+    def compute(name, study, case):
+        if not inner:
+            inner.append(True)
+            runner.run_study(name, tiny.out, force=True, say=lambda line: None, compute=compute)
+        return runner.compute_row(study, case, warm=False)
+
+    inner = []
+    runner.run_study(tiny.name, tiny.out, quick=True, say=lambda line: None, compute=compute)
+    assert [row["name"] for row in tiny.rows().values()] == ["plain", "second"]
+
+
+def test_what_rows_must_agree_in():
+    """A row of another machine or with other threads has other costs, of other code or versions other numbers."""
+    assert set(provenance.SAME) == {"code", "machine", "threads", "versions"}
+
+
+def test_a_folder_that_cannot_be_written_is_found_before_the_first_row(tiny, tmp_path, capsys, monkeypatch):
+    def ran(*words):
+        status = main(["run", tiny.name, *words])
+        return status, capsys.readouterr().err, (tmp_path / "log").exists()
+
+    (tmp_path / "file").write_text("")
+    status, said, begun = ran("--out", str(tmp_path / "file"))
+    assert status == 2 and "must be a folder that can be written" in said and said.count("\n") == 1 and not begun
+
+    def full(*args, **knobs):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(store.tempfile, "TemporaryFile", full)
+    status, said, begun = ran("--out", str(tiny.out))
+    assert status == 2 and "No space left on device" in said and not begun
+
+
+@pytest.mark.parametrize("name", ["../x", "", ".", "x y", "/tmp/x", "a..b"])
+def test_a_name_that_is_none_is_refused_in_a_line(name, capsys):
+    assert main(["run", name]) == 2
+    assert capsys.readouterr().err.startswith(f"studies: no study {name!r}; must be a name")
+
+
+def test_broken_results_are_named(tiny, capsys):
+    tiny.out.mkdir()
+    path = tiny.out / f"{tiny.name}.csv"
+    for make in (lambda: path.write_text("no rows"), lambda: (path.unlink(), path.mkdir())):
+        make()
+        for words in (["run", tiny.name], ["render", tiny.name]):
+            assert main([*words, "--out", str(tiny.out)]) == 2
+            said = capsys.readouterr().err
+            assert f"{path}: must hold rows of a study as CSV" in said and said.count("\n") == 1
+    path.rmdir()
+    path.write_text("case,status\na,ok\n")
+    assert main(["render", tiny.name, "--out", str(tiny.out)]) == 2
+    assert "lacks the columns ['note', " in capsys.readouterr().err
+
+
+def test_a_row_ends_with_all_that_it_started(tiny, tmp_path):
+    """A solver's own process, in the same session, must not go on when its row has run out of time."""
+    child = 'import subprocess; child = subprocess.Popen(["sleep", "60"]); _log(f"pid {child.pid}"); time.sleep(60)'
+    tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": child})
+    study = runner.load(tiny.name)
+    assert runner.spawn_row(tiny.name, study, study.CASES[2])["status"] == "timeout"
+    assert _wait_for(lambda: not _alive(_logged_pid(tmp_path / "log")), seconds=5)
+
+
+def test_without_docstrings(tiny):
+    code = f"import studies.__main__ as m; m.study_names = lambda: ['{tiny.name}']; m.main(['list'])"
+    done = subprocess.run([sys.executable, "-OO", "-c", code], capture_output=True, text=True, check=True)
+    assert tiny.name in done.stdout.split("missing")[1]

@@ -1,0 +1,54 @@
+"""Requests that no machine can do are refused before anything is made, whoever is asked."""
+
+import re
+
+import pytest
+
+from demheat import Material, Scene, evolve, gallery, solve
+from demheat.packing.domain import replicate
+from demheat.packing.lsa import lsa
+from demheat.packing.relax import relax
+from demheat.slices import plane
+from references import exact, fem, fft, multipole
+from references.fft.zeta import zeta2
+
+HUGE = 10**12
+SLAB, CELL = gallery.slab(), gallery.simple_cubic()
+IN_TIME = Scene((0.1, 0.1, 0.1), Material(33.0, 7800.0, 900.0), walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
+REQUESTS = {
+    "particles = 1000000000000: takes": lambda: solve(SLAB, particles=HUGE),
+    "particles = 100000000000...": lambda: evolve(IN_TIME, [1.0], particles=10**300),
+    "number = 1000000000000: takes": lambda: relax(HUGE),
+    "number = 100000000000...": lambda: lsa(10**300),
+    "pressure = 1e+300: must be >= 10 and <= 1e+12": lambda: lsa(100, pressure=1e300),
+    "growth = 1e+300: must be a rate": lambda: lsa(100, growth=1e300),
+    "growth = 1e-06: takes some 1.8e+07 collisions": lambda: lsa(1000, growth=1e-6),
+    "growth = [[0.0, 0.02], [1000.0, 1e-09]]: takes": lambda: lsa(1000, growth=[(0, 0.02), (1e3, 1e-9)]),
+    "repeats = [10000, 10000, 10000]: takes": lambda: replicate(relax(100), (10_000,) * 3),
+    "replicas = 10000: makes": lambda: solve(SLAB, replicas=10_000),
+    "n = 1000000: takes": lambda: plane(SLAB, axis=0, at=0.05, n=10**6),
+    "n = 100000000000...": lambda: plane(SLAB, axis=0, at=0.05, n=10**200),
+    "count = 1000000000000: takes": lambda: gallery.dispersion(HUGE),
+    "count = 1000000000000: takes ": lambda: gallery.random_dispersion(HUGE, diameter=1e-5),
+    "voxels = 1290: takes": lambda: fft.solve(CELL, voxels=1290),
+    "voxels = 1280: takes": lambda: zeta2(CELL, voxels=1280),
+    "threads = 1000000000: must": lambda: fft.solve(CELL, threads=10**9),
+    "threads = 1000000000: must ": lambda: multipole.solve(CELL, threads=10**9),
+    "points_per_axis = 100000: takes": lambda: exact.solve(SLAB, points_per_axis=10**5),
+    "points_per_axis = 100000: takes ": lambda: multipole.solve(CELL, points_per_axis=10**5),
+    "step = 1e-300: takes inf": lambda: evolve(IN_TIME, [1e10], step=1e-300),
+    "step = 1e-12: takes": lambda: evolve(IN_TIME, [1.0], step=1e-12),
+    "step = 1e-12: takes ": lambda: next(fem.evolve(IN_TIME, [1.0], step=1e-12)),
+    "times, the last = 1000000000000.0: takes": lambda: next(
+        evolve(IN_TIME, [1e12], particles=300, integrator="euler")
+    ),
+    "times, the last = 1e+30: takes": lambda: next(evolve(IN_TIME, [1e30], particles=300, integrator="rkl2")),
+}
+
+
+@pytest.mark.parametrize("said", REQUESTS)
+def test_too_much_is_refused(said, monkeypatch):
+    # What is refused here is so on any machine up to 32 GiB: larger ones are not asked.
+    monkeypatch.setattr("demheat.limits.free_memory", lambda: 2.0**35)
+    with pytest.raises(ValueError, match="^" + re.escape(said.strip())):
+        REQUESTS[said]()
