@@ -81,13 +81,8 @@ def level_off(temperature, label, volumes):
         Body of each particle; negative in none.
     volumes : (n,) float array, m3
     """
-    inside = label >= 0
-    body, weight = label[inside], volumes[inside]
-    if not len(body):
-        return
-    total, mass = (np.bincount(body, each) for each in (weight * temperature[inside], weight))
-    # Numbers of bodies that are left out have no mass.
-    temperature[inside] -= (total / np.where(mass > 0, mass, 1.0))[body]
+    count = label.max(initial=-1) + 1
+    kernels.level_off(temperature, label, volumes, np.zeros(count), np.zeros(count))
 
 
 def _gathered(network, solid, jump):

@@ -59,7 +59,6 @@ def gather(links, image, jump, found, state, most):
     label, shift, climbs, queue = found.label, found.shift, found.climbs, found.queue
     head, tail, seed, bodies = state[0], state[1], state[2], state[3]
     end = head + most
-    step = np.empty(3, np.int64)
     while head < end:
         if head == tail:
             while seed < len(label) and label[seed] != OPEN:
@@ -71,25 +70,52 @@ def gather(links, image, jump, found, state, most):
         i = queue[head]
         head += 1
         body = label[i]
+        climbing = climbs[body]
+        x, y, z = shift[i, 0], shift[i, 1], shift[i, 2]
         for e in range(indptr[i], indptr[i + 1]):
-            if conductance[e] <= 0.0:
-                continue
             j = indices[e]
             # Where links lead is worked out for few: mostly both ends are known, of a body that climbs.
-            if label[j] != OPEN and (climbs[body] or label[j] == NONE):
+            known = label[j] != OPEN
+            if (known and (climbing or label[j] == NONE)) or conductance[e] <= 0.0:
                 continue
             code = np.int64(image[e])
-            step[0], step[1], step[2] = code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1
-            if label[j] == OPEN:
+            u, v, w = x + code // 9 - 1, y + code // 3 % 3 - 1, z + code % 3 - 1
+            if not known:
                 label[j], queue[tail] = body, j
                 tail += 1
-                for k in range(3):
-                    shift[j, k] = shift[i, k] + step[k]
+                shift[j, 0], shift[j, 1], shift[j, 2] = u, v, w
                 continue
-            rise, size = 0.0, 0.0
-            for k in range(3):
-                part = (shift[i, k] + step[k] - shift[j, k]) * jump[k]
-                rise, size = rise + part, size + abs(part)
-            climbs[body] = abs(rise) > ROUNDING * size
+            u, v, w = u - shift[j, 0], v - shift[j, 1], w - shift[j, 2]
+            if u != 0 or v != 0 or w != 0:
+                climbing = _climbs(u * jump[0], v * jump[1], w * jump[2])
+        climbs[body] = climbing
     state[0], state[1], state[2], state[3] = head, tail, seed, bodies
     return head < tail or seed < len(label)
+
+
+@njit(cache=True)
+def _climbs(rise_x, rise_y, rise_z):
+    """Whether rises along x, y and z do not cancel."""
+    return abs(rise_x + rise_y + rise_z) > ROUNDING * (abs(rise_x) + abs(rise_y) + abs(rise_z))
+
+
+@njit(cache=True)
+def level_off(temperature, label, volumes, total, mass):
+    """Take off each body its mean, in place.
+
+    Parameters
+    ----------
+    temperature : (n,) float array, K
+    label : (n,) int array
+        Body of each particle; negative in none.
+    volumes : (n,) float array, m3
+    total, mass : (number of bodies,) float arrays
+        Zeros at first: sums of volume times temperature, and of volumes.
+    """
+    for i in range(len(label)):
+        if label[i] >= 0:
+            total[label[i]] += volumes[i] * temperature[i]
+            mass[label[i]] += volumes[i]
+    for i in range(len(label)):
+        if label[i] >= 0:
+            temperature[i] -= total[label[i]] / mass[label[i]]

@@ -41,6 +41,25 @@ def test_bodies_beside_those_found_by_hand(per_row, most, jump):
             assert_allclose((found.shift[i] + step[e] - found.shift[j]) @ jump, 0, atol=1e-12)
 
 
+@pytest.mark.twin
+def test_means_of_bodies_are_taken_off():
+    rng = np.random.default_rng(0)
+    label, volumes, before = rng.integers(-1, 5, 200).astype(np.int32), rng.random(200), rng.random(200)
+    # Bodies that are left out have no mass.
+    label[label == 2] = -1
+    after = before.copy()
+    kernels.level_off(after, label, volumes, np.zeros(5), np.zeros(5))
+    for body in range(-1, 5):
+        here = label == body
+        mean = np.average(before[here], weights=volumes[here]) if body >= 0 and here.any() else 0.0
+        assert_allclose(after[here], before[here] - mean, atol=1e-14)  # rounding of sums
+    again, nothing = before.copy(), np.full(200, -1, np.int32)
+    islands.level_off(again, label, volumes)
+    assert_array_equal(again, after)
+    islands.level_off(again, nothing, volumes)
+    assert_array_equal(again, after)
+
+
 def layers(**load):
     """Metal from 0.2 to 0.5 and from 0.7 to 0.9."""
     return Scene((1, 1, 1), PORE, [Layer(1, 0.2, 0.5, ONE), Layer(1, 0.7, 0.9, ONE)], **load)
