@@ -22,7 +22,7 @@ from demheat.scene.checks import (
     checked_sources,
 )
 from demheat.scene.functions import load_at
-from demheat.scene.inputs import vector
+from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
@@ -76,6 +76,8 @@ class Scene:
         size = vector("Scene.size", self.size)
         if min(size) <= 0:
             raise ValueError(f"Scene.size = {self.size!r}: all three lengths must be > 0 m")
+        if not all(map(moderate, size)):
+            raise ValueError(f"Scene.size = {self.size!r}: all three lengths must be from {LEAST:g} to {MOST:g} m")
         object.__setattr__(self, "size", size)
         check_material("Scene.matrix", self.matrix)
         object.__setattr__(self, "inclusions", checked_inclusions(self.inclusions))
