@@ -55,8 +55,8 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     Warns
     -----
     UserWarning
-        If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
-        holds no particle.
+        If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
+        no particle, or is thin for particles without twins.
     """
     check_scene(scene)
     if not isinstance(law, tuple(LAWS.values())):
