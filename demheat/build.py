@@ -23,6 +23,8 @@ from demheat.scene.thickness import coats, extents
 # layer of .001 and of 1000 times the matrix's conductivity, over the exact value: at 2.4 diameters .05 and -.16, at 1.2
 # diameters 2 and -.35, at .6 diameters 35 and -.75.
 THIN = 1.5
+# Coats that are followed all round leave less to chance.
+THIN_COAT = 0.5
 
 
 def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0) -> Network:
@@ -53,8 +55,8 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     Warns
     -----
     UserWarning
-        If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
-        holds no particle.
+        If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
+        no particle, or is thin for particles without twins.
     """
     check_scene(scene)
     if not isinstance(law, tuple(LAWS.values())):
@@ -119,9 +121,10 @@ def _warn_of_thin_phases(scene, phase, diameter):
     """Without twins it is left to chance how many centres lie in what is thinner than a particle, or little thicker."""
     if not scene.inclusions:
         return
-    thickness = np.minimum(extents(scene), coats(scene))
+    across, coat = extents(scene), coats(scene)
+    thickness = np.minimum(across, coat)
     seen = np.bincount(phase, minlength=len(scene.materials))[1:] > 0
-    thin = np.flatnonzero((thickness < THIN * diameter) & seen)
+    thin = np.flatnonzero(((across < THIN * diameter) | (coat < THIN_COAT * diameter)) & seen)
     if len(thin):
         warnings.warn(
             f"inclusions {_few(thin)} are thin for particles of diameter {diameter:.3g} m (the thinnest is "

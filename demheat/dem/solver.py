@@ -54,7 +54,7 @@ def solve(
         Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
         `demheat.Platonic`.
     packing : Packing, optional
-        Used instead of a relaxed one; must have the scene's box and periodicity.
+        Used instead of a relaxed one; must have the scene's box and periodicity. A copy is taken.
     replicas : int, optional
         Of a smaller packing, along the box's shortest side. By default more than 2 million particles are replicas of
         250 000 or fewer, which cost a few CPU-seconds instead of 90 for each million, and are as accurate; twins at
@@ -81,8 +81,8 @@ def solve(
     Warns
     -----
     UserWarning
-        If interfaces are so near to each other or to a wall that particles do not fit between them, or an inclusion
-        holds no particle.
+        If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
+        no particle, or is thin for particles without twins, or the spheres of a given packing are far apart.
     """
     check_scene(scene)
     check_solver(solver, tolerance)

@@ -17,6 +17,9 @@ MORTON_BITS = 21
 class Packing(NamedTuple):
     """Spheres in a domain inscribed in the box [0, size], stored so that neighbours in space are near in memory.
 
+    `make_packing` checks what it is given; of one made or changed by hand, whatever takes it asks
+    `demheat.packing.gate.check_packing`.
+
     Attributes
     ----------
     centers : (n, 3) float array, m

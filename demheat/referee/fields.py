@@ -69,7 +69,8 @@ def conductivity_error(field: Field, reference: Field | float) -> float:
     ValueError
         Unless the reference's conductivity is finite and positive.
     """
-    check_field(field)
+    if not hasattr(field, "conductivity"):
+        raise ValueError(f"field = {field!r}: must be a Field, or have a conductivity")
     exact = getattr(reference, "conductivity", reference)
     finite("reference conductivity", exact, "finite and > 0, a relative error follows from it", lambda v: v > 0)
     return value_error(field.conductivity, exact)

@@ -9,6 +9,8 @@ from numbers import Integral, Real
 import numpy as np
 
 WORDS = {2: "two", 3: "three"}
+# Sizes of numbers whose products and squares floating point still holds: beyond, methods gave zeros and not-a-number.
+LEAST, MOST = 1e-50, 1e50
 
 
 def vector(name: str, value, *, length: int = 3) -> tuple[float, ...]:
@@ -133,12 +135,17 @@ def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambd
         If the value is anything else.
     """
     try:
-        good = _is_real(value) and math.isfinite(value) and accept(value)
+        good = _is_real(value) and math.isfinite(value) and accept(float(value))
     except OverflowError:
         good = False
     if not good:
         raise ValueError(f"{name} = {value!r}: must be {valid}")
     return float(value)
+
+
+def moderate(value) -> bool:
+    """Whether floating point holds products of a number with some others like it: 0, or of a size in between."""
+    return value == 0 or LEAST <= abs(value) <= MOST
 
 
 def axis_number(axis) -> int:

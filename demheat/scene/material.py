@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from demheat.scene.inputs import number
+from demheat.scene.inputs import LEAST, MOST, moderate, number
+
+WITHIN = f", unless it is 0 from {LEAST:g} to {MOST:g}"
 
 
 @dataclass(frozen=True)
@@ -26,10 +28,10 @@ class Material:
     heat_capacity: float | None = None
 
     def __post_init__(self):
-        number(self, "conductivity", "a finite number >= 0 W/(m K)", lambda v: v >= 0)
+        number(self, "conductivity", f"a finite number >= 0 W/(m K){WITHIN}", lambda v: v >= 0 and moderate(v))
         for name in ("density", "heat_capacity"):
             if getattr(self, name) is not None:
-                number(self, name, "a finite number > 0", lambda v: v > 0)
+                number(self, name, f"a finite number > 0{WITHIN}", lambda v: v > 0 and moderate(v))
 
 
 def check_material(name: str, value) -> None:

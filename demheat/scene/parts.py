@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from demheat.scene.inputs import number, vector, whole
+from demheat.scene.inputs import MOST, moderate, number, vector, whole
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Flux:
 
     def __post_init__(self):
         if not callable(self.value):
-            number(self, "value", "a finite number of W/m2, or a function of time")
+            number(self, "value", f"a finite number of W/m2 of at most {MOST:g}, or a function of time", moderate)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from demheat.scene.checks import (
     checked_sources,
 )
 from demheat.scene.functions import load_at
-from demheat.scene.inputs import vector
+from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
 from demheat.scene.parts import Flux, MovingCylinder, UniformSource
@@ -51,7 +51,7 @@ class Scene:
         Keys "x-", "x+", "y-", "y+", "z-", "z+", and "round" for a round wall; a number is a temperature in the user's
         scale (K or degrees Celsius), a function one that changes in time, a `Flux` an imposed heat flux density.
     initial : float or callable (points) -> temperatures, optional
-        Temperature at time 0; a function takes (n, 3) points in metres and returns (n,) temperatures.
+        Temperature at time 0; a function takes (n, 3) points in metres, a copy, and returns (n,) temperatures.
     sources : sequence of UniformSource or MovingCylinder
         Heat sources, for transients.
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
@@ -60,7 +60,9 @@ class Scene:
     Raises
     ------
     ValueError
-        If an argument is not as described; the message names it, its value and what would be valid.
+        If an argument is not as described; the message names it, its value and what would be valid. Lengths,
+        conductivities, gradients and fluxes are from 1e-50 to 1e50, or 0 where that makes sense; temperatures of walls
+        differ by 1e-10 of the largest, or not at all.
     """
 
     size: tuple[float, float, float]
@@ -76,6 +78,8 @@ class Scene:
         size = vector("Scene.size", self.size)
         if min(size) <= 0:
             raise ValueError(f"Scene.size = {self.size!r}: all three lengths must be > 0 m")
+        if not all(map(moderate, size)):
+            raise ValueError(f"Scene.size = {self.size!r}: all three lengths must be from {LEAST:g} to {MOST:g} m")
         object.__setattr__(self, "size", size)
         check_material("Scene.matrix", self.matrix)
         object.__setattr__(self, "inclusions", checked_inclusions(self.inclusions))

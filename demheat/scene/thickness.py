@@ -21,7 +21,7 @@ def coats(scene) -> np.ndarray:
         outer = parents[number] - 1
         (low, high), (start, stop) = scene.inclusions[outer].bounds(), scene.inclusions[number].bounds()
         ends = np.isfinite(low) & np.isfinite(start)
-        gaps = np.stack([start - low, high - stop])[:, ends]
+        gaps = np.stack([start[ends] - low[ends], high[ends] - stop[ends]])
         if scene.periodic:
             # The image whose middle is nearest.
             turns = np.round((gaps[0] - gaps[1]) / 2 / np.array(scene.size)[ends]) * np.array(scene.size)[ends]
@@ -32,4 +32,5 @@ def coats(scene) -> np.ndarray:
 
 def _least(bounds):
     low, high = bounds
-    return float(np.min((high - low)[np.isfinite(low)], initial=np.inf))
+    ends = np.isfinite(low)
+    return float(np.min(high[ends] - low[ends], initial=np.inf))

@@ -15,7 +15,7 @@ from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
-from demheat.scene.thickness import coats, extents
+from demheat.scene.thickness import coats
 from references.fft import cg, eyre_milton
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
@@ -101,7 +101,7 @@ def solve(
     Warns
     -----
     UserWarning
-        If an inclusion or its coat is so thin that voxels cannot hold it.
+        If an inclusion around another is a coat thinner than a voxel.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations)
     threads = thread_count(threads)
@@ -115,7 +115,7 @@ def solve(
     needed = BYTES[scheme] * math.prod(shape) * np.dtype(PRECISIONS[precision]).itemsize / 8
     check_memory("voxels", voxels, needed, power=3)
     if scene.inclusions:
-        _warn_of_thin(box, shape, knobs.rule)
+        _warn_of_thin(box, shape)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(box, shape, laminate=knobs.rule != "plain")
     slope, level = _linear_part(box)
@@ -172,18 +172,14 @@ def _checked(scheme, rule, precision, tolerance, max_iterations):
     return _Knobs(scheme, rule, precision, tolerance, max_iterations)
 
 
-def _warn_of_thin(scene, shape, rule):
-    """Two interfaces in one voxel are more than it can hold, but for layers where voxels hold laminates."""
-    voxel = float(np.max(np.array(scene.size) / shape))
-    thickness = coats(scene)
-    if rule == "plain":
-        thickness = np.minimum(thickness, extents(scene))
-    thin = np.flatnonzero(thickness < voxel)
+def _warn_of_thin(scene, shape):
+    """A voxel that both faces of a coat cross holds three materials; rules know two."""
+    voxel, left = float(np.max(np.array(scene.size) / shape)), coats(scene)
+    thin = np.flatnonzero(left < voxel)
     if len(thin):
         warnings.warn(
-            f"inclusions {thin[:8].tolist()}{' and more' if len(thin) > 8 else ''}, or their coats, are thinner than a "
-            f"voxel of {voxel:.3g} m (the thinnest is {thickness[thin].min():.3g} m): errors may be percents; use more "
-            "voxels",
+            f"inclusions {thin[:8].tolist()}{' and more' if len(thin) > 8 else ''} are coats thinner than a voxel of "
+            f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
             stacklevel=3,
         )
 

@@ -356,3 +356,28 @@ def test_phases_of_many_points_are_those_of_each_inclusion_asked_apart(periodic)
         slow[np.linalg.norm(away, axis=1) <= ball.radius] = number
     assert np.array_equal(scene.phase_at(points), slow)
     assert len(np.unique(slow)) == 55
+
+
+class TestExtremes:
+    """What floating point cannot hold is refused: it gave zeros and not-a-number without a word."""
+
+    @pytest.mark.parametrize("walls", [(1e15, 1e15 + 0.25), (-1e308, 1e308), (0.0, 1e-60), (300.0, 300.0 + 1e-9)])
+    def test_walls(self, walls):
+        with pytest.raises(ValueError, match="Scene.walls"):
+            Scene((1, 1, 1), STEEL, walls=dict(zip(("x-", "x+"), walls, strict=True)))
+
+    @pytest.mark.parametrize("walls", [(1e15, 1e15), (-1e50, 1e50), (0.0, 1e-50), (300.0, 300.0 + 1e-7)])
+    def test_walls_that_pass(self, walls):
+        Scene((1, 1, 1), STEEL, walls=dict(zip(("x-", "x+"), walls, strict=True)))
+
+    @pytest.mark.parametrize("size", [1e-200, 1e-51, 1e51, 1e300])
+    def test_sizes(self, size):
+        for gradient in ((size, 0, 0), (0, -size, 0)):
+            with pytest.raises(ValueError, match="Scene.gradient = .*must be from 1e-50 to 1e[+]?50"):
+                Scene((1, 1, 1), STEEL, gradient=gradient)
+        with pytest.raises(ValueError, match="Material.conductivity = "):
+            Material(size)
+        with pytest.raises(ValueError, match="Scene.size = .*must be from"):
+            Scene((1, 1, size), STEEL, gradient=(1, 0, 0))
+        with pytest.raises(ValueError, match="Flux.value = "):
+            Flux(size)

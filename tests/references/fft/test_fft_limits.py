@@ -10,6 +10,9 @@ from references import exact, fft
 from references.fft import solver
 from references.voxels import links as voxel_links
 
+# Grids here are coarse on purpose.
+pytestmark = pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel")
+
 # Grids, precision, extremes
 
 

@@ -11,6 +11,9 @@ from numpy.testing import assert_allclose
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import fft
 
+# Grids here are coarse on purpose.
+pytestmark = pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel")
+
 # Closed forms
 
 

@@ -1,0 +1,84 @@
+"""What is too thin for a grid is said: layers and spheres without twins, coats without and on voxels."""
+
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import demheat
+from demheat import Layer, Material, Scene, Sphere
+from demheat.packing import make_packing
+from demheat.scene.thickness import coats, extents
+from references import fft
+
+METAL, OTHER = Material(1.0), Material(5.0)
+CUBE = {"size": (1.0, 1.0, 1.0), "matrix": METAL}
+
+
+def crystal(number=6, periodic=True):
+    x = (np.arange(number) + 0.5) / number
+    sites = np.stack(np.meshgrid(x, x, x, indexing="ij"), axis=-1).reshape(-1, 3)
+    return make_packing(sites, np.full(number**3, 0.5 / number), (1, 1, 1), periodic, {})
+
+
+def cell(*inclusions):
+    return Scene(**CUBE, inclusions=inclusions, gradient=(1.0, 0.0, 0.0))
+
+
+def ball(radius, center=(0.5, 0.5, 0.5)):
+    return Sphere(center, radius, OTHER)
+
+
+def test_extents_and_coats():
+    scene = cell(
+        Layer(0, 0.0, 0.4, OTHER), Layer(0, 0.1, 0.3, METAL), ball(0.2, (0.7, 0.5, 0.5)), ball(0.15, (0.72, 0.5, 0.5))
+    )
+    assert_allclose(extents(scene), [0.4, 0.2, 0.4, 0.3])
+    # The widest place of the coat is on the far side.
+    assert_allclose(coats(scene), [0.1, np.inf, 0.07, np.inf])
+    assert len(extents(cell())) == len(coats(cell())) == 0
+
+
+def test_coats_by_the_nearest_image():
+    scene = cell(ball(0.2, (0.0, 0.5, 1.0)), ball(0.19, (1.0, 0.5, 0.0)))
+    assert_allclose(coats(scene), [0.01, np.inf])
+    walled = Scene(
+        **CUBE, inclusions=[ball(0.2, (0.0, 0.5, 0.5)), ball(0.1, (0.0, 0.5, 0.5))], walls={"x-": 0.0, "x+": 1.0}
+    )
+    assert_allclose(coats(walled), [0.1, np.inf])
+
+
+@pytest.mark.parametrize(
+    "knobs", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}, {"law": "platonic", "gap": 0.1}]
+)
+@pytest.mark.parametrize(
+    "inclusions",
+    [
+        # One plane of centres lies in it.
+        (Layer(0, 0.41, 0.42, Material(1e-3)),),
+        (Layer(0, 0.4, 0.6, OTHER),),
+        (ball(0.1, (0.4167, 0.4167, 0.4167)),),
+        (ball(0.44), ball(0.4)),
+    ],
+)
+def test_the_dem_without_twins_says_so(inclusions, knobs):
+    with pytest.warns(UserWarning, match=r"inclusions \[0\] are thin for particles of diameter 0.167 m"):
+        demheat.solve(cell(*inclusions), packing=crystal(), **knobs)
+
+
+def test_twins_and_thick_inclusions_are_not_warned_of():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        demheat.solve(cell(Layer(0, 0.3, 0.6, OTHER)), packing=crystal(), conforming=False)
+        demheat.solve(cell(ball(0.4), ball(0.25)), packing=crystal(), conforming=False)
+        demheat.solve(cell(Layer(0, 0.41, 0.46, OTHER)), packing=crystal())
+
+
+def test_coats_thinner_than_a_voxel():
+    """A coat that nothing outside notices was 2 % off."""
+    with pytest.warns(UserWarning, match=r"inclusions \[0\] are coats thinner than a voxel of 0.125 m, down to 0.1 m"):
+        fft.solve(cell(ball(0.4), ball(0.3)), voxels=8)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fft.solve(cell(ball(0.4), ball(0.3)), voxels=12)
