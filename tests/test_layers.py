@@ -105,6 +105,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.laws",
         "demheat.progress",
+        "demheat.limits",
         "demheat.packing",
         "demheat.network",
         "demheat.calibration",
