@@ -7,6 +7,7 @@ import numpy as np
 
 from demheat.calibration import calibration, calibration_scene, cube_like
 from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.limits import check_memory
 from demheat.network.base import Network
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
@@ -25,6 +26,9 @@ from demheat.scene.thickness import coats, extents
 THIN = 1.5
 # Coats that are followed all round leave less to chance.
 THIN_COAT = 0.5
+
+# Least bytes that a particle takes from here on.
+BYTES = 400
 
 
 def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0) -> Network:
@@ -50,7 +54,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     ------
     ValueError
         If the law is none of these; or does not suit the packing, which may have no bulk, or no particles that touch
-        its walls.
+        its walls; or the twins in narrow gaps are more than fit into memory.
 
     Warns
     -----
@@ -65,6 +69,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     begun = time.perf_counter()
     if law.conforming:
         packing = conform(packing, scene, seed=seed)
+        check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
         _warn_of_gaps(packing)
     packing, facets = _facets(packing, law)
     cut = time.perf_counter()

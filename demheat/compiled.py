@@ -169,7 +169,12 @@ def base_folder() -> Path:
 
 def _of_this_run():
     """A folder that processes started by this one find, and that ends with it."""
-    folder, owner = tempfile.mkdtemp(prefix="demheat-kernels-"), os.getpid()
+    try:
+        folder, owner = tempfile.mkdtemp(prefix="demheat-kernels-"), os.getpid()
+    except OSError as error:
+        raise RuntimeError(
+            f"no folder at all can be written for compiled kernels ({error}): set NUMBA_CACHE_DIR"
+        ) from None
     os.environ["NUMBA_CACHE_DIR"] = folder
     atexit.register(lambda: os.getpid() == owner and shutil.rmtree(folder, ignore_errors=True))
     return Path(folder)

@@ -112,6 +112,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.laws",
         "demheat.progress",
+        "demheat.limits",
         "demheat.packing",
         "demheat.network",
         "demheat.calibration",

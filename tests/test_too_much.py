@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from demheat import Material, Scene, evolve, gallery, solve
+from demheat import Layer, Material, Scene, evolve, gallery, solve
 from demheat.packing.domain import replicate
 from demheat.packing.lsa import lsa
 from demheat.packing.relax import relax
@@ -44,6 +44,16 @@ REQUESTS = {
     ),
     "times, the last = 1e+30: takes": lambda: next(evolve(IN_TIME, [1e30], particles=300, integrator="rkl2")),
 }
+
+
+def test_twins_beyond_memory_are_refused(monkeypatch):
+    """In a gap of a quarter of a particle there are many more twins than particles were asked for."""
+    monkeypatch.setattr("demheat.limits.SMALL", 0)
+    monkeypatch.setattr("demheat.limits.free_memory", lambda: 1e6)
+    layer = Layer(0, 0.49, 0.51, Material(10.0))
+    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [layer], walls={"x-": 0.0, "x+": 1.0})
+    with pytest.raises(ValueError, match=r"particles, twins in narrow gaps among them, = [0-9]+: takes"):
+        solve(scene, particles=1000)
 
 
 @pytest.mark.parametrize("said", REQUESTS)

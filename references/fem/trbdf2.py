@@ -25,7 +25,9 @@ SHRINK, SAFETY = 0.2, 0.9
 ERROR_TOLERANCE = 1e-2
 # Estimates below this part of the temperature's own size are rounding.
 LEAST_SPAN = 1e-9
-SHORTEST = 1e-12
+# Give up when steps become shorter than this part of the way, and of the first one tried: ways far beyond the steady
+# state begin with shorter ones.
+SHORTEST, SHORTEST_OF_FIRST = 1e-12, 1e-6
 
 
 class State(NamedTuple):
@@ -180,7 +182,7 @@ class Clock:
 
     def __init__(self, problem, accuracy, step=None):
         self.problem, self.accuracy, self.given, self.wanted = problem, accuracy, step, None
-        self.steps, self.rejected, self.last = 0, 0, 0.0
+        self.steps, self.rejected, self.last, self.first = 0, 0, 0.0, 0.0
 
     def run(self, state, time):
         """State at a later time.
@@ -202,11 +204,11 @@ class Clock:
         if self.given is not None:
             return self._equal(state, time)
         if self.wanted is None:
-            self.wanted = first_step(state, time)
+            self.wanted = self.first = first_step(state, time)
         while state.time < time:
             left = time - state.time
             step = left if self.wanted >= left * (1 - 1e-9) else min(self.wanted, left / 2)
-            if step < SHORTEST * time:
+            if step < min(SHORTEST * time, SHORTEST_OF_FIRST * self.first):
                 raise RuntimeError(
                     f"finite elements: step {step:.2e} s at {state.time:.6g} s after {self.steps} steps: the estimated "
                     "error does not fall; a load changes too fast"

@@ -150,3 +150,12 @@ def test_numba_tells_us(monkeypatch):
     monkeypatch.setattr(compiled.Compiling, "on_end", lambda self, event: told.append("end"))
     numba.njit(lambda x: x + 1)(1)
     assert told == ["start", "end"]
+
+
+def test_without_even_a_temporary_folder_a_line_says_what_to_set(monkeypatch):
+    def nowhere(prefix):
+        raise FileNotFoundError("No usable temporary directory found")
+
+    monkeypatch.setattr(compiled.tempfile, "mkdtemp", nowhere)
+    with pytest.raises(RuntimeError, match="No usable temporary directory.*: set NUMBA_CACHE_DIR"):
+        compiled._of_this_run()

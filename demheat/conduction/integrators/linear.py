@@ -21,7 +21,7 @@ REUSE = 3.0
 ROUNDING, COARSEST = 1e-13, 1e-9
 # Where steps are longer than heat takes to settle, the bound is far above the error. The size of a correction that
 # leaves this part of the residual then tells it, and such a correction is made so often at most.
-CORRECTED, CORRECTIONS = 1e-2, 3
+CORRECTED, CORRECTIONS = 1e-2, 8
 
 
 def solver(system, preconditioner):
@@ -51,8 +51,10 @@ def solver(system, preconditioner):
     kept = {}
 
     def rounding(g, known, y):
+        """What rounding leaves at least, K, and whether the bound on it says nothing any more."""
         largest = max(float(np.abs(known[free]).max()), float(np.abs(y).max()))
-        return min(ROUNDING + np.finfo(float).eps * g * stiffness, COARSEST) * largest
+        part = ROUNDING + np.finfo(float).eps * g * stiffness
+        return min(part, COARSEST) * largest, part * largest if part > COARSEST else 0.0
 
     def residual(g, known, heat, y):
         r = np.empty_like(y)
@@ -86,8 +88,9 @@ def solver(system, preconditioner):
 
     def solve(g, known, heat, y, limit):
         iterate = _multigrid(system, free, kept, g) if preconditioner == "multigrid" else _jacobi(system)
-        limit, iterations = max(limit, rounding(g, known, y)), 0
-        for _ in range(20):
+        least, unbounded = rounding(g, known, y)
+        limit, iterations, reached = max(limit, least), 0, math.inf
+        for _ in range(20 if limit > unbounded else 0):
             r = residual(g, known, heat, y)
             reached = size(g, r)
             if reached > limit and iterations < MOST:
@@ -99,11 +102,11 @@ def solver(system, preconditioner):
             if reached <= 1.01 * limit:
                 return iterations, reached
         for _ in range(CORRECTIONS):
-            count, error = correct(iterate, g, known, heat, y)
+            count, reached = correct(iterate, g, known, heat, y)
             iterations += count
             balance(g, residual(g, known, heat, y), y)
-            if error <= limit:
-                return iterations, error
+            if reached <= limit:
+                return iterations, reached
         raise RuntimeError(
             f"implicit stage ({preconditioner}): error bound {reached:.2e} K after {iterations} iterations, "
             f"asked for {limit:.1e} K"

@@ -18,6 +18,7 @@ ESTIMATES = True
 GAMMA = 2.0 - math.sqrt(2.0)
 # Weights of the rates at the start, at the middle and at the end; the last is also that of each implicit solve.
 W, D = math.sqrt(2.0) / 4.0, GAMMA / 2.0
+LONG = 1e90  # s
 # Errors of the values at the middle and at the end, in units of the step cubed times the third derivative.
 MIDDLE_ERROR, END_ERROR = GAMMA**3 / 12.0, W * GAMMA**2 / 2.0 + D / 2.0 - 1.0 / 6.0
 
@@ -105,6 +106,9 @@ def _error(times, values, step):
     """
     if len(times) < 4:
         return None
+    # The cube of a step must not overflow; times have no unit here.
+    unit = step if step > LONG else 1.0
+    times, step = [t / unit for t in times], step / unit
     factors = [1.0 / math.prod(t - u for u in times if u != t) for t in times]
     # Per third derivative: 1/6 from the exact solution, the rest from the errors of the middle and the end.
     seen = 1.0 / 6.0 + step**3 * (factors[2] * MIDDLE_ERROR + factors[3] * END_ERROR)

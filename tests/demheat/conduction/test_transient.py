@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Flux, Material, MovingCylinder, Scene, Sphere, UniformSource, evolve
+from demheat.conduction.integrators import linear
 from demheat.packing.cache import relaxed
 from references import series
 
@@ -118,8 +119,6 @@ def test_implicit_steps_of_a_body_at_rest(integrator):
     field = last(heated, [5.0], particles=300, integrator=integrator, accuracy=1e-5)
     # 1 K/s; the solver's 0.2e-6 of 5 K in each step.
     assert_allclose(field.samples.temperature, 25.0, atol=1e-5)
-    with pytest.raises(RuntimeError, match="after .* iterations, asked for"):
-        last(SLAB, [1e300], particles=300, integrator=integrator)
 
 
 ALUMINIUM = Material(185.0, density=2700.0, heat_capacity=900.0)
@@ -379,8 +378,17 @@ def test_what_is_not_supported_says_why():
         evolve(corner, [1.0], law="calibrated")
 
 
-@pytest.mark.parametrize("integrator", ["tr-bdf2", "tr-bdf2-multigrid"])
-@pytest.mark.parametrize(("accuracy", "relaxations"), [(1e-3, 1e7), (1e-3, 1e12), (1e-6, 1e12)])
+@pytest.mark.parametrize(
+    ("integrator", "accuracy", "relaxations"),
+    [
+        *(
+            (name, *how)
+            for name in ("tr-bdf2", "tr-bdf2-multigrid")
+            for how in [(1e-3, 1e7), (1e-3, 1e12), (1e-6, 1e17)]
+        ),
+        ("tr-bdf2", 1e-3, 1e120),
+    ],
+)
 def test_far_beyond_the_steady_state(integrator, accuracy, relaxations):
     """The bound on what a solve leaves grows with the step; what it leaves does not."""
     settled = BOX[0] ** 2 * METAL.density * METAL.heat_capacity / METAL.conductivity
@@ -389,3 +397,9 @@ def test_far_beyond_the_steady_state(integrator, accuracy, relaxations):
     # k A (35 - 25) / L, to the accuracy; and no heat is lost, to rounding.
     assert field.wall_heat["y+"] == pytest.approx(33.0, rel=accuracy)
     assert field.stats["energy_error"] < 1e-12
+
+
+def test_stages_that_do_not_converge_are_said(monkeypatch):
+    monkeypatch.setattr(linear, "CORRECTIONS", 0)
+    with pytest.raises(RuntimeError, match="after .* iterations, asked for"):
+        last(SLAB, [1e18], particles=300, integrator="tr-bdf2")

@@ -249,3 +249,17 @@ def test_tightest():
     assert_allclose(tightest(wall, np.ones(3), np.zeros(3, dtype=bool), "box"), 0.5, rtol=1e-12)  # rounding
     out = np.array([[0.5, 0.5, 0.9, 0.2]])
     assert_allclose(tightest(out, np.ones(3), np.zeros(3, dtype=bool), "sphere"), 0.5, rtol=1e-12)  # rounding
+
+
+def test_more_collisions_than_were_allowed_end_it():
+    """Of a thin gas few are expected, so that it begins; its first window of ten for each sphere is too much."""
+    with pytest.raises(RuntimeError, match="after 1000 collisions: twice most = 100; let the spheres grow faster"):
+        lsa(100, phi=0.2, most=100)
+
+
+def test_the_estimate_of_collisions():
+    """Within a third of what is found: 880 at growth 0.02, 270 at 0.1."""
+    for growth, found in ((0.02, 880), (0.1, 270)):
+        Growth(growth=growth, most=found * 300 * 1.33).check_length(300)
+        with pytest.raises(ValueError, match=f"growth = {growth}: takes some"):
+            Growth(growth=growth, most=found * 300 / 1.5).check_length(300)

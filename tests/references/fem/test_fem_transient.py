@@ -293,3 +293,13 @@ def test_a_step_that_shrinks_to_nothing_is_an_error():
     of = cube(walls={"x-": Flux(lambda t: 1e3 * rng.standard_normal())})
     with pytest.raises(RuntimeError, match=r"after \d+ steps: the estimated error does not fall"):
         last(of, [1.0], elements="hexahedra", size=0.5, accuracy=1e-9, tolerance=1e-12)
+
+
+@pytest.mark.parametrize("relaxations", [1e7, 1e17])
+def test_far_beyond_the_steady_state(relaxations):
+    walls = {"walls": {"x-": 0.0, "x+": 1.0}, "initial": 0.0}
+    scene = Scene((1.0, 1.0, 1.0), UNIT, **walls)
+    (field,) = fem.evolve(scene, [relaxations], elements="hexahedra", size=0.25)
+    # Temperatures are linear there, which bricks are exactly; to the tolerance of the equations.
+    assert field.wall_heat["x+"] == pytest.approx(1.0, rel=1e-8)
+    assert field.stats["energy_error"] < 1e-12
