@@ -150,3 +150,21 @@ def test_numba_tells_us(monkeypatch):
     monkeypatch.setattr(compiled.Compiling, "on_end", lambda self, event: told.append("end"))
     numba.njit(lambda x: x + 1)(1)
     assert told == ["start", "end"]
+
+
+def test_numbers_of_the_source_are_integers_like_others():
+    numba = pytest.importorskip("numba")
+    if numba.config.DISABLE_JIT:
+        pytest.skip("nothing is compiled")
+
+    @numba.njit
+    def more(x):
+        return x + 1
+
+    @numba.njit
+    def sums(n):
+        return more(0) + more(1) + more(n)
+
+    # Others' kernels are left to Numba.
+    more.py_func.__module__ = "demheat.made_up"
+    assert sums(2) == 6 and len(more.signatures) == 1
