@@ -77,6 +77,23 @@ def test_kernels_are_in_modules_of_kernels():
     assert loose == []
 
 
+def test_python_calls_no_kernel_that_has_no_way_in():
+    """It would end the process: such kernels are private, and named by their own module only."""
+    closed = {
+        node.name
+        for tree in KERNELS.values()
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef) and any(ast.unparse(each) == "inner" for each in node.decorator_list)
+    }
+    assert len(closed) > 10 and all(name.startswith("_") for name in closed)
+    tests = (ast.parse(path.read_text(encoding="utf-8")) for path in (ROOT / "tests").rglob("*.py"))
+    for node in (node for tree in (*TREES.values(), *tests) for node in ast.walk(tree)):
+        if isinstance(node, ast.ImportFrom) and (node.module or "").endswith("kernels"):
+            assert not closed & {alias.name for alias in node.names}
+        elif isinstance(node, ast.Attribute) and ast.unparse(node.value).endswith("kernels"):
+            assert node.attr not in closed
+
+
 @pytest.mark.parametrize("path", OTHERS, ids=str)
 def test_few_arguments(path):
     functions = (node for node in ast.walk(OTHERS[path]) if isinstance(node, ast.FunctionDef))

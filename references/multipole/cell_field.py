@@ -6,9 +6,8 @@ import numpy as np
 
 from references.multipole import field_kernels as kernels
 from references.multipole.fast import FastMultipole, plan
-from references.multipole.sums import entries
 from references.multipole.system import Solved
-from references.multipole.translations import Spheres, scales
+from references.multipole.translations import Spheres, complex_table, scales
 from references.threads import Team
 
 # Relative error of what far spheres make.
@@ -29,13 +28,12 @@ class CellField:
     def __init__(self, spheres: Spheres, solved: Solved):
         exchange = FastMultipole(spheres, plan(spheres, solved.order, PRECISION))
         self.cells, self.numbers, self.degree = exchange.cells, exchange.order, exchange.degree
-        self.order, n = solved.order, entries(solved.order)[0]
-        sent = solved.source[:, self.numbers] * self.cells.radii[:, None] ** (n + 1.0)
+        self.order, sent = solved.order, exchange.sent(solved.source)
         with Team(1) as team:
             local = exchange.local(sent, team)
         # Both by the kernels' harmonics.
-        self.local = _complex(local / exchange.root)
-        self.multipoles = _complex(sent * scales(np.ones(1), solved.order).made)
+        self.local = complex_table(local / exchange.root)
+        self.multipoles = complex_table(sent * scales(np.ones(1), solved.order).made)
         self.slope, self.level = exchange.background(spheres, solved.source)
 
     def owners(self, points):
@@ -83,7 +81,3 @@ class CellField:
         edge, shape = self.cells.edge, self.cells.shape
         steps = np.floor(points / edge).astype(np.int64)
         return points - (steps + 0.5) * edge, np.ravel_multi_index(tuple((steps % shape).T), tuple(shape))
-
-
-def _complex(table):
-    return np.ascontiguousarray(table[0] + 1j * table[1])

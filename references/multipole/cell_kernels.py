@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from references.multipole.lane_kernels import LANES, add_rows, back, column, compiled, forth, multiples, point
+from references.multipole.lane_kernels import LANES, add_rows, back, column, compiled, forth, inner, multiples, point
 
 # Spheres whose lanes are filled together.
 BLOCK = 8
@@ -34,13 +34,16 @@ def near(order, cells, axes, sent, made, low, high):
     """
     width = (order + 1) * (order + 2) // 2
     tables, work = np.zeros((2, 2, width, LANES)), np.zeros((2, 2, order + 1, LANES))
-    turns, inverse, ratio = np.zeros((4, order + 1, LANES)), np.ones((order + 2, LANES)), np.zeros((2, LANES))
+    turns, inverse, ratio = np.zeros((4, order + 1, LANES)), np.zeros((order + 2, LANES)), np.zeros((2, LANES))
     sender, receiver = np.zeros(LANES, dtype=np.int64), np.zeros(LANES, dtype=np.int64)
+    for k in range(LANES):
+        inverse[0, k] = 1.0
     shape, edge = cells.shape, cells.edge
     for block in range(low, high):
         lane = 0
         for row in range(block * BLOCK, min((block + 1) * BLOCK, len(cells.receivers))):
-            made[:, row] = 0.0
+            for entry in range(width):
+                made[0, row, entry] = made[1, row, entry] = 0.0
             i = cells.receivers[row]
             home = cells.home[i]
             x, y, z = home // (shape[1] * shape[2]), home // shape[2] % shape[1], home % shape[2]
@@ -81,11 +84,13 @@ def near(order, cells, axes, sent, made, low, high):
             )
 
 
-@compiled
+@inner
 def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, receiver, tables, work, sent, made):
     """Translate the multipoles of the senders in lanes and add what arrives to the receivers."""
-    most = _degree(ratio[0, :lanes].max(), negligible, order)
-    arrives = _degree(ratio[1, :lanes].max(), negligible, order)
+    sends, receives = 0.0, 0.0
+    for k in range(lanes):
+        sends, receives = max(sends, ratio[0, k]), max(receives, ratio[1, k])
+    most, arrives = _degree(sends, negligible, order), _degree(receives, negligible, order)
     one, two = tables[0], tables[1]
     multiples(max(most, arrives), turns)
     for k in range(lanes):
@@ -119,7 +124,7 @@ def _exchange(lanes, order, negligible, axes, turns, inverse, ratio, sender, rec
         begin = end
 
 
-@compiled
+@inner
 def _raise(powers, most):
     """Powers 2, ..., most of row 1."""
     for n in range(2, most + 1):
@@ -127,14 +132,14 @@ def _raise(powers, most):
             powers[n, k] = powers[n - 1, k] * powers[1, k]
 
 
-@compiled
+@inner
 def _scale(table, row, powers, power):
     for part in range(2):
         for k in range(LANES):
             table[part, row, k] *= powers[power, k]
 
 
-@compiled
+@inner
 def _degree(ratio, negligible, order):
     """Degree beyond which ratio^l is negligible, or the order."""
     if ratio >= 1.0 - 1e-9 or math.log(negligible) <= order * math.log(ratio):
@@ -159,9 +164,12 @@ def gather(order, degree, cells, axes, sent, made, low, high):
     low, high : int
     """
     tables, turns, work, powers = _shift_room(degree)
-    one, two, numbers = tables[0], tables[1], np.arange(len(cells.places))
+    one, two = tables[0], tables[1]
     for block in range(low, high):
-        lanes = _shifts(numbers[block * LANES : (block + 1) * LANES], cells.places, turns, powers)
+        lanes = min(LANES, len(cells.places) - block * LANES)
+        for k in range(lanes):
+            _shift(k, cells.places, block * LANES + k, turns, powers)
+        _multiply(turns, powers)
         for k in range(lanes):
             for entry in range((order + 1) * (order + 2) // 2):
                 for part in range(2):
@@ -171,7 +179,7 @@ def gather(order, degree, cells, axes, sent, made, low, high):
             top = column(m, degree)
             for n in range(m, degree + 1):
                 for part in range(2):
-                    one[part, top + n] = 0.0
+                    _clear(one, part, top + n)
                     for of in range(max(m, 1), min(order, n) + 1):
                         _add_shifted(one, part, top + n, two, top + of, powers, n - of, axes.shift[m, n, of])
         back(degree, degree, axes, turns, one, work, two)
@@ -200,10 +208,12 @@ def spread(order, degree, cells, axes, local, made, low, high):
     tables, turns, work, powers = _shift_room(degree)
     one, two = tables[0], tables[1]
     for block in range(low, high):
-        numbers = cells.receivers[block * LANES : (block + 1) * LANES]
-        lanes = _shifts(numbers, cells.places, turns, powers)
+        lanes = min(LANES, len(cells.receivers) - block * LANES)
         for k in range(lanes):
-            home = cells.home[numbers[k]]
+            _shift(k, cells.places, cells.receivers[block * LANES + k], turns, powers)
+        _multiply(turns, powers)
+        for k in range(lanes):
+            home = cells.home[cells.receivers[block * LANES + k]]
             for part in range(2):
                 for entry in range(local.shape[2]):
                     one[part, entry, k] = local[part, home, entry]
@@ -212,7 +222,7 @@ def spread(order, degree, cells, axes, local, made, low, high):
             top = column(m, degree)
             for n in range(m, order + 1):
                 for part in range(2):
-                    one[part, top + n] = 0.0
+                    _clear(one, part, top + n)
                     for of in range(n, degree + 1):
                         _add_shifted(one, part, top + n, two, top + of, powers, of - n, axes.shift[m, of, n])
         back(order, degree, axes, turns, one, work, two)
@@ -222,26 +232,33 @@ def spread(order, degree, cells, axes, local, made, low, high):
                     made[part, block * LANES + k, entry] += two[part, entry, k]
 
 
-@compiled
+@inner
 def _shift_room(degree):
     width = (degree + 1) * (degree + 2) // 2
     tables, work = np.zeros((2, 2, width, LANES)), np.zeros((2, 2, degree + 1, LANES))
     return tables, np.zeros((4, degree + 1, LANES)), work, np.zeros((degree + 1, LANES))
 
 
-@compiled
-def _shifts(numbers, places, turns, powers):
-    """Directions of spheres from the middles of their cells and powers of their distances; the number of spheres."""
-    for k in range(len(numbers)):
-        x, y, z = places[numbers[k]]
-        powers[0, k] = 1.0
-        powers[1, k] = point(k, x, y, z, turns)
+@inner
+def _clear(table, part, row):
+    for k in range(LANES):
+        table[part, row, k] = 0.0
+
+
+@inner
+def _shift(lane, places, sphere, turns, powers):
+    """Direction of a sphere from the middle of its cell, and its distance."""
+    powers[0, lane] = 1.0
+    powers[1, lane] = point(lane, places[sphere, 0], places[sphere, 1], places[sphere, 2], turns)
+
+
+@inner
+def _multiply(turns, powers):
     _raise(powers, len(powers) - 1)
     multiples(len(powers) - 1, turns)
-    return len(numbers)
 
 
-@compiled
+@inner
 def _add_shifted(out, part, row, source, of, powers, power, weight):
     for k in range(LANES):
         out[part, row, k] += weight * powers[power, k] * source[part, of, k]

@@ -24,6 +24,7 @@ from references.multipole.lane_kernels import LANES
 from references.multipole.pieces import in_pieces
 from references.multipole.sums import entries, highest_degree
 from references.multipole.system import dipoles
+from references.multipole.translations import background_share
 from references.threads import Team
 
 # Smallest edge of a cell, in largest diameters.
@@ -145,7 +146,7 @@ class FastMultipole:
         """
         cells, degree, order = self.cells, self.degree, highest_degree(source.shape[2])
         n, _ = entries(order)
-        sent = source[:, self.order] * cells.radii[:, None] ** (n + 1.0)
+        sent = self.sent(source)
         made = np.zeros((2, len(cells.receivers), source.shape[2]))
         pairs = cell_kernels.BLOCK * len(cells.near) * len(cells.home) / (len(cells.start) - 1)
         with Team(threads) as team:
@@ -161,6 +162,21 @@ class FastMultipole:
         result = np.empty_like(made)
         result[:, self.order[cells.receivers]] = made
         return result
+
+    def sent(self, source):
+        """Multipoles of the spheres, cell by cell, in the order of memory that the kernels are compiled for.
+
+        Parameters
+        ----------
+        source : (2, n, entries) float array, K
+            b of all spheres.
+
+        Returns
+        -------
+        (2, n, entries) float array, K length^(l+1)
+        """
+        n, _ = entries(highest_degree(source.shape[2]))
+        return np.ascontiguousarray(source[:, self.order] * self.cells.radii[:, None] ** (n + 1.0))
 
     def background(self, spheres, source):
         """What the uniform background of the periodic sums makes of dipoles off the middles of their cells.
@@ -178,7 +194,7 @@ class FastMultipole:
         (3,) float array, K/length
         float, K
         """
-        share = 4 * math.pi / (3 * float(np.prod(spheres.size)))
+        share = background_share(spheres)
         moments = dipoles(spheres, source)[self.order]
         return -share * moments.sum(axis=0), share * float(np.sum(moments * self.cells.places))
 

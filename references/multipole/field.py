@@ -15,7 +15,7 @@ from references.multipole import field_kernels as kernels
 from references.multipole.cell_field import CellField
 from references.multipole.sums import entries, harmonics, splitting, wave_weights
 from references.multipole.system import Solved
-from references.multipole.translations import Spheres, scales
+from references.multipole.translations import Spheres, complex_table, scales
 
 # Nanoseconds, about, of one harmonic of one image and of one wave at one point: they set the splitting.
 HARMONIC, WAVE = 4.0, 4.0
@@ -39,7 +39,7 @@ class Evaluator:
     def __init__(self, spheres: Spheres, solved: Solved, gradient):
         self.spheres, self.order, self.gradient = spheres, solved.order, np.asarray(gradient, dtype=float)
         self.regular = _regular(spheres, solved)
-        self.multipoles = _complex(solved.source * scales(spheres.radii, solved.order).sent)
+        self.multipoles = complex_table(solved.source * scales(spheres.radii, solved.order).sent)
         self.cells = CellField(spheres, solved) if len(spheres.radii) > MANY else None
         if not self.cells:
             self.split = _splitting(spheres, solved.order)
@@ -90,10 +90,6 @@ class Evaluator:
         return part
 
 
-def _complex(table):
-    return np.ascontiguousarray(table[0] + 1j * table[1])
-
-
 def _regular(spheres, solved):
     """Coefficients inside: c + b = c (2l+1)/(l s + l + 1), without the cancellation of the sum at high contrast.
 
@@ -102,7 +98,7 @@ def _regular(spheres, solved):
     n, _ = entries(solved.order)
     root = scales(np.ones(1), solved.order).made
     factor = (2 * n + 1) / (n * spheres.contrasts[:, None] + n + 1)
-    return _complex(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
+    return complex_table(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
 
 
 def _splitting(spheres, order):

@@ -8,12 +8,9 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
-
-compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+from references.multipole.lane_kernels import compiled, inner
 
 
 @compiled
@@ -188,7 +185,7 @@ def near(points, spheres, multipoles, order, split, out):
                             _add_screened(multipoles[j], table, screened, (x, y, z), out[k])
 
 
-@compiled
+@inner
 def _add_screened(multipoles, table, screened, offset, out):
     value, across, along, radial = 0.0, 0.0 + 0.0j, 0.0, 0.0
     for n in range(1, screened.shape[1]):
@@ -275,14 +272,14 @@ def near_by_cells(places, home, cells, multipoles, order, out):
                 _add_screened(multipoles[j], table, bare[:, : most + 1], (x, y, z), out[k])
 
 
-@compiled
+@inner
 def _cell_at(home, step, shape):
     x, y, z = home // (shape[1] * shape[2]), home // shape[2] % shape[1], home % shape[2]
     x, y, z = (x + step[0]) % shape[0], (y + step[1]) % shape[1], (z + step[2]) % shape[2]
     return (x * shape[1] + y) * shape[2] + z
 
 
-@compiled
+@inner
 def _from_sphere(place, cells, step, j):
     x = place[0] - cells.places[j, 0] - cells.near[step, 0] * cells.edge[0]
     y = place[1] - cells.places[j, 1] - cells.near[step, 1] * cells.edge[1]

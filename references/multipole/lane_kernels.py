@@ -10,7 +10,12 @@ import math
 
 import numba
 
-compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+
+OPTIONS = {"cache": True, "nogil": True, "fastmath": {"reassoc", "contract", "arcp", "nsz"}}
+compiled = numba.njit(**OPTIONS)
+# For what only kernels call: there is no way in from Python, which takes a third of the time to compile.
+inner = numba.njit(no_cpython_wrapper=True, no_cfunc_wrapper=True, **OPTIONS)
 
 # Fewer would spend their time on calls, more would not stay in a processor's cache.
 LANES = 64

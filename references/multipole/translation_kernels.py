@@ -7,12 +7,9 @@ and Shortley's sign: translations of these are plain sums without binomials (Ept
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
-
-compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
+from references.multipole.lane_kernels import compiled, inner
 
 
 @compiled
@@ -53,7 +50,7 @@ def translate(order, table, sent, made, low, high):
                     made[1, i, p * (p + 1) // 2 + q] -= sign * y
 
 
-@compiled
+@inner
 def _unfold(full, re, im, degree, flip):
     """Entries of both signs of m, in the middle of each row; times (-1)^l if `flip`."""
     middle = full.shape[2] // 2
@@ -66,7 +63,7 @@ def _unfold(full, re, im, degree, flip):
             full[0, n, middle + m], full[1, n, middle + m] = x, y
 
 
-@compiled
+@inner
 def _correlate(full, send, p, q, most):
     """Sum over l = 1, ..., most and all m of I_(l+p)^(m+q) times the multipole lm."""
     width, order = full.shape[1] - 1, send.shape[1] - 1

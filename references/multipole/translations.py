@@ -171,6 +171,16 @@ def translation(spheres, degree) -> Translation:
     return Translation(sums, np.minimum(np.ceil(most), degree).astype(np.int64))
 
 
+def background_share(spheres) -> float:
+    """Slope that the uniform background of the periodic sums takes off per dipole moment, 1/length^3."""
+    return 4 * math.pi / (3 * float(np.prod(spheres.size)))
+
+
+def complex_table(table):
+    """(n, entries) complex table of the (2, n, entries) real and imaginary parts."""
+    return np.ascontiguousarray(table[0] + 1j * table[1])
+
+
 def received(spheres, table, source, threads=1):
     """c that all spheres and their periodic images make at those that count.
 
@@ -191,6 +201,5 @@ def received(spheres, table, source, threads=1):
     # Two derivatives of the periodic Green function have the trace 4 pi/volume of its background, which no harmonic
     # of degree 2 carries: dipoles p shift every slope by -4 pi/(3 volume) times their sum.
     moments = np.sum(source[:, :, 1:3] * spheres.radii[:, None] ** 2, axis=1, keepdims=True)
-    shift = 4 * math.pi / (3 * float(np.prod(spheres.size)))
-    result[:, :, 1:3] -= shift * moments * spheres.radii[:count, None]
+    result[:, :, 1:3] -= background_share(spheres) * moments * spheres.radii[:count, None]
     return result

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from references.multipole.lane_kernels import compiled
+from references.multipole.lane_kernels import compiled, inner
 
 # Fields that share one matrix: real and imaginary parts of four waves.
 FIELDS = 8
@@ -50,7 +50,7 @@ def convolve(degree, sums, sent, made, low, high):
                     )
 
 
-@compiled
+@inner
 def _rows(full, p, q, degree, rows):
     """One row of the matrix for the real part of what is made, one for the imaginary part."""
     width, middle = rows.shape[1] // 2, 2 * degree
@@ -66,7 +66,7 @@ def _rows(full, p, q, degree, rows):
             rows[1, entry + m], rows[1, width + entry + m] = above_im[m] + y, above_re[m] - x
 
 
-@compiled
+@inner
 def _products(row, sent, sign, made, entry):
     """Four products of one row at once: each of its numbers is read once."""
     a, b, c, d = 0.0, 0.0, 0.0, 0.0

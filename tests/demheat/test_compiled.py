@@ -159,3 +159,21 @@ def test_without_even_a_temporary_folder_a_line_says_what_to_set(monkeypatch):
     monkeypatch.setattr(compiled.tempfile, "mkdtemp", nowhere)
     with pytest.raises(RuntimeError, match="No usable temporary directory.*: set NUMBA_CACHE_DIR"):
         compiled._of_this_run()
+
+
+def test_numbers_of_the_source_are_integers_like_others():
+    numba = pytest.importorskip("numba")
+    if numba.config.DISABLE_JIT:
+        pytest.skip("nothing is compiled")
+
+    @numba.njit
+    def more(x):
+        return x + 1
+
+    @numba.njit
+    def sums(n):
+        return more(0) + more(1) + more(n)
+
+    # Others' kernels are left to Numba.
+    more.py_func.__module__ = "demheat.made_up"
+    assert sums(2) == 6 and len(more.signatures) == 1
