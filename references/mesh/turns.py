@@ -12,7 +12,9 @@ from functools import cache
 
 import numpy as np
 
-# Turns to choose from; the first is that of spheres that nothing cuts.
+# Axis and angle, rad, for spheres that nothing cuts: off symmetry planes.
+GENERIC = (1.0, 2.0, 3.0, 1.0)
+# Turns to choose from where a sphere is cut.
 CANDIDATES = 192
 # Points of the seam that are looked at, from pole to pole.
 ALONG = 37
@@ -35,12 +37,12 @@ def turn(center, radius: float, planes) -> tuple[float, float, float, float]:
     tuple of float
         x, y and z of the axis; angle, rad.
     """
-    axes, angles, rotations = _candidates()
     cuts = [np.asarray(across)[np.abs(across - c) < radius] for across, c in zip(planes, center, strict=True)]
     heights = [np.clip((cut - c) / radius, -1, 1) for cut, c in zip(cuts, center, strict=True)]
-    best = 0
-    if any(map(len, heights)):
-        best = int(np.argmax(_clearance(rotations, heights)))
+    if not any(map(len, heights)):
+        return GENERIC
+    axes, angles, rotations = _candidates()
+    best = int(np.argmax(_clearance(rotations, heights)))
     return (*axes[best].tolist(), float(angles[best]))
 
 
@@ -48,8 +50,6 @@ def turn(center, radius: float, planes) -> tuple[float, float, float, float]:
 def _candidates():
     """Axes (n, 3), angles (n,) and matrices (n, 3, 3) of rotations, evenly spread at random."""
     four = np.random.default_rng(0).standard_normal((CANDIDATES, 4))
-    # A generic turn keeps poles and seam off symmetry planes.
-    four[0] = np.cos(0.5), *(np.sin(0.5) * np.array([1, 2, 3]) / math.sqrt(14))
     four /= np.linalg.norm(four, axis=1)[:, None]
     angles = 2 * np.arccos(four[:, 0])
     axes = four[:, 1:] / np.linalg.norm(four[:, 1:], axis=1)[:, None]
