@@ -13,7 +13,7 @@ from studies.harness.pick import largest, pick, present
 from studies.scaling.means import errors, fitted
 
 NUMBERS = (100, 300, 1000, 3000, 10_000, 20_000)
-MOST = {"multipole": 10_000, "fem": 300}  # inclusions; beyond them minutes become hours
+MOST = {"multipole": 20_000, "fem": 300}  # inclusions; beyond them minutes become hours
 PER_INCLUSION = 50  # particles
 GOAL, MANY = 5000, 1_000_000
 KINDS = (("equal", 0.5), ("polydisperse", 0.3), ("polydisperse", 0.5))
