@@ -248,14 +248,12 @@ def _check_seed(seed):
 
 def _checked_stages(growth):
     """Growth as a list of stages, [reduced pressure from which it holds, rate]."""
-    valid = "a rate > 0, or pairs of ascending pressures and rates > 0"
-    if np.ndim(growth) == 0:
-        growth = [(0.0, finite("growth", growth, valid))]
-    stages = reals("growth", growth, valid)
+    valid = f"a rate > 0, or pairs of ascending pressures and rates > 0; all at most {FASTEST:g}"
+    single = np.ndim(growth) == 0
+    stages = reals("growth", [(0.0, finite("growth", growth, valid))] if single else growth, valid)
     good = stages.ndim == 2 and stages.shape[1] == 2 and len(stages) > 0 and np.all(np.isfinite(stages))
     rates = stages[:, 1] if good else np.empty(0)
     if not (good and np.all((rates > 0) & (rates <= FASTEST)) and np.all(np.diff(stages[:, 0]) > 0)):
-        valid += f"; all at most {FASTEST:g}"
         raise ValueError(f"growth = {growth!r}: must be {valid}")
     return stages.tolist()
 

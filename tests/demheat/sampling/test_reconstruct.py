@@ -143,6 +143,7 @@ def test_nothing_is_fitted_across_an_interface():
     assert_allclose(field.flux_at(points), np.tile([0.0, flux, 0.0], (400, 1)), atol=1e-7)
 
 
+@pytest.mark.filterwarnings("ignore:.*thin for particles")
 def test_inclusions_with_few_cells():
     small = Sphere((0.5, 0.5, 0.5), 0.06, FIVE)
     scene = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[small], walls=WALLS)
