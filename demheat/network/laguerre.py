@@ -87,7 +87,10 @@ def tessellated(centers, weights, size, *, periodic=True, domain="box"):
     volumes, number, links, (particle, side, *walls), again = _cut_all(sites, wall, spacing)
     del sites
     _check_filled(volumes, domain_volume(domain, size), domain)
-    facets = Facets(*_matched(number, links, spacing), particle, np.minimum(side, ROUND_SIDE), *walls, volumes)
+    links = _matched(number, links, spacing)
+    # Cells so small that all their facets are slivers are as good as hidden.
+    volumes[(np.diff(links[0]) == 0) & (np.bincount(particle, minlength=len(volumes)) == 0)] = 0.0
+    facets = Facets(*links, particle, np.minimum(side, ROUND_SIDE), *walls, volumes)
     return _with_normals(facets, side, centers, wall), again
 
 

@@ -7,6 +7,9 @@ from demheat.network.base import wall_normals
 from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling.particle_flux import particle_flux
 
+# Facets of a closed cell, at least. Tiny cells may have fewer: slivers are left out.
+CLOSED = 4
+
 
 def mean_flux(network, scene, solution):
     """Volume average of the flux density from the heat carried along links and wall links.
@@ -35,7 +38,7 @@ def cell_fluxes(network, solution):
     """Flux density of each particle from the heat flows of its links.
 
     With cells q = -(sum S e e)^-1 sum e W, with W the heat received through a facet of area S in direction e: exact for
-    linear fields, one-sided at facets on interfaces. With contacts the papers' q = -1/(2 V) sum W b, V the volume that
+    linear fields, one-sided at facets on interfaces, and of least norm for a cell with too few facets. With contacts the papers' q = -1/(2 V) sum W b, V the volume that
     the particle stands for and b the branch vector (Haddad et al. 2021, eq. 20, with Fourier's sign).
 
     Parameters
@@ -57,7 +60,13 @@ def cell_fluxes(network, solution):
     outer = normal[:, :, None] * normal[:, None, :]
     np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)
     np.add.at(flow, network.wall_particle, normal * solution.wall_heat[:, None])
-    return -np.linalg.solve(shape, flow[..., None])[..., 0]
+    facets = np.diff(network.indptr) + np.bincount(network.wall_particle, minlength=n)
+    few = np.flatnonzero(facets < CLOSED)
+    known = np.linalg.pinv(shape[few], hermitian=True) @ flow[few, :, None]
+    shape[few] = np.eye(3)
+    flux = -np.linalg.solve(shape, flow[..., None])[..., 0]
+    flux[few] = -known[..., 0]
+    return flux
 
 
 def filled(solution):

@@ -258,7 +258,8 @@ def compute_row(study, case, *, warm=True):
         note = f"{type(error).__name__} in {place.name}: {error}"
         result = {"status": "failed", "note": " ".join(note.split())}
     else:
-        clash = sorted(set(metrics) & set(row))
+        # A method may repeat what it was given.
+        clash = sorted(key for key in set(metrics) & set(row) if metrics[key] != row[key])
         if clash:
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
         result = {"status": "ok", "note": "", **cost, **metrics}

@@ -89,6 +89,19 @@ def test_hidden_points_are_dropped():
     assert_allclose(closure(kept, seen.centers, seen.size), 0.0, atol=1e-10 * 300 ** (-2 / 3))
 
 
+@pytest.mark.parametrize("height, seen", [(1e-7, False), (1e-3, True)])
+def test_cells_of_slivers_only_count_as_hidden(height, seen):
+    """Amid eight sites of a cubic lattice, a light one whose planes lie at that height, in edges of the lattice."""
+    lattice = (np.stack(np.meshgrid(*[np.arange(4)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.25) / 4
+    away = np.sqrt(0.75) / 4
+    centers = np.vstack([lattice, lattice[21] + 0.125])
+    weights = np.append(np.zeros(64), 2 * away * height / 4 - away**2)
+    facets = laguerre(centers, weights, (1, 1, 1))
+    packing = make_packing(centers, np.sqrt(weights + 0.1), (1, 1, 1), True, {})
+    assert (facets.volumes[-1] > 0) == seen and np.diff(facets.indptr)[-1] == 8 * seen
+    assert drop_empty_cells(packing, facets)[0].number == 64 + seen
+
+
 def test_bits_do_not_depend_on_threads():
     numba = pytest.importorskip("numba")
     centers, weights = cloud(400)

@@ -185,6 +185,12 @@ def test_metrics_must_not_replace_parameters(tiny):
     assert "parameters of its case" in tiny.rows()["name=plain,x=1.5"]["note"]
 
 
+def test_metrics_may_repeat_parameters(tiny):
+    tiny.write(**{'"square": x * x': '"square": x * x, "x": x'})
+    tiny.run()
+    assert tiny.rows()["name=plain,x=1.5"]["status"] == "ok"
+
+
 def test_state_tells_held_from_stale_from_missing(tiny):
     def state():
         return runner.state(runner.load(tiny.name), tiny.rows())
