@@ -38,8 +38,9 @@ def cell_fluxes(network, solution):
     """Flux density of each particle from the heat flows of its links.
 
     With cells q = -(sum S e e)^-1 sum e W, with W the heat received through a facet of area S in direction e: exact for
-    linear fields, one-sided at facets on interfaces, and of least norm for a cell with too few facets. With contacts the papers' q = -1/(2 V) sum W b, V the volume that
-    the particle stands for and b the branch vector (Haddad et al. 2021, eq. 20, with Fourier's sign).
+    linear fields, one-sided at facets on interfaces, of least norm for a cell with too few facets. With contacts the
+    papers' q = -1/(2 V) sum W b, V the volume that the particle stands for and b the branch vector (Haddad et al. 2021,
+    eq. 20, with Fourier's sign).
 
     Parameters
     ----------
