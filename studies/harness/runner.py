@@ -258,12 +258,12 @@ def compute_row(study, case, *, warm=True):
         note = f"{type(error).__name__} in {place.name}: {error}"
         result = {"status": "failed", "note": " ".join(note.split())}
     else:
-        # A method may repeat what it was given.
-        clash = sorted(key for key in set(metrics) & set(row) if metrics[key] != row[key])
+        # A method may repeat what it was given, or have nothing to say of it.
+        clash = sorted(key for key in set(metrics) & set(row) if metrics[key] not in (None, row[key]))
         if clash:
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
         result = {"status": "ok", "note": "", **cost, **metrics}
-    return {**row, **result, **provenance(study, case)}
+    return {**row, **result, **row, **provenance(study, case)}
 
 
 def write_json(row, path):

@@ -185,10 +185,12 @@ def test_metrics_must_not_replace_parameters(tiny):
     assert "parameters of its case" in tiny.rows()["name=plain,x=1.5"]["note"]
 
 
-def test_metrics_may_repeat_parameters(tiny):
-    tiny.write(**{'"square": x * x': '"square": x * x, "x": x'})
+@pytest.mark.parametrize("value", ["x", "None"])
+def test_metrics_may_repeat_parameters_or_leave_them_open(tiny, value):
+    tiny.write(**{'"square": x * x': f'"square": x * x, "x": {value}'})
     tiny.run()
-    assert tiny.rows()["name=plain,x=1.5"]["status"] == "ok"
+    row = tiny.rows()["name=plain,x=1.5"]
+    assert row["status"] == "ok" and float(row["x"]) == 1.5
 
 
 def test_state_tells_held_from_stale_from_missing(tiny):
