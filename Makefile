@@ -5,7 +5,7 @@ PY := .venv/bin/python
 OLD := .venv-oldest
 PIP := install --quiet --disable-pip-version-check
 
-.PHONY: run test test-all test-twins test-oldest full clean
+.PHONY: run test test-all test-slow test-twins test-oldest full clean
 
 run: .venv/ready
 	$(PY) -m studies run fig14_single_inclusion --quick --out $(OUT)
@@ -18,9 +18,13 @@ full: .venv/ready
 test: .venv/ready
 	$(PY) -m ruff check .
 	$(PY) -m ruff format --check .
-	$(PY) -m pytest -n 2 --dist worksteal
+	$(PY) -m pytest -n 2 --dist worksteal -m "not slow"
 
-test-all: test test-twins test-oldest
+# Quick rows of studies whose figures take long.
+test-slow: .venv/ready
+	$(PY) -m pytest -n 2 --dist worksteal -m slow
+
+test-all: test test-slow test-twins test-oldest
 
 # Kernels beside their slow twins, both as plain Python.
 test-twins: .venv/ready
