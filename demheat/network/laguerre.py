@@ -6,6 +6,7 @@ from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets
 from demheat.network.bins_kernels import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
+from demheat.network.gather_kernels import Gathered, gather_facets
 from demheat.network.links_kernels import match_links
 from demheat.network.sites_kernels import Sites
 from demheat.packing.base import check_domain
@@ -229,7 +230,7 @@ def _cut_all(sites, wall, spacing):
             to, (particle, *ends) = links.grow(link[-1], stop / n), walls.grow(end[-1], stop / n)
             particle[:] = np.repeat(np.arange(start, stop), block.ends)
             for chunks, cut in parts:
-                kernels.gather_facets(chunks, link, end, cut, kernels.Gathered(*to, *ends))
+                gather_facets(chunks, link, end, cut, Gathered(*to, *ends))
             done(stop / n)
     return volumes, number, links.done(), walls.done(), again / n
 

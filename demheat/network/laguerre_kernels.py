@@ -7,7 +7,7 @@ radical planes with neighbours and planes of a round wall. Sites are looked at r
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from demheat.network.polyhedron_kernels import (
     AREA,
@@ -227,7 +227,7 @@ def _cut_sites(cell, count, planes, farthest, found, m, eps):
 @njit(**ONCE)
 def _cut_level(i, level, sites, cell, count, planes, found, eps):
     """Cut by the sites of a level, ring by ring, until those left cannot; (status, vertex count, number of planes)."""
-    farthest, ring = _farthest(cell, count), np.int64(1)
+    farthest, ring = _farthest(cell, count), 1
     find_home(i, level, sites, found)
     while True:
         m = gather_ring(i, ring, level, farthest, sites, found)
@@ -249,12 +249,11 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
 def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
     center = sites.points[i]
-    count, planes, state = _start(i, half, sites, wall, found, cell), np.int64(6), OK
+    count, planes, state = _start(i, half, sites, wall, found, cell), 6, OK
     # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
     first = _nearest(center, tangents, wall)
     if first >= 0:
-        one, none = tangents[first : first + 1], np.int64(-1)
-        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, one, none)
+        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents[first : first + 1], -1)
     for level in range(len(sites.heaviest)):
         if state != OK or count == 0:
             return state, 0, 0
@@ -262,7 +261,7 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     if state != OK or count == 0:
         return state, 0, 0
     if len(wall.normals):
-        skip = tangents[first] if first >= 0 else np.int64(-1)
+        skip = tangents[first] if first >= 0 else -1
         state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)
         if state == OK and count > 0 and _misses_tangents(cell, count, reach, center, wall):
             state = UNSECURED
@@ -351,55 +350,3 @@ def cut_cells(first, last, chunks, start, sites, wall, near, limits, out):
             if state == OK and count > 0:
                 out.volume[row] = measure(cell, count, planes)
                 _note_facets(row, place, planes, cell, limits.sliver, out)
-
-
-class Gathered(NamedTuple):
-    """Facets in the order of their cells, links and walls apart: what `gather_facets` writes.
-
-    Attributes
-    ----------
-    indices, image, area, distance : (m,) uint32, uint8 and float arrays
-        Of links.
-    side, wall_area, wall_distance : (w,) int64 and float arrays
-        Of walls: planes of a round wall from 6 on.
-    """
-
-    indices: np.ndarray
-    image: np.ndarray
-    area: np.ndarray
-    distance: np.ndarray
-    side: np.ndarray
-    wall_area: np.ndarray
-    wall_distance: np.ndarray
-
-
-@njit(**PLAIN)
-def _gather_chunk(place, e, w, cut, out):
-    """Bring the facets of one chunk to the places from e on for links, from w on for walls."""
-    for s in range(cut.used[place]):
-        j = cut.neighbour[place, s]
-        if j >= 0:
-            out.indices[e], out.image[e] = j, cut.image[place, s]
-            out.area[e], out.distance[e] = cut.area[place, s], cut.distance[place, s]
-            e += 1
-        else:
-            out.side[w] = -1 - j
-            out.wall_area[w], out.wall_distance[w] = cut.area[place, s], cut.distance[place, s]
-            w += 1
-
-
-@njit(cache=True, parallel=True)
-def gather_facets(chunks, link, end, cut, out):
-    """Bring the facets of some chunks to where they belong.
-
-    Parameters
-    ----------
-    chunks : (c,) int64 array
-        As `cut_cells` got them.
-    link, end : (all chunks + 1,) int64 arrays
-        Where the links and the walls of each chunk begin.
-    cut : Cut
-    out : Gathered, out
-    """
-    for place in prange(len(chunks)):
-        _gather_chunk(np.int64(place), link[chunks[place]], end[chunks[place]], cut, out)

@@ -89,7 +89,7 @@ def start_box(low, high, cell):
         for k in range(3):
             # The edge of two planes runs along the axis of the third.
             corner[v, EDGE + k] = v ^ (4 >> (corner[v, (k + 2) % 3] // 2))
-    return np.int64(8)
+    return 8
 
 
 @njit(**PLAIN, inline="always")

@@ -275,7 +275,7 @@ def _facet(i, begin, end, normals, corners, other, found, cosines):
     for k in range(4):
         corners[k, 0] = WIDEST * (1.0 if k in (0, 3) else -1.0)
         corners[k, 1] = WIDEST * (1.0 if k < 2 else -1.0)
-    count, far = np.int64(4), 2.0 * WIDEST**2
+    count, far = 4, 2.0 * WIDEST**2
     # First by those that are likely to bound it; then by all that may, in order of height, up and down: a plane at an
     # angle t to this one is met at tan(t/2), and beyond the farthest corner it cuts nothing.
     ahead = _nearest_normals(i, begin, end, normals, found, cosines)

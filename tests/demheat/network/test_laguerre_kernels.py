@@ -8,6 +8,7 @@ from numpy.testing import assert_allclose
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.curved import round_wall, tangents_within
+from demheat.network.gather_kernels import Gathered, gather_facets
 from demheat.network.laguerre import filed
 from demheat.scene import ROUND_AXES, domain_volume
 
@@ -39,8 +40,8 @@ def gathered(cut):
     zero, links, ends = np.zeros(2, np.int64), cut.links.sum(), cut.ends.sum()
     kinds = [np.uint32, np.uint8, float, float], [np.int64, float, float]
     columns = [np.empty(m, kind) for m, each in zip((links, ends), kinds, strict=True) for kind in each]
-    out = kernels.Gathered(*columns)
-    kernels.gather_facets(np.array([0]), zero, zero, cut, out)
+    out = Gathered(*columns)
+    gather_facets(np.array([0]), zero, zero, cut, out)
     return out
 
 
