@@ -182,6 +182,13 @@ LAYERS = {
         "references.mesh",
         "references.fem",
     ),
+    "references.bracket": (
+        "demheat.scene",
+        "demheat.progress",
+        "references.mesh",
+        "references.fem",
+        "references.bracket",
+    ),
     "references.fft": (
         "demheat.scene",
         "demheat.field",

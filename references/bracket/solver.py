@@ -1,0 +1,151 @@
+"""A scene's conductivity between two bounds that are certain."""
+
+from __future__ import annotations
+
+import math
+import time
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from demheat.scene import Layer, Scene, Sphere, check_scene
+from demheat.scene.inputs import finite
+from references.bracket.energies import flux_energy, temperature_energy
+from references.bracket.equations import balanced_flux
+from references.bracket.surfaces import pushed
+from references.fem.system import solve_nodes
+from references.mesh import make
+
+# The integral of a face's normal flux is at most so many times the sum of the magnitudes of its three moments.
+OF_MOMENTS = 7.0
+# Temperatures stay between those of the walls. In a periodic cell what the inclusions add to the linear temperature is
+# taken to stay below so many times its drop over the cell; found: less than one. It multiplies rounding alone.
+DROPS = 10.0
+# A finer mesh's edges over a coarser one's: by the width's third power, but neither more nor less than these.
+POWER, FINER = 1 / 3, (0.5, 0.85)
+# Relative rounding of an energy, a thousand times over: bounds of exact solutions, as of laminates, are that much off.
+ROUNDING = 1e-11
+
+
+@dataclass(frozen=True)
+class Bracket:
+    """Bounds of a conductivity.
+
+    Attributes
+    ----------
+    lower, upper : float, W/(m K)
+        The scene's conductivity along its load lies between them.
+    stats : dict
+        `size` (m), `elements`, `temperatures` and `fluxes`, each with `unknowns`, `iterations` and `residual`;
+        `unbalanced`, how much of the lower bound was given up for the residual; `cpu_s` of mesh, lower and upper.
+    """
+
+    lower: float
+    upper: float
+    stats: dict = field(repr=False, default_factory=dict)
+
+    @property
+    def width(self) -> float:
+        """Upper over lower bound, less 1; 0 where both are 0."""
+        if self.lower > 0:
+            return self.upper / self.lower - 1
+        return 0.0 if self.upper == 0 else math.inf
+
+    @property
+    def middle(self) -> float:
+        """Halfway between both, W/(m K)."""
+        return (self.lower + self.upper) / 2
+
+
+def solve(scene: Scene, *, size: float | None = None, width: float | None = None, tolerance: float = 1e-10) -> Bracket:
+    """Bound the conductivity of a scene along its load from both sides.
+
+    The temperature is quadratic, the flux linear in each element, which lets both bounds close in like the third to
+    fourth power of the edge length; interfaces are quadratic too and pushed to the safe side of the true ones.
+
+    Parameters
+    ----------
+    scene : Scene
+        Spheres and layers in a periodic cell, or between two opposite walls that are held; conductivity 0 is a pore.
+    size : float, m, optional
+        Longest wanted edge of the mesh, see `references.mesh.make`; with `width` that of the first mesh.
+    width : float, optional
+        Refine until upper over lower bound is at most 1 + width.
+    tolerance : float
+        Largest relative residual of both systems of equations, scaled to a unit diagonal. What it leaves of the
+        flux unbalanced is counted against the lower bound.
+
+    Returns
+    -------
+    Bracket
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the width asks for a mesh that memory does not hold.
+    NotImplementedError
+        If surfaces of the scene touch.
+    RuntimeError
+        If meshing fails, or a residual stays above the tolerance.
+    ImportError
+        If gmsh or a system library that it needs is missing.
+    """
+    check_scene(scene)
+    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
+    if width is not None:
+        finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
+    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
+    drop, power = _load(scene)
+    while True:
+        found = _once(scene, size, tolerance, drop, power)
+        if width is None or found.width <= width:
+            return found
+        size = found.stats["size"] * float(np.clip((width / found.width) ** POWER, *FINER))
+
+
+def _load(scene):
+    """Largest difference of temperatures, K, and the energy of a unit conductivity, K2 m."""
+    if scene.periodic:
+        gradient, size = np.array(scene.gradient), np.array(scene.size)
+        return DROPS * float(np.abs(gradient * size).sum()), float(gradient @ gradient) * scene.volume
+    if scene.wall_fluxes:
+        raise ValueError(f"Scene.walls = {scene.walls}: bounds need two opposite walls, both held at a temperature")
+    length = scene.size[scene.axis]
+    low, high = sorted(scene.wall_temperatures.values())
+    if low == high:
+        raise ValueError(f"Scene.walls = {scene.walls}: temperatures must differ to define a conductivity")
+    return high - low, ((high - low) / length) ** 2 * scene.volume
+
+
+def _once(scene, size, tolerance, drop, power):
+    begin = time.process_time()
+    mesh = make(scene, size=size)
+    meshed = time.process_time()
+    lower, fluxes = _lower(scene, mesh, tolerance, drop, power)
+    bounded = time.process_time()
+    upper, temperatures = _upper(scene, mesh, tolerance, power)
+    cpu = {"mesh": meshed - begin, "lower": bounded - meshed, "upper": time.process_time() - bounded}
+    stats = {"size": mesh.stats["size"], "elements": len(mesh.cells), "unbalanced": fluxes.pop("unbalanced")}
+    lower, upper = float(lower) * (1 - ROUNDING), float(upper) * (1 + ROUNDING)
+    return Bracket(lower, upper, stats | {"temperatures": temperatures, "fluxes": fluxes, "cpu_s": cpu})
+
+
+def _lower(scene, mesh, tolerance, drop, power):
+    """By Thomson's principle: the power of the true temperature is at least (what a flux works along it)^2 / energy."""
+    if not scene.conductivities[mesh.phase].any():
+        return 0.0, {"unbalanced": 0.0}
+    mesh = pushed(scene, mesh, upper=False)
+    flux = balanced_flux(scene, mesh, tolerance=tolerance)
+    energy = flux_energy(mesh, scene.conductivities[mesh.phase], flux.moments)
+    lost = OF_MOMENTS * flux.left * drop
+    if flux.work <= lost:
+        return 0.0, flux.stats | {"unbalanced": 0.0}
+    return (flux.work - lost) ** 2 / energy / power, flux.stats | {"unbalanced": float(2 * lost / flux.work)}
+
+
+def _upper(scene, mesh, tolerance, power):
+    """By Dirichlet's principle: the power of the true temperature is at most the energy of any other."""
+    mesh = pushed(scene, mesh, upper=True)
+    solved = solve_nodes(scene, mesh, tolerance)
+    stats = {name: solved.stats[name] for name in ("unknowns", "iterations", "residual")}
+    return temperature_energy(mesh, scene.conductivities[mesh.phase], solved.temperature) / power, stats
