@@ -51,6 +51,15 @@ def test_the_example_of_fluxes_runs():
     assert smooth.std(axis=0).max() < names["field"].samples.flux.std(axis=0).max()
 
 
+def test_the_example_of_bounds_runs():
+    names = {}
+    exec(_block("import numpy").replace("100_000", "1_000"), names)
+    exec(_block("bracket"), names)
+    # The exact value, as above.
+    assert names["found"].lower < 42.640335234 < names["found"].upper
+    assert names["found"].width <= 1e-3
+
+
 def test_the_example_of_many_inclusions_runs():
     names = {}
     exec(_block("import numpy").split("scene =")[0], names)

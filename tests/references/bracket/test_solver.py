@@ -70,6 +70,15 @@ def test_a_width_is_reached():
     assert found.lower < exact.solve(scene).conductivity < found.upper
 
 
+def test_a_rough_flux_proves_less():
+    """Far from solved, work squared over energy is above the true value: what is unbalanced has to count."""
+    scene = gallery.laminate()
+    known, found = exact.solve(scene).conductivity, bracket.solve(scene, size=scene.size[0] / 5, tolerance=1e-3)
+    assert 0 < found.lower < known < found.upper
+    without = found.lower / (1 - found.stats["unbalanced"] / 2) ** 2
+    assert without > known
+
+
 def test_units_and_load_change_nothing():
     scene = gallery.sphere_in_cube(10.0)
     here = bracket.solve(scene, size=scene.size[0] / 6)

@@ -1,0 +1,108 @@
+"""Certain bounds: how narrow the bracket of two admissible solutions is, what it costs, and whether it ever fails.
+
+A temperature that fits the load bounds the conductivity from above (Dirichlet), a balanced flux from below (Thomson);
+`references.bracket` works both out on one mesh whose curved interfaces are pushed to the safe side. `drawn`: a hundred
+scenes with an exact conductivity, drawn by seed, none of them used for anything else: cubic arrays, spheres between
+walls, coated spheres, laminates, random spheres of several sizes and materials. `refined`: the sphere in a cube and 83
+spheres on finer and finer meshes. `judged`: 40 spheres at contrast 150 between walls as each method answers by
+default, beside the bracket.
+"""
+
+from studies.brackets.scenes import DRAWN, KINDS
+from studies.harness import methods
+from studies.harness.pick import pick, present
+
+EACH = 20  # drawn scenes of a kind
+# Edges of the finest of elements beside the box, by scene.
+REFINED = {"sphere": (6, 8, 12, 16, 24, 32), "83 spheres": (10, 30, 40, 50)}
+JUDGED = ("dem", "fft", "fem")
+MODULES = {"bracket": "references.bracket"}
+PAPER = {}
+TIMEOUT = 3600.0
+
+
+def _cases():
+    for seed in range(EACH):
+        for kind in KINDS:
+            yield {"part": "drawn", "scene": kind, "seed": seed, "parts": DRAWN, "method": "bracket"}
+    for scene, sizes in REFINED.items():
+        for parts in sizes:
+            yield {"part": "refined", "scene": scene, "parts": parts, "method": "bracket"}
+    yield {"part": "judged", "scene": "40 spheres", "parts": 40, "method": "bracket"}
+    for name in JUDGED:
+        yield methods.case(name, part="judged", scene="40 spheres")
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """One scene of each kind; the sphere on its coarsest meshes."""
+    if case["part"] == "drawn":
+        return case["seed"] < 1
+    return case["scene"] == "sphere" and case["parts"] <= 12
+
+
+def run(part, scene, parts=None, seed=None, name=None, *, method, **knobs):
+    """Bound the conductivity of a scene, or answer by a method."""
+    from studies.brackets import rows
+
+    if name is not None:
+        return rows.answered(scene, method=method, **knobs)
+    return rows.bounded(scene, seed, parts)
+
+
+def warm_up(part, scene, parts=None, seed=None, name=None, *, method, **knobs):
+    """Load what meshes and solves; compile what a method needs."""
+    from studies.brackets import rows
+
+    if name is None:
+        rows.bounded("sphere", None, 3)
+    else:
+        methods.warm_up(method, **knobs)
+
+
+def claims(df):
+    """The bracket holds, closes in, and is as narrow as was asked for before there was one."""
+    drawn = pick(df, part="drawn")
+    yield (
+        f"Exact values outside of their brackets, of {len(drawn)} scenes",
+        int((~drawn["inside"].astype(bool)).sum()),
+        0,
+    )
+    yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 1.0
+    yield from present(_refined(pick(df, part="refined")))
+    judged = pick(df, part="judged", method="bracket")
+    if len(judged):
+        yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 1.0
+
+
+def _refined(rows):
+    """A tenth of a per cent on the sphere, three tenths on 83 for 200 CPU seconds; faster than second order."""
+    from studies.brackets.means import narrowest, order_of_width
+
+    sphere, many = (pick(rows, scene=scene) for scene in REFINED)
+    yield "Sphere, contrast 10: narrowest bracket, %", narrowest(sphere), 0.1
+    yield "Sphere, contrast 10: order of the width in the edge of elements", order_of_width(sphere), ">= 2"
+    yield "83 spheres, at most 200 CPU seconds: narrowest bracket, %", narrowest(many, cpu_s=200.0), 0.3
+    outside = rows[~rows["inside"].astype(bool)]
+    yield "Refined scenes: exact values outside of their brackets", len(outside), 0
+
+
+def table(df):
+    """Bounds of k over the matrix's, widths and costs.
+
+    "exact in" says where between the bounds the exact value is, 0 the lower and 1 the upper; of drawn scenes the least
+    and the greatest of each kind. Elements, unknowns of temperature and flux, CPU seconds and memory are of one
+    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds.
+    """
+    from studies.brackets.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """Width against cost; the hundred scenes with the exact value between their bounds."""
+    from studies.brackets.figure import draw
+
+    return draw(df)

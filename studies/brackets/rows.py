@@ -1,0 +1,56 @@
+"""One bracket, or one method's answer, as a row."""
+
+from __future__ import annotations
+
+from references import bracket
+from studies.brackets.scenes import exact_of, scene_of
+from studies.harness import methods
+from studies.harness.cost import measured
+
+
+def bounded(name, seed, parts):
+    """Bounds of a scene's conductivity beside the exact one.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene.
+    seed : int or None
+    parts : int
+        Edges of elements: the longest side of the box over this.
+    """
+    scene = scene_of(name, seed)
+    known = exact_of(name, scene)
+    found, cost = measured(bracket.solve, scene, size=max(scene.size) / parts)
+    stats = found.stats
+    unit = scene.matrix.conductivity or max(scene.conductivities)
+    return {
+        "lower": found.lower / unit,
+        "upper": found.upper / unit,
+        "exact": known / unit,
+        "inside": bool(found.lower <= known <= found.upper),
+        "width_percent": 100 * found.width,
+        "inclusions": len(scene.inclusions),
+        "elements": stats["elements"],
+        "temperatures": stats["temperatures"]["unknowns"],
+        "fluxes": stats["fluxes"].get("unknowns", 0),
+        "unbalanced": stats["unbalanced"],
+        **cost,
+    }
+
+
+def answered(name, *, method, **knobs):
+    """A method's answer by default, or with the knobs that its name stands for.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene.
+    method : str
+        Of its module.
+    **knobs
+        Of its `solve`.
+    """
+    scene = scene_of(name)
+    field, cost = measured(methods.load(method).solve, scene, **knobs)
+    return {"k": field.conductivity / scene.matrix.conductivity, **cost}
