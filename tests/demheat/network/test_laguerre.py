@@ -89,6 +89,17 @@ def test_hidden_points_are_dropped():
     assert_allclose(closure(kept, seen.centers, seen.size), 0.0, atol=1e-10 * 300 ** (-2 / 3))
 
 
+def test_of_coincident_points_the_heaviest_has_the_cell_and_of_equals_the_first():
+    centers, weights = cloud(200)
+    weights[:3] = weights.max()  # not hidden by others
+    twice = laguerre(np.vstack([centers, centers[:3]]), np.append(weights, weights[:3] + [0.0, 1e-3, -1e-3]), (1, 1, 1))
+    assert (twice.volumes[:3] > 0).tolist() == [True, False, True]
+    assert (twice.volumes[200:] > 0).tolist() == [False, True, False]
+    # The cells are those of the heaviest alone; rounding of their volumes.
+    weights[1] += 1e-3
+    assert_allclose(twice.volumes[[0, 201, 2]], laguerre(centers, weights, (1, 1, 1)).volumes[:3], rtol=1e-12)
+
+
 @pytest.mark.parametrize("height, seen", [(1e-7, False), (1e-3, True)])
 def test_cells_of_slivers_only_count_as_hidden(height, seen):
     """Amid eight sites of a cubic lattice, a light one whose planes lie at that height, in edges of the lattice."""
