@@ -249,6 +249,15 @@ def test_error_at_the_asked_times_is_below_the_accuracy(name, accuracy):
     assert ledger.steps > 3
 
 
+@pytest.mark.parametrize("name", METHODS)
+def test_only_implicit_steps_leave_a_residual(name):
+    system, start = swinging()
+    x = initial_state(system, start, 0.0)
+    advance = stepper(name, system, limit=1e-6)
+    _, _, ledger = next(control.fixed_steps(advance, system, x, [1e-4], step=1e-4, span=control.span_of(system, x)))
+    assert (ledger.residual > 0.0) == (METHODS[name] is trbdf2) and ledger.residual < 1e-6
+
+
 @pytest.mark.parametrize("error, rejected", [(1.5e-3, 0), (0.06, 1)])
 def test_steps_follow_the_cube_root_of_the_error(error, rejected):
     """Eight times the error of a step of third order: the next one, or the next try, is half as long."""
