@@ -6,6 +6,9 @@ draws breaks by a seed over all modules of demheat, references and studies/harne
 in a throw-away copy of the tree and runs tests in it, nearest first, until one fails: those named after the module,
 those that import it, the rest of their folder, those of all methods. A test that runs over its limit has seen it too;
 one that fails in the sound copy as well says nothing and is marked so. Breaks already in the table are passed over.
+
+In the table `caught` is yes, no, or ? (see `note`); "equal" is written by hand for a break that changes no result, with
+the reason in `note`.
 """
 
 import argparse
@@ -317,14 +320,14 @@ def main():
     words.add_argument("--unseen", action="store_true", help="try again those of the table that nothing saw")
     given = words.parse_args()
     if given.unseen:
-        kept = [row for row in rows(given.out) if row["caught"] == "yes"]
+        kept = [row for row in rows(given.out) if row["caught"] in ("yes", "equal")]
         with given.out.open("w", newline="", encoding="utf-8") as file:
             table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             table.writeheader()
             table.writerows(kept)
     run(drawn(given.count, given.seed), given.out, jobs=given.jobs, wide=not given.near)
     seen = [row["caught"] for row in rows(given.out)]
-    print(f"{seen.count('yes')} of {len(seen)} seen")
+    print(f"{seen.count('yes')} of {len(seen)} seen, {seen.count('equal')} change nothing")
 
 
 if __name__ == "__main__":
