@@ -65,3 +65,11 @@ def test_no_room_is_said(monkeypatch):
     with pytest.raises(RuntimeError, match="no room for sphere 2 of 2 in 1000 trials"):
         add_spheres(np.full(2, 0.325), np.ones(3), source, periodic=False, margin=0.325)
     assert source.drawn == 5 * addition.BATCH  # one for the first sphere, four for 1000 trials of the second
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_many_small_spheres_beside_a_large_one(periodic):
+    """Cells as wide as the large one take some of the small ones: their slots are made more as they fill."""
+    radii = np.append(0.1, np.full(700, 0.02))
+    centers = add_spheres(radii, np.ones(3), np.random.default_rng(0), periodic=periodic)
+    assert surface_distances(centers, radii, np.ones(3), periodic).min() > -1e-15  # rounding

@@ -113,6 +113,20 @@ def test_old_machine_code_is_thrown_away(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["new_kernels-1", "other"]
 
 
+def test_machine_code_that_is_asked_for_is_kept(tmp_path, monkeypatch):
+    monkeypatch.setattr(compiled, "base_folder", lambda: tmp_path)
+    old = tmp_path / "old_kernels-1"
+    old.mkdir()
+    then = old.stat().st_mtime - 2 * compiled.KEPT
+    os.utime(old, (then, then))
+    try:
+        assert compiled._folder_of("old_kernels", "1") == str(old)
+    finally:
+        compiled._folder_of.cache_clear()
+    compiled._tidy(tmp_path)
+    assert old.is_dir()
+
+
 def test_only_kernels_of_ours_are_placed(tmp_path):
     assert compiled.ByContent.from_function(lambda: None, str(tmp_path / "x.py")) is None
     assert compiled.ByContent.from_function(lambda: None, os.__file__) is None

@@ -2,6 +2,7 @@ import os
 import subprocess
 import sys
 import textwrap
+import time
 
 import numpy as np
 import pytest
@@ -366,3 +367,11 @@ def test_calibration_in_a_round_body():
     ends = Scene(size=(2, 1, 1), matrix=ONE, walls={"x-": 0.0, "x+": 1.0})
     # What is compared with has the area of the packing's own ends; the solver leaves 1e-8.
     assert_allclose(calibration(network_of(ends, packing, Laguerre()), ends), 1.0, rtol=1e-7)
+
+
+def test_what_was_spent_is_within_the_whole():
+    begun = time.perf_counter()
+    field = demheat.solve(ball(), particles=300)
+    whole = time.perf_counter() - begun
+    spent = field.stats["packing_s"], field.stats["solve_s"]
+    assert min(spent) > 0 and sum(spent) < whole

@@ -4,7 +4,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial import ConvexHull
 
 from demheat.network.base import branches, row_numbers
-from demheat.network.laguerre import drop_empty_cells, laguerre, tessellated
+from demheat.network.laguerre import _matched, drop_empty_cells, laguerre, tessellated
 from demheat.packing.base import make_packing
 
 
@@ -89,6 +89,17 @@ def test_hidden_points_are_dropped():
     assert_allclose(closure(kept, seen.centers, seen.size), 0.0, atol=1e-10 * 300 ** (-2 / 3))
 
 
+def test_of_coincident_points_the_heaviest_has_the_cell_and_of_equals_the_first():
+    centers, weights = cloud(200)
+    weights[:3] = weights.max()  # not hidden by others
+    twice = laguerre(np.vstack([centers, centers[:3]]), np.append(weights, weights[:3] + [0.0, 1e-3, -1e-3]), (1, 1, 1))
+    assert (twice.volumes[:3] > 0).tolist() == [True, False, True]
+    assert (twice.volumes[200:] > 0).tolist() == [False, True, False]
+    # The cells are those of the heaviest alone; rounding of their volumes.
+    weights[1] += 1e-3
+    assert_allclose(twice.volumes[[0, 201, 2]], laguerre(centers, weights, (1, 1, 1)).volumes[:3], rtol=1e-12)
+
+
 @pytest.mark.parametrize("height, seen", [(1e-7, False), (1e-3, True)])
 def test_cells_of_slivers_only_count_as_hidden(height, seen):
     """Amid eight sites of a cubic lattice, a light one whose planes lie at that height, in edges of the lattice."""
@@ -100,6 +111,22 @@ def test_cells_of_slivers_only_count_as_hidden(height, seen):
     packing = make_packing(centers, np.sqrt(weights + 0.1), (1, 1, 1), True, {})
     assert (facets.volumes[-1] > 0) == seen and np.diff(facets.indptr)[-1] == 8 * seen
     assert drop_empty_cells(packing, facets)[0].number == 64 + seen
+
+
+def test_a_facet_that_one_of_its_cells_does_not_see_is_rounding_or_an_error():
+    spacing = 0.01
+
+    def matched(area):
+        """Two cells joined by a facet, of which the first sees one more, to itself through a face of the box."""
+        indices, image = np.array([0, 1, 0], np.uint32), np.array([22, 13, 13], np.uint8)
+        columns = indices, image, np.array([area, 1e-4, 1e-4]), np.full(3, 0.005)
+        return _matched(np.array([2, 1], np.int32), columns, spacing)
+
+    indptr, indices, image, area, distance = matched(0.9e-7 * spacing**2)
+    assert indptr.tolist() == [0, 1, 2] and indices.tolist() == [1, 0] and image.tolist() == [13, 13]
+    assert len(area) == len(distance) == 2
+    with pytest.raises(RuntimeError, match="is seen by one of its two cells only"):
+        matched(1.1e-7 * spacing**2)
 
 
 def test_bits_do_not_depend_on_threads():

@@ -145,6 +145,17 @@ def test_lone_particles_take_no_part():
     assert rest.number == 6 and facets.wall_particle.max() < 6
 
 
+def test_what_is_dropped_carries_no_heat(packing):
+    """Particles at walls, too, of which links alone do not tell whether they have neighbours."""
+    between = packing._replace(periodic=np.zeros(3, dtype=bool))
+    for each in (packing, between):
+        facets = platonic_facets(each, Platonic(coordination=4.0, sparse="drop"))
+        linked = np.diff(facets.indptr) > 0
+        assert 10 < np.sum(~linked) < 500
+        assert_array_equal(facets.volumes > 0, linked)
+        assert linked[facets.wall_particle].all()
+
+
 def test_walls_are_neighbours():
     centers = np.array([(1.0, 2.0, 2.0), (1.0, 1.0, 1.0), (2.0, 2.0, 2.0), (3.0, 2.0, 2.2)])
     at = {tuple(x): n for x, n in zip(centers, (1, 3, 0, 1), strict=True)}

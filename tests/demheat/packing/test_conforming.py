@@ -5,6 +5,7 @@ from numpy.testing import assert_allclose
 from demheat import Layer, Material, Scene, Sphere
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import laguerre
+from demheat.packing import conforming
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
@@ -99,6 +100,18 @@ def test_a_wall_cuts_a_sphere():
     assert_allclose(volumes[1], 2 / 3 * np.pi * 0.3**3, rtol=5e-3)
 
 
+@pytest.mark.parametrize("periodic", [False, True])
+def test_twins_keep_off_walls(periodic):
+    """A pair that has a side nearer to a wall than three tenths of its offset is left out."""
+    given, offset = scene(Layer(0, 0.2, 0.5, OTHER), periodic=periodic), 0.1
+    y = np.array([0.29, 0.31]) * offset
+    points = np.array([(0.5, at, 0.5) for at in (*y, *(1 - y))])
+    twins = conforming._Twins(points, np.tile([1.0, 0.0, 0.0], (4, 1)), np.full(4, offset))
+    centers, weights, good = conforming._twin_points(twins, given, 0.2)
+    assert good.tolist() == [periodic, True] * 2
+    assert len(centers) == len(weights) == 2 * good.sum()
+
+
 def test_no_inclusions_no_change():
     packing = relaxed(300, seed=1)
     conformed = conform(packing, scene())
@@ -138,7 +151,6 @@ def test_inscribed_radius_of_many_normals_tends_to_one():
 
 def test_a_wide_margin_halves_errors(monkeypatch):
     from demheat import gallery, solve
-    from demheat.packing import conforming
     from references import multipole
 
     given = gallery.dispersion(20, fraction=0.3, seed=3)

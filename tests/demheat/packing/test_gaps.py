@@ -54,3 +54,19 @@ def test_way_to_wall():
     assert_allclose(interfaces.way_to_wall(points, normals), [0.1, 0.1 / 0.6, np.inf, 0.125], rtol=1e-14)
     assert_allclose(interfaces.way_to_wall(points, normals, facing=0.9), [0.1, np.inf, np.inf, np.inf], rtol=1e-14)
     assert np.all(np.isinf(Interfaces(scene("equal", True), 0.3).way_to_wall(points, normals)))
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_spheres_that_walls_cut(axis):
+    """A little at either end; a sphere that only touches a wall is whole, and so are all in a periodic cell."""
+    places = np.full((4, 3), 0.5)
+    places[:, axis] = 0.09, 0.91, 0.1, 0.5
+    found = [Sphere(place, 0.1, OTHER) for place in places]
+    walls = "xyz"[axis] + "-", "xyz"[axis] + "+"
+    for load, cut in (
+        ({"walls": dict.fromkeys(walls, 1.0)}, [True, True, False, False]),
+        ({"gradient": (0, 1, 0)}, []),
+    ):
+        given = [Scene((1, 1, 1), MATRIX, [each], **load) for each in found]
+        seen = [Interfaces(each, 0.05).spheres._cut(np.zeros(1, int))[0] for each in given]
+        assert seen == (cut or [False] * 4)

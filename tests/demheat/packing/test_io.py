@@ -140,6 +140,15 @@ def test_round_trip_keeps_every_bit_and_the_order(tmp_path, name, seed):
     assert_same(io.read(path, order="morton"), packing)
 
 
+@pytest.mark.parametrize("name", FORMATS)
+def test_one_sphere_comes_back(tmp_path, name):
+    whole = awkward(1, periodic=(True, False, True))
+    packing = whole._replace(centers=whole.centers[:1], radii=whole.radii[:1])
+    path = tmp_path / f"packing{FORMATS[name]}"
+    io.write(packing, path)
+    assert_same(io.read(path), packing)
+
+
 @pytest.mark.parametrize("name", [name for name in FORMATS if name != "lammps-dump"])
 @pytest.mark.parametrize("domain", [domain for domain in ROUND_AXES if domain != "box"])
 def test_domains_come_back(tmp_path, name, domain):

@@ -189,6 +189,7 @@ def test_cut_binary_files(tmp_path, name):
     [
         ({"centers": None}, "found the arrays radii.*expected centers"),
         ({"radii": np.ones(3)}, "found centers .*radii"),
+        ({"centers": np.empty((0, 3)), "radii": np.empty(0)}, r"found centers \(0, 3\) .*; expected .* n > 0"),
         ({"radii": -np.ones(60)}, "radius -1"),
         ({"size": np.zeros(3)}, "size"),
         ({"provenance": "{"}, "not a whole"),

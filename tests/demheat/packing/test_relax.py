@@ -3,6 +3,7 @@ import json
 import os
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numba
 import numpy as np
@@ -175,6 +176,16 @@ def test_settle_parts_twins_at_one_place():
     packing = settle(make_packing(centers, [0.1, 0.1], (1, 1, 1), True, {}), steps=200, overlap=1e-6)
     # Less the overlap allowed; nothing holds them back when they fly apart.
     assert 0.2 * (1 - 1e-6) < np.linalg.norm(np.diff(packing.centers, axis=0)) < 0.5
+
+
+def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
+    goal = SimpleNamespace(overlap=1e-4, steps=1000)
+    assert module._share(10, 1e-3, 1e-2, goal) == pytest.approx(0.5)
+    assert module._share(800, 1e-3, 1e-2, goal) == 0.8
+    # Not yet below the first, there already, and nothing to begin with: steps alone tell.
+    for mean, first in ((2e-2, 1e-2), (1e-5, 1e-2), (0.0, 0.0)):
+        assert module._share(10, mean, first, goal) == 0.01
+    assert module._share(10, 1.01e-4, 1e-2, goal) == 0.95
 
 
 def test_progress_is_told():

@@ -165,6 +165,14 @@ def test_values_are_continuous_where_the_cells_of_the_fit_change():
     assert steps.max() < 0.1 * np.ptp(values)
 
 
+def test_weights_of_a_fit_are_flat_where_they_begin_and_where_they_end():
+    step = np.array([1e-2, 1e-3, 1e-4])
+    # (1 - r^2)^2: 1 - 2 r^2 at first, 4 (1 - r)^2 at last, to the next order.
+    assert_allclose(1 - module._weight(step), 2 * step**2, rtol=1e-3)
+    assert_allclose(module._weight(1 - step), 4 * step**2, rtol=2e-2)
+    assert np.all(module._weight(np.array([1.0, 1.5, np.inf])) == 0.0)
+
+
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_every_section_carries_the_same_heat(axis):
     letter = "xyz"[axis]

@@ -1,5 +1,7 @@
 """Solvers on voxels at their limits: tiny grids, single precision, pores, no convergence, bad input."""
 
+import contextlib
+
 import numpy as np
 import pytest
 from fft_scenes import RULES, SCHEMES, dispersion, sphere_cell
@@ -7,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from demheat.scene import Flux, Material, Scene, Sphere
 from references import exact, fft
-from references.fft import solver
+from references.fft import eyre_milton, solver
 from references.voxels import links as voxel_links
 
 # Grids here are coarse on purpose.
@@ -177,3 +179,19 @@ def test_other_loads_are_refused(walls):
 def test_a_load_that_fixes_no_temperature_is_bad_input():
     with pytest.raises(ValueError, match="at least one wall with a temperature"):
         fft.solve(Scene((1, 1, 1), Material(1.0), walls={"x-": Flux(1.0), "x+": Flux(-1.0)}), voxels=4)
+
+
+@pytest.mark.parametrize("conductivity, factor", [(100.0, 11.0), (0.01, 11.0), (4.0, 3.0)])
+def test_what_is_left_of_equilibrium_is_bounded_by_the_contrast(monkeypatch, conductivity, factor):
+    """Making fields compatible moves fluxes by the root of the contrast at most; more is not convergence."""
+    scene = Scene((1, 1, 1), Material(1.0), [Sphere((0.5,) * 3, 0.3, Material(conductivity))], gradient=(0, 1, 0))
+    measure = eyre_milton._measure
+    for share, good in ((0.99, True), (1.01, False)):
+
+        def measured(*args, left=share * factor * 1e-3):
+            mean_flux, ends, errors = measure(*args)
+            return mean_flux, ends, errors | {"equilibrium": left}
+
+        monkeypatch.setattr(eyre_milton, "_measure", measured)
+        with contextlib.nullcontext() if good else pytest.raises(RuntimeError, match="did not converge"):
+            fft.solve(scene, voxels=8, scheme="eyre-milton", tolerance=1e-3)

@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_info, threadpool_limits
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
 from references.mesh import cad
-from references.mesh.cells import bent, check, jacobian_coefficients, straighten, volumes_of
+from references.mesh.cells import bent, check, jacobian_coefficients, snap, straighten, volumes_of
 from references.mesh.sizes import checked_size, wanted_sizes
 
 ROCK, METAL = Material(1.0), Material(10.0)
@@ -354,3 +354,18 @@ def test_write_for_other_programs(tmp_path):
     assert np.array_equal(back.cell_data["phase"][0], made.phase)
     assert_allclose(back.point_data["temperature"], made.points[:, 0])
     assert_allclose(back.cell_data["flux"][0], -made.points[made.cells[:, :4]].mean(axis=1))
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_nodes_of_opposite_faces_are_paired_or_refused(axis):
+    corners = np.stack(np.meshgrid(*[(0.0, 1.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    noise = np.random.default_rng(axis).uniform(-1e-10, 1e-10, corners.shape)
+    points = corners + noise
+    high, low = snap(points, np.ones(3), True).T
+    assert np.array_equal(points, corners) and len(high) == 12
+    assert np.array_equal(np.abs(points[high] - points[low]).sum(axis=1), np.ones(12))
+    assert len(snap(corners + noise, np.ones(3), False)) == 0
+    # One node of a face slid along it.
+    points[-1, axis] -= 1e-3
+    with pytest.raises(RuntimeError, match="opposite faces of the periodic cell do not match"):
+        snap(points, np.ones(3), True)

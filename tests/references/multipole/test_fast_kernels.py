@@ -250,3 +250,14 @@ def test_near_by_cells():
                     factor = (2 if m else 1) * table[j, n * (n + 1) // 2 + m]
                     expected[k] += (factor * np.array([there, *slope])).real
     assert_allclose(found, expected, rtol=0, atol=1e-12 * np.abs(expected).max())
+
+
+def test_near_by_cells_leaves_out_degrees_that_are_negligible():
+    spheres = some_spheres(1, radius=0.01)
+    cells, _ = sorted_into(SHAPE, spheres, 1e-2)
+    places, home, found = cells.places + [0.4, 0.0, 0.0], cells.home, np.zeros((1, 4))
+    # At a distance of 0.4 the second degree is 0.05^2 at most, and less at images: nobody looks at the third.
+    table = coefficients(13)[:1]
+    table[0, [n > 2 for n, _ in pairs(ORDER)]] = np.nan
+    field_kernels.near_by_cells(places, home, cells, table, ORDER, found)
+    assert np.all(np.isfinite(found)) and np.all(found != 0.0)

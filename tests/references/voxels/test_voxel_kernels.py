@@ -135,7 +135,9 @@ def test_a_sphere_on_the_centre_of_a_voxel(voxels, radius, cut):
 
 
 @pytest.mark.twin
-@pytest.mark.parametrize("center", [(0.4, 0.5, 0.55), (0.4, 0.5, 0.1), (0.4, 0.5, 0.95)])
+@pytest.mark.parametrize(
+    "center", [(0.4, 0.5, 0.55), (0.4, 0.5, 0.1), (0.4, 0.5, 0.95), (0.05, 0.1, 0.5), (0.95, 0.9, 0.5)]
+)
 def test_cut_links(center):
     (na, nb, n), spacing, radius = (5, 4, 6), np.array([0.2, 0.25, 0.18]), 0.33
     resistance = np.random.default_rng(0).random((na, nb, n + 1))

@@ -2,6 +2,7 @@
 
 from functools import cache
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from scipy.integrate import solve_ivp
 from small_networks import JUMP, KINDS, SWINGING, dense, network_of, system_of
 
 from demheat.conduction.integrators import control, euler, linear, rkl2, trbdf2
+from demheat.conduction.integrators.base import Step
 from demheat.conduction.integrators.march import linear_tolerance
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
@@ -245,6 +247,33 @@ def test_error_at_the_asked_times_is_below_the_accuracy(name, accuracy):
     _, x, ledger = next(control.adaptive_steps(advance, system, x, [END], accuracy=accuracy, span=span, first=1e-3))
     assert rms(x[: len(right)] - right) < accuracy * span()
     assert ledger.steps > 3
+
+
+@pytest.mark.parametrize("name", METHODS)
+def test_only_implicit_steps_leave_a_residual(name):
+    system, start = swinging()
+    x = initial_state(system, start, 0.0)
+    advance = stepper(name, system, limit=1e-6)
+    _, _, ledger = next(control.fixed_steps(advance, system, x, [1e-4], step=1e-4, span=control.span_of(system, x)))
+    assert (ledger.residual > 0.0) == (METHODS[name] is trbdf2) and ledger.residual < 1e-6
+
+
+@pytest.mark.parametrize("error, rejected", [(1.5e-3, 0), (0.06, 1)])
+def test_steps_follow_the_cube_root_of_the_error(error, rejected):
+    """Eight times the error of a step of third order: the next one, or the next try, is half as long."""
+    system, x = SimpleNamespace(capacity=np.ones(2)), np.array([0.0, 1.0])
+
+    def second_size(error):
+        def advance(x, now, size, memory, estimate):
+            sizes.append(size)
+            return Step(x, np.zeros(8), np.full(2, error if len(sizes) == 1 else 1e-9), 1)
+
+        sizes, span = [], control.Span(x, slice(None))
+        states = control.adaptive_steps(advance, system, x, [END], accuracy=1e-3, span=span, first=1e-4)
+        assert next(states)[2].rejected == rejected  # of the first step 0.03 is allowed
+        return sizes[1]
+
+    assert_allclose(second_size(error) / second_size(8 * error), 2.0, rtol=1e-12)  # rounding
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -1,0 +1,336 @@
+"""Break the code in small ways, one at a time, and look which test sees it.
+
+    python tests/tools/breaks.py 100 --seed 7 --out breaks.csv
+
+draws breaks by a seed over all modules of demheat, references and studies/harness (`mutants` says which), applies each
+in a throw-away copy of the tree and runs tests in it, nearest first, until one fails: those named after the module,
+those that import it, the rest of their folder, those of all methods. A test that runs over its limit has seen it too;
+one that fails in the sound copy as well says nothing and is marked so. Breaks already in the table are passed over.
+
+In the table `caught` is yes, no, or ? (see `note`); "equal" is written by hand for a break that changes no result, with
+the reason in `note`.
+"""
+
+import argparse
+import csv
+import os
+import random
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from threading import Lock
+from typing import NamedTuple
+
+sys.path.insert(0, str(Path(__file__).parents[1]))
+from tools.mutants import Mutant, mutants  # noqa: E402
+
+ROOT = Path(__file__).resolve().parents[2]
+PACKAGES = ("demheat", "references", "studies/harness")
+# Parts of the tree that tests need.
+NEEDED = ("demheat", "references", "studies", "tests", "results", "docs", "*.md", "*.toml", "Makefile", "CITATION.cff")
+# What sees methods as wholes, for breaks that the tests of their folder let pass.
+WIDE = ("tests/test_methods.py", "tests/demheat/test_dem.py", "tests/demheat/test_laws.py", "tests/test_pores.py")
+WIDE += ("tests/test_order.py", "tests/test_bad_inputs.py")
+COLUMNS = ("module", "line", "kind", "before", "after", "caught", "by", "note")
+# CPU-seconds of one test, compiling included, many times what the slowest needs; and seconds of a whole call, for what
+# waits for ever.
+TEST, CALL = 60, 1500
+
+
+class Break(NamedTuple):
+    """A break of a module."""
+
+    module: Path
+    mutant: Mutant
+
+    def key(self):
+        """What finds it in the table."""
+        return (self.module.as_posix(), str(self.mutant.line), self.mutant.kind, *self.mutant.words())
+
+
+def drawn(count, seed, root=ROOT, packages=PACKAGES):
+    """Breaks drawn without repetition: each place is as likely, a larger count begins with the same ones.
+
+    Parameters
+    ----------
+    count : int
+    seed : int
+    root : Path
+    packages : tuple of str
+        Folders below it.
+    """
+    generator, places = random.Random(seed), []
+    for package in packages:
+        for path in sorted((root / package).rglob("*.py")):
+            module = path.relative_to(root)
+            places += [(module, choices) for choices in mutants(path.read_text(encoding="utf-8"))]
+    generator.shuffle(places)
+    return [Break(module, random.Random(f"{seed}.{k}").choice(each)) for k, (module, each) in enumerate(places[:count])]
+
+
+def stages(module, root=ROOT):
+    """Lists of test files to run one after another for a break of a module, none twice, none empty.
+
+    Parameters
+    ----------
+    module : Path
+        From the root.
+    root : Path
+    """
+    package = module.parent if module.stem == "__init__" else module.with_suffix("")
+    near, exact = _mirror(package, root)
+    beside = sorted(near.rglob("test_*.py") if exact else near.glob("test_*.py"))
+    everywhere = sorted((root / "tests").rglob("test_*.py"))
+    named = [path for path in beside if re.search(rf"_{package.name.removesuffix('_kernels')}(_|\.)", path.name)]
+    named = named or [path for path in beside if path.name == f"test_{module.parent.name}.py"]
+    importing = [path for path in everywhere if _imports(path, package)]
+    wide = [root / name for name in WIDE if (root / name).is_file()]
+    if module.parts[0] == "studies":
+        wide = sorted((root / "tests" / "studies").glob("test_*.py"))
+    done, found = set(), []
+    for group in (named, importing, beside, wide):
+        fresh = [path.relative_to(root).as_posix() for path in dict.fromkeys(group) if path not in done]
+        done.update(group)
+        found += [fresh] if fresh else []
+    return found
+
+
+def _mirror(package, root):
+    """The folder of tests that mirrors a package's or, if there is none, the nearest above it; and whether it does."""
+    folder = root / "tests" / package
+    while not folder.is_dir():
+        folder = folder.parent
+    return folder, folder == root / "tests" / package
+
+
+def _imports(path, package):
+    """Whether a file imports a module, or anything of it, in a line of its own."""
+    above, word = ".".join(package.parts[:-1]), package.name
+    line = rf"^from {re.escape(above)} import .*\b{word}\b|^(from|import) {re.escape(above)}\.{word}\b"
+    return re.search(line, path.read_text(encoding="utf-8"), re.MULTILINE)
+
+
+def pytest_runtest_setup(item):
+    """Give the test its CPU-seconds: the clock kills the process, even within compiled code."""
+    signal.signal(signal.SIGPROF, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_PROF, float(os.environ["BREAKS_TEST"]))
+
+
+class Copies:
+    """A sound copy of the tree, and broken copies of that; machine code of sound kernels is shared by all.
+
+    Parameters
+    ----------
+    folder : Path
+    root : Path
+    limit : float, s
+        CPU-seconds of one test.
+    """
+
+    def __init__(self, folder, root=ROOT, limit=TEST):
+        self.folder, self.sound, self.kernels = folder, folder / "sound", folder / "kernels"
+        self.limit = limit
+        for path in (path for pattern in NEEDED for path in root.glob(pattern)):
+            copy = shutil.copytree if path.is_dir() else shutil.copy2
+            (self.sound / path.relative_to(root).parent).mkdir(parents=True, exist_ok=True)
+            copy(path, self.sound / path.relative_to(root))
+        self.kernels.mkdir()
+        self.trusted, self.lock = {}, Lock()
+
+    def of(self, broken):
+        """A copy with the break in it. It has the sound copy's bytecode of all other modules.
+
+        Parameters
+        ----------
+        broken : Break
+        """
+        copy = Path(tempfile.mkdtemp(dir=self.folder)) / "tree"
+        shutil.copytree(self.sound, copy)
+        path = copy / broken.module
+        path.write_text(broken.mutant.apply(path.read_text(encoding="utf-8")), encoding="utf-8")
+        return copy
+
+    def ran(self, tree, tests, *options, plain=False):
+        """Run tests in a copy. Returns the first that fails or hangs, or None.
+
+        Parameters
+        ----------
+        tree : Path
+        tests : list of str
+            Files, or names of tests.
+        *options : str
+            Of pytest.
+        plain : bool
+            Without compiling.
+        """
+        own = {
+            "PYTHONPATH": os.pathsep.join(map(str, (tree, tree / "tests", ROOT / "tests"))),
+            "PYTHONUNBUFFERED": "1",  # what hangs has said its name
+            "NUMBA_CACHE_DIR": str(self.kernels),
+            "NUMBA_DISABLE_JIT": str(int(plain)),
+            "BREAKS_TEST": str(self.limit),
+        }
+        words = [sys.executable, "-m", "pytest", "-v", "-x", "-p", "no:cacheprovider", "-p", "tools.breaks", *options]
+        log = tree.parent / "log"
+        with log.open("w") as out:
+            process = subprocess.Popen(
+                [*words, *tests], cwd=tree, env=os.environ | own, stdout=out, stderr=out, start_new_session=True
+            )
+            try:
+                status = process.wait(CALL)
+            except subprocess.TimeoutExpired:
+                status = -signal.SIGALRM
+            finally:
+                _end(process)
+        return _seen(log.read_text(errors="replace"), status)
+
+    def is_trusted(self, test):
+        """Whether a test passes in the sound copy.
+
+        Parameters
+        ----------
+        test : str
+        """
+        with self.lock:
+            if test not in self.trusted:
+                self.trusted[test] = self.ran(self.sound, [test]) is None
+        return self.trusted[test]
+
+    def first_seen(self, broken, wide=True):
+        """The first test that sees a break, or None.
+
+        Parameters
+        ----------
+        broken : Break
+        wide : bool
+            Run the tests of all methods too.
+        """
+        copy, nearest = self.of(broken), True
+        try:
+            for tests, plain in self._calls(broken.module, wide):
+                options = ("-m", "twin") if plain else ("-m", "not slow")
+                by = self.ran(copy, tests, *options, plain=plain)
+                # Far from the module a test may fail by chance: once more.
+                if by and (nearest or "::" not in by or self.ran(copy, [by.split(" (")[0]], plain=plain)):
+                    return by
+                nearest = False
+        finally:
+            shutil.rmtree(copy.parent)
+        return None
+
+    def _calls(self, module, wide):
+        """Test files to run together, and whether without compiling: kernels are tried so first, which is fast."""
+        found = stages(module, self.sound)
+        if module.stem.endswith("kernels"):
+            yield found[0], True
+        yield from ((tests, False) for tests in (found if wide else found[:-1] or found))
+
+
+def _end(process):
+    """Nothing that a test started outlives it."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except ProcessLookupError:
+        pass
+    process.wait()
+
+
+def _seen(log, status):
+    """The test that failed or hung, from what pytest printed."""
+    if status in (0, 5):  # 5: nothing to run
+        return None
+    failed = re.search(r"^(?:FAILED|ERROR) (.+?)(?: - .*)?$", log, re.MULTILINE)
+    if failed:
+        return failed[1]
+    last = re.findall(r"^(tests/\S+)", log, re.MULTILINE)
+    how = "hang" if -status in (signal.SIGPROF, signal.SIGALRM) else f"ended with {status}"
+    return f"{last[-1] if last else 'import'} ({how})"
+
+
+def tried(broken, copies, wide=True):
+    """One row of the table.
+
+    Parameters
+    ----------
+    broken : Break
+    copies : Copies
+    wide : bool
+    """
+    by = copies.first_seen(broken, wide)
+    if by and by.startswith("tests/") and not copies.is_trusted(by.split(" (")[0]):
+        return [*broken.key(), "?", by, "fails in the sound copy too"]
+    return [*broken.key(), "yes" if by else "no", by or "", ""]
+
+
+def rows(path):
+    """Rows of a table, if there is one.
+
+    Parameters
+    ----------
+    path : Path
+    """
+    if not path.is_file():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def run(breaks, out, *, jobs=1, wide=True, root=ROOT, limit=TEST):
+    """Try breaks that are not in the table yet, and add them.
+
+    Parameters
+    ----------
+    breaks : list of Break
+    out : Path
+    jobs : int
+        At once.
+    wide : bool
+    root : Path
+    limit : float, s
+        As in `Copies`.
+    """
+    done = {tuple(row[name] for name in COLUMNS[:5]) for row in rows(out)}
+    todo, lock = [each for each in breaks if each.key() not in done], Lock()
+    if not out.is_file():
+        out.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
+
+    def try_one(broken):
+        row = tried(broken, copies, wide)
+        with lock, out.open("a", newline="", encoding="utf-8") as file:
+            csv.writer(file, lineterminator="\n").writerow(row)
+            print(f"{row[0]}:{row[1]}: {row[3]}  ->  {row[4]}: {row[6] or 'UNSEEN'}", flush=True)
+
+    with tempfile.TemporaryDirectory(prefix="breaks-", ignore_cleanup_errors=True) as folder:
+        copies = Copies(Path(folder), root, limit)
+        with ThreadPoolExecutor(jobs) as pool:
+            list(pool.map(try_one, todo))
+
+
+def main():
+    """The command line."""
+    words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    words.add_argument("count", type=int)
+    words.add_argument("--seed", type=int, required=True)
+    words.add_argument("--out", type=Path, default=Path("breaks.csv"))
+    words.add_argument("--jobs", type=int, default=1)
+    words.add_argument("--near", action="store_true", help="only tests of the module's folder")
+    words.add_argument("--unseen", action="store_true", help="try again those of the table that nothing saw")
+    given = words.parse_args()
+    if given.unseen:
+        kept = [row for row in rows(given.out) if row["caught"] in ("yes", "equal")]
+        with given.out.open("w", newline="", encoding="utf-8") as file:
+            table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            table.writeheader()
+            table.writerows(kept)
+    run(drawn(given.count, given.seed), given.out, jobs=given.jobs, wide=not given.near)
+    seen = [row["caught"] for row in rows(given.out)]
+    print(f"{seen.count('yes')} of {len(seen)} seen, {seen.count('equal')} change nothing")
+
+
+if __name__ == "__main__":
+    main()
