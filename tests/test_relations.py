@@ -7,8 +7,10 @@ from method_scenes import METHODS
 from relations import RELATIONS, applies, first, image_of, limit, second, spread
 
 from demheat import Sphere
+from demheat.method import PARTICLES, VOXELS
 
-# A mesh of many spheres takes seconds: as many inclusions as the scenes have that such methods are asked here.
+# Meshes of many spheres take seconds, and so do equations between their multipoles: as many inclusions as the scenes
+# have of which others than packings and voxels are asked here.
 FEW = 2
 
 
@@ -18,7 +20,7 @@ def hand(name):
     begin = 17 * list(METHODS).index(name)
     # 7 and 50 have no common divisor: all seeds come, and kinds and loads in turn.
     seeds = [(begin + 7 * k) % COUNT for k in range(COUNT)]
-    if "rotation" in method.exceptions and not method.resolution.seeded:
+    if method.resolution not in (None, PARTICLES, VOXELS):
         seeds = [seed for seed in seeds if len(drawn(seed).inclusions) <= FEW]
     found, used = {}, []
     for relation in RELATIONS:
