@@ -1,7 +1,7 @@
 """Scenes drawn by seed: spheres, coated, many or few, and layers, in boxes of unlike sides under either kind of load.
 
-What is drawn is coarse enough for the resolution at which suites ask every method: no radius, layer or gap is so small
-that particles or voxels of that size would not see it.
+What is drawn is coarse enough for the resolution at which suites ask every method: no radius or gap is so small that
+particles or voxels of that size would not see it; some layers are about as thick as a particle.
 """
 
 from functools import cache

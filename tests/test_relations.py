@@ -31,6 +31,8 @@ def hand(name):
     return found
 
 
+# What thin layers do to particles without twins is left to chance, but to the same in relations that are exact.
+@pytest.mark.filterwarnings("ignore:.*are thin for particles:UserWarning")
 @pytest.mark.parametrize("name", METHODS)
 def test_relations(name):
     asked, wrong = hand(name), []

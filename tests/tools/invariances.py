@@ -135,6 +135,8 @@ def main():
     parser.add_argument("--scenes", type=int, default=COUNT)
     arguments = parser.parse_args()
     warnings.simplefilter("error")
+    # As in tests/test_relations.py.
+    warnings.filterwarnings("ignore", ".*are thin for particles")
     for name in arguments.names or METHODS:
         add(measured(name, arguments.scenes))
     PAGE.write_text(page(stored()))
