@@ -1,7 +1,7 @@
 """What happens to runs of studies when they are killed, run at one time, or on machines that lack something.
 
 Each fault is tried on a real run, `python -m studies run`, of a study small enough; `tests/test_faults.py` tries the
-cheap ones, `tests/tools/faults.py` all of them, and writes a page.
+cheap ones, `tests/tools/try_faults.py` all of them, and writes a page.
 """
 
 import os

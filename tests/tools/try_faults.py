@@ -1,6 +1,6 @@
 """Try every fault on real runs and write docs/faults.md: what was done, how often, what was wrong.
 
-    PYTHONPATH=.:tests python tests/tools/faults.py [--kills N] [--seed N]
+    PYTHONPATH=.:tests python tests/tools/try_faults.py [--kills N] [--seed N]
 
 takes some CPU-minutes. Disks that are full or read-only are small ones of their own, where the system lets a user mount
 them (Linux, `unshare`); locales are made by `localedef`, where it is there.
@@ -29,7 +29,7 @@ sys.stdout.write(f"{field.conductivity!r}")
 
 
 def kills(home, right, count, seed):
-    """A run is killed at a random moment and begun again, over and over; when it has got to its end, in a new folder."""
+    """A run is killed at a random moment and begun again, over and over; once at its end, in a new folder."""
     rng, (rows, seconds), wrong, ended = random.Random(seed), right, [], 0
     toy, before = None, {}
     for number in range(count):
@@ -256,9 +256,7 @@ def page(lines, seed):
             f"| {name} | {times} | {'; '.join(wrong)[:300].replace('|', '/') or 'nothing'} | {note.replace('|', '/')} |"
         )
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=ROOT)
-    made = (
-        f"Made at commit {commit.stdout.strip()} on {date.today().isoformat()}, seed {seed}, by `tests/tools/faults.py`"
-    )
+    made = f"Made at commit {commit.stdout.strip()} on {date.today().isoformat()}, seed {seed}, by `tests/tools/try_faults.py`"
     return "\n".join([HEAD, f"{made}; nothing here is typed by hand.", "", *table]) + "\n"
 
 
