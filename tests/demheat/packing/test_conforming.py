@@ -166,3 +166,18 @@ def test_faces_that_only_rounding_tells_apart_are_one(off, periodic):
     found, right = packed(off), packed(0.0)
     assert found.provenance["pairs_left_out"] == 0 and found.provenance["twins"] == right.provenance["twins"] > 100
     assert_allclose(found.centers, right.centers, atol=1e-14)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 0.3, 1e9])  # another number of twins in each without ties broken on purpose
+def test_twins_of_a_coat_are_the_same_in_any_unit(unit):
+    """Its gap is equally wide all round: which points come first must not hang on rounding."""
+
+    def packed(unit):
+        center = np.array([0.637, 0.27, 0.041]) * unit
+        shells = [Sphere(center, 0.21 * unit, OTHER), Sphere(center, 0.14 * unit, Material(0.1))]
+        given = Scene(np.full(3, unit), MATRIX, shells, gradient=(0, 1 / unit, 0))
+        return conform(relaxed(2000, size=given.size, seed=1), given, seed=1)
+
+    found, right = packed(unit), packed(1.0)
+    assert found.provenance["twins"] == right.provenance["twins"] > 100
+    assert_allclose(found.centers / unit, right.centers, atol=1e-9)
