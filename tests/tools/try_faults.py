@@ -256,8 +256,8 @@ def page(lines, seed):
             f"| {name} | {times} | {'; '.join(wrong)[:300].replace('|', '/') or 'nothing'} | {note.replace('|', '/')} |"
         )
     commit = subprocess.run(["git", "rev-parse", "--short", "HEAD"], capture_output=True, text=True, cwd=ROOT)
-    made = f"Made at commit {commit.stdout.strip()} on {date.today().isoformat()}, seed {seed}, by `tests/tools/try_faults.py`"
-    return "\n".join([HEAD, f"{made}; nothing here is typed by hand.", "", *table]) + "\n"
+    made = f"Made by `tests/tools/try_faults.py` at commit {commit.stdout.strip()} on {date.today().isoformat()}"
+    return "\n".join([HEAD, f"{made}, seed {seed}; nothing here is typed by hand.", "", *table]) + "\n"
 
 
 HEAD = """# Faults
