@@ -34,6 +34,8 @@ from demheat.progress import in_parts
 # Sources are ours below this folder, in these packages.
 ROOT, OURS = Path(__file__).resolve().parents[1], ("demheat", "references", "studies")
 VERSIONS = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
+# Layout of the files, see `_keep_with_care`.
+FORMAT = 2
 # Settings of Numba that change the code it makes.
 SETTINGS = ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE", "DEBUGINFO_DEFAULT")
 # Machine code that nobody asked for so long is thrown away.
@@ -61,7 +63,7 @@ def source_key(path: Path, root: Path = ROOT) -> str:
         The folder that holds our packages.
     """
     settings = [str(getattr(numba.config, name, None)) for name in SETTINGS]
-    digest = hashlib.sha256(repr((VERSIONS, settings)).encode())
+    digest = hashlib.sha256(repr((FORMAT, VERSIONS, settings)).encode())
     for each in sorted(_sources(path, root, set())):
         digest.update(each.relative_to(root).as_posix().encode() + each.read_bytes())
     return digest.hexdigest()
@@ -233,6 +235,72 @@ def _keep_by_content():
         places.insert(0, ByContent)
 
 
+_said = set()
+
+
+def _say_once(words, folder, error):
+    """One line for all kernels of a folder: a full disk fails for a hundred of them."""
+    if (words, folder) not in _said:
+        _said.add((words, folder))
+        warnings.warn(f"compiled kernels in {folder} {words} ({error})", stacklevel=4)
+
+
+def _keep_with_care():
+    """Have kernels of ours compiled again where their machine code is not what was written, and used if it cannot be.
+
+    Numba fails on a file that is cut or a disk that is full, and loads whatever a file holds: that of other types, if
+    two processes wrote at one time.
+    """
+    try:
+        from numba.core.caching import Cache, IndexDataCacheFile
+    except ImportError:
+        return
+    if getattr(Cache.load_overload, "careful", False):
+        return
+
+    class Checked(IndexDataCacheFile):
+        """Machine code with what it is of and a checksum at its end, which others who read the file pass over."""
+
+        def save(self, key, data):
+            super().save(key, (key, data))
+
+        def load(self, key):
+            found = super().load(key)
+            if found is not None and found[0] != key:
+                raise ValueError("it is of other types")
+            return found and found[1]
+
+        def _dump(self, obj):
+            raw = super()._dump(obj)
+            return raw + hashlib.sha256(raw).digest()
+
+        def _load_data(self, name):
+            raw = Path(self._data_path(name)).read_bytes()
+            if hashlib.sha256(raw[:-32]).digest() != raw[-32:]:
+                raise ValueError("the checksum does not fit")
+            return super()._load_data(name)
+
+    def careful(usual, words):
+        @functools.wraps(usual)
+        def wrapped(self, *arguments):
+            if not isinstance(self._impl.locator, ByContent):
+                return usual(self, *arguments)
+            self._cache_file.__class__ = Checked
+            try:
+                return usual(self, *arguments)
+            except Exception as error:  # noqa: BLE001, whatever pickle makes of a broken file
+                _say_once(words, Path(self.cache_path).parent, error)
+            with contextlib.suppress(OSError):
+                self.flush()
+            return None
+
+        wrapped.careful = True
+        return wrapped
+
+    Cache.load_overload = careful(Cache.load_overload, "are compiled again, some cannot be read")
+    Cache.save_overload = careful(Cache.save_overload, "cannot be kept: set NUMBA_CACHE_DIR to another folder")
+
+
 def _compile_for_types():
     """Let kernels that call kernels of ours with numbers of the source, as 0, compile them for integers once.
 
@@ -258,5 +326,6 @@ def _compile_for_types():
 
 
 _keep_by_content()
+_keep_with_care()
 _compile_for_types()
 event.register("numba:compile", Compiling())

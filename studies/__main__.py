@@ -20,6 +20,9 @@ INTERRUPTED = 130
 def main(words=None):
     """Do what the command line says and return the exit status: 0 only if no claim failed, 130 if interrupted."""
     arguments = _parser().parse_args(words)
+    for stream in (sys.stdout, sys.stderr):
+        # A page may hold a letter that a terminal of another alphabet has not: that must not cost the run.
+        getattr(stream, "reconfigure", lambda **knobs: None)(errors="backslashreplace")
     try:
         return arguments.action(arguments)
     except (ValueError, OSError) as error:
@@ -64,7 +67,7 @@ def study_names():
     home = Path(studies.__path__[0])
     files = {path.stem: path for path in home.glob("*.py")}
     files |= {path.parent.name: path for path in home.glob("*/__init__.py")}
-    return sorted(name for name, path in files.items() if "CASES" in path.read_text().split())
+    return sorted(name for name, path in files.items() if "CASES" in path.read_text(encoding="utf-8").split())
 
 
 def _list(arguments):
@@ -145,7 +148,7 @@ def _report(arguments):
         raise ValueError(f"no results in {arguments.out}; run a study first")
     target = arguments.out / "README.md"
     with replaced(target) as temporary:
-        temporary.write_text("\n".join(pages))
+        temporary.write_text("\n".join(pages), encoding="utf-8")
     if arguments.page:
         fill(arguments.page, arguments.out)
     print(f"{len(pages)} studies in {target}; " + ("a claim FAILED" if status else "every claim holds"))

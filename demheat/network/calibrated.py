@@ -294,7 +294,9 @@ def _wall_shares(packing, particle, side):
     # A flat wall times the length between the two is the volume; round area times radius over its axes is it, too.
     length = [*packing.size.repeat(2), packing.size[axes[0]] / 2 / len(axes) if axes else np.inf]
     walls = packing.volume / np.array(length)
-    return (walls / np.bincount(side, share, minlength=len(SIDES)).clip(1e-300))[side] * share
+    # Of a wall that nothing touches there is no share.
+    whole = np.bincount(side, share, minlength=len(SIDES))[side]
+    return walls[side] / whole * share
 
 
 def _normals(packing, facets):

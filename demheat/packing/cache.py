@@ -63,7 +63,13 @@ def cached(make: Callable[[], Packing], key: dict, *, folder=None) -> Packing:
         provenance["cached"] says whether it came from the folder.
     """
     text = json.dumps({"format": FORMAT} | dict(key), sort_keys=True, default=_plain)
-    path = Path(folder or cache_folder()) / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
+    try:
+        folder = Path(folder or cache_folder())
+    except RuntimeError as error:  # nobody knows of a home
+        warnings.warn(f"packing not cached: {error} Set DEMHEAT_CACHE", stacklevel=2)
+        packing = make()
+        return packing._replace(provenance=packing.provenance | {"cached": False})
+    path = folder / f"{hashlib.sha256(text.encode()).hexdigest()[:32]}.npz"
     packing = _load(path, text)
     if packing is not None:
         return packing._replace(provenance=packing.provenance | {"cached": True})

@@ -9,6 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from demheat.scene import Layer, Scene, Shape, Sphere
+from demheat.scene.shapes.base import TOUCH
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12
@@ -200,7 +201,8 @@ def _(shape: Sphere, scene):
 @surfaces.register
 def _(shape: Layer, scene):
     length = scene.size[shape.axis]
-    faces = (x for x in (shape.start, shape.stop) if scene.periodic or 0.0 < x < length)
+    slack = TOUCH * length
+    faces = (x for x in (shape.start, shape.stop) if scene.periodic or slack < x < length - slack)
     return [PlaneSurface(shape.axis, x % length, scene) for x in faces]
 
 
@@ -214,8 +216,20 @@ def surfaces_of(scene: Scene) -> list:
     """
     found = [surface for shape in scene.inclusions if shape.bounded for surface in surfaces(shape, scene)]
     planes = [plane for shape in scene.inclusions if not shape.bounded for plane in surfaces(shape, scene)]
-    once = {(plane.axis, plane.position): plane for plane in planes}
-    return found + [once[place] for place in sorted(once)]
+    return found + _once(sorted(planes, key=lambda plane: (plane.axis, plane.position)), scene)
+
+
+def _once(planes, scene):
+    """Planes in order, less those that only rounding tells from the one before: faces of layers that touch."""
+    kept = []
+    for plane in planes:
+        slack = TOUCH * scene.size[plane.axis]
+        # In a periodic cell the last may be the first.
+        first = next((each for each in kept if each.axis == plane.axis), None)
+        around = scene.periodic and first and first.position + scene.size[plane.axis] - plane.position <= slack
+        if not around and not (first and plane.position - kept[-1].position <= slack):
+            kept.append(plane)
+    return kept
 
 
 def pattern_count(radius, spacing):

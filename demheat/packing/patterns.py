@@ -21,6 +21,8 @@ LEAST_SPACING = 4 * LEAST_OFFSET
 FINE = 0.8 * LEAST_SPACING
 # Points thinned to this part of their spacing cover the surface at least as densely as an even pattern does.
 THINNING = 0.75
+# Digits of spacings in mean radii, and the part of them that breaks ties.
+DIGITS, TIES = 9, 1e-8
 # Spheres, and points to choose from, that are looked at together: bounds the scratch memory (some 100 bytes a point).
 MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
@@ -139,6 +141,8 @@ def _refined(interfaces, even, spacing, fine, radius):
     even, more = _taken(even, np.flatnonzero(spacing >= SPACING * radius)), _taken(more, narrow)
     # Small spheres keep points all round.
     wanted = np.minimum(wanted[narrow], interfaces.widest_spacing(more[2]))
+    # Equal ones come at random, the same in any unit: in their own order a third more would be chosen.
+    wanted *= 1.0 + TIES * np.random.default_rng(0).random(len(narrow))
     chosen = np.zeros(len(narrow), dtype=bool)
     start, there = (_starts(own, fine.numbers) for own in (more[2], even[2]))
     kernels.thinned(start, more[0], THINNING * wanted, there, even[0], fine.axes, chosen)
@@ -166,4 +170,6 @@ def _inside(scene, points, normals, own):
 def _spacing(interfaces, points, normals, own, radius):
     """Distance between twins at points of surfaces: no more than the gap's width asks, see GAP_SPACING."""
     width = interfaces.width(points, normals, own)
-    return np.clip(GAP_SPACING * width, LEAST_SPACING * radius, SPACING * radius)
+    # Where a gap is equally wide all round, as in a coat, rounding must not say which points come first.
+    spacing = np.clip(np.round(GAP_SPACING * width / radius, DIGITS), LEAST_SPACING, SPACING)
+    return spacing * radius

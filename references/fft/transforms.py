@@ -149,7 +149,7 @@ def _precision(dtype):
     single = np.dtype(dtype) in (np.float32, np.complex64)
     folder = os.environ.get("DEMHEAT_CACHE")
     if not folder:
-        folder = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "demheat"
+        folder = Path(os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache")) / "demheat"
     return (1 if single else 0), Path(folder) / f"fftw-wisdom-{'float32' if single else 'float64'}.txt"
 
 
@@ -175,8 +175,11 @@ def _save_wisdom(dtype):
         path.parent.mkdir(parents=True, exist_ok=True)
         # Written aside and moved: a process that reads meanwhile sees the old file or the new one.
         handle, aside = tempfile.mkstemp(dir=path.parent)
+    except OSError:
+        return
+    try:
         with os.fdopen(handle, "wb") as file:
             file.write(pyfftw.export_wisdom()[which])
         os.replace(aside, path)
     except OSError:
-        pass
+        Path(aside).unlink(missing_ok=True)

@@ -198,11 +198,12 @@ def spawn_row(name, study, case):
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
-        with log.open("w") as stream:
+        with log.open("wb") as stream:
             words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
             process = subprocess.Popen(
                 [sys.executable, "-m", "studies", *words], stdout=stream, stderr=stream, start_new_session=True
             )
+            watch = _watch(process)
             try:
                 code = process.wait(limit)
             except subprocess.TimeoutExpired:
@@ -210,11 +211,33 @@ def spawn_row(name, study, case):
                 return {**base, "status": "timeout", "note": note, **provenance(study, case)}
             finally:
                 _end(process)
+                _dismiss(watch)
         try:
-            return json.loads(answer.read_text())
+            return json.loads(answer.read_text(encoding="utf-8"))
         except (OSError, ValueError):
             note = f"{_end_of(code)}; {_last_line(log)}"
             return {**base, "status": "failed", "note": note, **provenance(study, case)}
+
+
+def _watch(process):
+    """Have a shell end a row's process and all that it started if this process is killed; None without a shell.
+
+    The kernel ends the row's process then, see `die_with_parent`, but not what that has started. The shell hears of it
+    by the end of a pipe of which nobody else holds the other end.
+    """
+    words = ["sh", "-c", 'read word; kill -9 -"$0"', str(process.pid)]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    try:
+        return subprocess.Popen(words, stdin=subprocess.PIPE, start_new_session=True, **quiet)
+    except OSError:
+        return None
+
+
+def _dismiss(watch):
+    if watch is not None:
+        watch.kill()
+        watch.wait()
+        watch.stdin.close()
 
 
 def _end(process):
@@ -231,7 +254,7 @@ def _end_of(code):
 
 
 def _last_line(log):
-    lines = log.read_text(errors="replace").strip().splitlines()
+    lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return lines[-1][:300] if lines else "nothing on its output"
 
 
@@ -274,7 +297,7 @@ def write_json(row, path):
     row : dict
     path : path
     """
-    Path(path).write_text(json.dumps(row, default=lambda value: value.item()))
+    Path(path).write_text(json.dumps(row, default=lambda value: value.item()), encoding="utf-8")
 
 
 def die_with_parent(parent):

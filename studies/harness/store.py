@@ -118,7 +118,7 @@ def write_rows(path, rows):
     rows = list(rows)
     seen = list(dict.fromkeys(name for row in rows for name in row))
     columns = [name for name in seen if name not in TAIL] + [name for name in TAIL if name in seen]
-    with replaced(path) as temporary, temporary.open("w", newline="") as file:
+    with replaced(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
         writer.writeheader()
         writer.writerows(rows)
@@ -143,5 +143,5 @@ def replaced(path):
 
 def printed(study):
     """Numbers that the paper prints for a study, {quantity: value}, from studies/paper/STUDY.csv."""
-    with (Path(__file__).parents[1] / "paper" / f"{study}.csv").open(newline="") as file:
+    with (Path(__file__).parents[1] / "paper" / f"{study}.csv").open(newline="", encoding="utf-8") as file:
         return {row["quantity"]: float(row["value"]) for row in csv.DictReader(file)}

@@ -51,7 +51,7 @@ def render(study, csv_path):
         claims.append(Claim(f"the figure can be drawn ({type(error).__name__}: {error})", math.nan, "= 1", False))
     text = _page(study, df, claims, figure)
     with replaced(csv_path.with_suffix(".md")) as temporary:
-        temporary.write_text(text)
+        temporary.write_text(text, encoding="utf-8")
     return claims, text
 
 

@@ -191,3 +191,72 @@ def test_numbers_of_the_source_are_integers_like_others():
     # Others' kernels are left to Numba.
     more.py_func.__module__ = "demheat.made_up"
     assert sums(2) == 6 and len(more.signatures) == 1
+
+
+def damages(folder):
+    """Ways to break the files of a kernel, one after the other."""
+    (index,), (code,) = folder.rglob("*.nbi"), folder.rglob("*.nbc")
+    whole, machine = index.read_bytes(), code.read_bytes()
+    yield "index cut", lambda: index.write_bytes(whole[:20])
+    yield "index empty", lambda: index.write_bytes(b"")
+    yield "index of something else", lambda: index.write_bytes(b"no pickle" * 9)
+    yield "code cut", lambda: code.write_bytes(machine[: len(machine) // 2])
+    # In the middle there is machine code, which would be run.
+    middle = len(machine) // 2
+    flipped = machine[:middle] + bytes([machine[middle] ^ 1]) + machine[middle + 1 :]
+    yield "a bit of the code", lambda: code.write_bytes(flipped)
+
+
+@pytest.fixture
+def called(tmp_path, monkeypatch):
+    """Call a small kernel as a new process would: what it gives, how often machine code was found, what was said."""
+    numba = pytest.importorskip("numba")
+    if numba.config.DISABLE_JIT:
+        pytest.skip("nothing is compiled")
+    from demheat.packing import cells_kernels
+
+    def call(*arguments):
+        fresh = numba.njit(cache=True)(cells_kernels._wrapped.py_func)
+        compiled._said.clear()
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            value = fresh(*arguments)
+        return value, sum(fresh.stats.cache_hits.values()), [str(each.message) for each in said]
+
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    for kept in (compiled.base_folder, compiled._folder_of):
+        kept.cache_clear()
+    yield call
+    for kept in (compiled.base_folder, compiled._folder_of):
+        kept.cache_clear()
+
+
+def test_broken_machine_code_is_made_again(called, tmp_path):
+    assert called(7, 5) == (2, 0, []) and called(7, 5) == (2, 1, [])
+    for how, damage in damages(tmp_path):
+        damage()
+        value, hits, said = called(7, 5)
+        assert (value, hits, len(said)) == (2, 0, 1) and "are compiled again, some cannot be read" in said[0], how
+        assert called(7, 5) == (2, 1, []), how
+
+
+def test_machine_code_of_other_types_is_not_run(called, tmp_path):
+    """Two processes that write at one time may leave one's code under the other's types."""
+    assert called(7, 5) == (2, 0, []) and called(7.5, 5.0) == (2.5, 0, [])
+    one, other = sorted(tmp_path.rglob("*.nbc"))
+    other.write_bytes(one.read_bytes())
+    value, hits, said = called(7.5, 5.0)
+    assert (value, hits) == (2.5, 0) and said[0].endswith("(it is of other types)")
+
+
+def test_a_full_disk_costs_no_kernel(called, monkeypatch):
+    """What is compiled is used, and one line says what to do."""
+    from numba.core.caching import IndexDataCacheFile
+
+    def full(self, path):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(IndexDataCacheFile, "_open_for_write", full)
+    value, hits, said = called(7, 5)
+    assert (value, hits, len(said)) == (2, 0, 1)
+    assert "cannot be kept: set NUMBA_CACHE_DIR" in said[0] and "No space left" in said[0]

@@ -210,3 +210,15 @@ def test_links_to_a_round_wall(domain, surface):
     flat = wall_normals(facets._replace(wall_normal=None, wall_side=facets.wall_side[~here]))
     assert_allclose(facets.wall_normal[~here], flat)
     assert len(flat) == 0 if domain == "sphere" else len(flat) > 20
+
+
+@pytest.mark.parametrize("unit", [1e-9, 1e9])
+def test_walls_are_shared_in_any_unit(between_walls, unit):
+    """Walls that nothing touches overflowed where those that are touched measure 1e18 m2."""
+    other = between_walls._replace(
+        centers=between_walls.centers * unit, radii=between_walls.radii * unit, size=between_walls.size * unit
+    )
+    one, two = (contact_facets(each, Calibrated()) for each in (between_walls, other))
+    # Rounding of a few sums over all particles.
+    assert_allclose(two.wall_area, one.wall_area * unit**2, rtol=1e-12)
+    assert_allclose(two.area, one.area * unit**2, rtol=1e-12)

@@ -211,3 +211,16 @@ def test_a_changed_archive_that_is_whole_is_noticed(tmp_path):
     with pytest.warns(UserWarning, match="made again: the checksum does not fit"):
         cached(make, {}, folder=tmp_path)
     assert make.calls == 1 and path.read_bytes() == raw
+
+
+def test_without_any_home_packings_are_made_and_a_line_says_so(monkeypatch):
+    def nobody(path):
+        raise RuntimeError("no home.")
+
+    monkeypatch.delenv("DEMHEAT_CACHE", raising=False)
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(cache.Path, "expanduser", nobody)
+    with pytest.warns(UserWarning, match="packing not cached: no home. Set DEMHEAT_CACHE"):
+        packing = cached(Maker(), {})
+    same(packing, Maker()())
+    assert not packing.provenance["cached"]

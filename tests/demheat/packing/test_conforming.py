@@ -163,3 +163,33 @@ def test_a_wide_margin_halves_errors(monkeypatch):
     # Found on others: .3 to .6 of the error; 1e-3 is the witness's own.
     assert abs(wide / exact - 1) < 0.75 * abs(narrow / exact - 1)
     assert abs(narrow / exact - 1) > 4e-3
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+@pytest.mark.parametrize("off", [-3e-16, 3e-16])
+def test_faces_that_only_rounding_tells_apart_are_one(off, periodic):
+    """Layers moved or measured in other units touch but for rounding: no twins fit into such a gap."""
+
+    def packed(off):
+        ends = ((0.0 + max(off, 0.0), 0.3), (0.3 + off, 0.6), (0.6 + off, 1.0 + min(off, 0.0)))
+        layers = [Layer(0, *each, Material(k)) for each, k in zip(ends, (2.0, 3.0, 4.0), strict=True)]
+        return conform(relaxed(1000, periodic=periodic, seed=1), scene(*layers, periodic=periodic), seed=1)
+
+    found, right = packed(off), packed(0.0)
+    assert found.provenance["pairs_left_out"] == 0 and found.provenance["twins"] == right.provenance["twins"] > 100
+    assert_allclose(found.centers, right.centers, atol=1e-14)
+
+
+@pytest.mark.parametrize("unit", [1e-9, 0.3, 1e9])  # another number of twins in each without ties broken on purpose
+def test_twins_of_a_coat_are_the_same_in_any_unit(unit):
+    """Its gap is equally wide all round: which points come first must not hang on rounding."""
+
+    def packed(unit):
+        center = np.array([0.637, 0.27, 0.041]) * unit
+        shells = [Sphere(center, 0.21 * unit, OTHER), Sphere(center, 0.14 * unit, Material(0.1))]
+        given = Scene(np.full(3, unit), MATRIX, shells, gradient=(0, 1 / unit, 0))
+        return conform(relaxed(2000, size=given.size, seed=1), given, seed=1)
+
+    found, right = packed(unit), packed(1.0)
+    assert found.provenance["twins"] == right.provenance["twins"] > 100
+    assert_allclose(found.centers / unit, right.centers, atol=1e-9)

@@ -280,3 +280,29 @@ def test_without_docstrings(tiny):
     code = f"import studies.__main__ as m; m.study_names = lambda: ['{tiny.name}']; m.main(['list'])"
     done = subprocess.run([sys.executable, "-OO", "-c", code], capture_output=True, text=True, check=True)
     assert tiny.name in done.stdout.split("missing")[1]
+
+
+def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):
+    """The rows done stay, the new one is kept elsewhere, a line says where; with room again the run goes on."""
+    for name in ("NUMBA_THREADING_LAYER", "OMP_WAIT_POLICY"):
+        monkeypatch.setenv(name, "")
+    monkeypatch.setattr(runner, "spawn_row", lambda name, *row: runner.compute_row(*row, warm=False))
+    tiny.run("--quick")
+    before, writes = tiny.rows(), []
+    capsys.readouterr()
+
+    class Full(store.csv.DictWriter):
+        def writerows(self, rows):
+            writes.append(1)
+            if len(writes) == 1:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            super().writerows(rows)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(store.csv, "DictWriter", Full)
+        assert tiny.run() == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1 and "No space left on device; the rows are in " in said
+    assert tiny.rows() == before and len(list(tiny.out.iterdir())) == 3
+    assert list(store.read_rows(said.rpartition(" ")[2].strip())) == ["name=plain,x=1.5", "name=second,x=2.0"]
+    assert tiny.run() == 0 and len(tiny.rows()) == 2
