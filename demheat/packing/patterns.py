@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from demheat.limits import check_memory
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
 
@@ -21,6 +22,8 @@ LEAST_SPACING = 4 * LEAST_OFFSET
 FINE = 0.8 * LEAST_SPACING
 # Points thinned to this part of their spacing cover the surface at least as densely as an even pattern does.
 THINNING = 0.75
+# Least bytes of a twin, as a particle of the network.
+BYTES = 400
 # Spheres, and points to choose from, that are looked at together: bounds the scratch memory (some 100 bytes a point).
 MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
@@ -42,13 +45,45 @@ def patterns(interfaces, radius, seed):
         In the box, where it has walls.
     own : (k,) int array
         Numbers of their surfaces, ascending.
+
+    Raises
+    ------
+    ValueError
+        If more twins are to be expected than fit into memory, before they are made.
     """
-    turns = _Turns(seed)
+    turns, tally = _Turns(seed), Tally(radius)
     for numbers in _chunks(interfaces.spheres, radius):
-        yield _on_spheres(numbers, interfaces, radius, turns)
+        yield _on_spheres(numbers, interfaces, radius, turns, tally)
     rng = turns.after()
     for number, other in enumerate(interfaces.others, start=len(interfaces.spheres)):
-        yield _on_other(number, other, interfaces, radius, rng)
+        yield _on_other(number, other, interfaces, radius, rng, tally)
+
+
+class Tally:
+    """How many twins are to be expected.
+
+    Parameters
+    ----------
+    radius : float, m
+        Mean radius of the packing.
+    """
+
+    def __init__(self, radius):
+        self.radius, self.twins = radius, 0.0
+
+    def add(self, spacing) -> None:
+        """Count those that an even pattern becomes where it has to be closer; refuse more than memory holds.
+
+        Points thinned to THINNING of their spacing are as many as those of an even pattern with it, or a quarter
+        more.
+
+        Parameters
+        ----------
+        spacing : (n,) float array, m
+            Wanted at each point of the even pattern.
+        """
+        self.twins += 2 * float(np.sum((SPACING * self.radius / spacing) ** 2))
+        check_memory("twins, most of them in narrow gaps,", int(self.twins), BYTES * self.twins)
 
 
 class _Turns:
@@ -84,7 +119,7 @@ def _chunks(spheres, radius):
         begin = end
 
 
-def _on_spheres(numbers, interfaces, radius, turns):
+def _on_spheres(numbers, interfaces, radius, turns, tally):
     """Pattern of some spheres.
 
     Each takes its turn from the stream, and one more for its closer pattern if it needs one: which turns those after it
@@ -99,6 +134,7 @@ def _on_spheres(numbers, interfaces, radius, turns):
         if np.array_equal(close, refined):
             break
         refined = close
+    tally.add(spacing)
     turns.used += len(numbers) + int(refined.sum())
     chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
     # Fibonacci points descend along the axis of their sphere.
@@ -106,7 +142,7 @@ def _on_spheres(numbers, interfaces, radius, turns):
     return _refined(interfaces, even, spacing, fine, radius)
 
 
-def _on_other(number, surface, interfaces, radius, rng):
+def _on_other(number, surface, interfaces, radius, rng, tally):
     """Pattern of a surface that is not a sphere."""
 
     def pattern(spacing):
@@ -115,6 +151,7 @@ def _on_other(number, surface, interfaces, radius, rng):
 
     even = _inside(interfaces.scene, *pattern(SPACING * radius))
     spacing = _spacing(interfaces, *even, radius)
+    tally.add(spacing)
     if np.all(spacing >= SPACING * radius):
         return even
     points, normals, own = pattern(FINE * radius)
