@@ -27,8 +27,8 @@ THIN = 1.5
 # Coats that are followed all round leave less to chance.
 THIN_COAT = 0.5
 
-# Twins over particles from which on that is said: spheres cost up to two or three times the particles that are asked
-# for, so what takes six times as much comes as a surprise.
+# Twins over particles, and over the twins of wide gaps, from which on that is said: what takes six times as much as was
+# asked for comes as a surprise.
 MANY = 5
 # Least bytes that a particle takes from here on.
 BYTES = 400
@@ -129,7 +129,7 @@ def _warn_of_gaps(packing):
 def _warn_of_many(packing, asked):
     """Twins stand as close as the gaps are narrow, down to a fifth of a mean radius: 64 times as many as elsewhere."""
     twins = packing.provenance["twins"]
-    if twins > MANY * asked:
+    if twins > MANY * max(asked, packing.provenance["even_twins"]):
         warnings.warn(
             f"{twins} twins at interfaces, most of them in narrow gaps, stand beside {asked} particles: memory and "
             "time go with both; if that is too much, use more or fewer particles, or conforming=False",

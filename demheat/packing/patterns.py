@@ -28,7 +28,7 @@ BYTES = 400
 MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
 
-def patterns(interfaces, radius, seed):
+def patterns(interfaces, radius, seed, tally):
     """Touch points on all surfaces of a scene, chunk by chunk.
 
     Parameters
@@ -38,6 +38,8 @@ def patterns(interfaces, radius, seed):
         Mean radius of the packing.
     seed : int
         Turns the pattern of each sphere.
+    tally : Tally
+        Of this radius.
 
     Yields
     ------
@@ -51,7 +53,7 @@ def patterns(interfaces, radius, seed):
     ValueError
         If more twins are to be expected than fit into memory, before they are made.
     """
-    turns, tally = _Turns(seed), Tally(radius)
+    turns = _Turns(seed)
     for numbers in _chunks(interfaces.spheres, radius):
         yield _on_spheres(numbers, interfaces, radius, turns, tally)
     rng = turns.after()
@@ -60,7 +62,7 @@ def patterns(interfaces, radius, seed):
 
 
 class Tally:
-    """How many twins are to be expected.
+    """How many twins are to be expected, `twins`, and how many there would be without narrow gaps, `even`.
 
     Parameters
     ----------
@@ -69,7 +71,7 @@ class Tally:
     """
 
     def __init__(self, radius):
-        self.radius, self.twins = radius, 0.0
+        self.radius, self.twins, self.even = radius, 0.0, 0
 
     def add(self, spacing) -> None:
         """Count those that an even pattern becomes where it has to be closer; refuse more than memory holds.
@@ -82,6 +84,7 @@ class Tally:
         spacing : (n,) float array, m
             Wanted at each point of the even pattern.
         """
+        self.even += 2 * len(spacing)
         self.twins += 2 * float(np.sum((SPACING * self.radius / spacing) ** 2))
         check_memory("twins, most of them in narrow gaps,", int(self.twins), BYTES * self.twins)
 

@@ -5,7 +5,7 @@ from numpy.testing import assert_allclose
 from demheat import Layer, Material, Scene, Sphere
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import laguerre
-from demheat.packing import patterns
+from demheat.packing import conforming
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
@@ -118,7 +118,7 @@ def test_no_inclusions_no_change():
 )
 def test_twins_are_known_before_they_are_made(inclusions, monkeypatch):
     made = []
-    monkeypatch.setattr(patterns, "Tally", lambda radius: made.append(Tally(radius)) or made[0])
+    monkeypatch.setattr(conforming, "Tally", lambda radius: made.append(Tally(radius)) or made[0])
     packing = relaxed(3000, periodic=True, seed=1)
     twins = conform(packing, scene(*inclusions), seed=1).provenance["twins"]
     # Points are thinned in order along a surface, so a little closer than they need be: found .95 to 1.26.
