@@ -27,6 +27,9 @@ THIN = 1.5
 # Coats that are followed all round leave less to chance.
 THIN_COAT = 0.5
 
+# Twins over particles, and over the twins of wide gaps, from which on that is said: what takes six times as much as was
+# asked for comes as a surprise.
+MANY = 5
 # Least bytes that a particle takes from here on.
 BYTES = 400
 
@@ -59,8 +62,8 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     Warns
     -----
     UserWarning
-        If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
-        no particle, or is thin for particles without twins.
+        If interfaces are so near to each other or to a wall that particles do not fit between them, or that twins are
+        over five times as many as particles; if an inclusion holds no particle, or is thin for particles without twins.
     """
     check_scene(scene)
     if not isinstance(law, tuple(LAWS.values())):
@@ -68,9 +71,10 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:
-        packing = conform(packing, scene, seed=seed)
+        asked, packing = packing.number, conform(packing, scene, seed=seed)
         check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
         _warn_of_gaps(packing)
+        _warn_of_many(packing, asked)
     packing, facets = _facets(packing, law)
     cut = time.perf_counter()
     factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
@@ -118,6 +122,17 @@ def _warn_of_gaps(packing):
         warnings.warn(
             f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
             "cross the interfaces there: use more particles where the gaps matter",
+            stacklevel=4,
+        )
+
+
+def _warn_of_many(packing, asked):
+    """Twins stand as close as the gaps are narrow, down to a fifth of a mean radius: 64 times as many as elsewhere."""
+    twins = packing.provenance["twins"]
+    if twins > MANY * max(asked, packing.provenance["even_twins"]):
+        warnings.warn(
+            f"{twins} twins at interfaces, most of them in narrow gaps, stand beside {asked} particles: memory and "
+            "time go with both; if that is too much, use more or fewer particles, or conforming=False",
             stacklevel=4,
         )
 

@@ -165,6 +165,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.field",
         "demheat.method",
+        "demheat.process_state",
         "demheat.progress",
         "references.threads",
         "references.midpoints",

@@ -1,5 +1,6 @@
 """Steady temperatures of a network under a scene's load."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -227,7 +228,7 @@ def _iterate(system, x, solver, tolerance, most):
     total, solve = 0, None
     for _ in range(10):
         r = _residual(system, x)
-        norm, passing = np.linalg.norm(r), _passing(system, x)
+        norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
         size = norm / passing if passing > 0 else float(norm > 0)
         if size <= tolerance or total >= most:
             break
@@ -252,7 +253,7 @@ def _passing(system, x):
     if len(system.ties):
         particle = network.wall_particle
         throughput += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
-    return float(np.linalg.norm(throughput))
+    return math.sqrt(kernels.dot(throughput, throughput))
 
 
 def _jacobi(system):

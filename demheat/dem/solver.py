@@ -82,7 +82,8 @@ def solve(
     -----
     UserWarning
         If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
-        no particle, or is thin for particles without twins, or the spheres of a given packing are far apart.
+        no particle, or is thin for particles without twins, or twins in narrow gaps are over five times as many as
+        particles, or the spheres of a given packing are far apart.
     """
     check_scene(scene)
     check_solver(solver, tolerance)

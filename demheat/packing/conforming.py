@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.gaps import Interfaces
 from demheat.packing.gate import check_packing
-from demheat.packing.patterns import GAP_SPACING, LEAST_OFFSET, LEAST_SPACING, SPACING, patterns
+from demheat.packing.patterns import GAP_SPACING, LEAST_OFFSET, LEAST_SPACING, SPACING, Tally, patterns
 from demheat.progress import stage
 from demheat.scene import Scene, check_scene
 
@@ -52,7 +52,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     Packing
         Radii are square roots of the radical weights (up to a constant added to all). Twins stand closer in narrow
         gaps. Where two interfaces are nearer to each other than a fifth of a mean radius, or an interface to a wall
-        than a tenth, twins do not fit and facets there cross the interface; provenance["pairs_left_out"] counts them.
+        than a tenth, twins do not fit and facets there cross the interface; provenance["pairs_left_out"] counts them,
+        "twins" those that do, "even_twins" those that wide gaps would have asked for.
 
     Raises
     ------
@@ -62,10 +63,11 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     check_packing(packing)
     check_scene(scene)
     if not scene.inclusions:
-        return packing._replace(provenance={**packing.provenance, "twins": 0, "pairs_left_out": 0})
+        return packing._replace(provenance={**packing.provenance, "twins": 0, "even_twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()
     interfaces = Interfaces(scene, _reach(packing, radius))
-    twins, left_out = _twins_on(interfaces, radius, seed)
+    tally = Tally(radius)
+    twins, left_out = _twins_on(interfaces, radius, seed, tally)
     centers, weights, good = _twin_points(twins, scene, radius)
     twins = _Twins(*(column[good] for column in twins))
     near = interfaces.gap(packing.centers)
@@ -73,7 +75,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     kept = np.minimum(packing.radii**2, near**2 - _margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
     raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
-    provenance = {**packing.provenance, "twins": len(centers), "pairs_left_out": left_out}
+    counts = {"twins": len(centers), "even_twins": tally.even, "pairs_left_out": left_out}
+    provenance = packing.provenance | counts
     return make_packing(
         np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
     )
@@ -88,11 +91,11 @@ def _reach(packing, radius):
     return 1.001 * max(apart * radius, (OFFSET + CLEARANCE) * radius, weighty)
 
 
-def _twins_on(interfaces, radius, seed):
+def _twins_on(interfaces, radius, seed, tally):
     """Pairs that fit on all surfaces, and the number of those that do not."""
     parts, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0
     with stage("twins") as done:
-        for points, normals, own in patterns(interfaces, radius, seed):
+        for points, normals, own in patterns(interfaces, radius, seed, tally):
             done((own.max(initial=-1) + 1) / len(interfaces))
             points = interfaces.touched(points, normals, own)
             offsets = _room(points, normals, own, interfaces, radius)

@@ -38,7 +38,7 @@ LEAST_PRESSURE = 10.0
 DENSEST = 0.85
 # Collisions per sphere until a reduced pressure p are COLLISIONS log10(p / 5) / growth: found within a fifth for growth
 # 0.002 to 0.1 and pressures 30 to 1e12. A collision takes some 2 microseconds.
-COLLISIONS, FIRST_PRESSURE = 3.4, 5.0
+COLLISIONS, FIRST_PRESSURE, THIN = 3.4, 5.0, 1e-3
 # Least bytes that a sphere takes.
 BYTES = 200
 # Sides over the largest radius, for a periodic axis or walls: spheres must not meet both ways round a period.
@@ -100,7 +100,8 @@ class Growth:
         if self.phi is not None:  # Carnahan and Starling, J. Chem. Phys. 51 (1969) 635
             reach = min(reach, (1 + self.phi + self.phi**2 - self.phi**3) / (1 - self.phi) ** 3)
         ends = [min(from_, reach) for from_, _ in self.growth[1:]] + [reach]
-        count, begin = 0.0, FIRST_PRESSURE
+        # A thinner gas collides less, but it, too, has to grow.
+        count, begin = THIN / self.growth[0][1], FIRST_PRESSURE
         for (_, rate), end in zip(self.growth, ends, strict=True):
             if end > begin:
                 count, begin = count + COLLISIONS * math.log10(end / begin) / rate, end

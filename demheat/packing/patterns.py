@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from demheat.limits import check_memory
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
 
@@ -23,11 +24,13 @@ FINE = 0.8 * LEAST_SPACING
 THINNING = 0.75
 # Digits of spacings in mean radii, and the part of them that breaks ties.
 DIGITS, TIES = 9, 1e-8
+# Least bytes of a twin, as a particle of the network.
+BYTES = 400
 # Spheres, and points to choose from, that are looked at together: bounds the scratch memory (some 100 bytes a point).
 MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
 
-def patterns(interfaces, radius, seed):
+def patterns(interfaces, radius, seed, tally):
     """Touch points on all surfaces of a scene, chunk by chunk.
 
     Parameters
@@ -37,6 +40,8 @@ def patterns(interfaces, radius, seed):
         Mean radius of the packing.
     seed : int
         Turns the pattern of each sphere.
+    tally : Tally
+        Of this radius.
 
     Yields
     ------
@@ -44,13 +49,46 @@ def patterns(interfaces, radius, seed):
         In the box, where it has walls.
     own : (k,) int array
         Numbers of their surfaces, ascending.
+
+    Raises
+    ------
+    ValueError
+        If more twins are to be expected than fit into memory, before they are made.
     """
     turns = _Turns(seed)
     for numbers in _chunks(interfaces.spheres, radius):
-        yield _on_spheres(numbers, interfaces, radius, turns)
+        yield _on_spheres(numbers, interfaces, radius, turns, tally)
     rng = turns.after()
     for number, other in enumerate(interfaces.others, start=len(interfaces.spheres)):
-        yield _on_other(number, other, interfaces, radius, rng)
+        yield _on_other(number, other, interfaces, radius, rng, tally)
+
+
+class Tally:
+    """How many twins are to be expected, `twins`, and how many there would be without narrow gaps, `even`.
+
+    Parameters
+    ----------
+    radius : float, m
+        Mean radius of the packing.
+    """
+
+    def __init__(self, radius):
+        self.radius, self.twins, self.even = radius, 0.0, 0
+
+    def add(self, spacing) -> None:
+        """Count those that an even pattern becomes where it has to be closer; refuse more than memory holds.
+
+        Points thinned to THINNING of their spacing are as many as those of an even pattern with it, or a quarter
+        more.
+
+        Parameters
+        ----------
+        spacing : (n,) float array, m
+            Wanted at each point of the even pattern.
+        """
+        self.even += 2 * len(spacing)
+        self.twins += 2 * float(np.sum((SPACING * self.radius / spacing) ** 2))
+        check_memory("twins, most of them in narrow gaps,", int(self.twins), BYTES * self.twins)
 
 
 class _Turns:
@@ -86,7 +124,7 @@ def _chunks(spheres, radius):
         begin = end
 
 
-def _on_spheres(numbers, interfaces, radius, turns):
+def _on_spheres(numbers, interfaces, radius, turns, tally):
     """Pattern of some spheres.
 
     Each takes its turn from the stream, and one more for its closer pattern if it needs one: which turns those after it
@@ -101,6 +139,7 @@ def _on_spheres(numbers, interfaces, radius, turns):
         if np.array_equal(close, refined):
             break
         refined = close
+    tally.add(spacing)
     turns.used += len(numbers) + int(refined.sum())
     chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
     # Fibonacci points descend along the axis of their sphere.
@@ -108,7 +147,7 @@ def _on_spheres(numbers, interfaces, radius, turns):
     return _refined(interfaces, even, spacing, fine, radius)
 
 
-def _on_other(number, surface, interfaces, radius, rng):
+def _on_other(number, surface, interfaces, radius, rng, tally):
     """Pattern of a surface that is not a sphere."""
 
     def pattern(spacing):
@@ -117,6 +156,7 @@ def _on_other(number, surface, interfaces, radius, rng):
 
     even = _inside(interfaces.scene, *pattern(SPACING * radius))
     spacing = _spacing(interfaces, *even, radius)
+    tally.add(spacing)
     if np.all(spacing >= SPACING * radius):
         return even
     points, normals, own = pattern(FINE * radius)

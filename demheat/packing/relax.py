@@ -13,7 +13,7 @@ from itertools import product
 
 import numpy as np
 
-from demheat.limits import check_memory
+from demheat.limits import check_memory, check_steps
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order, wrap
 from demheat.packing.gate import check_packing
@@ -26,6 +26,8 @@ from demheat.scene.inputs import finite, flag, whole
 # Listed pairs reach this many mean radii beyond contact; a new list is made when two particles could have closed half
 # of that each. Found fastest from 0.9 to 1.2 (a list costs about ten steps).
 SKIN = 1.1
+# That a step takes, of a few particles.
+LEAST_SECONDS = 1e-5
 # FIRE: time steps in units of sqrt(mass/stiffness) of a mean particle, and the usual factors. Found on 2e4 particles:
 # a step above 0.6 or a mixing above 0.3 stalls, the published delay of 5 steps and mixing of 0.1 need 1.4 times longer.
 DT, DT_MAX, DT_GROW, DT_CUT = 0.5, 0.6, 1.1, 0.5
@@ -64,6 +66,7 @@ class Relaxation:
     def __post_init__(self):
         finite("overlap", self.overlap, "a finite part of the mean diameter >= 0", lambda v: v >= 0)
         whole("steps", self.steps, "an integer >= 0", lambda v: v >= 0)
+        check_steps("steps", self.steps, min(self.steps, 1e300), LEAST_SECONDS, remedy="fewer")
         if self.progress is not None and not callable(self.progress):
             raise ValueError(f"progress = {self.progress!r}: must be a function, or None")
 

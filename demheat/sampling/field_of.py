@@ -74,7 +74,8 @@ def _between_walls(network, scene, solution):
     over their area: the volume average by the divergence theorem, and right also where centres are held at wall
     temperature. Other components average the cells' fluxes.
     """
-    flux = network.volumes @ cell_fluxes(network, solution) / scene.volume
+    # Not by BLAS here and below: the order of its sums is that of its threads.
+    flux = np.einsum("i,ij->j", network.volumes, cell_fluxes(network, solution)) / scene.volume
     for axis, letter in enumerate("xyz"):
         if set(scene.walls or {}) == {letter + "-", letter + "+"}:
             low, high = (float(solution.wall_heat[network.wall_side == 2 * axis + end].sum()) for end in (0, 1))
@@ -163,8 +164,8 @@ def _heat_through(network, solution, axis, position):
         there = y[network.indices] + image_shifts(network.image, network.size)[:, k]
         rise += solution.mean_gradient[k] * (there - y[row])
     # Each link stands in two rows, with both signs changed.
-    heat = -0.5 * float((side(step) - side(x[row])) @ (network.conductance * rise))
+    heat = -0.5 * float(np.einsum("i,i->", side(step) - side(x[row]), network.conductance * rise))
     for end in (0, 1):
         here = network.wall_side == 2 * axis + end
-        heat += float((side(x[network.wall_particle[here]]) - end) @ solution.wall_heat[here])
+        heat += float(np.einsum("i,i->", side(x[network.wall_particle[here]]) - end, solution.wall_heat[here]))
     return heat

@@ -31,7 +31,7 @@ def mean_flux(network, scene, solution):
     first = np.empty((len(network.volumes), 3))
     kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
     towards = wall_normals(network) * network.wall_distance[:, None]
-    return (solution.wall_heat @ -towards - first.sum(axis=0)) / scene.volume
+    return (np.einsum("i,ij->j", solution.wall_heat, -towards) - first.sum(axis=0)) / scene.volume
 
 
 def cell_fluxes(network, solution):

@@ -10,6 +10,19 @@ def extents(scene) -> np.ndarray:
     return np.array([_least(shape.bounds()) for shape in scene.inclusions])
 
 
+def narrower(scene, lengths) -> np.ndarray:
+    """Whether each inclusion is narrower along some axis than a length, (number of inclusions,) bool array.
+
+    Parameters
+    ----------
+    scene : Scene
+    lengths : (3,) float array, m
+        Along each axis.
+    """
+    bounds = [shape.bounds() for shape in scene.inclusions]
+    return np.array([bool(np.any(high - low < lengths)) for low, high in bounds], bool)
+
+
 def coats(scene) -> np.ndarray:
     """What is left of each inclusion around one that lies in it, (number of inclusions,) float array, m.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.field import Field
+from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite
 from references.fem.lookup import NodalField
@@ -55,17 +56,19 @@ def solve(
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     scene.require(steady=True)
     mesh = make(scene, size=size, order=order, curved=curved)
-    solved = solve_nodes(scene, mesh, tolerance)
+    # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
+    alone = one_blas_thread()
+    solved = alone(solve_nodes)(scene, mesh, tolerance)
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume
     stats = {"elements": len(mesh.cells), "nodes": len(mesh.points)} | mesh.stats | solved.stats
     return Field(
         scene=scene,
-        mean_flux=solution.mean_flux(),
+        mean_flux=alone(solution.mean_flux)(),
         fractions=fractions,
-        sampler=solution.samples,
-        temperature_at=solution.temperature_at,
-        flux_at=solution.flux_at,
+        sampler=alone(solution.samples),
+        temperature_at=alone(solution.temperature_at),
+        flux_at=alone(solution.flux_at),
         wall_temperature=solved.wall_temperature,
         wall_heat=solved.wall_heat,
         stats=stats,

@@ -9,6 +9,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.limits import check_steps
+from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.functions import initial_at
 from demheat.scene.inputs import chosen, finite, whole
@@ -95,7 +96,17 @@ def evolve(
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
-    return _fields(scene, times, elements, order, size, step, accuracy, tolerance)
+    return _alone(_fields(scene, times, elements, order, size, step, accuracy, tolerance))
+
+
+def _alone(fields):
+    """With one thread of BLAS while a field is made, see `solve`; between them it has those of before."""
+    while True:
+        with one_blas_thread():
+            field = next(fields, None)
+        if field is None:
+            return
+        yield field
 
 
 def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
@@ -137,9 +148,9 @@ def _field(scene, problem, state, initial, stats):
         scene=scene,
         mean_flux=solution.mean_flux(),
         fractions=space.fractions,
-        sampler=solution.samples,
-        temperature_at=solution.temperature_at,
-        flux_at=solution.flux_at,
+        sampler=one_blas_thread()(solution.samples),
+        temperature_at=one_blas_thread()(solution.temperature_at),
+        flux_at=one_blas_thread()(solution.flux_at),
         wall_temperature=walls,
         wall_heat={name: rates[name] for name in scene.walls},
         stats=stats | {"heat_in": heats, "heat_lost": lost, "heat_change": change, "energy_error": error},

@@ -15,7 +15,7 @@ from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
-from demheat.scene.thickness import coats
+from demheat.scene.thickness import coats, narrower
 from references.fft import cg, eyre_milton
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
@@ -40,6 +40,12 @@ MEASURED = {
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
 # Least bytes that a voxel takes, in double precision.
 BYTES = {"cg": 30, "eyre-milton": 48}
+# What rules make of an inclusion smaller than a voxel.
+MISSED = {
+    "plain": "miss them or see whole voxels instead",
+    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape",
+    "links": "miss them or see some of them only",
+}
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
@@ -101,7 +107,8 @@ def solve(
     Warns
     -----
     UserWarning
-        If an inclusion around another is a coat thinner than a voxel.
+        If an inclusion around another is a coat thinner than a voxel, or an inclusion smaller than a voxel, but for
+        layers in laminates.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations)
     threads = thread_count(threads)
@@ -115,7 +122,7 @@ def solve(
     needed = BYTES[scheme] * math.prod(shape) * np.dtype(PRECISIONS[precision]).itemsize / 8
     check_memory("voxels", voxels, needed, power=3)
     if scene.inclusions:
-        _warn_of_thin(box, shape)
+        _warn_of_thin(box, knobs.rule, shape)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(box, shape, laminate=knobs.rule != "plain")
     slope, level = _linear_part(box)
@@ -172,16 +179,30 @@ def _checked(scheme, rule, precision, tolerance, max_iterations):
     return _Knobs(scheme, rule, precision, tolerance, max_iterations)
 
 
-def _warn_of_thin(scene, shape):
+def _warn_of_thin(scene, rule, shape):
     """A voxel that both faces of a coat cross holds three materials; rules know two."""
-    voxel, left = float(np.max(np.array(scene.size) / shape)), coats(scene)
+    spacing = np.array(scene.size) / shape
+    voxel, left = float(spacing.max()), coats(scene)
     thin = np.flatnonzero(left < voxel)
     if len(thin):
         warnings.warn(
-            f"inclusions {thin[:8].tolist()}{' and more' if len(thin) > 8 else ''} are coats thinner than a voxel of "
+            f"inclusions {_listed(thin)} are coats thinner than a voxel of "
             f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
             stacklevel=3,
         )
+    # Laminates are exact for layers of any thickness.
+    small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
+    small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
+    if small.any():
+        warnings.warn(
+            f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
+            f"{MISSED[rule]}; use more voxels",
+            stacklevel=3,
+        )
+
+
+def _listed(numbers):
+    return f"{numbers[:8].tolist()}{' and more' if len(numbers) > 8 else ''}"
 
 
 def _check_load(scene):

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import os
 from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.limits import free_memory
 from demheat.scene.inputs import finite, whole
 
 # How much longer edges may be one metre farther from a feature, in metres.
@@ -87,7 +87,8 @@ def checked_size(scene, size, order):
     least = (CELLS * math.prod(scene.size) / MOST_CELLS) ** (1 / 3)
     if size < least:
         raise ValueError(f"size = {size!r} m: more than {MOST_CELLS:.0e} tetrahedra; must be >= {least:.3g} m")
-    return float(size)
+    # Longer edges than the box's do not exist.
+    return min(float(size), max(scene.size))
 
 
 def wanted_sizes(scene, size):
@@ -144,9 +145,9 @@ def check_cost(sizes: Sizes, box, order: int) -> float:
     Raises
     ------
     ValueError
-        If there would be more than 3e7 tetrahedra, or they would need more memory than there is.
+        If there would be more than 3e7 tetrahedra, or they would need more memory than is free.
     """
-    cells, most = estimated_cells(sizes, np.array(box)), min(MOST_CELLS, memory() / BYTES[order])
+    cells, most = estimated_cells(sizes, np.array(box)), min(MOST_CELLS, free_memory() / BYTES[order])
     if cells > most:
         least, need = sizes.size * (cells / most) ** (1 / 3), cells * BYTES[order] / 2**30
         raise ValueError(
@@ -154,14 +155,6 @@ def check_cost(sizes: Sizes, box, order: int) -> float:
             f"here {most:.1e} are possible: must be >= {least:.2g} m{', or take order = 1' if order == 2 else ''}"
         )
     return cells
-
-
-def memory() -> float:
-    """Bytes of memory of this machine; infinite where the system does not tell."""
-    try:
-        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
-    except (AttributeError, OSError, ValueError):
-        return math.inf
 
 
 def _spheres(scene, size):
@@ -303,6 +296,9 @@ def _cells(low, high, counts):
 
 def estimated_cells(sizes: Sizes, box) -> float:
     """Number of tetrahedra of a mesh, from what is asked of it; found: within a factor of 2.
+
+    Sizes beyond a quarter of the box make the same mesh, of which up to six times as many are expected: where spheres
+    are near each other, fine regions overlap.
 
     Parameters
     ----------

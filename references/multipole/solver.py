@@ -15,6 +15,7 @@ import math
 import numpy as np
 
 from demheat.field import Field, Samples
+from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from references.midpoints import check_points_per_axis, midpoints
@@ -77,7 +78,9 @@ def solve(
     arrangement = arrange(scene, any_matrix=True)
     if scene.matrix.conductivity == 0:
         return at_rest(scene, arrangement.spheres, points_per_axis)
-    history = converged(arrangement, order=order, accuracy=accuracy, tolerance=tolerance, threads=threads)
+    # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
+    with one_blas_thread():
+        history = converged(arrangement, order=order, accuracy=accuracy, tolerance=tolerance, threads=threads)
     return _field(scene, arrangement, history, points_per_axis)
 
 
@@ -85,6 +88,7 @@ def _field(scene, arrangement, history, points_per_axis):
     (spheres, gradient, level, unit), conductivities, made = arrangement, scene.conductivities, []
     inclusion = np.append(spheres.original + 1, 0)
 
+    @one_blas_thread()
     def at(points):
         # The waves' amplitudes are worth their time only if the field is asked for.
         if not made:

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.fast import FastMultipole, plan
@@ -61,6 +62,12 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
             "zeta_2 is defined for one or more spheres of one material"
         )
     order = _order(spheres, unit, order)
+    # See `solver.solve`.
+    with one_blas_thread():
+        return _zeta2(spheres, order)
+
+
+def _zeta2(spheres, order):
     table = _exchange(spheres, order)
     n, m = entries(order)
     weight = np.where(n > 0, 3 * n / (2 * n + 1), 0.0) * np.where(m > 0, 2.0, 1.0) * spheres.radii[:, None]

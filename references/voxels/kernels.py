@@ -9,7 +9,8 @@ import numpy as np
 
 import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
 
-# A cut voxel is integrated exactly along one direction and by two-point Gauss on this many intervals along the others.
+# A cut voxel is integrated exactly along one direction and by two-point Gauss on this many intervals along the others,
+# which reach no further than a sphere that is smaller than the voxel.
 INTERVALS = 4
 GAUSS = 0.5 / math.sqrt(3.0)
 # Fractions closer than this to 0 or 1 count as 0 or 1: far below the quadrature's error in one voxel.
@@ -204,13 +205,15 @@ def _measure(corner, radius, spacing, moment):
 def _measure_along(c, corner, radius, spacing, moment):
     """The same, integrated exactly along axis c; adds to `moment`."""
     a, b = (c + 1) % 3, (c + 2) % 3
-    area = spacing[a] * spacing[b] / (4 * INTERVALS * INTERVALS)
+    start_a, width_a = _across(corner[a], spacing[a], radius)
+    start_b, width_b = _across(corner[b], spacing[b], radius)
+    area = width_a * width_b / (4 * INTERVALS * INTERVALS)
     floor, ceiling = corner[c], corner[c] + spacing[c]
     length = 0.0
     for i in range(2 * INTERVALS):
-        u = corner[a] + _gauss(i) * spacing[a]
+        u = start_a + _gauss(i) * width_a
         for j in range(2 * INTERVALS):
-            v = corner[b] + _gauss(j) * spacing[b]
+            v = start_b + _gauss(j) * width_b
             h2 = radius * radius - u * u - v * v
             if h2 <= 0.0:
                 continue
@@ -220,7 +223,17 @@ def _measure_along(c, corner, radius, spacing, moment):
                 _add_normal(moment, a, b, c, u, v, h, area / (h * radius))
             if floor < -h < ceiling:
                 _add_normal(moment, a, b, c, u, v, -h, area / (h * radius))
-    return length / (4 * INTERVALS * INTERVALS * spacing[c])
+    return length / (4 * INTERVALS * INTERVALS * spacing[c]) * (width_a * width_b / (spacing[a] * spacing[b]))
+
+
+@numba.njit(cache=True)
+def _across(corner, spacing, radius):
+    """Where columns of quadrature begin across one axis, and how far they reach."""
+    if 2.0 * radius >= spacing:
+        return corner, spacing
+    # The columns of a whole voxel would miss a sphere this small or, as few, make it many times too large.
+    start = max(corner, -radius)
+    return start, max(min(corner + spacing, radius) - start, 0.0)
 
 
 @numba.njit(cache=True)

@@ -304,7 +304,8 @@ def _phase_parts(n_phases, rank, cuts, parent, background):
     total = np.bincount(inverse, moved)
     # Touching inclusions leave nothing of their background but rounding and quadrature error.
     total[total < kernels.FULL] = 0.0
-    return key // n_phases, key % n_phases, total
+    voxel = key // n_phases
+    return voxel, key % n_phases, total / np.bincount(voxel, total)[voxel]
 
 
 def _laminate(part, conductivities, moment):
@@ -312,10 +313,9 @@ def _laminate(part, conductivities, moment):
     voxel, phase, fraction = part
     # A pore blocks the normal direction; the smallest normal number stands for its zero conductivity.
     resistance = fraction / np.maximum(conductivities[phase], np.finfo(float).tiny)
-    whole = np.bincount(voxel, fraction)
-    arithmetic = np.bincount(voxel, fraction * conductivities[phase]) / whole
+    arithmetic = np.bincount(voxel, fraction * conductivities[phase])
     with np.errstate(over="ignore"):
-        harmonic = whole / np.bincount(voxel, resistance)
+        harmonic = 1.0 / np.bincount(voxel, resistance)
     direction = moment / moment[:, :3].sum(axis=1, keepdims=True)
     tensors = -(arithmetic - harmonic)[:, None] * direction
     tensors[:, :3] += arithmetic[:, None]

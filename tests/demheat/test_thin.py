@@ -72,7 +72,14 @@ def test_twins_and_thick_inclusions_are_not_warned_of():
         warnings.simplefilter("error")
         demheat.solve(cell(Layer(0, 0.3, 0.6, OTHER)), packing=crystal(), conforming=False)
         demheat.solve(cell(ball(0.4), ball(0.25)), packing=crystal(), conforming=False)
-        demheat.solve(cell(Layer(0, 0.41, 0.46, OTHER)), packing=crystal())
+        demheat.solve(cell(Layer(0, 0.41, 0.5, OTHER)), packing=crystal())
+
+
+def test_many_more_twins_than_particles():
+    """A gap of a fourth of a particle is followed by twins as close as that."""
+    with pytest.warns(UserWarning, match=r"^[0-9]+ twins at interfaces, .* stand beside 216 particles: memory"):
+        field = demheat.solve(cell(Layer(0, 0.4, 0.421, OTHER)), packing=crystal())
+    assert field.stats["unknowns"] > 6 * 216
 
 
 def test_coats_thinner_than_a_voxel():

@@ -79,9 +79,9 @@ def solver(system, preconditioner):
     def correct(iterate, g, known, heat, y):
         """Correct y by what its residual says; iterations, and the rms of the correction, infinite if it failed."""
         r, nothing, step = residual(g, known, heat, y), np.zeros_like(y), np.zeros_like(y)
-        norm = float(np.linalg.norm(r))
+        norm = _norm(r)
         count = iterate(g, r.copy(), step, 0.1 * CORRECTED * norm)
-        left = float(np.linalg.norm(r + residual(g, nothing, nothing, step)))
+        left = _norm(r + residual(g, nothing, nothing, step))
         y += step
         rms = math.sqrt(float(np.einsum("i,i,i->", system.capacity, step, step)) / total)
         return count, rms if left <= CORRECTED * norm else math.inf
@@ -94,7 +94,7 @@ def solver(system, preconditioner):
             r = residual(g, known, heat, y)
             reached = size(g, r)
             if reached > limit and iterations < MOST:
-                norm = math.sqrt(float(np.einsum("i,i->", r, r)))
+                norm = _norm(r)
                 iterations += iterate(g, r, y, 0.8 * limit / reached * norm)
                 continue
             balance(g, r, y)
@@ -113,6 +113,11 @@ def solver(system, preconditioner):
         )
 
     return solve
+
+
+def _norm(r):
+    """Of a vector; not by BLAS, whose order of sums is that of its threads."""
+    return math.sqrt(float(np.einsum("i,i->", r, r)))
 
 
 def _clusters(system):

@@ -9,6 +9,7 @@ from demheat.packing import conforming
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
+from demheat.packing.patterns import Tally
 
 MATRIX, OTHER = Material(1.0), Material(10.0)
 
@@ -116,6 +117,24 @@ def test_no_inclusions_no_change():
     packing = relaxed(300, seed=1)
     conformed = conform(packing, scene())
     assert conformed.centers is packing.centers and conformed.radii is packing.radii
+
+
+@pytest.mark.parametrize(
+    "inclusions",
+    [
+        (Layer(0, 0.5, 0.515, OTHER),),
+        (Layer(0, 0.2, 0.7, OTHER), Layer(0, 0.4, 0.44, MATRIX)),
+        (Sphere((0.5,) * 3, 0.4, OTHER), Sphere((0.5,) * 3, 0.385, MATRIX)),
+        (Sphere((0.3, 0.5, 0.5), 0.195, OTHER), Sphere((0.7, 0.5, 0.5), 0.195, OTHER)),
+    ],
+)
+def test_twins_are_known_before_they_are_made(inclusions, monkeypatch):
+    made = []
+    monkeypatch.setattr(conforming, "Tally", lambda radius: made.append(Tally(radius)) or made[0])
+    packing = relaxed(3000, periodic=True, seed=1)
+    twins = conform(packing, scene(*inclusions), seed=1).provenance["twins"]
+    # Points are thinned in order along a surface, so a little closer than they need be: found .95 to 1.26.
+    assert 0.8 < twins / made[0].twins < 1.4, twins / made[0].twins
 
 
 @pytest.mark.parametrize("gap, crowded", [(0.3, False), (0.1, True)])

@@ -13,7 +13,10 @@ from references.fft import eyre_milton, solver
 from references.voxels import links as voxel_links
 
 # Grids here are coarse on purpose.
-pytestmark = pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel"),
+    pytest.mark.filterwarnings("ignore:inclusions .* are smaller than a voxel"),
+]
 
 # Grids, precision, extremes
 

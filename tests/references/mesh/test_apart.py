@@ -143,12 +143,12 @@ run_apart(time.sleep, 600.0, seconds=1.0, done=lambda share: os.kill(os.getpid()
 
 def test_hopeless_meshes_are_refused_before_they_are_begun(monkeypatch):
     monkeypatch.setattr(cad, "attempts", None)
-    monkeypatch.setattr(sizes, "memory", lambda: 2.0**30)
+    monkeypatch.setattr(sizes, "free_memory", lambda: 2.0**30)
     with pytest.raises(ValueError, match=r"size = 0.02 m: about 5\.6e\+05 tetrahedra.* 2 GiB;.* >= 0.024 m, or take"):
         mesh.make(ball(), size=0.02)
     # Small spheres ask for more elements than the size alone: refused, too, at the default size.
     tiny = [Sphere(((i + 0.5) / 9, (j + 0.5) / 9, 0.3), 0.01, Material(2.0)) for i in range(9) for j in range(9)]
-    monkeypatch.setattr(sizes, "memory", lambda: 50e6)
+    monkeypatch.setattr(sizes, "free_memory", lambda: 50e6)
     with pytest.raises(ValueError, match="size = .*must be >="):
         mesh.make(Scene((1.0,) * 3, Material(1.0), tiny, walls={"x-": 0.0, "x+": 1.0}), size=0.1, order=1)
 
@@ -171,3 +171,20 @@ def test_wide_gaps_are_none():
     of = Scene((1.0,) * 3, Material(1.0), two, walls={"x-": 0.0, "x+": 1.0})
     # Eight radii between them: elements grow from 0.33 radii on each to the size, with nothing in the middle.
     assert len(sizes.wanted_sizes(of, 0.25).balls) == 2
+
+
+def test_coarser_is_not_slower():
+    """Of images and gaps ever more were looked at: a size of the box took ten times as long as an eighth of it."""
+    rng = np.random.default_rng(1)
+    some = [
+        Sphere(tuple(c), r, Material(2.0))
+        for c, r in zip(rng.random((5, 3)), (0.15, 0.1, 0.08, 0.06, 0.05), strict=True)
+    ]
+    of = Scene((1.0,) * 3, Material(1.0), some, gradient=(1.0, 0.0, 0.0))
+    made = [mesh.make(of, size=size, order=1) for size in (0.2, 1.0, 1e6)]
+    count = [len(each.cells) for each in made]
+    # Features ask for the most of it; gmsh's own scatter is some per cent.
+    assert count[1] <= 1.2 * count[0] and count[2] == count[1]
+    features = [len(sizes.wanted_sizes(of, sizes.checked_size(of, size, 1)).balls) for size in (0.2, 1.0, 1e6)]
+    # Only images near the box count, however coarse the mesh.
+    assert features[1] == features[2] <= 8 * features[0]

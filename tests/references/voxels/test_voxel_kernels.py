@@ -7,13 +7,16 @@ from numpy.testing import assert_allclose
 from references.voxels import kernels
 
 # Shape, spacing, centre, radius: no symmetry; cut by the grid's ends; symmetric about a voxel's centre, so that axes
-# tie; a radius below half a voxel's diagonal; flat voxels, one of which is cut between its columns of quadrature.
+# tie; a radius below half a voxel's diagonal; flat voxels, one of which is cut between its columns of quadrature; a
+# sphere smaller than a voxel across an edge; one that is smaller along one axis only.
 SPHERES = [
     ((5, 6, 4), (0.2, 0.15, 0.26), (0.47, 0.52, 0.55), 0.34),
     ((4, 4, 4), (0.25, 0.25, 0.25), (0.05, 0.9, 0.4), 0.33),
     ((5, 5, 5), (0.2, 0.2, 0.2), (0.5, 0.5, 0.5), 0.3),
     ((3, 3, 3), (1 / 3, 1 / 3, 1 / 3), (0.5, 0.5, 0.5), 0.27),
     ((3, 3, 9), (1.0, 1.0, 0.1), (1.5, 1.5, 0.45), 0.41),
+    ((3, 3, 3), (1.0, 1.0, 1.0), (1.03, 1.95, 1.4), 0.22),
+    ((3, 4, 3), (1.0, 0.5, 1.1), (1.6, 0.9, 1.4), 0.37),
 ]
 
 
@@ -33,7 +36,13 @@ def surface(corner, spacing, radius, axis):
     nodes = np.polynomial.legendre.leggauss(2)[0] / 2 + 0.5
     nodes = (np.arange(kernels.INTERVALS)[:, None] + nodes).ravel() / kernels.INTERVALS
     a, b = (axis + 1) % 3, (axis + 2) % 3
-    u, v = np.meshgrid(corner[a] + nodes * spacing[a], corner[b] + nodes * spacing[b], indexing="ij")
+    # Columns reach no further than a sphere that is smaller than the voxel.
+    small = 2 * radius < spacing
+    start, end = np.where(
+        small, [np.maximum(corner, -radius), np.minimum(corner + spacing, radius)], [corner, corner + spacing]
+    )
+    wide = np.maximum(end - start, 0)
+    u, v = np.meshgrid(start[a] + nodes * wide[a], start[b] + nodes * wide[b], indexing="ij")
     h2 = radius**2 - u**2 - v**2
     u, v, h = u[h2 > 0], v[h2 > 0], np.sqrt(h2[h2 > 0])
     low, high = corner[axis], corner[axis] + spacing[axis]
@@ -45,9 +54,9 @@ def surface(corner, spacing, radius, axis):
         normal[:, a], normal[:, b], normal[:, axis] = u[met], v[met], w[met]
         normal /= radius
         # A column of this width meets an area larger by 1 / cos of the normal.
-        area = spacing[a] * spacing[b] / len(nodes) ** 2 / np.abs(normal[:, axis])
+        area = wide[a] * wide[b] / len(nodes) ** 2 / np.abs(normal[:, axis])
         moment += np.einsum("m,ma,mb->ab", area, normal, normal)
-    return length / (len(nodes) ** 2 * spacing[axis]), moment
+    return length / (len(nodes) ** 2 * spacing[axis]) * wide[a] * wide[b] / (spacing[a] * spacing[b]), moment
 
 
 def slow_cuts(shape, spacing, center, radius):
