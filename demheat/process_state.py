@@ -3,6 +3,7 @@
 import os
 import threading
 from contextlib import contextmanager
+from functools import cache
 
 import numpy as np
 
@@ -28,26 +29,57 @@ def seeded():
 
 @contextmanager
 def one_blas_thread():
-    """BLAS with one thread: in short products between compiled loops more of them only spin.
+    """BLAS with one thread: in short products between compiled loops more of them only spin, and they change its sums.
 
-    Some builds of BLAS count by thread: each puts back what it found. Others count for the process: there the last one
-    to leave puts back what the first one found.
+    Builds with OpenMP count by thread: each puts back what it found. Others count for the process: there the first to
+    come sets the number, and the last one to leave puts back what that one found.
     """
-    from threadpoolctl import threadpool_limits
+    if _counts_by_thread():
+        from threadpoolctl import threadpool_limits
 
+        with threadpool_limits(1, "blas"):
+            yield
+        return
     with _BLAS:
-        mine = threadpool_limits(1, "blas")
         if _within[0] == 0:
-            _found.append(mine)
+            _found.append(_numbers())
+            _set_all([each | {"num_threads": 1} for each in _found[0]])
         _within[0] += 1
     try:
         yield
     finally:
         with _BLAS:
-            mine.restore_original_limits()
             _within[0] -= 1
             if _within[0] == 0:
-                _found.pop().restore_original_limits()
+                _set_all(_found.pop())
+
+
+def _numbers():
+    from threadpoolctl import threadpool_info
+
+    return [each for each in threadpool_info() if each["user_api"] == "blas"]
+
+
+@cache
+def _counts_by_thread():
+    """Whether BLAS has a number of threads for each thread that calls it."""
+    return any(each.get("threading_layer") == "openmp" for each in _numbers())
+
+
+def _set_all(numbers):
+    """Set numbers of threads by library, as `_numbers` gives them, for the process.
+
+    threadpoolctl obeys that thread alone which has set numbers first, as long as it lives: so one that ends at once
+    asks, or else, if the caller has asked before, the caller.
+    """
+    from threadpoolctl import threadpool_limits
+
+    asking = threading.Thread(target=threadpool_limits, args=(numbers,))
+    asking.start()
+    asking.join()
+    wanted = {each["filepath"]: each["num_threads"] for each in numbers}
+    if any(each["num_threads"] != wanted.get(each["filepath"], each["num_threads"]) for each in _numbers()):
+        threadpool_limits(numbers)
 
 
 def open_after_fork(lock):

@@ -185,6 +185,7 @@ LAYERS = {
     ),
     "references.bracket": (
         "demheat.scene",
+        "demheat.process_state",
         "demheat.progress",
         "references.mesh",
         "references.fem",

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from demheat.process_state import one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
 from demheat.scene.inputs import finite
 from references.bracket.energies import flux_energy, temperature_energy
@@ -100,6 +101,12 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
         finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
     scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
     drop, power = _load(scene)
+    # The order of BLAS's sums, and so the last bits, is that of its threads.
+    with one_blas_thread():
+        return _narrowed(scene, size, width, tolerance, drop, power)
+
+
+def _narrowed(scene, size, width, tolerance, drop, power):
     if width is not None and size is None:
         size = FIRST * checked_size(scene, None, 2)
     while True:

@@ -121,10 +121,10 @@ def solve(
     _check_grid(box, knobs.rule, shape)
     needed = BYTES[scheme] * math.prod(shape) * np.dtype(PRECISIONS[precision]).itemsize / 8
     check_memory("voxels", voxels, needed, power=3)
-    if scene.inclusions:
-        _warn_of_thin(box, knobs.rule, shape)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(box, shape, laminate=knobs.rule != "plain")
+    if scene.inclusions:
+        _warn_of_thin(box, knobs.rule, shape)
     slope, level = _linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
     units = _units(grid)

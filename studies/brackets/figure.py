@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.referee import value_error
 from studies.brackets.means import place
 from studies.harness.figures import BLACK, GREY
 from studies.harness.pick import pick
@@ -39,7 +40,8 @@ def _widths(axes, rows):
 
 def _places(axes, rows):
     """Each drawn scene as a bar from lower to upper bound, in per cent of the exact value."""
-    rows = rows.assign(low=100 * (rows["lower"] / rows["exact"] - 1), high=100 * (rows["upper"] / rows["exact"] - 1))
+    off = {name: 100 * value_error(rows[bound], rows["exact"]) for name, bound in (("low", "lower"), ("high", "upper"))}
+    rows = rows.assign(**off)
     rows = rows.sort_values("width_percent")
     at = np.arange(len(rows))
     axes.vlines(at, rows["low"], rows["high"], color="C0", linewidth=2)

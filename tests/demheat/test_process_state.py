@@ -1,9 +1,10 @@
 import threading
 
 import numpy as np
-from threadpoolctl import threadpool_info, threadpool_limits
+import pytest
+from threadpoolctl import threadpool_limits
 
-from demheat.process_state import one_blas_thread, seeded
+from demheat.process_state import _counts_by_thread, _numbers, _set_all, one_blas_thread, seeded
 
 
 def test_seeded_is_the_same_each_time_and_leaves_no_trace():
@@ -16,10 +17,21 @@ def test_seeded_is_the_same_each_time_and_leaves_no_trace():
 
 
 def counts():
-    return [each["num_threads"] for each in threadpool_info() if each["user_api"] == "blas"]
+    return [each["num_threads"] for each in _numbers()]
 
 
-def test_the_last_thread_out_puts_back_what_the_first_one_found():
+@pytest.fixture
+def two():
+    """BLAS with two threads, if it has more than one; numbers of before."""
+    before = _numbers()
+    _set_all([each | {"num_threads": 2} for each in before])
+    if 2 not in counts():
+        pytest.skip("BLAS has one thread here")
+    yield counts()
+    _set_all(before)
+
+
+def test_the_last_thread_out_puts_back_what_the_first_one_found(two):
     inside, out = threading.Event(), threading.Event()
 
     def other():
@@ -27,11 +39,56 @@ def test_the_last_thread_out_puts_back_what_the_first_one_found():
             inside.set()
             out.wait(10)
 
-    with threadpool_limits(2, "blas"):
-        before, thread = counts(), threading.Thread(target=other)
+    thread = threading.Thread(target=other)
+    with one_blas_thread():
+        thread.start()
+        assert inside.wait(10) and set(counts()) == {1}
+    out.set()
+    thread.join()
+    assert counts() == two
+
+
+@pytest.mark.skipif(_counts_by_thread(), reason="this BLAS counts by thread")
+def test_who_leaves_first_gives_the_others_no_threads(two):
+    """Sums in another thread's product would change their order in the midst of it."""
+    inside, out, left = threading.Event(), threading.Event(), threading.Event()
+
+    def other():
         with one_blas_thread():
-            thread.start()
-            assert inside.wait(10) and set(counts()) == {1}
+            inside.set()
+            out.wait(10)
+        left.set()
+
+    thread = threading.Thread(target=other)
+    thread.start()
+    # The other has come first, and leaves first.
+    assert inside.wait(10)
+    with one_blas_thread():
         out.set()
-        thread.join()
-        assert counts() == before and 2 in before
+        assert left.wait(10) and set(counts()) == {1}
+    thread.join()
+    assert counts() == two
+
+
+@pytest.mark.skipif(_counts_by_thread(), reason="this BLAS counts by thread")
+def test_any_thread_may_ask(two):
+    """threadpoolctl obeys one thread at a time: not the first that ever asked."""
+    found = []
+
+    def other():
+        with one_blas_thread():
+            found.append(counts())
+
+    with one_blas_thread():
+        pass
+    thread = threading.Thread(target=other)
+    thread.start()
+    thread.join()
+    assert set(found[0]) == {1} and counts() == two
+
+
+def test_a_caller_who_has_asked_before_is_obeyed(two):
+    with threadpool_limits(2, "blas"):
+        with one_blas_thread():
+            assert set(counts()) == {1}
+        assert counts() == two
