@@ -90,6 +90,7 @@ LAYERS = {
         "demheat.scene",
         "demheat.field",
         "demheat.threads",
+        "demheat.process_state",
         "demheat.blocks",
         "demheat.progress",
         "demheat.compiled",

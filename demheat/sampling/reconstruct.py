@@ -11,6 +11,7 @@ quarter of it.
 import numpy as np
 from scipy.spatial import cKDTree
 
+from demheat.process_state import one_blas_thread
 from demheat.progress import stage
 
 # Cells of a fit, and the part of their weights that holds it to the linear temperature of the cell. Found on a sphere
@@ -191,6 +192,7 @@ def _directed(x, normal):
 def _least_squares(basis, weight, values):
     """Coefficients of the fits, (m, 10) float array."""
     weighted = basis * weight[..., None]
-    matrix = np.swapaxes(weighted, 1, 2) @ basis + RIDGE * weight.sum(axis=1)[:, None, None] * np.eye(10)
     values = np.where(weight > 0, values, 0.0)
-    return np.linalg.solve(matrix, np.einsum("mki,mk->mi", weighted, values)[..., None])[..., 0]
+    with one_blas_thread():  # older ones share even these small products out, which changes the last bits
+        matrix = np.swapaxes(weighted, 1, 2) @ basis + RIDGE * weight.sum(axis=1)[:, None, None] * np.eye(10)
+        return np.linalg.solve(matrix, np.einsum("mki,mk->mi", weighted, values)[..., None])[..., 0]
