@@ -5,13 +5,13 @@ Thomson's the energy of any balanced flux bounds it from below. Both are worked 
 are pushed to that side of the true ones which keeps the bound.
 """
 
-__all__ = ["Bracket", "solve"]  # noqa: F822, found by `__getattr__`
+__all__ = ["Bracket", "Tensor", "solve", "solve_tensor"]  # noqa: F822, found by `__getattr__`
 
 
 def __getattr__(name):
     # What is heavy loads with the first call.
     if name in __all__:
-        from references.bracket import solver
+        from references.bracket import solver, tensor
 
-        return getattr(solver, name)
+        return getattr(tensor if "ensor" in name else solver, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,4 +1,4 @@
-"""What a temperature or a flux on a mesh proves: energies, with what rounding and quadrature may hide."""
+"""What temperatures or fluxes on a mesh prove: energies, with what rounding and quadrature may hide."""
 
 from __future__ import annotations
 
@@ -15,54 +15,61 @@ from references.mesh import Mesh
 DEGREES = (5, 6)
 
 
-def temperature_energy(mesh: Mesh, conductivity, temperature) -> float:
-    """Upper bound of the integral of k |grad T|^2, W K.
+def temperature_energies(mesh: Mesh, conductivity, temperatures) -> np.ndarray:
+    """Upper bound, as a quadratic form of the loads, of the integrals of k grad T_i . grad T_j.
 
     Parameters
     ----------
     mesh : Mesh
     conductivity : (m,) float array, W/(m K)
-    temperature : (n,) float array, K
-        At the nodes.
+    temperatures : (l, n) float array, K
+        At the nodes, for each load.
+
+    Returns
+    -------
+    (l, l) float array, W K
     """
-    return _bounded(
-        mesh, conductivity > 0, lambda ids, degree: _of_temperature(mesh, conductivity, temperature, ids, degree)
-    )
+    temperatures = np.asarray(temperatures)
+
+    def energies(ids, degree):
+        slopes, weights = gradients(mesh, ids, rule(degree))
+        gradient = np.einsum("bqnx,lbn->blqx", slopes, temperatures[:, mesh.cells[ids]], optimize=True)
+        weights = np.broadcast_to(conductivity[ids, None] * weights, slopes.shape[:2])
+        return np.einsum("bq,blqx,bmqx->blm", weights, gradient, gradient, optimize=True)
+
+    return _bounded(mesh, conductivity > 0, energies)
 
 
-def flux_energy(mesh: Mesh, conductivity, moments) -> float:
-    """Upper bound of the integral of |q|^2/k, W K.
+def flux_energies(mesh: Mesh, conductivity, moments) -> np.ndarray:
+    """Upper bound, as a quadratic form of the loads, of the integrals of q_i . q_j / k.
 
     Parameters
     ----------
     mesh : Mesh
     conductivity : (m,) float array, W/(m K)
-    moments : (m, 12) float array, W
-        Of the normal flux out of each element; 0 where there is no conductivity.
+    moments : (l, m, 12) float array, W
+        Of the normal flux out of each element, for each load; 0 where there is no conductivity.
+
+    Returns
+    -------
+    (l, l) float array, W K
     """
-    return _bounded(mesh, conductivity > 0, lambda ids, degree: _of_flux(mesh, conductivity, moments, ids, degree))
+    moments = np.asarray(moments)
+
+    def energies(ids, degree):
+        matrices = masses(mesh, ids, degree=degree) / conductivity[ids, None, None]
+        return np.einsum("lbi,bij,mbj->blm", moments[:, ids], matrices, moments[:, ids], optimize=True)
+
+    return _bounded(mesh, conductivity > 0, energies)
 
 
-def _bounded(mesh, conducting, energy):
+def _bounded(mesh, conducting, energies):
     total = off = 0.0
     for ids in blocks(mesh, conducting):
         if not mesh.curved[ids[0]]:
-            total += energy(ids, 2).sum()
+            total = total + energies(ids, 2).sum(axis=0)
             continue
-        rough, fine = (energy(ids, degree) for degree in DEGREES)
-        total += fine.sum()
-        off += np.abs(fine - rough).sum()
-    return float(total + off)
-
-
-def _of_temperature(mesh, conductivity, temperature, ids, degree):
-    slopes, weights = gradients(mesh, ids, rule(degree))
-    gradient = np.einsum("bqnx,bn->bqx", slopes, temperature[mesh.cells[ids]], optimize=True)
-    return conductivity[ids] * np.einsum(
-        "bqx,bqx,bq->b", gradient, gradient, np.broadcast_to(weights, gradient.shape[:2]), optimize=True
-    )
-
-
-def _of_flux(mesh, conductivity, moments, ids, degree):
-    matrices = masses(mesh, ids, degree=degree)
-    return np.einsum("bi,bij,bj->b", moments[ids], matrices, moments[ids], optimize=True) / conductivity[ids]
+        rough, fine = (energies(ids, degree) for degree in DEGREES)
+        total = total + fine.sum(axis=0)
+        off += np.linalg.norm(fine - rough, axis=(1, 2)).sum()
+    return total + off * np.eye(len(np.atleast_2d(total)))

@@ -68,11 +68,22 @@ def balanced_flux(scene: Scene, mesh: Mesh, *, tolerance: float) -> Balanced:
     return Balanced(unit * moments, -unit * float(np.sum(moments * lift)), unit * np.abs(jumps[~held]).sum(), stats)
 
 
+def linear_temperature(mesh: Mesh, gradient) -> np.ndarray:
+    """Temperature of a uniform gradient at the corners of each element's faces, (m, 12) float array, K.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    gradient : (3,) sequence of float, K/m
+    """
+    return (mesh.points @ np.array(gradient))[mesh.cells[:, CORNERS]].reshape(-1, 12)
+
+
 def _known(scene, mesh, faces):
     """Known temperature (m, 12) at the corners of faces, counted from the lowest wall's; which unknowns it fixes."""
     held = np.zeros(len(faces.node), bool)
     if scene.periodic:
-        return (mesh.points @ np.array(scene.gradient))[mesh.cells[:, CORNERS]].reshape(-1, 12), held
+        return linear_temperature(mesh, scene.gradient), held
     lift, low = np.zeros((len(mesh.cells), 12)), min(scene.wall_temperatures.values())
     for name, value in scene.wall_temperatures.items():
         wall, on = mesh.walls[name], np.zeros(len(mesh.points), bool)

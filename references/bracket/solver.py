@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import math
 import time
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from demheat.process_state import one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
 from demheat.scene.inputs import finite
-from references.bracket.energies import flux_energy, temperature_energy
+from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.equations import balanced_flux
 from references.bracket.surfaces import pushed
 from references.fem.system import solve_nodes
@@ -27,6 +27,8 @@ DROPS = 10.0
 POWER, FINER = 1 / 3, (0.5, 0.85)
 # The first mesh on the way to a width: edges over the mesher's usual ones, a tenth of its cost.
 FIRST = 2.5
+# Of the best conductor: what conducts less is stopped by pores, and no ratio of bounds tells how well it is known.
+NOTHING = 1e-9
 # Relative rounding of an energy, a thousand times over: bounds of exact solutions, as of laminates, are that much off.
 ROUNDING = 1e-11
 
@@ -75,7 +77,7 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
         Longest wanted edge of the mesh, see `references.mesh.make`; with `width` that of the
         first mesh.
     width : float, optional
-        Refine until upper over lower bound is at most 1 + width.
+        Refine until upper over lower bound is at most 1 + width; or until pores are seen to stop the heat.
     tolerance : float
         Largest relative residual of both systems of equations, scaled to a unit diagonal. What it leaves of the
         flux unbalanced is counted against the lower bound.
@@ -100,7 +102,7 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
     if width is not None:
         finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
     scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
-    drop, power = _load(scene)
+    scene, drop, power = _unit_load(scene)
     # The order of BLAS's sums, and so the last bits, is that of its threads.
     with one_blas_thread():
         return _narrowed(scene, size, width, tolerance, drop, power)
@@ -111,23 +113,27 @@ def _narrowed(scene, size, width, tolerance, drop, power):
         size = FIRST * checked_size(scene, None, 2)
     while True:
         found = _once(scene, size, tolerance, drop, power)
-        if width is None or found.width <= width:
+        if width is None or found.width <= width or found.upper <= NOTHING * max(scene.conductivities):
             return found
         size = found.stats["size"] * float(np.clip((width / found.width) ** POWER, *FINER))
 
 
-def _load(scene):
-    """Largest difference of temperatures, K, and the energy of a unit conductivity, K2 m."""
+def _unit_load(scene):
+    """The same conductivity under a load of one, counted from 0, since offsets and scales would cost digits.
+
+    Besides, the largest difference of temperatures, K, and the energy of a unit conductivity, K2 m.
+    """
     if scene.periodic:
-        gradient, size = np.array(scene.gradient), np.array(scene.size)
-        return DROPS * float(np.abs(gradient * size).sum()), float(gradient @ gradient) * scene.volume
+        gradient = np.array(scene.gradient) / np.linalg.norm(scene.gradient)
+        drop = DROPS * float(np.abs(gradient * scene.size).sum())
+        return replace(scene, gradient=tuple(gradient)), drop, scene.volume
+    length = scene.size[scene.axis]
     if scene.wall_fluxes:
         raise ValueError(f"Scene.walls = {scene.walls}: bounds need two opposite walls, both held at a temperature")
-    length = scene.size[scene.axis]
-    low, high = sorted(scene.wall_temperatures.values())
+    (one, low), (other, high) = scene.wall_temperatures.items()
     if low == high:
         raise ValueError(f"Scene.walls = {scene.walls}: temperatures must differ to define a conductivity")
-    return high - low, ((high - low) / length) ** 2 * scene.volume
+    return replace(scene, walls={one: 0.0, other: 1.0}), 1.0, scene.volume / length**2
 
 
 def _once(scene, size, tolerance, drop, power):
@@ -149,7 +155,7 @@ def _lower(scene, mesh, tolerance, drop, power):
         return 0.0, {"unbalanced": 0.0}
     mesh = pushed(scene, mesh, upper=False)
     flux = balanced_flux(scene, mesh, tolerance=tolerance)
-    energy = flux_energy(mesh, scene.conductivities[mesh.phase], flux.moments)
+    energy = flux_energies(mesh, scene.conductivities[mesh.phase], [flux.moments])[0, 0]
     lost = OF_MOMENTS * flux.left * drop
     if flux.work <= lost:
         return 0.0, flux.stats | {"unbalanced": 0.0}
@@ -161,4 +167,5 @@ def _upper(scene, mesh, tolerance, power):
     mesh = pushed(scene, mesh, upper=True)
     solved = solve_nodes(scene, mesh, tolerance)
     stats = {name: solved.stats[name] for name in ("unknowns", "iterations", "residual")}
-    return temperature_energy(mesh, scene.conductivities[mesh.phase], solved.temperature) / power, stats
+    energy = temperature_energies(mesh, scene.conductivities[mesh.phase], [solved.temperature])[0, 0]
+    return energy / power, stats

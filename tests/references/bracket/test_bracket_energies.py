@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from demheat import gallery
-from references.bracket.energies import flux_energy, temperature_energy
+from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.faces import CORNERS
 from references.bracket.fluxes import answers, masses
 from references.bracket.surfaces import pushed
@@ -18,7 +18,7 @@ def test_a_linear_temperature(size):
     mesh, slope = pushed(scene, make(scene, size=size), upper=True), np.array([1.0, -2.0, 0.5])
     conductivity = np.where(mesh.phase == 1, 10.0, 1.0)
     known = 5.25 * conductivity @ mesh.volumes
-    found = temperature_energy(mesh, conductivity, mesh.points @ slope)
+    found = temperature_energies(mesh, conductivity, [mesh.points @ slope])[0, 0]
     # Never less but for rounding; the difference of two rules above it, found 1e-8.
     assert -1e-12 < found / known - 1 < 1e-6
 
@@ -38,7 +38,7 @@ def test_an_energy_is_never_underrated():
         for each in np.array_split(ids, 20):
             fine = masses(mesh, each, degree=17) / conductivity[each, None, None]
             known += np.einsum("bi,bij,bj->", moments[each], fine, moments[each], optimize=True)
-    found = flux_energy(mesh, conductivity, moments)
+    found = flux_energies(mesh, conductivity, [moments])[0, 0]
     assert 0 < found / known - 1 < 1e-5
 
 
@@ -46,5 +46,16 @@ def test_pores_cost_nothing():
     scene = gallery.sphere_in_cube(0.0)
     mesh = make(scene, size=0.03)
     conductivity = scene.conductivities[mesh.phase]
-    found = temperature_energy(mesh, conductivity, mesh.points[:, 1])
+    found = temperature_energies(mesh, conductivity, [mesh.points[:, 1]])[0, 0]
     assert found == pytest.approx(conductivity @ mesh.volumes, rel=1e-6)
+
+
+def test_energies_of_several_loads():
+    scene = gallery.sphere_in_cube(10.0)
+    mesh = pushed(scene, make(scene, size=0.04), upper=True)
+    conductivity = scene.conductivities[mesh.phase]
+    found = temperature_energies(mesh, conductivity, mesh.points.T)
+    # Three linear temperatures: no cross terms but for what the rules of quadrature differ by, on the diagonal.
+    known = conductivity @ mesh.volumes * np.eye(3)
+    assert found == pytest.approx(known, rel=1e-5, abs=1e-7 * known[0, 0])
+    assert np.linalg.eigvalsh(found - known).min() > -1e-12 * known[0, 0]

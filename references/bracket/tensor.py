@@ -1,0 +1,120 @@
+"""A periodic cell's conductivity tensor between two that are certain, by three loads on one mesh."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from demheat.process_state import one_blas_thread
+from demheat.scene import Layer, Scene, Sphere, check_scene
+from demheat.scene.inputs import finite
+from references.bracket.energies import flux_energies, temperature_energies
+from references.bracket.equations import balanced_flux, linear_temperature
+from references.bracket.solver import DROPS, OF_MOMENTS, ROUNDING
+from references.bracket.surfaces import pushed
+from references.fem.system import solve_nodes
+from references.mesh import make
+
+
+@dataclass(frozen=True)
+class Tensor:
+    """Bounds of a conductivity tensor.
+
+    Attributes
+    ----------
+    least, greatest : (3, 3) float array, W/(m K)
+        Symmetric. Along any direction g the conductivity lies between g . least g and g . greatest g.
+    stats : dict
+        `size` (m) and `elements`.
+    """
+
+    least: np.ndarray
+    greatest: np.ndarray
+    stats: dict = field(repr=False, default_factory=dict)
+
+    @property
+    def middle(self) -> np.ndarray:
+        """Halfway between both, (3, 3) float array, W/(m K)."""
+        return (self.least + self.greatest) / 2
+
+    @property
+    def radius(self) -> np.ndarray:
+        """What each entry may be off from the middle, (3, 3) float array, W/(m K).
+
+        Where E and D/2 - E and D/2 + E are the true tensor less the middle, and non-negative, |E_ij| is at most half
+        the root of D_ii D_jj.
+        """
+        apart = np.diagonal(self.greatest - self.least)
+        return np.sqrt(np.outer(apart, apart)) / 2
+
+    @property
+    def lower(self) -> np.ndarray:
+        """Lower bound of each entry, (3, 3) float array, W/(m K)."""
+        return self.middle - self.radius
+
+    @property
+    def upper(self) -> np.ndarray:
+        """Upper bound of each entry, (3, 3) float array, W/(m K)."""
+        return self.middle + self.radius
+
+
+def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 1e-10) -> Tensor:
+    """Bound the conductivity tensor of a periodic cell.
+
+    Parameters
+    ----------
+    scene : Scene
+        Spheres and layers in a periodic cell; its gradient does not matter.
+    size, tolerance
+        As those of `solve`.
+
+    Returns
+    -------
+    Tensor
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the scene has walls.
+    NotImplementedError
+        If surfaces of the scene touch.
+    RuntimeError
+        If meshing fails, or a residual stays above the tolerance.
+    """
+    check_scene(scene)
+    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
+    if not scene.periodic:
+        raise ValueError(f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead")
+    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
+    with one_blas_thread():
+        mesh = make(scene, size=size)
+        loads = [replace(scene, gradient=tuple(unit)) for unit in np.eye(3)]
+        least, greatest = _least(loads, mesh, tolerance), _greatest(loads, mesh, tolerance)
+    stats = {"size": mesh.stats["size"], "elements": len(mesh.cells)}
+    return Tensor(least * (1 - ROUNDING), greatest * (1 + ROUNDING), stats)
+
+
+def _greatest(loads, mesh, tolerance):
+    mesh = pushed(loads[0], mesh, upper=True)
+    temperatures = [solve_nodes(load, mesh, tolerance).temperature for load in loads]
+    return temperature_energies(mesh, loads[0].conductivities[mesh.phase], temperatures) / loads[0].volume
+
+
+def _least(loads, mesh, tolerance):
+    """Of all combinations of the fluxes that of most work for its energy, for each direction of the load."""
+    scene = loads[0]
+    if not scene.conductivities[mesh.phase].any():
+        return np.zeros((3, 3))
+    mesh = pushed(scene, mesh, upper=False)
+    fluxes = [balanced_flux(load, mesh, tolerance=tolerance) for load in loads]
+    energies = flux_energies(mesh, scene.conductivities[mesh.phase], [flux.moments for flux in fluxes])
+    # Rows: fluxes; columns: what they work along a unit gradient. The work of a balanced flux is its mean.
+    linear = [linear_temperature(mesh, load.gradient) for load in loads]
+    works = np.array([[-np.sum(flux.moments * each) for each in linear] for flux in fluxes])
+    best = np.linalg.lstsq(energies, works, rcond=None)[0]
+    found = works.T @ best
+    # Work that jumps between elements could add, for the combination that is taken.
+    drop = DROPS * float(np.sum(scene.size))
+    lost = 2 * OF_MOMENTS * drop * np.linalg.norm(best, 2) * np.linalg.norm([flux.left for flux in fluxes])
+    return ((found + found.T) / 2 - lost * np.eye(3)) / scene.volume
