@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from changed_scenes import RELATIONS
 from drawn_scenes import COUNT, KINDS, drawn, kind
 from method_scenes import METHODS
-from relations import RELATIONS, applies, first, image_of, limit, second, spread
+from relations import applies, first, image_of, limit, second, spread
 
 from demheat import Sphere
 from demheat.method import PARTICLES, VOXELS

@@ -10,7 +10,7 @@ from references.fem.quadrature import rule
 from references.mesh import Mesh
 
 # Energies on curved elements are integrals of rational functions. They are worked out by these two rules, and what the
-# rules differ by, element by element, is counted against the bound: found, a hundred times what the finer one is off.
+# rules differ by, element by element, is counted against the bound: found, twenty times what the finer one is off.
 # On straight elements both are exact.
 DEGREES = (5, 6)
 

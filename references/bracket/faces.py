@@ -26,11 +26,6 @@ class Faces(NamedTuple):
     row: np.ndarray
     node: np.ndarray
 
-    @property
-    def face(self):
-        """Face of each element's four, (m, 4) int array."""
-        return self.row[:, ::3] // 3
-
 
 def number_faces(mesh: Mesh) -> Faces:
     """Number the faces of a mesh and the unknowns on them.

@@ -18,10 +18,12 @@ from references.fem.system import solve_nodes
 from references.mesh import make
 from references.mesh.sizes import checked_size
 
-# The integral of a face's normal flux is at most so many times the sum of the magnitudes of its three moments.
+# The integral of |normal flux| over a face is at most so many times the sum of the magnitudes of its three moments:
+# each corner's value is 12/area times (its moment less a quarter of the sum), and weighs a third of the area.
 OF_MOMENTS = 7.0
 # Temperatures stay between those of the walls. In a periodic cell what the inclusions add to the linear temperature is
-# taken to stay below so many times its drop over the cell; found: less than one. It multiplies rounding alone.
+# taken, not proved, to stay below so many times its drop over the cell; found: at most 0.63 on 20 random cells. It
+# multiplies the residual alone.
 DROPS = 10.0
 # A finer mesh's edges over a coarser one's: by the width's third power, but neither more nor less than these.
 POWER, FINER = 1 / 3, (0.5, 0.85)
@@ -29,7 +31,7 @@ POWER, FINER = 1 / 3, (0.5, 0.85)
 FIRST = 2.5
 # Of the best conductor: what conducts less is stopped by pores, and no ratio of bounds tells how well it is known.
 NOTHING = 1e-9
-# Relative rounding of an energy, a thousand times over: bounds of exact solutions, as of laminates, are that much off.
+# More than rounding makes of sums over millions of elements: bounds of exact solutions, as of laminates, need it.
 ROUNDING = 1e-11
 
 
@@ -56,11 +58,6 @@ class Bracket:
         if self.lower > 0:
             return self.upper / self.lower - 1
         return 0.0 if self.upper == 0 else math.inf
-
-    @property
-    def middle(self) -> float:
-        """Halfway between both, W/(m K)."""
-        return (self.lower + self.upper) / 2
 
 
 def solve(scene: Scene, *, size: float | None = None, width: float | None = None, tolerance: float = 1e-10) -> Bracket:
@@ -97,15 +94,26 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
     ImportError
         If gmsh or a system library that it needs is missing.
     """
-    check_scene(scene)
-    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     if width is not None:
         finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
-    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
+    check(scene, tolerance)
     scene, drop, power = _unit_load(scene)
     # The order of BLAS's sums, and so the last bits, is that of its threads.
     with one_blas_thread():
         return _narrowed(scene, size, width, tolerance, drop, power)
+
+
+def check(scene: Scene, tolerance: float) -> None:
+    """Refuse what has no bounds here; raises what `solve` does.
+
+    Parameters
+    ----------
+    scene, tolerance
+        As those of `solve`.
+    """
+    check_scene(scene)
+    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
+    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
 
 
 def _narrowed(scene, size, width, tolerance, drop, power):

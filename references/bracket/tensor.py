@@ -7,11 +7,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from demheat.process_state import one_blas_thread
-from demheat.scene import Layer, Scene, Sphere, check_scene
-from demheat.scene.inputs import finite
+from demheat.scene import Scene
 from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.equations import balanced_flux, linear_temperature
-from references.bracket.solver import DROPS, OF_MOMENTS, ROUNDING
+from references.bracket.solver import DROPS, OF_MOMENTS, ROUNDING, check
 from references.bracket.surfaces import pushed
 from references.fem.system import solve_nodes
 from references.mesh import make
@@ -82,11 +81,9 @@ def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 
     RuntimeError
         If meshing fails, or a residual stays above the tolerance.
     """
-    check_scene(scene)
-    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
+    check(scene, tolerance)
     if not scene.periodic:
         raise ValueError(f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead")
-    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
     with one_blas_thread():
         mesh = make(scene, size=size)
         loads = [replace(scene, gradient=tuple(unit)) for unit in np.eye(3)]

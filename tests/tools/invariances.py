@@ -15,9 +15,10 @@ from datetime import date
 from pathlib import Path
 
 import numpy as np
+from changed_scenes import RELATIONS
 from drawn_scenes import COUNT
 from method_scenes import METHODS
-from relations import RELATIONS, Spread, applies, exact, first, limit, second, spread
+from relations import Spread, applies, exact, first, limit, second, spread
 
 from studies.harness.store import locked, replaced
 

@@ -127,7 +127,7 @@ def test_wall_contacts():
         assert_array_equal(np.sort(facets.wall_particle[here]), near)
         # The whole wall, shared out as the sections of the spheres; rounding.
         squares = packing.radii[facets.wall_particle[here]] ** 2
-        assert_allclose(facets.wall_area[here], squares / squares.sum(), rtol=1e-12)
+        assert_allclose(facets.wall_area[here], squares / squares.sum(), rtol=1e-12)  # rounding
 
 
 def test_walls_of_a_drum_have_their_area():
@@ -220,5 +220,5 @@ def test_walls_are_shared_in_any_unit(between_walls, unit):
     )
     one, two = (contact_facets(each, Calibrated()) for each in (between_walls, other))
     # Rounding of a few sums over all particles.
-    assert_allclose(two.wall_area, one.wall_area * unit**2, rtol=1e-12)
-    assert_allclose(two.area, one.area * unit**2, rtol=1e-12)
+    assert_allclose(two.wall_area, one.wall_area * unit**2, rtol=1e-12)  # rounding
+    assert_allclose(two.area, one.area * unit**2, rtol=1e-12)  # rounding

@@ -97,7 +97,9 @@ def test_of_coincident_points_the_heaviest_has_the_cell_and_of_equals_the_first(
     assert (twice.volumes[200:] > 0).tolist() == [False, True, False]
     # The cells are those of the heaviest alone; rounding of their volumes.
     weights[1] += 1e-3
-    assert_allclose(twice.volumes[[0, 201, 2]], laguerre(centers, weights, (1, 1, 1)).volumes[:3], rtol=1e-12)
+    assert_allclose(
+        twice.volumes[[0, 201, 2]], laguerre(centers, weights, (1, 1, 1)).volumes[:3], rtol=1e-12
+    )  # rounding
 
 
 @pytest.mark.parametrize("height, seen", [(1e-7, False), (1e-3, True)])

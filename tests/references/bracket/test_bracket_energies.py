@@ -19,7 +19,7 @@ def test_a_linear_temperature(size):
     conductivity = np.where(mesh.phase == 1, 10.0, 1.0)
     known = 5.25 * conductivity @ mesh.volumes
     found = temperature_energies(mesh, conductivity, [mesh.points @ slope])[0, 0]
-    # Never less but for rounding; the difference of two rules above it, found 1e-8.
+    # Never less but for rounding; the difference of two rules above it, some 1e-8.
     assert -1e-12 < found / known - 1 < 1e-6
 
 
