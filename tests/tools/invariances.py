@@ -124,7 +124,7 @@ Made by `tests/tools/invariances.py`; nothing here is typed by hand.
 {COUNT} scenes are drawn by seed (`tests/drawn_scenes.py`): one sphere, several unequal ones each of its own material,
 coated ones, layers, many of unequal sizes, in boxes of unlike sides, between walls or under a mean gradient, materials
 a hundredth to a hundred times as conducting as the matrix. Each is changed in a way after which its solution is known
-from that before (`tests/relations.py`), and solved again at the coarse resolution of `tests/test_methods.py`.
+from that before (`tests/changed_scenes.py`), and solved again at the coarse resolution of `tests/test_methods.py`.
 """
 TABLES = """Largest (and median) difference over the scenes. In *italics* where it must be rounding and the solver's
 tolerance, because the method's elements go with the scene or it has none; elsewhere two packings, meshes or voxels of
