@@ -147,12 +147,18 @@ def check_cost(sizes: Sizes, box, order: int) -> float:
     ValueError
         If there would be more than 3e7 tetrahedra, or they would need more memory than is free.
     """
-    cells, most = estimated_cells(sizes, np.array(box)), min(MOST_CELLS, free_memory() / BYTES[order])
+    box = np.array(box)
+    cells, most = estimated_cells(sizes, box), min(MOST_CELLS, free_memory() / BYTES[order])
     if cells > most:
         least, need = sizes.size * (cells / most) ** (1 / 3), cells * BYTES[order] / 2**30
+        # Layers keep their own size, whatever is asked for elsewhere.
+        layers = float(np.sum(_layer_cells(sizes, box)))
+        remedy = f"must be >= {least:.2g} m{', or take order = 1' if order == 2 else ''}"
+        if layers > most:
+            remedy = f"layers down to {sizes.slabs[:, 3].min():.2g} m thick take {layers:.1e} of them, too thin for FEM"
         raise ValueError(
             f"size = {sizes.size:.3g} m: about {cells:.1e} tetrahedra, which with their equations take {need:.0f} GiB; "
-            f"here {most:.1e} are possible: must be >= {least:.2g} m{', or take order = 1' if order == 2 else ''}"
+            f"here {most:.1e} are possible: {remedy}"
         )
     return cells
 
@@ -310,4 +316,12 @@ def estimated_cells(sizes: Sizes, box) -> float:
     middle = sizes.balls[:, :3]
     here = np.all((middle >= 0) & (middle <= box), axis=1)
     radius, h = sizes.balls[here, 3], sizes.balls[here, 4]
-    return cells + CELLS * float(np.sum(4 / 3 * math.pi * (radius / h) ** 3))
+    cells += CELLS * float(np.sum(4 / 3 * math.pi * (radius / h) ** 3))
+    return cells + float(np.sum(_layer_cells(sizes, box)))
+
+
+def _layer_cells(sizes, box):
+    """Tetrahedra of each thin layer, and on both sides of it until edges have grown to the size; found: within 1.5."""
+    axis, edge = sizes.slabs[:, 0].astype(int), sizes.slabs[:, 3]
+    beside = (edge**-2 - sizes.size**-2) / GROWTH
+    return CELLS * np.prod(box) / np.asarray(box)[axis] * (edge**-2 + beside)

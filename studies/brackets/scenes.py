@@ -42,8 +42,8 @@ def _coated(rng):
 def _laminate(rng):
     size, axis = rng.uniform(0.5, 2.0, 3), int(rng.integers(3))
     planes = np.sort(rng.uniform(0, size[axis], 2 * int(rng.integers(1, 4))))
-    # Planes no closer than a hundredth of the box.
-    planes = (planes + 0.02 * size[axis] * np.arange(len(planes))) / (1 + 0.02 * len(planes))
+    # Planes no closer to each other or to a face than a thirtieth of the box: elements are as small as layers are thin.
+    planes = (planes + 0.05 * size[axis] * np.arange(1, len(planes) + 1)) / (1 + 0.05 * (len(planes) + 1))
     layers = [Layer(axis, a, b, Material(10.0 ** rng.uniform(-2, 2))) for a, b in planes.reshape(-1, 2)]
     along = int(rng.integers(3))
     return Scene(size, Material(1.0), layers, **gallery.loaded(size, axis=along, periodic=bool(rng.random() < 0.5)))

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from demheat.scene import Material, Scene, Sphere
+from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
 from references.mesh import cad, gmsh_session, sizes
 from references.mesh.apart import run_apart
@@ -151,6 +151,19 @@ def test_hopeless_meshes_are_refused_before_they_are_begun(monkeypatch):
     monkeypatch.setattr(sizes, "free_memory", lambda: 50e6)
     with pytest.raises(ValueError, match="size = .*must be >="):
         mesh.make(Scene((1.0,) * 3, Material(1.0), tiny, walls={"x-": 0.0, "x+": 1.0}), size=0.1, order=1)
+
+
+def test_thin_layers_are_counted_and_refused_in_time(monkeypatch):
+    """Elements are as small as a layer is thin: a fortieth of the box asks for ten times what the size alone does."""
+    for start, stop in ((0.5, 0.525), (0.0, 0.03)):
+        of = Scene((1.0,) * 3, Material(1.0), [Layer(1, start, stop, Material(2.0))], walls={"x-": 0.0, "x+": 1.0})
+        expected = sizes.estimated_cells(sizes.wanted_sizes(of, 0.1), np.ones(3))
+        # Within the factor that is claimed of the estimate; without layers in it it is 4500.
+        assert 0.5 < len(mesh.make(of, size=0.1, order=1).cells) / expected < 2
+    monkeypatch.setattr(cad, "attempts", None)
+    foil = [Layer(1, 3e-4, 0.5, Material(2.0))]
+    with pytest.raises(ValueError, match=r"size = 0.1 m: about .* layers down to 0.0003 m thick take .*, too thin"):
+        mesh.make(Scene((1.0,) * 3, Material(1.0), foil, walls={"x-": 0.0, "x+": 1.0}), size=0.1)
 
 
 def test_pairs_looked_at_grow_like_the_spheres():
