@@ -14,7 +14,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from demheat.scene import Scene
 from demheat.scene.bodies import inside
 from demheat.scene.frozen import ReadOnly, read_only
 from demheat.scene.inputs import axis_number, finite, reals
+
+if TYPE_CHECKING:
+    from demheat.error import Estimate
 
 # Of the box: points computed to lie on a wall may be so far beyond it.
 ON_WALL = 1e-9
@@ -80,6 +83,8 @@ class Field:
     time : float, s, optional
     through : callable (axis, position) -> float, W, optional
         See `heat_through`.
+    estimator : callable (Field) -> Estimate, optional
+        See `error`.
     """
 
     scene: Scene
@@ -93,6 +98,7 @@ class Field:
     stats: Mapping[str, object] = field(default_factory=dict)
     time: float | None = None
     through: Callable[[int, float], float] | None = None
+    estimator: Callable[[Field], Estimate] | None = None
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.
@@ -122,6 +128,23 @@ class Field:
             return own
         solid = self.scene.conductivities[own.phase] > 0
         return own._replace(temperature=read_only(np.where(solid, own.temperature, np.nan)))
+
+    @cached_property
+    def error(self) -> Estimate:
+        """How far conductivity and temperature may be off: an interval, and what was done to know it.
+
+        What solves on elements solves the scene again on coarser ones, which costs about half of the solve.
+
+        Raises
+        ------
+        NotImplementedError
+            If the method does not know its error.
+        RuntimeError
+            If no coarser run can be made.
+        """
+        if self.estimator is None:
+            raise NotImplementedError("Field.error: this method does not know its error")
+        return self.estimator(self)
 
     def heat_through(self, axis, position) -> float:
         """Heat that crosses a section of the body, W, by the method's own balance.

@@ -44,7 +44,8 @@ LAYERS = {
     "demheat.scene.thickness": (),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
-    "demheat.field": ("demheat.scene",),
+    "demheat.error": ("demheat.scene",),
+    "demheat.field": ("demheat.scene", "demheat.error"),
     "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.process_state": (),
@@ -139,6 +140,7 @@ LAYERS = {
         "demheat.conduction",
         "demheat.sampling",
         "demheat.build",
+        "demheat.error",
         "demheat.method",
         "demheat.dem",
     ),
@@ -155,6 +157,7 @@ LAYERS = {
     "references.mesh": ("demheat.scene", "demheat.progress", "demheat.limits", "references.mesh"),
     "references.exact": (
         "demheat.scene",
+        "demheat.error",
         "demheat.field",
         "demheat.method",
         "references.times",
@@ -164,6 +167,7 @@ LAYERS = {
     "references.bounds": ("demheat.scene", "demheat.method", "references.exact", "references.bounds"),
     "references.multipole": (
         "demheat.scene",
+        "demheat.error",
         "demheat.field",
         "demheat.method",
         "demheat.process_state",
@@ -175,6 +179,7 @@ LAYERS = {
     ),
     "references.fem": (
         "demheat.scene",
+        "demheat.error",
         "demheat.field",
         "demheat.method",
         "demheat.process_state",
@@ -194,6 +199,7 @@ LAYERS = {
     ),
     "references.fft": (
         "demheat.scene",
+        "demheat.error",
         "demheat.field",
         "demheat.method",
         "demheat.process_state",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from demheat.conduction.sources import check_sources, lost_power, source_power, 
 from demheat.conduction.steady import check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
+from demheat.dem.estimate import estimator_of
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
@@ -90,20 +92,26 @@ def solve(
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(steady=True)
     law.check(scene)
+    return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
+
+
+def _answer(scene, law, wanted, **knobs):
+    """Solve what was checked; `knobs` are those of the linear solver."""
     counts = wanted.counts(scene, law)
     begun = time.perf_counter()
-    with Helper(parts_of(law, particles)) as helper:
+    with Helper(parts_of(law, wanted.particles)) as helper:
         packing = wanted.packed(scene, counts)
         packed = time.perf_counter()
         helper.join(cells)
-        network = network_of(scene, packing, law, seed=seed)
+        network = network_of(scene, packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy
         helper.join()
     connected = time.perf_counter()
-    solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
+    solution = solve_checked(network, scene, **knobs)
     spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}
     with stage("field"):
-        return field_of(scene, network, solution, stats=spent)
+        estimator = estimator_of(law, wanted, partial(_answer, scene, **knobs))
+        return field_of(scene, network, solution, stats=spent, estimator=estimator)
 
 
 def evolve(
@@ -176,23 +184,31 @@ def evolve(
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(steady=False)
     law.check(scene)
-    counts = wanted.counts(scene, law)
+    wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))
     check_callables(scene)
 
-    def fields():
-        with Helper(parts_of(law, particles, steady_state=False)) as helper:
-            packing = wanted.packed(scene, counts)
-            helper.join()
-        network = network_of(scene, packing, law, seed=seed)
-        loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}
-        if law.holds_centers:
-            loads["held_centers"] = np.ones(len(network.volumes), dtype=bool)
-        how = {"integrator": integrator, "accuracy": accuracy, "step": step}
-        for now, solution in evolve_network(network, scene, times, **loads, **how):
-            yield field_of(scene, network, solution, stats=_lost(scene, now), time=now)
+    return _march(scene, times, law, wanted, integrator=integrator, accuracy=accuracy, step=step)
 
-    return fields()
+
+def _march(scene, times, law, wanted, **how):
+    """Fields at times of what was checked; `how` are the knobs of the integrator."""
+    with Helper(parts_of(law, wanted.particles, steady_state=False)) as helper:
+        packing = wanted.packed(scene, wanted.counts(scene, law))
+        helper.join()
+    network = network_of(scene, packing, law, seed=wanted.seed)
+    loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}
+    if law.holds_centers:
+        loads["held_centers"] = np.ones(len(network.volumes), dtype=bool)
+    for now, solution in evolve_network(network, scene, times, **loads, **how):
+        estimator = estimator_of(law, wanted, partial(_answer_at, scene, now, **how), steps=how["accuracy"])
+        yield field_of(scene, network, solution, stats=_lost(scene, now), time=now, estimator=estimator)
+
+
+def _answer_at(scene, time, law, wanted, **how):
+    """The field at one time."""
+    (field,) = _march(scene, [time], law, wanted, **how)
+    return field
 
 
 def _lost(scene, now):

@@ -12,7 +12,7 @@ from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
 
 
-def field_of(scene, network, solution, *, stats, time=None) -> Field:
+def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> Field:
     """The Field of a solved network.
 
     Parameters
@@ -25,6 +25,7 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
         To be said of the field besides what the network and the solution say.
     time : float, s, optional
         Of a transient.
+    estimator : callable (Field) -> Estimate, optional
 
     Returns
     -------
@@ -52,6 +53,7 @@ def field_of(scene, network, solution, *, stats, time=None) -> Field:
         stats=solution.stats | _described(network) | stats,
         time=time,
         through=lambda axis, position: _heat_through(network, solution, axis, position),
+        estimator=estimator,
     )
 
 

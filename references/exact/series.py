@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.error import ROUNDING, known
 from demheat.field import Field, Samples
 from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource, check_scene
 from references.exact.responses import CROSSOVER, response, sphere_response
@@ -241,7 +242,14 @@ def _field(scene, body, time, solved, n):
             "residual": 0.0,
         },
         time=time,
+        estimator=_series,
     )
+
+
+def _series(field):
+    """To rounding: the terms that are left out are below it."""
+    scale = max(abs(field.scene.initial), *map(abs, field.wall_temperature.values()))
+    return known(field, field.stats["truncation"], "exact series", temperature=ROUNDING * scale)
 
 
 def _fractions(scene, n):

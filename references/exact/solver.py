@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.scene import Scene, check_scene
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
@@ -65,7 +66,17 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
         wall_temperature={**temperatures, **scene.wall_temperatures},
         wall_heat=heat,
         stats={"form": closed.form, "iterations": 0, "residual": 0.0, **closed.stats},
+        estimator=_digits,
     )
+
+
+def _digits(field):
+    """By the digits that the form knows of itself; those of the temperature are at least those of the flux."""
+    digits = field.stats["digits"]
+    warm, cold = max(field.wall_temperature.values(), default=0.0), min(field.wall_temperature.values(), default=0.0)
+    span = warm - cold if not field.scene.periodic else float(np.abs(field.scene.gradient) @ field.scene.size)
+    flux = 10.0 ** -field.stats.get("field_digits", digits)
+    return known(field, 10.0**-digits, f"exact to {digits:.0f} digits", temperature=flux * span)
 
 
 def fractions(scene):

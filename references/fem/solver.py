@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from demheat.field import Field
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite
+from references.fem.estimate import estimated
 from references.fem.lookup import NodalField
 from references.fem.system import solve_nodes
 from references.mesh import make
@@ -55,7 +58,13 @@ def solve(
     check_scene(scene)
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     scene.require(steady=True)
-    mesh = make(scene, size=size, order=order, curved=curved)
+    return _answer(scene, tolerance, size=size, order=order, curved=curved)
+
+
+def _answer(scene, tolerance, **elements):
+    """Solve on a mesh; `elements` are knobs of `references.mesh.make`."""
+    mesh = make(scene, **elements)
+    kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"
     # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
     alone = one_blas_thread()
     solved = alone(solve_nodes)(scene, mesh, tolerance)
@@ -72,6 +81,9 @@ def solve(
         wall_temperature=solved.wall_temperature,
         wall_heat=solved.wall_heat,
         stats=stats,
+        estimator=partial(
+            estimated, coarser=lambda factor: _answer(scene, tolerance, **elements | {"coarser": factor}), kind=kind
+        ),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time as clock
 from collections.abc import Iterator, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -13,7 +14,9 @@ from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.functions import initial_at
 from demheat.scene.inputs import chosen, finite, whole
+from references.fem.bricks import EDGES as BRICKS
 from references.fem.bricks import checked_size, hexahedra
+from references.fem.estimate import estimated
 from references.fem.implicit import Shifted
 from references.fem.loads import Loads
 from references.fem.sources import check_sources
@@ -96,7 +99,8 @@ def evolve(
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
-    return _alone(_fields(scene, times, elements, order, size, step, accuracy, tolerance))
+    knobs = {"step": step, "accuracy": accuracy, "tolerance": tolerance}
+    return _alone(_fields(scene, times, {"elements": elements, "order": order, "size": size}, **knobs))
 
 
 def _alone(fields):
@@ -109,8 +113,8 @@ def _alone(fields):
         yield field
 
 
-def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
-    space = _space(scene, elements, order, size)
+def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
+    space, kind = _space(scene, **cells, coarser=coarser), "curved" if cells["order"] == 2 else "linear"
     initial = initial_at(scene, space.points)
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
@@ -129,10 +133,19 @@ def _fields(scene, times, elements, order, size, step, accuracy, tolerance):
         stats = {"steps": ticks.steps, "rejected": ticks.rejected, "step": ticks.last, "unknowns": len(free)}
         stats |= {"iterations": solver.iterations, "residual": solver.residual, "setups": solver.setups}
         stats |= {"solve_s": clock.perf_counter() - begun}
-        yield _field(scene, problem, state, initial - level, space.stats | stats)
+        again = partial(_at, scene, float(time), cells, step=step, accuracy=accuracy, tolerance=tolerance)
+        estimator = partial(estimated, coarser=again, kind=kind, steps=accuracy)
+        yield _field(scene, problem, state, initial - level, space.stats | stats, estimator)
 
 
-def _field(scene, problem, state, initial, stats):
+def _at(scene, time, cells, coarser, **knobs):
+    """The field at one time, on longer elements."""
+    with one_blas_thread():
+        (field,) = _fields(scene, [time], cells, coarser=coarser, **knobs)
+    return field
+
+
+def _field(scene, problem, state, initial, stats, estimator):
     loads, space = problem.loads, problem.loads.space
     solution = space.view(state.temperature + loads.level)
     change = float(np.sum(space.mass @ (state.temperature - initial)))
@@ -153,18 +166,21 @@ def _field(scene, problem, state, initial, stats):
         flux_at=one_blas_thread()(solution.flux_at),
         wall_temperature=walls,
         wall_heat={name: rates[name] for name in scene.walls},
+        estimator=estimator,
         stats=stats | {"heat_in": heats, "heat_lost": lost, "heat_change": change, "energy_error": error},
         time=state.time,
     )
 
 
-def _space(scene, elements, order, size):
+def _space(scene, elements, order, size, coarser):
     if elements == "hexahedra":
-        return hexahedra(scene, size)
+        return hexahedra(scene, coarser * (scene.volume ** (1 / 3) / BRICKS if size is None else size))
     if size is None:
         bounded = sum(shape.bounded for shape in scene.inclusions)
         size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
-    mesh = make(scene, size=size, order=order) if scene.domain == "box" else make_round(scene, size=size, order=order)
+    if scene.domain == "box":
+        return tetrahedra(scene, make(scene, size=size, order=order, coarser=coarser))
+    mesh = make_round(scene, size=coarser * size, order=order)
     return tetrahedra(scene, mesh)
 
 

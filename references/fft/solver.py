@@ -6,7 +6,7 @@ import math
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
 from demheat.scene.thickness import coats, narrower
 from references.fft import cg, eyre_milton
+from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
 from references.fft.problem import Problem, SolvedGrid
@@ -46,6 +47,8 @@ MISSED = {
     "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape",
     "links": "miss them or see some of them only",
 }
+# Knobs that a field's `stats` leaves out.
+UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
@@ -110,8 +113,7 @@ def solve(
         If an inclusion around another is a coat thinner than a voxel, or an inclusion smaller than a voxel, but for
         layers in laminates.
     """
-    knobs = _checked(scheme, rule, precision, tolerance, max_iterations)
-    threads = thread_count(threads)
+    knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
     _check_load(scene)
     order = (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
     box = _turned(scene, order)
@@ -133,7 +135,7 @@ def solve(
         if not grid.bodies.passing.any():
             return _field(scene, grid, units, _at_rest(shape), knobs)
     _check_scheme(box, scheme, knobs.rule)
-    with Team(threads) as team:
+    with Team(knobs.threads) as team:
         problem = _problem(grid, units, knobs, team)
         solution = SOLVERS[scheme](problem)
     return _field(scene, grid, units, solution, knobs)
@@ -147,6 +149,7 @@ class _Knobs(NamedTuple):
     precision: str
     tolerance: float
     max_iterations: int
+    threads: int
 
 
 class _Units(NamedTuple):
@@ -165,7 +168,7 @@ class _Units(NamedTuple):
         return self.slope * self.length
 
 
-def _checked(scheme, rule, precision, tolerance, max_iterations):
+def _checked(scheme, rule, precision, tolerance, max_iterations, threads):
     chosen("scheme", scheme, RULES)
     if not isinstance(rule, str) or rule not in RULES[scheme]:
         raise ValueError(f"rule = {rule!r}: must be one of {', '.join(RULES[scheme])} for scheme {scheme!r}")
@@ -176,7 +179,7 @@ def _checked(scheme, rule, precision, tolerance, max_iterations):
         finite("tolerance", tolerance, valid, lambda v: least <= v < 1)
     whole("max_iterations", max_iterations, "a whole number >= 1", lambda v: v >= 1)
     tolerance = TOLERANCES[scheme] if tolerance is None else tolerance
-    return _Knobs(scheme, rule, precision, tolerance, max_iterations)
+    return _Knobs(scheme, rule, precision, tolerance, max_iterations, thread_count(threads))
 
 
 def _warn_of_thin(scene, rule, shape):
@@ -335,7 +338,7 @@ def _field(scene, grid, units, solution, knobs):
 
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
     found = {"unknowns": solution.unknowns, "iterations": solution.iterations, **solution.errors, **solution.cost}
-    asked = {name: value for name, value in knobs._asdict().items() if name != "max_iterations"}
+    asked = {name: value for name, value in knobs._asdict().items() if name not in UNSAID}
     return Field(
         scene=scene,
         mean_flux=mean_flux,
@@ -346,6 +349,7 @@ def _field(scene, grid, units, solution, knobs):
         wall_temperature=scene.wall_temperatures,
         wall_heat={} if scene.periodic else _wall_heat(scene, units, solution),
         stats={**found, **asked, "voxels": shape},
+        estimator=partial(estimated, solve=partial(solve, **knobs._asdict())),
     )
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.scene import WALLS, Layer, Shape, Sphere, check_scene
-from demheat.scene.inputs import flag
+from demheat.scene.inputs import finite, flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
@@ -24,7 +24,7 @@ from references.mesh.turns import turn
 MOST_FIELDS = 400
 
 
-def make(scene, *, size=None, order=2, curved=True):
+def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """Mesh a scene.
 
     Parameters
@@ -37,6 +37,9 @@ def make(scene, *, size=None, order=2, curved=True):
         Nodes at the corners only, or also at the middles of the edges.
     curved : bool
         With order 2, put the middle nodes onto the spheres.
+    coarser : float
+        All edges, those at features and the default size included, are so many times longer: the same mesh on another
+        scale, for what extrapolates.
 
     Returns
     -------
@@ -56,8 +59,9 @@ def make(scene, *, size=None, order=2, curved=True):
     check_scene(scene)
     flag("curved", curved)
     scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
-    size = checked_size(scene, size, order)
-    wanted = wanted_sizes(scene, size)
+    finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
+    size = min(coarser * checked_size(scene, size, order), max(scene.size))
+    wanted = wanted_sizes(scene, size, coarser=coarser)
     cells = check_cost(wanted, scene.size, order)
     sizes = unit_lengths(wanted, max(scene.size))
 

@@ -91,7 +91,7 @@ def checked_size(scene, size, order):
     return min(float(size), max(scene.size))
 
 
-def wanted_sizes(scene, size):
+def wanted_sizes(scene, size, *, coarser=1.0):
     """Edge lengths for a scene.
 
     Parameters
@@ -100,6 +100,8 @@ def wanted_sizes(scene, size):
         Of spheres and layers; `references.mesh.make` refuses others.
     size : float, m
         Longest edge.
+    coarser : float
+        Everything at features is so many times longer, up to that edge.
 
     Returns
     -------
@@ -124,6 +126,8 @@ def wanted_sizes(scene, size):
     thickness = radii[outer] - radii[inner]
     shells = np.column_stack([centers[inner], radii[inner], radii[outer], IN_SHELL * thickness])
     slabs = np.array([(axis, a, b, b - a) for axis in range(3) for a, b in pairwise(planes[axis])])
+    for each in (balls, shells, slabs):
+        each[:, -1] *= coarser
     return Sizes(size, *(t[t[:, -1] < size] for t in (balls, shells, slabs)))
 
 

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 
+from demheat.error import known
 from demheat.field import Field, Samples
 from references.exact.insulated import sphere_temperature
 from references.midpoints import midpoints
@@ -46,4 +48,5 @@ def at_rest(scene, spheres, points_per_axis) -> Field:
         wall_temperature=scene.wall_temperatures,
         wall_heat=dict.fromkeys(scene.walls or {}, 0.0),
         stats=stats,
+        estimator=partial(known, relative=0.0, how="no heat passes", temperature=0.0),
     )

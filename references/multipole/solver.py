@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
@@ -115,7 +116,17 @@ def _field(scene, arrangement, history, points_per_axis):
         wall_temperature=scene.wall_temperatures,
         wall_heat={name: _entering(scene, name, mean_flux) for name in scene.walls or {}},
         stats=_stats(scene, arrangement, history),
+        estimator=_degrees,
     )
+
+
+def _degrees(field):
+    """What higher degrees would remove, and what the linear system's residual may hide."""
+    stats, widest = field.stats, max((each.radius for each in field.scene.inclusions), default=0.0)
+    slope = field.scene.gradient if field.scene.periodic else np.ptp(list(field.wall_temperature.values()))
+    slope = np.linalg.norm(slope) / (1.0 if field.scene.periodic else field.scene.size[field.scene.axis])
+    relative = stats["truncation"] + stats["residual"]
+    return known(field, relative, "higher degrees", temperature=float(stats["field_truncation"] * slope * widest))
 
 
 def _entering(scene, name, mean_flux):

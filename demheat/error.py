@@ -1,0 +1,218 @@
+"""How far an answer may be off: an interval beside every Field, made only when it is asked for.
+
+A method that knows its own error says so (`known`). One that does not solves the same scene on coarser and coarser
+elements (`by_refinement`): what changes between two of them is what a method of that order still lacks, and the largest
+that any pair asks for counts, since errors cross zero by luck. How much the largest is to be raised to hold nearly
+always was found once for each method on drawn scenes; study `estimates` judges it on others.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+import warnings
+from collections.abc import Callable
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene.bodies import inside
+
+# Points at which temperatures of two runs are compared, and the seed that draws them.
+POINTS, SEED = 1000, 7
+# Rounding of a conductivity: sums of as many numbers as there are unknowns.
+ROUNDING = 1e-12
+# Filters of warnings belong to the process: one thread at a time changes and restores them.
+_QUIET = threading.Lock()
+
+
+class Estimate(NamedTuple):
+    """How far a field may be off.
+
+    Attributes
+    ----------
+    how : str
+        What was done to know it.
+    lower, upper : float, W/(m K)
+        Between which the conductivity is expected; NaN where the scene has none.
+    temperature : float, K
+        Root mean square over the body, expected at most; NaN if unknown.
+    runs : tuple of float, W/(m K)
+        Conductivities on coarser and coarser elements, the field's own first.
+    """
+
+    how: str
+    lower: float
+    upper: float
+    temperature: float
+    runs: tuple[float, ...] = ()
+
+
+class Refinement(NamedTuple):
+    """How a method's error is read off coarser runs, each with elements so many times as long as the one before.
+
+    Attributes
+    ----------
+    ratio : float
+        Of the lengths.
+    levels : int
+        Coarser runs.
+    order, safety : float
+        Of the conductivity: the order its error falls with, and what the largest difference is raised by.
+    temperature_order, temperature_safety : float
+        Of the temperature's root mean square.
+    """
+
+    ratio: float
+    levels: int
+    order: float
+    safety: float
+    temperature_order: float
+    temperature_safety: float
+
+
+def known(field, relative, how, *, temperature=math.nan) -> Estimate:
+    """The estimate of a method that knows its relative error.
+
+    Parameters
+    ----------
+    field : Field
+    relative : float
+        Of the conductivity.
+    how : str
+    temperature : float, K
+
+    Returns
+    -------
+    Estimate
+    """
+    k = _conductivity(field)
+    half = (relative + ROUNDING) * abs(k)
+    return Estimate(how, max(k - half, 0.0), k + half, temperature, (k,))
+
+
+def beside(field, other, how) -> Estimate:
+    """The estimate of a method by another of the same scene: as far as the other is, and what that may be off.
+
+    Parameters
+    ----------
+    field, other : Field
+    how : str
+
+    Returns
+    -------
+    Estimate
+    """
+    error, runs = other.error, (_conductivity(field), _conductivity(other))
+    half = max(abs(runs[0] - error.lower), abs(error.upper - runs[0]))
+    points = _points(field.scene)
+    apart = _spread(_level_free(field, points) - _level_free(other, points))
+    return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, apart + error.temperature, runs)
+
+
+def by_refinement(
+    field, coarser: Callable, rule: Refinement, *, how="coarser elements", residual=0.0, steps=0.0
+) -> Estimate:
+    """The estimate of a method by the changes that coarser elements make.
+
+    Warnings of the coarser runs, whose elements are too large for what the finest resolves, are kept back.
+
+    Parameters
+    ----------
+    field : Field
+    coarser : callable (level) -> Field
+        The same scene with elements ratio^level times as long, level 1, 2, ...
+    rule : Refinement
+    how : str
+    residual : float
+        Relative, of the equations: what iterations may have left counts in full.
+    steps : float
+        What steps in time may have left, of the span of temperatures.
+
+    Returns
+    -------
+    Estimate
+
+    Raises
+    ------
+    RuntimeError
+        If not even one coarser run can be made.
+    """
+    coarse = _coarser_runs(coarser, rule.levels)
+    runs = [_conductivity(each) for each in (field, *coarse)]
+    half = rule.safety * missing(runs, rule.ratio, rule.order) + (residual + ROUNDING) * abs(runs[0])
+    points = _points(field.scene)
+    warmth = [_level_free(each, points) for each in (field, *coarse)]
+    apart = [_spread(a - b) for a, b in pairwise(warmth)]
+    kelvin = rule.temperature_safety * _largest(apart, rule.ratio, rule.temperature_order)
+    kelvin += (residual + steps) * _span(field, warmth[0])
+    return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, kelvin, tuple(runs))
+
+
+def missing(values, ratio, order) -> float:
+    """What the first of some values lacks, by the largest that any two neighbours ask for.
+
+    Parameters
+    ----------
+    values : (n,) sequence of float
+        On elements 1, ratio, ratio^2, ... times as long.
+    ratio, order : float
+
+    Returns
+    -------
+    float
+    """
+    return _largest(np.abs(np.diff(values)), ratio, order)
+
+
+def _largest(changes, ratio, order):
+    """A change between levels i and i + 1 is (ratio^order - 1) ratio^(i order) times what level 0 lacks."""
+    grown = ratio ** (order * np.arange(len(changes))) * (ratio**order - 1)
+    return float(np.max(np.asarray(changes) / grown))
+
+
+def _coarser_runs(coarser, levels):
+    runs = []
+    with _QUIET, warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        for level in range(1, levels + 1):
+            try:
+                runs.append(coarser(level))
+            except (ValueError, RuntimeError, NotImplementedError) as error:
+                # The elements are too long for the scene: what there is must do.
+                if not runs:
+                    raise RuntimeError(f"Field.error: no coarser run to compare with: {error}") from error
+                break
+    return runs
+
+
+def _conductivity(field):
+    """NaN where the load defines none."""
+    try:
+        return math.nan if field.time is not None else field.conductivity
+    except ValueError:
+        return math.nan
+
+
+def _points(scene):
+    points = np.random.default_rng(SEED).random((POINTS, 3)) * scene.size
+    return points[inside(points, scene.domain, scene.size)]
+
+
+def _level_free(field, points):
+    """Temperatures, those of a periodic cell without their mean."""
+    warmth = field.temperature_at(points)
+    return warmth - np.nanmean(warmth) if field.scene.periodic else warmth
+
+
+def _span(field, warmth):
+    """Between the coldest and the warmest point or wall."""
+    every = np.append(warmth[np.isfinite(warmth)], [v for v in field.wall_temperature.values() if np.isfinite(v)])
+    return float(np.ptp(every)) if len(every) else 0.0
+
+
+def _spread(difference):
+    """Root mean square where both have a temperature; zero where none has one."""
+    kept = difference[np.isfinite(difference)]
+    return float(np.sqrt(np.mean(kept**2))) if len(kept) else 0.0

@@ -1,0 +1,31 @@
+"""How far a solution on voxels is off, by larger voxels of the same scene."""
+
+from demheat.error import Refinement, by_refinement
+
+# By rule.
+RULES = {
+    "plain": Refinement(2**0.5, 3, 1.0, 1.0, 1.0, 1.0),
+    "laminate": Refinement(2**0.5, 3, 1.0, 1.0, 1.0, 1.0),
+    "links": Refinement(2**0.5, 3, 1.0, 1.0, 1.0, 1.0),
+}
+
+
+def estimated(field, solve):
+    """Estimate of a field.
+
+    Parameters
+    ----------
+    field : Field
+    solve : callable (scene, voxels) -> Field
+        With the same scheme, rule, precision and tolerance.
+
+    Returns
+    -------
+    Estimate
+    """
+    rule, shape = RULES[field.stats["rule"]], field.stats["voxels"]
+
+    def coarser(level):
+        return solve(field.scene, voxels=[max(1, round(n / rule.ratio**level)) for n in shape])
+
+    return by_refinement(field, coarser, rule, how="larger voxels", residual=field.stats["residual"])

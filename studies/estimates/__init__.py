@@ -1,0 +1,77 @@
+"""How honest each method is about its own error: intervals of 200 unseen scenes, beside the exact values.
+
+`Field.error` says between which values the conductivity lies, and how far the temperature may be off, without knowing
+the exact solution. Scenes are drawn by seed, as is what is spent on each: eight kinds, 25 of each kind, `unseen`. How
+much the change between two resolutions is raised to make an interval was found on others, `tuned`.
+"""
+
+from studies.common.drawn import KINDS
+from studies.harness.methods import found
+from studies.harness.pick import pick
+
+EACH, TUNED = 25, 12  # scenes of a kind
+FIRST = 1000  # seed of those that were tuned on
+NAMES = ("dem", "fft", "fem")
+# Variants and witnesses, on the first scenes of each kind.
+BESIDE, FEW = (
+    ("dem-plain", "dem-calibrated", "fft-plain", "fft-links", "fft-em", "fem-straight", "fem-p1", "multipole"),
+    5,
+)
+MODULES = {"all": "studies.estimates.rows"}
+PAPER = {}
+TIMEOUT = 1800.0
+
+
+def _cases():
+    for part, seeds in (("tuned", range(FIRST, FIRST + TUNED)), ("unseen", range(EACH))):
+        yield from ({"part": part, "scene": kind, "seed": seed, "method": "all"} for seed in seeds for kind in KINDS)
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """One scene of three kinds."""
+    return case["seed"] == EACH - 1 and case["scene"] in KINDS[:5:2]
+
+
+def run(part, scene, seed, method):
+    """Solve a scene by every method and compare what each says of its error with it."""
+    from studies.estimates import rows
+
+    return rows.judged(scene, seed, NAMES + (BESIDE if seed % FIRST < FEW else ()))
+
+
+def claims(df):
+    """The exact value lies inside, and the interval is not a blanket."""
+    from studies.estimates.means import inside, over, present
+
+    df = pick(df, part="unseen")
+    for name in (*NAMES, *BESIDE):
+        if not present(df, name):
+            continue
+        title = found()[name].title
+        yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
+        yield f"{title}: half of the interval over the error, median", over(df, name).median(), "<= 5"
+    for name in NAMES:
+        title = found()[name].title
+        yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
+        yield f"{title}: what is said of the temperature over its error, median", over(df, name, "t_").median(), "<= 5"
+
+
+def table(df):
+    """Errors of conductivities, % of the exact value, beside what each method says of them, half of its interval.
+
+    How often the exact value lies inside, and the interval over the error; the same of temperatures, root mean squares
+    in % of the imposed span; the estimate's cost over that of the solve.
+    """
+    from studies.estimates.means import lines
+
+    return lines(df, (*NAMES, *BESIDE))
+
+
+def plot(df):
+    """What each method says of its error against its error, one point for each scene."""
+    from studies.estimates.figure import draw
+
+    return draw(pick(df, part="unseen"), NAMES)

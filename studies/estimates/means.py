@@ -1,0 +1,87 @@
+"""Figures read off the rows of estimates."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from studies.common.drawn import ACCURACY
+from studies.harness.methods import found
+from studies.harness.pick import pick
+
+
+def present(df, name):
+    """Whether a method has answered any scene.
+
+    Parameters
+    ----------
+    df : DataFrame
+    name : str
+    """
+    return f"{name}_off" in df and df[f"{name}_off"].notna().any()
+
+
+def answered(df, name):
+    """Rows of scenes with a conductivity that the method has answered.
+
+    Parameters
+    ----------
+    df : DataFrame
+    name : str
+    """
+    return df[df[f"{name}_off"].notna() & (df["exact"] > 0)]
+
+
+def inside(df, name, what=""):
+    """Whether the true error is no larger than what the method says, for each scene.
+
+    Parameters
+    ----------
+    df : DataFrame
+    name : str
+    what : {"", "t_"}
+        Of the conductivity or of the temperature.
+    """
+    rows = answered(df, name)
+    # What the reference itself may be off counts for neither.
+    return rows[f"{name}_{what}off"].abs() <= rows[f"{name}_{what}half"] + 100 * ACCURACY
+
+
+def over(df, name, what="", nothing=1e-5):
+    """What the method says over its error, for each scene where there is one.
+
+    Parameters
+    ----------
+    df : DataFrame
+    name : str
+    what : {"", "t_"}
+    nothing : float, %
+        Errors below are rounding's or the reference's.
+    """
+    rows = answered(df, name)
+    rows = rows[rows[f"{name}_{what}off"].abs() > nothing]
+    return rows[f"{name}_{what}half"] / rows[f"{name}_{what}off"].abs()
+
+
+def lines(df, names):
+    """One line of each method.
+
+    Parameters
+    ----------
+    df : DataFrame
+    names : sequence of str
+    """
+    parts = [(part, group) for part in ("unseen", "tuned") for group in [pick(df, part=part)]]
+    return pd.DataFrame([_line(part, group, name) for part, group in parts for name in names if present(group, name)])
+
+
+def _line(part, df, name):
+    rows = answered(df, name)
+    line = {"scenes": f"{len(rows)} {part}", "method": found()[name].title}
+    for what, words in (("", "k"), ("t_", "T")):
+        line |= {
+            f"error of {words}, median %": rows[f"{name}_{what}off"].abs().median(),
+            f"said of {words}, median %": rows[f"{name}_{what}half"].median(),
+            f"{words} inside": f"{100 * inside(df, name, what).mean():.1f} %",
+            f"{words}, said over error": over(df, name, what).median(),
+        }
+    return line | {"cost over solve": (rows[f"{name}_more_s"] / rows[f"{name}_cpu_s"]).median()}

@@ -1,0 +1,86 @@
+"""What methods say of their own errors on one drawn scene, beside their errors."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import demheat.dem
+import references.fem
+import references.fft
+import references.multipole
+from demheat.referee import conductivity_error, span, temperature_error, value_error
+from studies.common.drawn import exact_field, scene_of
+from studies.harness.cost import measured
+from studies.harness.methods import found
+
+MODULES = {"dem": demheat.dem, "fem": references.fem, "fft": references.fft, "multipole": references.multipole}
+# Least and largest value of each knob: what is drawn between them by the scene's seed; lengths in longest sides.
+DRAWN = {"particles": (2000, 20_000), "voxels": (24, 80), "size": (1 / 10, 1 / 5), "order": (4, 12)}
+# At as many random points temperatures are compared.
+POINTS = 500
+
+
+def judged(kind, seed, names):
+    """Error and estimate of each method.
+
+    Parameters
+    ----------
+    kind : str
+        Of `studies.common.drawn.KINDS`.
+    seed : int
+        Of the scene, and of what is spent on it.
+    names : sequence of str
+        Of methods.
+
+    Returns
+    -------
+    dict
+        Of each method, by its name: `off` and `half`, the conductivity's error and half of its interval, % of the exact
+        one; `t_off` and `t_half`, of the temperature's root mean square, % of the span; `low` and `high`, the interval
+        over the exact value; `value` of its knob; `cpu_s` of the solve and `more_s` of the estimate. Nothing of a
+        method that refuses the scene.
+    """
+    scene = scene_of(kind, seed)
+    exact = exact_field(kind, scene)
+    rng = np.random.default_rng([seed, 1])
+    points = rng.random((POINTS, 3)) * scene.size
+    row = {"exact": exact.conductivity}
+    for name in names:
+        share = rng.random()
+        try:
+            row |= {f"{name}_{key}": value for key, value in _one(name, scene, exact, points, share).items()}
+        except NotImplementedError as error:
+            row[f"{name}_note"] = " ".join(str(error).split())
+    return row
+
+
+def _one(name, scene, exact, points, share):
+    method = found()[name]
+    low, high = DRAWN[method.resolution.knob]
+    value = low * (high / low) ** share
+    if not method.resolution.metric:
+        value = round(value)
+    knobs = method.knobs | method.at(value, max(scene.size))
+    field, cost = measured(MODULES[method.module].solve, scene, **knobs)
+    estimate, more = measured(lambda: field.error)
+    warmth = temperature_error(field, exact, points).rms
+    return {
+        "off": 100 * conductivity_error(field, exact),
+        "half": _half(estimate, exact.conductivity),
+        "low": estimate.lower,
+        "high": estimate.upper,
+        "t_off": 100 * warmth,
+        "t_half": 100 * estimate.temperature / span(scene),
+        "value": value,
+        "cpu_s": cost["cpu_s"],
+        "more_s": more["cpu_s"],
+    }
+
+
+def _half(estimate, exact):
+    """Half of the interval, % of the exact conductivity."""
+    if exact == 0:
+        return math.nan
+    return 50 * (value_error(estimate.upper, exact) - value_error(estimate.lower, exact))
