@@ -71,7 +71,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:
-        asked, packing = packing.number, conform(packing, scene, seed=seed)
+        asked, packing = packing.number, conform(packing, scene, seed=seed, gap_spacing=law.gap_spacing)
         check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
         _warn_of_gaps(packing)
         _warn_of_many(packing, asked)
