@@ -45,6 +45,7 @@ LAYERS = {
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
     "demheat.field": ("demheat.scene",),
+    "demheat.tensor": ("demheat.scene", "demheat.field"),
     "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.process_state": (),
@@ -132,6 +133,7 @@ LAYERS = {
         "demheat.warm",
         "demheat.scene",
         "demheat.field",
+        "demheat.tensor",
         "demheat.laws",
         "demheat.progress",
         "demheat.limits",
@@ -156,6 +158,7 @@ LAYERS = {
     "references.exact": (
         "demheat.scene",
         "demheat.field",
+        "demheat.tensor",
         "demheat.method",
         "references.times",
         "references.midpoints",
@@ -165,6 +168,7 @@ LAYERS = {
     "references.multipole": (
         "demheat.scene",
         "demheat.field",
+        "demheat.tensor",
         "demheat.method",
         "demheat.process_state",
         "demheat.progress",
@@ -176,6 +180,7 @@ LAYERS = {
     "references.fem": (
         "demheat.scene",
         "demheat.field",
+        "demheat.tensor",
         "demheat.method",
         "demheat.process_state",
         "demheat.progress",
@@ -195,6 +200,7 @@ LAYERS = {
     "references.fft": (
         "demheat.scene",
         "demheat.field",
+        "demheat.tensor",
         "demheat.method",
         "demheat.process_state",
         "demheat.progress",
