@@ -15,7 +15,7 @@ NAMES = ("dem", "fft", "fem")
 # Variants and witnesses, on the first scenes of each kind.
 BESIDE, FEW = (
     ("dem-plain", "dem-calibrated", "fft-plain", "fft-links", "fft-em", "fem-straight", "fem-p1", "multipole"),
-    5,
+    3,
 )
 MODULES = {"all": "studies.estimates.rows"}
 PAPER = {}
