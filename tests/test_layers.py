@@ -146,6 +146,8 @@ LAYERS = {
         "demheat.method",
         "demheat.dem",
     ),
+    # What to expect of methods that it does not call: laws are data.
+    "demheat.cheapest": ("demheat.scene", "demheat.method", "demheat.cheapest"),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),
     # The front of the package and nothing else.
