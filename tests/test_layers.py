@@ -42,6 +42,12 @@ LAYERS = {
         "demheat.scene.functions",
     ),
     "demheat.scene.thickness": (),
+    "demheat.scene.symmetry": (
+        "demheat.scene.inputs",
+        "demheat.scene.shapes",
+        "demheat.scene.scene",
+        "demheat.scene.symmetry",
+    ),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
     "demheat.error": ("demheat.scene",),
