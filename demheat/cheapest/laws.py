@@ -1,14 +1,14 @@
 """Laws of error and cost of each method, fitted by the study `speed_error` and kept beside this file in `laws.csv`.
 
 The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width, and
-g = strength^a (1 + contrast)^b fraction^c; of multipoles, whose errors fall by a factor with each degree, (h/s) stands
-for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
+g = strength^a (1 + contrast)^b fraction^c gap^d; of multipoles, whose errors fall by a factor with each degree, (h/s)
+stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
 B unknowns^q (1 + contrast)^r, the unknowns u V/h^3 + v S/h^2 + w n with the box's volume V, the interfaces' surface S
 and the number n of inclusions. The measures of a scene are those of `demheat.cheapest.measures`.
 
 The laws say what to expect, not what is certain: nine rows in ten that they were fitted to lie within the factors
 `error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are for steady heat in
-boxes with spheres and layers, on the machine of the study's rows.
+boxes with spheres apart, on the machine of the study's rows; layers are exact with most methods.
 """
 
 from __future__ import annotations
@@ -46,8 +46,8 @@ class Law(NamedTuple):
         The method's name, and the keyword that refines it.
     coarsest, finest : float
         Values of it that were fitted; lengths in edges of the box.
-    error, refinement, strength, contrast, fraction : float
-        A, p, a, b and c.
+    error, refinement, strength, contrast, fraction, gap : float
+        A, p, a, b, c and d.
     error_within : float
         Factor within which nine of ten fitted errors are.
     bulk, surface, each : float
@@ -71,6 +71,7 @@ class Law(NamedTuple):
     strength: float
     contrast: float
     fraction: float
+    gap: float
     error_within: float
     bulk: float
     surface: float
@@ -212,7 +213,7 @@ def law_of(method: str) -> Law:
 
 
 def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
-    """Logarithms that the law of the error weighs, (5,) float array: 1, h/s, strength, 1 + contrast, fraction.
+    """Logarithms that the law of the error weighs, (6,) float array: 1, h/s, strength, 1 + contrast, fraction, gap.
 
     Parameters
     ----------
@@ -226,9 +227,9 @@ def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
     else:
         h = element(knob, m, value)
         refined = math.log((min(h, ON_SPHERE * m.narrowest) if knob == SIZE.knob else h) / m.smallest)
-    return np.array(
-        [1.0, refined, math.log(max(m.strength, LEAST)), math.log1p(m.contrast), math.log(max(m.fraction, LEAST))]
-    )
+    strength, fraction = (math.log(max(value, LEAST)) for value in (m.strength, m.fraction))
+    # Beyond a radius neighbours are far.
+    return np.array([1.0, refined, strength, math.log1p(m.contrast), fraction, math.log(min(m.gap, 1.0))])
 
 
 def cost_terms(m: Measures, number: float) -> np.ndarray:
@@ -291,7 +292,7 @@ def _decay(m):
 
 
 def _error_powers(law):
-    return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction])
+    return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction, law.gap])
 
 
 def _cost_powers(law):

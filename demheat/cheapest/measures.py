@@ -12,6 +12,8 @@ from demheat.scene.thickness import coats, extents
 
 # Gap of a lone sphere, over its diameter, beyond which it makes no difference.
 WIDEST = 10.0
+# A pore changes the flux no more than a body so many times less conducting.
+PORE = 1e3
 
 
 class Measures(NamedTuple):
@@ -31,7 +33,7 @@ class Measures(NamedTuple):
         Largest |k_i - k_o| / (k_i + 2 k_o) of an inclusion's conductivity and that around it: how much it disturbs a
         uniform flux; 0 to 1.
     contrast : float
-        Largest |ln(k_i / k_o)|, of a pore that of a thousand.
+        Largest |ln(k_i / k_o)|, of a pore that of a thousandth.
     surface : float, m2
         Of all interfaces.
     count : int
@@ -72,7 +74,7 @@ def measures(scene: Scene) -> Measures:
         narrowest=float(min(widths.min(), edge)),
         fraction=float(volumes[outermost].sum() / scene.volume),
         strength=float(np.max(np.abs(inner - around) / (inner + 2 * around))),
-        contrast=float(np.max(np.abs(np.log(np.maximum(inner, 1e-3 * around) / np.maximum(around, 1e-3 * inner))))),
+        contrast=float(np.max(np.abs(_log_ratio(inner, around)))),
         surface=float(np.sum(faces * volumes / widths)),
         count=len(shapes),
         gap=_gap(scene),
@@ -85,6 +87,12 @@ def _neighbours(scene):
     inner, around = k[1:], k[np.array(scene.parents()[1:])]
     none = (inner == 0) & (around == 0)
     return np.where(none, 1.0, inner), np.where(none, 1.0, around)
+
+
+def _log_ratio(inner, around):
+    """Of conductivities; of a pore, or around a body that nothing around it conducts, that of PORE."""
+    none = (inner == 0) | (around == 0)
+    return np.where(none, math.log(PORE), np.log(np.where(none, 1.0, inner) / np.where(none, 1.0, around)))
 
 
 def _volume(scene, shape):

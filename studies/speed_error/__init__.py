@@ -17,7 +17,7 @@ from studies.speed_error.cases import TIMEOUT, all_cases
 CASES = list(all_cases())
 PAPER = {}
 
-__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "plot", "run", "table", "warm_up"]
+__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "notes", "plot", "run", "table", "warm_up"]
 # Scenes of a quick run.
 FEW = ("third", "third at 0.01", "thin shell", "polydisperse", "laminate", "slab")
 
@@ -85,6 +85,13 @@ def table(df):
     from studies.speed_error.tables import lines
 
     return lines(df)
+
+
+def notes(df):
+    """Where the DEM loses, in words made of the rows."""
+    from studies.speed_error import means
+
+    return [means.in_words(df, target) for target in means.TARGETS]
 
 
 def plot(df):

@@ -51,6 +51,12 @@ def test_measures_of_layers_shells_and_neighbours():
     assert_allclose(measures(Scene((1, 1, 1), Material(1.0), pair, gradient=(1, 0, 0))).gap, 0.03 / 0.1, rtol=1e-12)
 
 
+def test_pores_and_superconductors_are_measured():
+    assert_allclose(measures(gallery.sphere_in_cube(0.0)).contrast, math.log(1e3), rtol=1e-12)
+    assert_allclose(measures(gallery.sphere_in_cube(0.0)).strength, 0.5, rtol=1e-12)
+    assert_allclose(measures(gallery.sphere_in_cube(1e6)).contrast, math.log(1e6), rtol=1e-12)
+
+
 def test_an_empty_box_has_measures():
     assert measures(gallery.slab()).contrast == 0.0
 
