@@ -152,12 +152,25 @@ LAYERS = {
         "demheat.method",
         "demheat.dem",
     ),
-    # What to expect of methods that it does not call: laws are data.
-    "demheat.cheapest": ("demheat.scene", "demheat.method", "demheat.cheapest"),
+    # What methods cost and how far they are off, and the cheapest of them: it loads a method by its name alone.
+    "demheat.cheapest": (
+        "demheat.scene",
+        "demheat.tensor",
+        "demheat.limits",
+        "demheat.method",
+        "demheat.cheapest",
+    ),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),
     # The front of the package and nothing else.
-    "demheat": ("demheat.scene", "demheat.field", "demheat.laws", "demheat.progress", "demheat.dem"),
+    "demheat": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.progress",
+        "demheat.dem",
+        "demheat.cheapest",
+    ),
     # Witnesses know the engine's nouns and not the engine.
     "references.threads": (),
     "references.times": ("demheat.scene",),

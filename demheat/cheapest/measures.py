@@ -99,8 +99,10 @@ def _volume(scene, shape):
     try:
         return shape.volume_in(scene.size, periodic=scene.periodic)
     except NotImplementedError:
-        # A wall cuts it: what lies in the box is not more.
-        return shape.volume()
+        # A wall cuts it: as much of it lies in the box as of the box around it, exactly so through its middle.
+        low, high = shape.bounds()
+        inside = np.minimum(high, scene.size) - np.maximum(low, 0.0)
+        return shape.volume * float(np.prod(inside / (high - low)))
 
 
 def _gap(scene):

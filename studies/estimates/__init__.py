@@ -9,13 +9,13 @@ from studies.common.drawn import KINDS
 from studies.harness.methods import found
 from studies.harness.pick import pick
 
-EACH, TUNED = 25, 12  # scenes of a kind
+EACH, TUNED = 25, 6  # scenes of a kind
 FIRST = 1000  # seed of those that were tuned on
 NAMES = ("dem", "fft", "fem")
 # Variants and witnesses, on the first scenes of each kind.
 BESIDE, FEW = (
     ("dem-plain", "dem-calibrated", "fft-plain", "fft-links", "fft-em", "fem-straight", "fem-p1", "multipole"),
-    3,
+    1,
 )
 MODULES = {"all": "studies.estimates.rows"}
 PAPER = {}
