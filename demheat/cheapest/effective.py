@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -85,7 +85,7 @@ class Recommendation(NamedTuple):
 
 
 def effective(
-    scene: Scene, *, accuracy: float = 1e-3, method: str | None = None, memory: float | None = None
+    scene: Scene, *, accuracy: float = 1e-3, method: str | Sequence[str] | None = None, memory: float | None = None
 ) -> Effective:
     """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
 
@@ -99,8 +99,8 @@ def effective(
         A periodic cell, or a box between two isothermal walls with four insulated faces; its own load does not matter.
     accuracy : float
         Half of each entry's interval, over the entry on the diagonal and over the mean of the diagonal beside it.
-    method : {"exact", "multipole", "fem", "fft", "dem", "bracket"}, optional
-        This one alone. "bracket" gives certain bounds.
+    method : {"exact", "multipole", "fem", "fft", "dem", "bracket"} or sequence of them, optional
+        Only these. "bracket" gives certain bounds, and is taken only if it is named.
     memory : float, bytes, optional
         That may be used. Default: four fifths of what is free.
 
@@ -117,10 +117,11 @@ def effective(
     RuntimeError
         If no method gets there in the memory, with what each lacks.
     """
-    accuracy, memory = _checked(accuracy, method, memory)
+    accuracy, memory = _checked(accuracy, memory)
+    allowed = _allowed(method)
     clock, cpu = time.perf_counter(), _cpu_seconds()
     loads, passed = loads_of(scene), []
-    for way in _tried(loads, accuracy, method, memory):
+    for way in _tried(loads, accuracy, allowed, memory):
         try:
             if way.refused:
                 raise NotImplementedError(way.refused)
@@ -146,7 +147,7 @@ def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = No
     -------
     Recommendation
     """
-    accuracy, memory = _checked(accuracy, None, memory)
+    accuracy, memory = _checked(accuracy, memory)
     loads = loads_of(scene)
     found = tuple(ways(loads, accuracy, memory))
     lines = [*loads.saved, *map(_said, found)]
@@ -154,19 +155,27 @@ def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = No
     return Recommendation(best.method, best.knobs, best.cpu_s, best.bytes, "\n".join(lines), found)
 
 
-def _checked(accuracy, method, memory):
+def _checked(accuracy, memory):
     accuracy = finite("accuracy", accuracy, "a number from 1e-9 to below 1", lambda v: 1e-9 <= v < 1)
-    if method is not None:
-        chosen("method", method, tuple(HOMES))
     if memory is None:
         return accuracy, SHARE * free_memory()
     return accuracy, finite("memory", memory, "a number of bytes > 0", lambda v: v > 0)
 
 
-def _tried(loads, accuracy, method, memory):
-    if method == "bracket":
-        return [Way("bracket", {})]
-    return [way for way in ways(loads, accuracy, memory) if method in (None, way.method)]
+def _allowed(method):
+    """Names of methods."""
+    if method is None:
+        return tuple(name for name in HOMES if name != "bracket")
+    names = (method,) if isinstance(method, str) else tuple(method)
+    for name in names:
+        chosen("method", name, tuple(HOMES))
+    return names
+
+
+def _tried(loads, accuracy, allowed, memory):
+    """Ways by the laws, certain bounds last: nothing is known of their cost."""
+    found = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
+    return found + [Way("bracket", {})] * ("bracket" in allowed)
 
 
 def _said(way):

@@ -82,6 +82,7 @@ def test_what_nobody_reaches_is_refused_with_reasons():
         effective(replace(ASKEW, inclusions=[*ASKEW.inclusions, core]), memory=1e3)
     with pytest.raises(RuntimeError, match="exact: no closed form"):
         effective(ASKEW, method="exact")
+    assert effective(ASKEW, accuracy=5e-2, method=("exact", "fft")).method == "fft"
 
 
 def test_recommendations_say_why():
