@@ -92,13 +92,15 @@ def _spheres(scene):
     outer = k[parents]
     with np.errstate(invalid="ignore", divide="ignore"):
         beta = np.where(outer > 0, (k[1:] - outer) / (k[1:] + 2 * outer), np.nan)
-    beta[np.unique(parents[parents > 0]) - 1] = np.nan
     beta[[not shape.fills_ball for shape in scene.inclusions]] = np.nan
     return np.array([shape.ball()[1] for shape in scene.inclusions]).reshape(-1), beta
 
 
 def _bound(scene, radii, beta, chosen):
-    """Those of some spheres that have room around them, and what leaving them out changes at most."""
+    """Those of some spheres that have room around them, and what leaving them out changes at most.
+
+    One that holds another has no room: that is nearer to its middle than its own surface.
+    """
     chosen = chosen.copy()
     while chosen.any():
         clear, apart = _room(scene, radii, chosen)
