@@ -16,7 +16,7 @@ import pytest
 import demheat
 from demheat import gallery, packing, referee, slices
 from demheat.build import network_of
-from demheat.dem import evolve, solve
+from demheat.dem import evolve, solve, solve_axes
 from demheat.packing import dispersion, domain, lsa, make_packing, neighbours, relax, statistics
 from demheat.sampling import halo
 from references import bounds, exact, fem, fft, mesh, multipole, richardson
@@ -98,6 +98,7 @@ TABLE = [
     (demheat.Platonic, {}, LAWS),
     (demheat.on_progress, {}, {"hook": ("a", 5, [])}),
     (solve, {"scene": CELL, "packing": EIGHT}, {"scene": OBJECT, "law": WORD, "seed": WHOLE, "solver": WORD, "tolerance": POSITIVE, "packing": or_none(OBJECT), "allow_few": FLAG}),
+    (solve_axes, {"scene": CELL, "packing": EIGHT}, {"scene": OBJECT, "law": WORD, "seed": WHOLE, "solver": WORD, "tolerance": POSITIVE, "packing": or_none(OBJECT), "allow_few": FLAG}),
     (solve, {"scene": CELL, "packing": EIGHT}, {"conforming": or_none(FLAG), "interface": WORD, "replicas": or_none(COUNT)}),
     (solve, {"scene": CELL, "law": "calibrated", "packing": EIGHT}, {"sparse": WORD, "wall": WORD, "coordination": or_none(POSITIVE), "gap": or_none(NUMBER)}),
     (solve, {"scene": CELL, "allow_few": True}, {"particles": COUNT}),
@@ -164,13 +165,17 @@ TABLE = [
     (referee.curve_error, {"curve": [1.0, 2.0], "reference": [1.0, 2.0]}, {"curve": (*CURVE, [1.0]), "reference": (*CURVE, [1.0, 2.0, 3.0])}),
     (referee.dispersion, {}, {"curves": (*CURVE, [1.0, 2.0])}),
     (exact.solve, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
+    (exact.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
     (exact.evolve, {"scene": WARMING, "times": [1.0]}, {"scene": OBJECT, "times": TIMES, "points_per_axis": COUNT}),
     (fem.solve, {"scene": WALLED}, {"scene": OBJECT, "order": (*COUNT, 3), "size": or_none(POSITIVE), "curved": FLAG, "tolerance": POSITIVE}),
+    (fem.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "order": (*COUNT, 3), "size": or_none(POSITIVE), "curved": FLAG, "tolerance": POSITIVE}),
     (fem.evolve, {"scene": WARMING, "times": [1.0], "elements": "hexahedra"}, {"scene": OBJECT, "times": TIMES, "order": or_none((*COUNT, 2)), "size": or_none(POSITIVE), "elements": WORD, "step": or_none(POSITIVE), "accuracy": POSITIVE, "tolerance": POSITIVE}),
     (mesh.make, {"scene": CELL}, {"scene": OBJECT, "size": or_none(POSITIVE), "order": (*COUNT, 3), "curved": FLAG}),
     (fft.solve, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(COUNT, [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
+    (fft.solve_axes, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(COUNT, [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
     (zeta.zeta2, {"scene": BALL, "voxels": 32}, {"scene": OBJECT, "voxels": without(COUNT, [5]), "extrapolate": FLAG, "threads": or_none(COUNT)}),
     (multipole.solve, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),
+    (multipole.solve_axes, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),
     (multipole.zeta2, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT)}),
     (bounds.estimate, {"scene": BALL}, {"scene": OBJECT, "formula": WORD}),
     (bounds.voigt, {"conductivities": [1.0, 2.0], "fractions": [0.5, 0.5]}, {"conductivities": (None, "a", ["1", "2"], [NAN, 1.0], [-1.0, 1.0], [1.0, 2.0, 3.0], [1j, 1.0], [True, True]), "fractions": (None, "a", ["0.5", "0.5"], [0.5, 0.6], [-0.5, 1.5], [NAN, 1.0])}),

@@ -46,6 +46,7 @@ def same_fields(found, wanted):
     """To rounding: the same equations, solved in the same steps."""
     for one, other in zip(found, wanted, strict=True):
         assert one.scene == other.scene
+        assert one.stats["iterations"] == other.stats["iterations"]
         scale = np.abs(other.mean_flux).max()
         # Rounding of walls' mean temperatures, where a wall is many facets or voxels.
         assert_allclose(one.conductivity, other.conductivity, rtol=1e-12)
@@ -66,6 +67,12 @@ def test_as_three_solves(name, kind):
     if module is exact:
         scene = replace(scene, size=(1, 1, 1), inclusions=[Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0))])
     same_fields(*both(module, scene, **method.knobs, **SMALL[module]))
+
+
+@pytest.mark.parametrize("load", [{"gradient": OBLIQUE}, {"walls": {"y-": 20.0, "y+": 50.0}}], ids=["cell", "box"])
+def test_multigrid_is_kept_for_the_same_equations_only(load):
+    """Walls hold other particles for each load: by another's multigrid it would take other iterations."""
+    same_fields(*both(dem, mixed(**load), solver="amg", **SMALL[dem]))
 
 
 def test_every_steady_method_of_the_house_has_it():

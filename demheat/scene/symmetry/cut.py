@@ -183,12 +183,10 @@ def _inside(scene, origin, size):
 
 
 def _layers(layer, scene, origin, size, slack):
-    length = scene.size[layer.axis]
-    start = layer.start - origin[layer.axis]
-    stop = layer.stop - origin[layer.axis]
-    turns = (0.0, length) if scene.periodic else (0.0,)
-    ends = [(max(start + turn, 0.0), min(stop + turn, size[layer.axis])) for turn in turns]
-    return [replace(layer, start=low, stop=high) for low, high in ends if high - low > slack]
+    # No layer of a periodic cell comes in again beyond half a period.
+    start = max(layer.start - origin[layer.axis], 0.0)
+    stop = min(layer.stop - origin[layer.axis], size[layer.axis])
+    return [replace(layer, start=start, stop=stop)] if stop - start > slack else []
 
 
 def _spheres(sphere, scene, origin, size, slack):

@@ -45,13 +45,22 @@ BOXED = box(
     Sphere((0.5, 0.5, 0.5), 0.1, POOR),
     Sphere((0.5, 0.5, 0.5), 0.05, GOOD),
 )
+# Cut by the walls beside their centres, which lie outside.
+OUTSIDE = box(*(Sphere((x, y, 0.5), 0.2, GOOD) for x in (-0.15, 1.15) for y in (0.25, 0.75)))
 CUBIC = {
     "sc": gallery.simple_cubic(20.0),
     "bcc": gallery.body_centred(20.0, axis=0),
     "fcc": gallery.face_centred(0.05, axis=2),
     "cube": gallery.sphere_in_cube(20.0),
 }
-SYMMETRIC = {"skewed": SKEWED, "layered": LAYERED, "boxed": BOXED, "coated": gallery.coated_sphere(), **CUBIC}
+SYMMETRIC = {
+    "skewed": SKEWED,
+    "layered": LAYERED,
+    "boxed": BOXED,
+    "outside": OUTSIDE,
+    "coated": gallery.coated_sphere(),
+    **CUBIC,
+}
 
 
 def test_planes_of_cells_and_boxes():
@@ -79,13 +88,14 @@ def test_some_planes_only():
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_one_inclusion_out_of_place_and_nothing_is_cut(moved, axis):
     for scene in (SKEWED, BOXED):
-        first = scene.inclusions[0]
-        away = replace(first, center=np.add(first.center, moved * np.eye(3)[axis]))
-        planes = mirrors(replace(scene, inclusions=(away, *scene.inclusions[1:])))
-        assert planes[axis] is None
-    assert reduced(
-        replace(SKEWED, inclusions=(replace(SKEWED.inclusions[0], radius=0.08 + moved), *SKEWED.inclusions[1:]))
-    ).factors == (1, 1, 1)
+        for number in (0, 5):
+            inclusions = list(scene.inclusions)
+            one = inclusions[number]
+            inclusions[number] = replace(one, center=np.add(one.center, moved * np.eye(3)[axis]))
+            assert mirrors(replace(scene, inclusions=inclusions))[axis] is None
+            inclusions[number] = replace(one, radius=one.radius + moved)
+            part = reduced(replace(scene, inclusions=inclusions))
+            assert part.factors == (1, 1, 1) and part.scene is part.whole
 
 
 def test_materials_and_layers_count():
