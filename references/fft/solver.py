@@ -23,6 +23,7 @@ from references.fft.link_kernels import Links
 from references.fft.problem import Problem, SolvedGrid
 from references.threads import Team, thread_count
 from references.voxels.bodies import bodies, settle
+from references.voxels.kernels import FULL
 from references.voxels.links import cut, links
 from references.voxels.paint import grid_shape, paint, voxelise
 
@@ -44,7 +45,8 @@ BYTES = {"cg": 30, "eyre-milton": 48}
 # What rules make of an inclusion smaller than a voxel.
 MISSED = {
     "plain": "miss them or see whole voxels instead",
-    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape",
+    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape; it misses "
+    "layers a billion times thinner",
     "links": "miss them or see some of them only",
 }
 # Knobs that a field's `stats` leaves out.
@@ -193,8 +195,9 @@ def _warn_of_thin(scene, rule, shape):
             f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
             stacklevel=3,
         )
-    # Laminates are exact for layers of any thickness.
+    # Laminates are exact for layers of any thickness that they see.
     small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
+    small |= narrower(scene, FULL * spacing)
     small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
     if small.any():
         warnings.warn(
