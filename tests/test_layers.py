@@ -191,6 +191,7 @@ LAYERS = {
     ),
     "references.bracket": (
         "demheat.scene",
+        "demheat.limits",
         "demheat.process_state",
         "demheat.progress",
         "references.mesh",
