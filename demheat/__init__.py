@@ -24,8 +24,10 @@ __all__ = [
     "Scene",
     "Sphere",
     "UniformSource",
+    "effective",
     "evolve",
     "on_progress",
+    "recommend",
     "solve",
 ]
 __version__ = "0.1.0"
@@ -37,6 +39,10 @@ def __getattr__(name):
         from demheat import dem
 
         return getattr(dem, name)
+    if name in ("effective", "recommend"):
+        from demheat import cheapest
+
+        return getattr(cheapest, name)
     if name in RENAMED:
         warnings.warn(f"demheat.{name} is now demheat.{RENAMED[name]}", DeprecationWarning, stacklevel=2)
         return globals()[RENAMED[name]]

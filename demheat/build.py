@@ -2,6 +2,7 @@
 
 import time
 import warnings
+from collections.abc import Sequence
 
 import numpy as np
 
@@ -66,17 +67,49 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
         over five times as many as particles; if an inclusion holds no particle, or is thin for particles without twins.
     """
     check_scene(scene)
+    return _connected(scene, law, *_tessellated(scene, packing, law, seed))
+
+
+def networks_of(
+    scenes: Sequence[Scene], packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0
+) -> list[Network]:
+    """The networks of one body under several loads: tessellated once, and one network where the loads do not matter.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Alike but for their loads.
+    packing, law, seed
+        As those of `network_of`, which says what is raised and warned of.
+
+    Returns
+    -------
+    list of Network
+        One for each scene. Only the factor of a law that is calibrated along each load parts them.
+    """
+    cut = _tessellated(scenes[0], packing, law, seed)
+    if law.factor is not None:
+        return [_connected(scenes[0], law, *cut)] * len(scenes)
+    return [_connected(scene, law, *cut) for scene in scenes]
+
+
+def _tessellated(scene, packing, law, seed):
+    """The particles that take part, their facets before they are calibrated, and the seconds that took."""
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
     check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:
-        asked, packing = packing.number, conform(packing, scene, seed=seed)
+        asked, packing = packing.number, conform(packing, scene, seed=seed, gap_spacing=law.gap_spacing)
         check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
         _warn_of_gaps(packing)
         _warn_of_many(packing, asked)
-    packing, facets = _facets(packing, law)
-    cut = time.perf_counter()
+    return *_facets(packing, law), time.perf_counter() - begun
+
+
+def _connected(scene, law, packing, facets, tessellation_s):
+    """The network of facets in a scene."""
+    begun = time.perf_counter()
     factor = _calibrated(scene, packing, facets, law) if law.factor is None else law.factor
     with stage("network"):
         # Wall areas are those of the walls: what scales is the conductance of their links.
@@ -88,7 +121,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
         if not law.conforming:
             _warn_of_thin_phases(scene, phase, 2.0 * float(packing.radii.mean()))
         network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
-    spent = {"tessellation_s": cut - begun, "network_s": time.perf_counter() - cut}
+    spent = {"tessellation_s": tessellation_s, "network_s": time.perf_counter() - begun}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
     return network._replace(stats=said | spent)
 
@@ -122,7 +155,7 @@ def _warn_of_gaps(packing):
         warnings.warn(
             f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
             "cross the interfaces there: use more particles where the gaps matter",
-            stacklevel=4,
+            stacklevel=5,
         )
 
 
@@ -133,7 +166,7 @@ def _warn_of_many(packing, asked):
         warnings.warn(
             f"{twins} twins at interfaces, most of them in narrow gaps, stand beside {asked} particles: memory and "
             "time go with both; if that is too much, use more or fewer particles, or conforming=False",
-            stacklevel=4,
+            stacklevel=5,
         )
 
 
@@ -150,7 +183,7 @@ def _warn_of_thin_phases(scene, phase, diameter):
             f"inclusions {_few(thin)} are thin for particles of diameter {diameter:.3g} m (the thinnest is "
             f"{thickness[thin].min():.3g} m): what they do is left to chance; use more particles, or the conforming "
             "packing of law 'laguerre'",
-            stacklevel=4,
+            stacklevel=5,
         )
 
 
@@ -166,5 +199,5 @@ def _warn_of_lost_phases(scene, phase):
         warnings.warn(
             f"no particle lies in inclusions {(lost[lost > 0] - 1).tolist()}: they are thinner than a "
             "particle and take no part; use more particles",
-            stacklevel=4,
+            stacklevel=5,
         )

@@ -12,6 +12,7 @@ import math
 import threading
 import warnings
 from collections.abc import Callable
+from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -36,6 +37,8 @@ class Estimate(NamedTuple):
         What was done to know it.
     lower, upper : float, W/(m K)
         Between which the conductivity is expected; NaN where the scene has none.
+    flux : float, W/m2
+        By how much any component of the mean flux is expected to be off at most.
     temperature : float, K
         Root mean square over the body, expected at most; NaN if unknown.
     runs : tuple of float, W/(m K)
@@ -45,6 +48,7 @@ class Estimate(NamedTuple):
     how: str
     lower: float
     upper: float
+    flux: float
     temperature: float
     runs: tuple[float, ...] = ()
 
@@ -62,6 +66,8 @@ class Refinement(NamedTuple):
         Of the conductivity: the order its error falls with, and what the largest difference is raised by.
     temperature_order, temperature_safety : float
         Of the temperature's root mean square.
+    also : float
+        What the change by another refinement is raised by, of what coarser runs do not show.
     """
 
     ratio: float
@@ -70,6 +76,7 @@ class Refinement(NamedTuple):
     safety: float
     temperature_order: float
     temperature_safety: float
+    also: float = 0.0
 
 
 def known(field, relative, how, *, temperature=math.nan) -> Estimate:
@@ -87,9 +94,9 @@ def known(field, relative, how, *, temperature=math.nan) -> Estimate:
     -------
     Estimate
     """
-    k = _conductivity(field)
-    half = (relative + ROUNDING) * abs(k)
-    return Estimate(how, max(k - half, 0.0), k + half, temperature, (k,))
+    k, relative = _conductivity(field), relative + ROUNDING
+    flux = relative * _size(field.mean_flux)
+    return Estimate(how, max(k - relative * k, 0.0), k + relative * k, flux, temperature, (k,))
 
 
 def beside(field, other, how) -> Estimate:
@@ -107,13 +114,12 @@ def beside(field, other, how) -> Estimate:
     error, runs = other.error, (_conductivity(field), _conductivity(other))
     half = max(abs(runs[0] - error.lower), abs(error.upper - runs[0]))
     points = _points(field.scene)
-    apart = _spread(_level_free(field, points) - _level_free(other, points))
-    return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, apart + error.temperature, runs)
+    apart = _spread(_level_free(field, points), _level_free(other, points))
+    flux = _size(field.mean_flux - other.mean_flux) + error.flux
+    return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, flux, apart + error.temperature, runs)
 
 
-def by_refinement(
-    field, coarser: Callable, rule: Refinement, *, how="coarser elements", residual=0.0, steps=0.0
-) -> Estimate:
+def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None, residual=0.0, steps=0.0) -> Estimate:
     """The estimate of a method by the changes that coarser elements make.
 
     Warnings of the coarser runs, whose elements are too large for what the finest resolves, are kept back.
@@ -125,6 +131,8 @@ def by_refinement(
         The same scene with elements ratio^level times as long, level 1, 2, ...
     rule : Refinement
     how : str
+    also : callable (Field) -> Field or None, optional
+        The first of the coarser runs, refined where coarser runs are no coarser; None if there is no such place.
     residual : float
         Relative, of the equations: what iterations may have left counts in full.
     steps : float
@@ -139,52 +147,63 @@ def by_refinement(
     RuntimeError
         If not even one coarser run can be made.
     """
-    coarse = _coarser_runs(coarser, rule.levels)
-    runs = [_conductivity(each) for each in (field, *coarse)]
-    half = rule.safety * missing(runs, rule.ratio, rule.order) + (residual + ROUNDING) * abs(runs[0])
-    points = _points(field.scene)
-    warmth = [_level_free(each, points) for each in (field, *coarse)]
-    apart = [_spread(a - b) for a, b in pairwise(warmth)]
-    kelvin = rule.temperature_safety * _largest(apart, rule.ratio, rule.temperature_order)
-    kelvin += (residual + steps) * _span(field, warmth[0])
-    return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, kelvin, tuple(runs))
+    fields = [field, *_coarser_runs(coarser, rule.levels)]
+    other = _quietly(also, fields[1]) if also else None
+    besides = [] if other is None else [fields[1], other]
+    points, residual = _points(field.scene), residual + ROUNDING
+
+    def lacks(read, apart, order, safety):
+        one, other = ([apart(read(a), read(b)) for a, b in pairwise(runs)] for runs in (fields, besides))
+        return safety * missing(one, rule.ratio, order) + rule.also * sum(other)
+
+    k = _conductivity(field)
+    half = lacks(_conductivity, _largest, rule.order, rule.safety) + residual * abs(k)
+    flux = lacks(lambda each: each.mean_flux, _largest, rule.order, rule.safety) + residual * _size(field.mean_flux)
+    warmth = partial(_level_free, points=points)
+    kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)
+    kelvin += (residual + steps) * _span(field, warmth(field))
+    return Estimate(how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(_conductivity, fields)))
 
 
-def missing(values, ratio, order) -> float:
-    """What the first of some values lacks, by the largest that any two neighbours ask for.
+def missing(changes, ratio, order) -> float:
+    """What a run lacks, by the largest that any change between it and coarser ones asks for.
 
     Parameters
     ----------
-    values : (n,) sequence of float
-        On elements 1, ratio, ratio^2, ... times as long.
+    changes : (n,) sequence of float
+        Between runs on elements 1, ratio, ratio^2, ... times as long, one after the other.
     ratio, order : float
+        That from run i to run i + 1 is (ratio^order - 1) ratio^(i order) times what run 0 lacks.
 
     Returns
     -------
     float
     """
-    return _largest(np.abs(np.diff(values)), ratio, order)
-
-
-def _largest(changes, ratio, order):
-    """A change between levels i and i + 1 is (ratio^order - 1) ratio^(i order) times what level 0 lacks."""
     grown = ratio ** (order * np.arange(len(changes))) * (ratio**order - 1)
     return float(np.max(np.asarray(changes) / grown))
 
 
+def _largest(one, other):
+    return float(np.max(np.abs(np.subtract(one, other))))
+
+
 def _coarser_runs(coarser, levels):
     runs = []
+    for level in range(1, levels + 1):
+        try:
+            runs.append(_quietly(coarser, level))
+        except (ValueError, RuntimeError, NotImplementedError) as error:
+            # The elements are too long for the scene: what there is must do.
+            if not runs:
+                raise RuntimeError(f"Field.error: no coarser run to compare with: {error}") from error
+            break
+    return runs
+
+
+def _quietly(run, of):
     with _QUIET, warnings.catch_warnings():
         warnings.simplefilter("ignore")
-        for level in range(1, levels + 1):
-            try:
-                runs.append(coarser(level))
-            except (ValueError, RuntimeError, NotImplementedError) as error:
-                # The elements are too long for the scene: what there is must do.
-                if not runs:
-                    raise RuntimeError(f"Field.error: no coarser run to compare with: {error}") from error
-                break
-    return runs
+        return run(of)
 
 
 def _conductivity(field):
@@ -200,6 +219,10 @@ def _points(scene):
     return points[inside(points, scene.domain, scene.size)]
 
 
+def _size(flux):
+    return float(np.linalg.norm(flux))
+
+
 def _level_free(field, points):
     """Temperatures, those of a periodic cell without their mean."""
     warmth = field.temperature_at(points)
@@ -212,7 +235,8 @@ def _span(field, warmth):
     return float(np.ptp(every)) if len(every) else 0.0
 
 
-def _spread(difference):
+def _spread(one, other):
     """Root mean square where both have a temperature; zero where none has one."""
+    difference = one - other
     kept = difference[np.isfinite(difference)]
     return float(np.sqrt(np.mean(kept**2))) if len(kept) else 0.0

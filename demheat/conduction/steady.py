@@ -97,13 +97,15 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 
-def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
+def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None):
     """The same as `solve_steady` of arguments that were checked before.
 
     Parameters
     ----------
     network, scene, solver, tolerance, max_iterations
         As in `solve_steady`.
+    kept : dict, optional
+        Where multigrid keeps what it sets up, for the next load on the same network.
 
     Returns
     -------
@@ -115,7 +117,8 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000):
     system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen = by_size if solver == "auto" else solver
-    x, iterations, size = _iterate(system, _start(network, scene, reached), chosen, tolerance, max_iterations)
+    start, kept = _start(network, scene, reached), {} if kept is None else kept
+    x, iterations, size = _iterate(system, start, chosen, tolerance, max_iterations, kept)
     if not size <= tolerance:
         raise RuntimeError(
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
@@ -223,7 +226,7 @@ def _start(network, scene, reached):
     return start
 
 
-def _iterate(system, x, solver, tolerance, most):
+def _iterate(system, x, solver, tolerance, most, kept):
     """Solve in rounds: the heat that passes, which sets the limit, is known only once the solution nearly is."""
     total, solve = 0, None
     for _ in range(10):
@@ -232,7 +235,7 @@ def _iterate(system, x, solver, tolerance, most):
         size = norm / passing if passing > 0 else float(norm > 0)
         if size <= tolerance or total >= most:
             break
-        solve = solve or (_multigrid(system) if solver == "amg" else _jacobi(system))
+        solve = solve or (_multigrid(system, kept) if solver == "amg" else _jacobi(system))
         done, x = solve(r, x, 0.9 * tolerance * (passing if passing > 0 else norm), most - total)
         total += done
     return x, total, size
@@ -291,10 +294,15 @@ def matrix(network, diagonal):
     return (off + sparse.diags(np.where(diagonal > 0, diagonal, 1.0))).tocsr()
 
 
-def _multigrid(system):
+def _multigrid(system, kept):
+    """Conjugate gradients by multigrid, which is kept for another load that leads to the very same matrix."""
     links, diagonal = links_of(system.network), system.diagonal
-    with one_blas_thread():
-        precondition = preconditioner(links, diagonal)
+    conductance, same = kept.get("matrix", (None, diagonal))
+    if conductance is not system.network.conductance or not np.array_equal(same, diagonal):
+        with one_blas_thread():
+            kept["precondition"] = preconditioner(links, diagonal)
+        kept["matrix"] = system.network.conductance, diagonal
+    precondition = kept["precondition"]
 
     def solve(r, x, limit, most):
         with one_blas_thread(), stage("equations") as done:

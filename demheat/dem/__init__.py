@@ -2,7 +2,7 @@
 
 from demheat.method import CUT, PARTICLES, UNTURNED, Errors, Method, Orders
 
-__all__ = ["evolve", "solve"]  # noqa: F822, found by `__getattr__`
+__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
 
 REBUILT = {"samples": "the flux of a particle is rebuilt from the heat of its links"}
 MEAN = {
@@ -93,6 +93,10 @@ def __getattr__(name):
         from demheat.dem.solver import solve
 
         return solve
+    if name == "solve_axes":
+        from demheat.dem.solver import solve_axes
+
+        return solve_axes
     if name == "evolve":
         from demheat.dem.solver import evolve
 

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from demheat.build import network_of
+from demheat.build import network_of, networks_of
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import check_solver, solve_checked
@@ -21,6 +21,7 @@ from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
+from demheat.tensor import axis_loads
 from demheat.warm import Helper, cells, parts_of
 
 
@@ -95,23 +96,70 @@ def solve(
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
 
-def _answer(scene, law, wanted, **knobs):
-    """Solve what was checked; `knobs` are those of the linear solver."""
-    counts = wanted.counts(scene, law)
+def solve_axes(
+    scene: Scene,
+    *,
+    law: str | Laguerre | Calibrated | Platonic = "laguerre",
+    particles: int = 100_000,
+    seed: int = 0,
+    solver: str = "auto",
+    tolerance: float = 1e-8,
+    **knobs: object,
+) -> tuple[Field, Field, Field]:
+    """Steady conduction along x, y and z in one body, for its conductivity tensor: packed and tessellated once.
+
+    The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, of one network, or of one for
+    each load where a law is calibrated along it, and in a periodic cell without pores of one multigrid.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces.
+    law, particles, seed, solver, tolerance, **knobs
+        As those of `solve`, which also says what is raised and warned of.
+
+    Returns
+    -------
+    tuple of three Fields
+        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them. Seconds in their `stats` but
+        `solve_s` are those of what they share.
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is another.
+    """
+    loads = axis_loads(scene)
+    check_solver(solver, tolerance)
+    law, wanted = asked(law, particles, seed, knobs)
+    law.check(scene)
+    return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
+
+
+def _answers(scenes, law, wanted, **knobs):
+    """Solve scenes that differ in their loads only, as they were checked; `knobs` are those of the linear solver."""
+    counts = wanted.counts(scenes[0], law)
     begun = time.perf_counter()
     with Helper(parts_of(law, wanted.particles)) as helper:
-        packing = wanted.packed(scene, counts)
-        packed = time.perf_counter()
+        packing = wanted.packed(scenes[0], counts)
+        spent = {"packing_s": time.perf_counter() - begun}
         helper.join(cells)
-        network = network_of(scene, packing, law, seed=wanted.seed)
+        networks = networks_of(scenes, packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy
         helper.join()
-    connected = time.perf_counter()
-    solution = solve_checked(network, scene, **knobs)
-    spent = {"packing_s": packed - begun, "solve_s": time.perf_counter() - connected}
-    with stage("field"):
+    fields, kept = [], {}
+    for scene, network in zip(scenes, networks, strict=True):
+        connected = time.perf_counter()
+        solution = solve_checked(network, scene, kept=kept, **knobs)
+        took = spent | {"solve_s": time.perf_counter() - connected}
         estimator = estimator_of(law, wanted, partial(_answer, scene, **knobs))
-        return field_of(scene, network, solution, stats=spent, estimator=estimator)
+        with stage("field"):
+            fields.append(field_of(scene, network, solution, stats=took, estimator=estimator))
+    return fields
+
+
+def _answer(scene, law, wanted, **knobs):
+    return _answers([scene], law, wanted, **knobs)[0]
 
 
 def evolve(

@@ -13,7 +13,7 @@ from scipy.spatial import cKDTree
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.gaps import Interfaces
 from demheat.packing.gate import check_packing
-from demheat.packing.patterns import GAP_SPACING, LEAST_OFFSET, LEAST_SPACING, SPACING, Tally, patterns
+from demheat.packing.patterns import LEAST_OFFSET, LEAST_SPACING, SPACING, Tally, patterns
 from demheat.progress import stage
 from demheat.scene import Scene, check_scene
 
@@ -25,6 +25,8 @@ OFFSET = 0.5
 CLEARANCE = 0.4
 # Weight of a twin beyond its squared offset: a twin at OFFSET weighs as much as a mean particle.
 EXCESS = 1.0 - OFFSET**2
+# In a gap, over its width: as `demheat.Laguerre` has it.
+GAP_SPACING = 0.85
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
 # points need up to 0.77 near their poles.
 COVER = 0.8
@@ -36,7 +38,7 @@ class _Twins(NamedTuple):
     offsets: np.ndarray  # (k,) m
 
 
-def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
+def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float = GAP_SPACING) -> Packing:
     """Replace the particles near every interface of a scene by mirrored twins.
 
     Parameters
@@ -46,6 +48,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     scene : Scene
     seed : int
         Turns the point pattern of each sphere.
+    gap_spacing : float
+        See `demheat.Laguerre`.
 
     Returns
     -------
@@ -65,9 +69,9 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "even_twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()
-    interfaces = Interfaces(scene, _reach(packing, radius))
+    interfaces = Interfaces(scene, _reach(packing, radius, gap_spacing))
     tally = Tally(radius)
-    twins, left_out = _twins_on(interfaces, radius, seed, tally)
+    twins, left_out = _twins_on(interfaces, radius, seed, tally, gap_spacing)
     centers, weights, good = _twin_points(twins, scene, radius)
     twins = _Twins(*(column[good] for column in twins))
     near = interfaces.gap(packing.centers)
@@ -82,20 +86,20 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0) -> Packing:
     )
 
 
-def _reach(packing, radius):
+def _reach(packing, radius, gap_spacing):
     """Gaps that are wider than this change nothing, m."""
     # Of spacings and offsets, whose points lie a little inside of their surfaces; of particles that give way; and of
     # those whose weights are limited.
-    apart = max(SPACING / GAP_SPACING, 4.0 * OFFSET) + 0.02
+    apart = max(SPACING / gap_spacing, 4.0 * OFFSET) + 0.02
     weighty = np.sqrt(packing.radii.max() ** 2 + _margin(radius))
     return 1.001 * max(apart * radius, (OFFSET + CLEARANCE) * radius, weighty)
 
 
-def _twins_on(interfaces, radius, seed, tally):
+def _twins_on(interfaces, radius, seed, tally, gap_spacing):
     """Pairs that fit on all surfaces, and the number of those that do not."""
     parts, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0
     with stage("twins") as done:
-        for points, normals, own in patterns(interfaces, radius, seed, tally):
+        for points, normals, own in patterns(interfaces, radius, seed, tally, gap_spacing):
             done((own.max(initial=-1) + 1) / len(interfaces))
             points = interfaces.touched(points, normals, own)
             offsets = _room(points, normals, own, interfaces, radius)

@@ -1,5 +1,6 @@
 """Touch points of twins on the interfaces of a scene, closer where another interface or a wall is near."""
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -14,9 +15,6 @@ from demheat.packing.interfaces import pattern_count
 SPACING = 1.6
 # Offsets nearer to an obstacle than this would make slivers of the two cells of a pair: it is left out.
 LEAST_OFFSET = 0.05
-# In a gap of width g the twins of the other side must not come nearer to an interface than its own: with offsets g/4
-# and points COVER spacings away at most that needs a spacing below g/(sqrt(2) COVER) = 0.88 g.
-GAP_SPACING = 0.85
 LEAST_SPACING = 4 * LEAST_OFFSET
 # Spacing of the points that closer patterns are chosen from.
 FINE = 0.8 * LEAST_SPACING
@@ -30,7 +28,7 @@ BYTES = 400
 MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
 
-def patterns(interfaces, radius, seed, tally):
+def patterns(interfaces, radius, seed, tally, gap_spacing):
     """Touch points on all surfaces of a scene, chunk by chunk.
 
     Parameters
@@ -42,6 +40,8 @@ def patterns(interfaces, radius, seed, tally):
         Turns the pattern of each sphere.
     tally : Tally
         Of this radius.
+    gap_spacing : float
+        See `demheat.Laguerre`.
 
     Yields
     ------
@@ -56,11 +56,12 @@ def patterns(interfaces, radius, seed, tally):
         If more twins are to be expected than fit into memory, before they are made.
     """
     turns = _Turns(seed)
+    wanted = partial(_spacing, interfaces, radius, gap_spacing)
     for numbers in _chunks(interfaces.spheres, radius):
-        yield _on_spheres(numbers, interfaces, radius, turns, tally)
+        yield _on_spheres(numbers, interfaces, radius, turns, tally, wanted)
     rng = turns.after()
     for number, other in enumerate(interfaces.others, start=len(interfaces.spheres)):
-        yield _on_other(number, other, interfaces, radius, rng, tally)
+        yield _on_other(number, other, interfaces, radius, rng, tally, wanted)
 
 
 class Tally:
@@ -124,7 +125,7 @@ def _chunks(spheres, radius):
         begin = end
 
 
-def _on_spheres(numbers, interfaces, radius, turns, tally):
+def _on_spheres(numbers, interfaces, radius, turns, tally, wanted):
     """Pattern of some spheres.
 
     Each takes its turn from the stream, and one more for its closer pattern if it needs one: which turns those after it
@@ -134,7 +135,7 @@ def _on_spheres(numbers, interfaces, radius, turns, tally):
     while True:
         turn = turns.used + np.arange(len(numbers)) + np.cumsum(refined) - refined
         even = _inside(interfaces.scene, *spheres.pattern(numbers, SPACING * radius, turns.matrices(turn)))
-        spacing = _spacing(interfaces, *even, radius)
+        spacing = wanted(*even)
         close = np.isin(numbers, even[2][spacing < SPACING * radius])
         if np.array_equal(close, refined):
             break
@@ -144,10 +145,10 @@ def _on_spheres(numbers, interfaces, radius, turns, tally):
     chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
     # Fibonacci points descend along the axis of their sphere.
     fine = _Fine(*spheres.pattern(chosen, FINE * radius, matrices), chosen, -matrices[:, :, 2])
-    return _refined(interfaces, even, spacing, fine, radius)
+    return _refined(interfaces, even, spacing, fine, radius, wanted)
 
 
-def _on_other(number, surface, interfaces, radius, rng, tally):
+def _on_other(number, surface, interfaces, radius, rng, tally, wanted):
     """Pattern of a surface that is not a sphere."""
 
     def pattern(spacing):
@@ -155,14 +156,14 @@ def _on_other(number, surface, interfaces, radius, rng, tally):
         return points, normals, np.full(len(points), number)
 
     even = _inside(interfaces.scene, *pattern(SPACING * radius))
-    spacing = _spacing(interfaces, *even, radius)
+    spacing = wanted(*even)
     tally.add(spacing)
     if np.all(spacing >= SPACING * radius):
         return even
     points, normals, own = pattern(FINE * radius)
     longest = np.eye(3)[[np.argmax(np.ptp(points, axis=0))]]
     fine = _Fine(points, normals, own, np.array([number]), longest)
-    return _refined(interfaces, even, spacing, fine, radius)
+    return _refined(interfaces, even, spacing, fine, radius, wanted)
 
 
 class _Fine(NamedTuple):
@@ -173,10 +174,10 @@ class _Fine(NamedTuple):
     axes: np.ndarray  # (m, 3) unit vectors, along which its points are sought
 
 
-def _refined(interfaces, even, spacing, fine, radius):
+def _refined(interfaces, even, spacing, fine, radius, wanted):
     """An even pattern where its spacing is not too wide, elsewhere what is chosen from a fine one."""
     more = _inside(interfaces.scene, *fine[:3])
-    wanted = _spacing(interfaces, *more, radius)
+    wanted = wanted(*more)
     narrow = np.flatnonzero(wanted < SPACING * radius)
     even, more = _taken(even, np.flatnonzero(spacing >= SPACING * radius)), _taken(more, narrow)
     # Small spheres keep points all round.
@@ -207,9 +208,9 @@ def _inside(scene, points, normals, own):
     return points[good], normals[good], own[good]
 
 
-def _spacing(interfaces, points, normals, own, radius):
-    """Distance between twins at points of surfaces: no more than the gap's width asks, see GAP_SPACING."""
+def _spacing(interfaces, radius, gap_spacing, points, normals, own):
+    """Distance between twins at points of surfaces: no more than the gap's width asks."""
     width = interfaces.width(points, normals, own)
     # Where a gap is equally wide all round, as in a coat, rounding must not say which points come first.
-    spacing = np.clip(np.round(GAP_SPACING * width / radius, DIGITS), LEAST_SPACING, SPACING)
+    spacing = np.clip(np.round(gap_spacing * width / radius, DIGITS), LEAST_SPACING, SPACING)
     return spacing * radius

@@ -103,7 +103,7 @@ def check_geometry(scene) -> None:
         if not shape.bounded:
             _check_reach(f"Scene.inclusions[{number}]", shape, size)
             continue
-        limit = size if scene.periodic else np.full(3, size.max())
+        limit = size if scene.periodic else _widest(low, high, size)
         for axis in np.flatnonzero(high - low > limit * (1 + TOUCH)):
             raise ValueError(
                 f"Scene.inclusions[{number}]: {shape.kind} of diameter {(high - low)[axis]:.6g} is larger than the "
@@ -114,6 +114,12 @@ def check_geometry(scene) -> None:
         if ROUND_AXES[scene.domain] and _beyond_round_wall(shape, scene):
             raise ValueError(f"Scene.inclusions[{number}]: {shape} lies outside the {scene.domain} in {scene.size}")
     check_pairs(scene.inclusions, scene.size, periodic=scene.periodic)
+
+
+def _widest(low, high, size):
+    """How wide a shape may be along each axis: twice as much where a wall leaves half of it or less, at its mirror."""
+    middle, slack = (low + high) / 2, TOUCH * size.max()
+    return size.max() * np.where((middle <= slack) | (middle >= size - slack), 2, 1)
 
 
 def check_reached(scene) -> None:

@@ -2,7 +2,7 @@
 
 from demheat.method import Method
 
-__all__ = ["evolve", "solve"]  # noqa: F822, found by `__getattr__`
+__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
 
 METHODS = (
     Method(
@@ -26,6 +26,10 @@ def __getattr__(name):
         from references.exact.solver import solve
 
         return solve
+    if name == "solve_axes":
+        from references.exact.solver import solve_axes
+
+        return solve_axes
     if name == "evolve":
         from references.exact.series import evolve
 

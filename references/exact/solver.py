@@ -7,6 +7,7 @@ import numpy as np
 from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.scene import Scene, check_scene
+from demheat.tensor import axis_loads
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
 from references.midpoints import check_points_per_axis, midpoints
 
@@ -68,6 +69,29 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
         stats={"form": closed.form, "iterations": 0, "residual": 0.0, **closed.stats},
         estimator=_digits,
     )
+
+
+def solve_axes(scene: Scene, *, points_per_axis: int = 24) -> tuple[Field, Field, Field]:
+    """Solve a scene in closed form for loads along x, y and z; the multipoles of an array are found once.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces, as `solve` takes it.
+    points_per_axis : int
+        As that of `solve`.
+
+    Returns
+    -------
+    tuple of three Fields
+        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is another, or the scene has no closed form here.
+    """
+    return tuple(solve(load, points_per_axis=points_per_axis) for load in axis_loads(scene))
 
 
 def _digits(field):

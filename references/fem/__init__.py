@@ -6,7 +6,7 @@ that of the matrix) and solved by conjugate gradients with a multigrid precondit
 
 from demheat.method import OVERSHOOT, SIZE, UNTURNED, Errors, Method, Orders
 
-__all__ = ["evolve", "solve"]  # noqa: F822, found by `__getattr__`
+__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
 
 SIZED = {"resolution": SIZE, "small": 1 / 4, "tight": {"tolerance": 1e-11}, "exceptions": UNTURNED | OVERSHOOT}
 # Elements: conductivity is an energy, twice the flux's order p; temperature p + 1. From a tenth of the cube on elements
@@ -77,6 +77,10 @@ def __getattr__(name):
         from references.fem.solver import solve
 
         return solve
+    if name == "solve_axes":
+        from references.fem.solver import solve_axes
+
+        return solve_axes
     if name == "evolve":
         from references.fem.transient import evolve
 

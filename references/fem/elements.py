@@ -121,7 +121,25 @@ def assemble(mesh, conductivity, dof, lift):
     (n,) float array, W
         Minus the matrix times the known part, the latter taken before nodes are merged.
     """
-    count, parts, load, seen = len(mesh.points), [], np.zeros(len(mesh.points)), 0
+    matrix, (load,) = assemble_loads(mesh, conductivity, dof, [lift])
+    return matrix, load
+
+
+def assemble_loads(mesh, conductivity, dof, lifts):
+    """The same for several known parts, with one matrix.
+
+    Parameters
+    ----------
+    mesh, conductivity, dof
+        As those of `assemble`.
+    lifts : sequence of (n,) float arrays, K
+
+    Returns
+    -------
+    (n, n) CSR matrix, W/K
+    list of (n,) float arrays, W
+    """
+    count, parts, loads, seen = len(mesh.points), [], np.zeros((len(lifts), len(mesh.points))), 0
     with stage("assembly") as done:
         for ids, rule in blocks(mesh):
             seen += len(ids)
@@ -131,13 +149,14 @@ def assemble(mesh, conductivity, dof, lift):
                 continue
             matrices = _matrices(mesh, ids, rule, conductivity[ids])
             rows = dof[mesh.cells[ids]]
-            heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
-            load -= np.bincount(rows.ravel(), heat.ravel(), count)
+            for load, lift in zip(loads, lifts, strict=True):
+                heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
+                load -= np.bincount(rows.ravel(), heat.ravel(), count)
             i, j = (np.broadcast_to(index, matrices.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
             parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
     while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
         parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
-    return parts[0], load
+    return parts[0], list(loads)
 
 
 def _matrices(mesh, ids, rule, conductivity):

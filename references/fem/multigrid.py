@@ -21,7 +21,7 @@ SMOOTHER = ("gauss_seidel", {"sweep": "symmetric"})
 COARSEST = {"max_coarse": 100, "coarse_solver": "splu", "presmoother": SMOOTHER, "postsmoother": SMOOTHER}
 
 
-def solve_free(mesh, matrix, load, fixed, dof, tolerance):
+def solve_free(mesh, matrix, load, fixed, dof, tolerance, *, kept=None):
     """Solve for the free nodes, those that are not fixed and have a row.
 
     Parameters
@@ -35,6 +35,8 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance):
         Row of each node.
     tolerance : float
         Largest relative residual, the equations scaled to a unit diagonal so that contrast does not hide it.
+    kept : dict, optional
+        Where the scaled equations and their multigrid are kept for the next load on this matrix, by its free nodes.
 
     Returns
     -------
@@ -52,9 +54,11 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance):
     stats = {"unknowns": len(free), "iterations": 0, "residual": 0.0}
     if not load[free].any():
         return solution, stats
-    scale = diags(1 / np.sqrt(diagonal[free]))
-    A, b = (scale @ matrix[free][:, free] @ scale).tocsr(), scale @ load[free]
-    precondition = multigrid(A, np.sqrt(diagonal[free]), prolongation(mesh, free, dof))
+    kept = {} if kept is None else kept
+    if not np.array_equal(kept.get("free"), free):
+        kept |= {"free": free, "equations": _equations(mesh, matrix, free, dof)}
+    A, scale, precondition = kept["equations"]
+    b = scale @ load[free]
     with stage("equations") as done:
         x, stats["iterations"], stats["residual"] = conjugate_gradients(A, b, precondition, tolerance, done)
     if not stats["residual"] <= tolerance:
@@ -64,6 +68,14 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance):
         )
     solution[free] = scale @ x
     return solution, stats
+
+
+def _equations(mesh, matrix, free, dof):
+    """The free nodes' equations scaled to a unit diagonal, their scale, and one cycle of multigrid."""
+    root = np.sqrt(matrix.diagonal()[free])
+    scale = diags(1 / root)
+    A = (scale @ matrix[free][:, free] @ scale).tocsr()
+    return A, scale, multigrid(A, root, prolongation(mesh, free, dof))
 
 
 def conjugate_gradients(A, b, precondition, tolerance, done=None):

@@ -10,9 +10,10 @@ from demheat.field import Field
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite
+from demheat.tensor import axis_loads
 from references.fem.estimate import estimated
 from references.fem.lookup import NodalField
-from references.fem.system import solve_nodes
+from references.fem.system import solve_loads
 from references.mesh import make
 
 # Contrast up to which the flux is never off by more than the tolerance shows, and by how much it may be beyond: found
@@ -61,18 +62,66 @@ def solve(
         If gmsh or a system library that it needs is missing.
     """
     check_scene(scene)
+    return _solved([scene], order, size, curved, tolerance)[0]
+
+
+def solve_axes(
+    scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
+) -> tuple[Field, Field, Field]:
+    """Solve a scene by finite elements for loads along x, y and z: on one mesh, with one matrix where there is no pore.
+
+    The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`; multigrid is set up once in
+    a periodic cell, and between walls for each load, which holds other nodes.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces.
+    order, size, curved, tolerance
+        As those of `solve`, which also says what is raised.
+
+    Returns
+    -------
+    tuple of three Fields
+        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them. Seconds in their `stats` but
+        `solve_s` are those of what they share.
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is another, or surfaces of the scene touch.
+    """
+    return tuple(_solved(axis_loads(scene), order, size, curved, tolerance))
+
+
+def _solved(scenes, order, size, curved, tolerance):
+    """The Field of each of some scenes that differ in their loads only."""
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
-    scene.require(steady=True)
-    return _answer(scene, tolerance, size=size, order=order, curved=curved)
+    for scene in scenes:
+        scene.require(steady=True)
+    return _answers(scenes, tolerance, size=size, order=order, curved=curved)
 
 
-def _answer(scene, tolerance, **elements):
-    """Solve on a mesh; `elements` are knobs of `references.mesh.make`."""
-    mesh = make(scene, **elements)
-    kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"
+def _answers(scenes, tolerance, **elements):
+    """Solve on one mesh; `elements` are knobs of `references.mesh.make`."""
+    mesh = make(scenes[0], **elements)
     # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
+    solved = one_blas_thread()(solve_loads)(scenes, mesh, tolerance)
+    kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"
+    fields = []
+    for scene, each in zip(scenes, solved, strict=True):
+        again = partial(_again, scene, tolerance, elements)
+        fields.append(_field(scene, mesh, each, partial(estimated, coarser=again, kind=kind)))
+    return fields
+
+
+def _again(scene, tolerance, elements, factor):
+    """The same on edges so many times as long."""
+    return _answers([scene], tolerance, **elements | {"coarser": factor})[0]
+
+
+def _field(scene, mesh, solved, estimator):
     alone = one_blas_thread()
-    solved = alone(solve_nodes)(scene, mesh, tolerance)
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()
     alone(_check_rounding)(solution, mean_flux, solved.wall_temperature, tolerance)
@@ -88,9 +137,7 @@ def _answer(scene, tolerance, **elements):
         wall_temperature=solved.wall_temperature,
         wall_heat=solved.wall_heat,
         stats=stats,
-        estimator=partial(
-            estimated, coarser=lambda factor: _answer(scene, tolerance, **elements | {"coarser": factor}), kind=kind
-        ),
+        estimator=estimator,
     )
 
 

@@ -12,10 +12,11 @@ import time
 from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
 from references.fem import islands
-from references.fem.elements import assemble, wall_weights
+from references.fem.elements import assemble, assemble_loads, wall_weights
 from references.fem.multigrid import solve_free
 from references.mesh import twins
 
@@ -54,6 +55,17 @@ class _Given(NamedTuple):
     weights: dict[str, np.ndarray]
 
 
+class _Assembled(NamedTuple):
+    """What loads on one mesh share: matrix over the unit of conductivity, rows of nodes, elements in pores."""
+
+    matrix: csr_matrix
+    dof: np.ndarray
+    unit: float
+    pores: np.ndarray
+    found: islands.Bodies | None
+    assembly_s: float
+
+
 class _Bodies(NamedTuple):
     """Connected bodies: label of each node (-1: none), the bodies that nothing holds, one node of each of those."""
 
@@ -83,27 +95,58 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
     RuntimeError
         If the residual stays above the tolerance.
     """
+    return solve_loads([scene], mesh, tolerance)[0]
+
+
+def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
+    """Nodal temperatures of one body under several loads: one matrix, and one multigrid where all hold the same nodes.
+
+    Pores cut off other bodies for each load: their matrices are their own.
+
+    Parameters
+    ----------
+    scenes : sequence of Scene
+        Alike but for their loads.
+    mesh, tolerance
+        As those of `solve_nodes`, which says what is raised.
+
+    Returns
+    -------
+    list of Solved
+        Seconds of the assembly are those of all loads.
+    """
+    if len(scenes) > 1 and not scenes[0].conductivities.all():
+        return [solve_nodes(scene, mesh, tolerance) for scene in scenes]
     begin = time.perf_counter()
-    conductivity = scene.conductivities[mesh.phase]
-    given, dof = _given(scene, mesh, conductivity > 0), twins(len(mesh.points), mesh.pairs)
+    conductivity = scenes[0].conductivities[mesh.phase]
+    givens = [_given(scene, mesh, conductivity > 0) for scene in scenes]
+    dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
     if pores.any():
-        found = islands.find(scene, mesh)
+        found = islands.find(scenes[0], mesh)
         conductivity = np.where(found.still, 0.0, conductivity)
     unit = conductivity.max()
     if unit == 0:
-        return _at_rest(scene, mesh, given, found)
-    matrix, load = assemble(mesh, conductivity / unit, dof, given.lift)
-    bodies = _bodies(matrix, given.shares > 0, pores=not conductivity.all())
+        return [_at_rest(scenes[0], mesh, givens[0], found)]
+    matrix, loads = assemble_loads(mesh, conductivity / unit, dof, [given.lift for given in givens])
+    system = _Assembled(matrix, dof, unit, pores, found, time.perf_counter() - begin)
+    kept = {}
+    return [_solved(*each, mesh, system, tolerance, kept) for each in zip(scenes, givens, loads, strict=True)]
+
+
+def _solved(scene, given, load, mesh, system, tolerance, kept):
+    """One load on a matrix; `kept` is what the solver keeps for the next one."""
+    begin = time.perf_counter()
+    matrix, dof, unit, pores, found, assembly_s = system
+    bodies = _bodies(matrix, given.shares > 0, pores=found is not None)
     imposed = np.zeros(len(load))
     for name, weights in given.weights.items():
         imposed += scene.wall_fluxes[name] / unit * weights
     _check_loose(mesh, imposed, bodies)
     load += imposed
-    assembled = time.perf_counter()
     fixed = given.shares > 0
     fixed[bodies.pins] = True
-    correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance)
+    correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
     heat = unit * (matrix @ correction - load)
     temperature = given.lift + correction[dof]
     temperature += given.level
@@ -114,7 +157,7 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
         temperature += shift
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
-    stats |= {"assembly_s": assembled - begin, "solve_s": time.perf_counter() - assembled}
+    stats |= {"assembly_s": assembly_s, "solve_s": time.perf_counter() - begin}
     shown = temperature if found is None else islands.reached(found, scene, temperature)
     return Solved(temperature, *_walls(scene, given, shown, heat), stats, found)
 

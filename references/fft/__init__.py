@@ -5,7 +5,7 @@ The only home of pyFFTW.
 
 from demheat.method import CUT, OVERSHOOT, VOXELS, Errors, Method, Orders
 
-__all__ = ["solve"]  # noqa: F822, found by `__getattr__`
+__all__ = ["solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
 
 SIZED = {"resolution": VOXELS, "small": 16, "coarse": 24, "tight": {"tolerance": 1e-9, "threads": 1}}
 SERIES = {"potential": "its temperature is a truncated Fourier series"}
@@ -90,4 +90,8 @@ def __getattr__(name):
         from references.fft.solver import solve
 
         return solve
+    if name == "solve_axes":
+        from references.fft.solver import solve_axes
+
+        return solve_axes
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -60,15 +60,22 @@ class _State(NamedTuple):
         return self.rz**2 / self.curvature if self.curvature > 0 else 0.0
 
 
-def solve(problem: Problem) -> SolvedGrid:
+def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
     """Temperatures by preconditioned conjugate gradients.
+
+    Parameters
+    ----------
+    problem : Problem
+    kept : dict, optional
+        Where the discrete problem and its transform are kept, for another gradient in the same periodic cell.
 
     Raises
     ------
     RuntimeError
         If the energy still decreases after the allowed iterations, or rounding keeps the recomputed residual up.
     """
-    system = _system(problem)
+    kept = {} if kept is None else kept
+    system = kept["system"] = _again(kept["system"]) if kept else _system(problem)
     iterations, before, clock = 0, math.inf, Clock(system.transform)
     while True:
         state = _restart(problem, system)
@@ -111,6 +118,11 @@ def _system(problem):
     sums = Sums(np.zeros(nx), np.zeros((nx, 3)))
     body = Body(material, inverse.astype(dtype), problem.walls)
     return _System(conduct, body, transform, _symbol(problem, transform), vectors, sums)
+
+
+def _again(system):
+    """The same with temperatures of its own: a solution keeps those before."""
+    return system._replace(vectors=system.vectors._replace(theta=np.zeros_like(system.vectors.theta)))
 
 
 def _transform(problem, nodes):

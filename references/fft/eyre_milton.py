@@ -39,8 +39,14 @@ class _Scheme(NamedTuple):
     waves: Waves
 
 
-def solve(problem: Problem) -> SolvedGrid:
+def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
     """Fluxes by Eyre and Milton's iteration.
+
+    Parameters
+    ----------
+    problem : Problem
+    kept : dict, optional
+        Where the scheme and its transform are kept, for another gradient in the same periodic cell.
 
     Raises
     ------
@@ -49,8 +55,10 @@ def solve(problem: Problem) -> SolvedGrid:
         implies.
     """
     low, high = _extremes(problem.voxels)
-    scheme = _scheme(problem, math.sqrt(low * high))
-    transform = _transform(problem, 3)
+    kept = {} if kept is None else kept
+    if not kept:
+        kept |= {"scheme": _scheme(problem, math.sqrt(low * high)), "transform": _transform(problem, 3)}
+    scheme, transform = kept["scheme"], kept["transform"]
     field = np.zeros((3, *problem.voxels.phase.shape), problem.dtype)
     iterations, error, cost = _iterate(problem, scheme, transform, field)
     # Not a number must fail too.

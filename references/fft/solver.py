@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import cache, partial
@@ -15,40 +14,25 @@ from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
-from demheat.scene.thickness import coats, narrower
+from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
 from references.fft.problem import Problem, SolvedGrid
+from references.fft.rules import automatic, warn_of_thin
 from references.threads import Team, thread_count
 from references.voxels.bodies import bodies, settle
-from references.voxels.kernels import FULL
-from references.voxels.links import cut, links
-from references.voxels.paint import grid_shape, paint, voxelise
+from references.voxels.links import links
+from references.voxels.paint import grid_shape, turned, voxelise
 
 RULES = {"cg": ("auto", "plain", "laminate", "links"), "eyre-milton": ("auto", "plain", "laminate")}
 PRECISIONS = {"float64": np.float64, "float32": np.float32}
-# Errors of the scalar scheme in % at 128^3, measured on a sphere with the radius a third of the cube's edge, against
-# log10 of its conductivity over the matrix's.  All rules are of first order in the voxel, so other grids choose alike.
-MEASURED = {
-    "decades": [-4, -3, -2, -1, 0, 1, 2, 3, 4],
-    "plain": [0.13, 0.13, 0.12, 0.063, 0, 0.18, 0.42, 0.46, 0.45],
-    "laminate": [0.32, 0.15, 0.036, 0.005, 0, 0.013, 0.13, 0.60, 1.58],
-    "links": [0.37, 0.37, 0.34, 0.20, 0, 0.058, 0.017, 0.006, 0.005],
-}
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
 # Least bytes that a voxel takes, in double precision.
 BYTES = {"cg": 30, "eyre-milton": 48}
-# What rules make of an inclusion smaller than a voxel.
-MISSED = {
-    "plain": "miss them or see whole voxels instead",
-    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape; it misses "
-    "layers a billion times thinner",
-    "links": "miss them or see some of them only",
-}
 # Knobs that a field's `stats` leaves out.
 UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
@@ -117,29 +101,87 @@ def solve(
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
     _check_load(scene)
-    order = (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
-    box = _turned(scene, order)
-    shape = tuple(grid_shape(scene, voxels)[a] for a in order)
-    if rule == "auto":
-        knobs = knobs._replace(rule=_automatic(scheme, scene))
-    _check_grid(box, knobs.rule, shape)
-    needed = BYTES[scheme] * math.prod(shape) * np.dtype(PRECISIONS[precision]).itemsize / 8
+    return _solved([scene], voxels, knobs)[0]
+
+
+def solve_axes(
+    scene: Scene,
+    *,
+    voxels: int | Sequence[int] = 128,
+    scheme: str = "cg",
+    rule: str = "auto",
+    precision: str = "float64",
+    threads: int | None = 2,
+    tolerance: float | None = None,
+    max_iterations: int = 5000,
+) -> tuple[Field, Field, Field]:
+    """Solve a scene on voxels for loads along x, y and z: painted once, and in a periodic cell planned once.
+
+    The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, between walls to the rounding
+    of the voxels' laminates.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces.
+    voxels, scheme, rule, precision, threads, tolerance, max_iterations
+        As those of `solve`, which also says what is raised and warned of.
+
+    Returns
+    -------
+    tuple of three Fields
+        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is another.
+    """
+    knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
+    return tuple(_solved(axis_loads(scene), voxels, knobs))
+
+
+def _solved(scenes, voxels, knobs):
+    """The Field of each of some scenes that differ in their loads only."""
+    grid, orders = grid_shape(scenes[0], voxels), [_order(scene) for scene in scenes]
+    boxes = [_turned(scene, order) for scene, order in zip(scenes, orders, strict=True)]
+    shapes = [tuple(grid[a] for a in order) for order in orders]
+    if knobs.rule == "auto":
+        knobs = knobs._replace(rule=automatic(knobs.scheme, scenes[0]))
+    for box, shape in zip(boxes, shapes, strict=True):
+        _check_grid(box, knobs.rule, shape)
+    # What each solution keeps, on top of the first.
+    bytes_each = BYTES[knobs.scheme] + 8 * (len(scenes) - 1) * {"cg": 1, "eyre-milton": 3}[knobs.scheme]
+    needed = bytes_each * math.prod(grid) * np.dtype(PRECISIONS[knobs.precision]).itemsize / 8
     check_memory("voxels", voxels, needed, power=3)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
-    painted = voxelise(box, shape, laminate=knobs.rule != "plain")
-    if scene.inclusions:
-        _warn_of_thin(box, knobs.rule, shape)
+    painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
+    if scenes[0].inclusions:
+        warn_of_thin(boxes[0], knobs.rule, shapes[0])
+    kept, fields = {}, []
+    for scene, order, box in zip(scenes, orders, boxes, strict=True):
+        same = turned(painted, [orders[0].index(axis) for axis in order])
+        # Only in a periodic cell is the load's axis any one.
+        kept = kept if scene.periodic else {}
+        fields.append(_loaded(scene, box, order, same, knobs, kept))
+    return fields
+
+
+def _loaded(scene, box, order, painted, knobs, kept):
+    """The Field of a scene on painted voxels."""
     slope, level = _linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
     units = _units(grid)
     if scene.conductivities.min() == 0:
         grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
         if not grid.bodies.passing.any():
-            return _field(scene, grid, units, _at_rest(shape), knobs)
-    _check_scheme(box, scheme, knobs.rule)
+            return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs)
+    _check_scheme(box, knobs.scheme, knobs.rule)
     with Team(knobs.threads) as team:
-        problem = _problem(grid, units, knobs, team)
-        solution = SOLVERS[scheme](problem)
+        problem = kept.get("problem") or _problem(grid, units, knobs, team)
+        kept["problem"] = problem
+        problem = problem._replace(team=team, gradient=_direction(grid, units))
+        solution = SOLVERS[knobs.scheme](problem, kept=kept.setdefault("scheme", {}))
     return _field(scene, grid, units, solution, knobs)
 
 
@@ -184,33 +226,6 @@ def _checked(scheme, rule, precision, tolerance, max_iterations, threads):
     return _Knobs(scheme, rule, precision, tolerance, max_iterations, thread_count(threads))
 
 
-def _warn_of_thin(scene, rule, shape):
-    """A voxel that both faces of a coat cross holds three materials; rules know two."""
-    spacing = np.array(scene.size) / shape
-    voxel, left = float(spacing.max()), coats(scene)
-    thin = np.flatnonzero(left < voxel)
-    if len(thin):
-        warnings.warn(
-            f"inclusions {_listed(thin)} are coats thinner than a voxel of "
-            f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
-            stacklevel=3,
-        )
-    # Laminates are exact for layers of any thickness that they see.
-    small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
-    small |= narrower(scene, FULL * spacing)
-    small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
-    if small.any():
-        warnings.warn(
-            f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
-            f"{MISSED[rule]}; use more voxels",
-            stacklevel=3,
-        )
-
-
-def _listed(numbers):
-    return f"{numbers[:8].tolist()}{' and more' if len(numbers) > 8 else ''}"
-
-
 def _check_load(scene):
     check_scene(scene)
     scene.require(
@@ -238,31 +253,9 @@ def _check_scheme(box, scheme, rule):
         box.require("links have a harmonic mean; use rule 'plain'", pores=False)
 
 
-def _automatic(scheme, scene):
-    """The rule with the smallest measured error for the worst of the scene's interfaces.
-
-    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
-    voxels in a way not known here has the phase of their centres only.
-    """
-    if not (_registered(paint, scene) and _registered(cut, scene)):
-        return "plain"
-    if scheme == "eyre-milton":
-        return "laminate"
-    conductivity = scene.conductivities
-    rounded = np.array([True] + [shape.bounded for shape in scene.inclusions])
-    inner, outer = conductivity[rounded][1:], conductivity[scene.parents()][rounded][1:]
-    if not np.any(inner != outer):
-        return "laminate"
-    if conductivity.min() == 0:
-        return "plain"
-    decades = np.log10(inner / outer)
-    worst = {rule: np.interp(decades, MEASURED["decades"], MEASURED[rule]).max() for rule in RULES["cg"][1:]}
-    return min(worst, key=worst.get)
-
-
-def _registered(function, scene):
-    """Whether the shapes of all inclusions are registered with a `singledispatch` function."""
-    return all(function.dispatch(type(shape)) is not function.dispatch(object) for shape in scene.inclusions)
+def _order(scene):
+    """Axes of the scene that are axes 0, 1, 2 of the grid: between walls the load's first."""
+    return (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
 
 
 def _turned(scene, order):
@@ -298,14 +291,18 @@ def _problem(grid, units, knobs, team):
     return Problem(
         voxels=_scaled(grid.voxels, units),
         links=_links(grid, units) if knobs.rule == "links" else None,
-        # Equal wall temperatures: any load's solution, times zero.
-        gradient=grid.slope / units.slope if units.slope else np.array([1.0, 0.0, 0.0]),
+        gradient=_direction(grid, units),
         walls=not grid.scene.periodic,
         dtype=PRECISIONS[knobs.precision],
         team=team,
         tolerance=knobs.tolerance,
         max_iterations=knobs.max_iterations,
     )
+
+
+def _direction(grid, units):
+    # Equal wall temperatures: any load's solution, times zero.
+    return grid.slope / units.slope if units.slope else np.array([1.0, 0.0, 0.0])
 
 
 def _scaled(voxels, units):

@@ -2,7 +2,7 @@
 
 from demheat.method import DEGREE, Errors, Method, Orders
 
-__all__ = ["solve", "zeta2"]  # noqa: F822, found by `__getattr__`
+__all__ = ["solve", "solve_axes", "zeta2"]  # noqa: F822, found by `__getattr__`
 
 METHODS = (
     Method(
@@ -33,6 +33,10 @@ def __getattr__(name):
         from references.multipole.solver import solve
 
         return solve
+    if name == "solve_axes":
+        from references.multipole.solver import solve_axes
+
+        return solve_axes
     if name == "zeta2":
         from references.multipole.third_order import zeta2
 

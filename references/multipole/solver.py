@@ -19,6 +19,7 @@ from demheat.field import Field, Samples
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
+from demheat.tensor import axis_loads
 from references.midpoints import check_points_per_axis, midpoints
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.at_rest import at_rest
@@ -76,12 +77,54 @@ def solve(
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     check_scene(scene)
     scene.require(steady=True)
+    wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
+    return _solved(scene, points_per_axis, wanted)
+
+
+def solve_axes(
+    scene: Scene,
+    *,
+    order: int | None = None,
+    accuracy: float = 1e-5,
+    tolerance: float | None = None,
+    points_per_axis: int = 24,
+    threads: int = 1,
+) -> tuple[Field, Field, Field]:
+    """Solve a scene of disjoint spheres for loads along x, y and z; what they make at each other is summed once.
+
+    The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, to the residual of the linear
+    system: sums for a higher degree than one load needs are those of all.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces.
+    order, accuracy, tolerance, points_per_axis, threads
+        As those of `solve`, which also says what is raised.
+
+    Returns
+    -------
+    tuple of three Fields
+        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
+
+    Raises
+    ------
+    NotImplementedError
+        If the load is another, or the spheres are none that `solve` takes.
+    """
+    _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
+    wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads, "kept": {}}
+    return tuple(_solved(load, points_per_axis, wanted) for load in axis_loads(scene))
+
+
+def _solved(scene, points_per_axis, wanted):
+    """The Field of a scene, its multipoles `converged` as wanted."""
     arrangement = arrange(scene, any_matrix=True)
     if scene.matrix.conductivity == 0:
         return at_rest(scene, arrangement.spheres, points_per_axis)
     # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
     with one_blas_thread():
-        history = converged(arrangement, order=order, accuracy=accuracy, tolerance=tolerance, threads=threads)
+        history = converged(arrangement, **wanted)
     return _field(scene, arrangement, history, points_per_axis)
 
 

@@ -30,7 +30,7 @@ EXACT = 1e-10
 RATIOS = (0.2, 0.95)
 
 
-def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1):
+def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1, kept=None):
     """Solutions of rising order, two degrees apart; the last is the answer.
 
     Parameters
@@ -70,7 +70,7 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1
             for n in orders:
                 if n > reach:
                     reach = wanted if order is not None else min(n + AHEAD, highest)
-                    table = exchange(spheres, reach, precision)
+                    table = _exchange(spheres, reach, precision, {} if kept is None else kept)
                     # Cells know no order.
                     reach = highest if isinstance(table, FastMultipole) else reach
                 options = {"tolerance": tolerance, "guess": history[-1], "threads": threads}
@@ -82,6 +82,13 @@ def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1
             orders = [history[-1].order + 2]
             wanted = max(wanted + 2, _needed(history, accuracy))
     return history
+
+
+def _exchange(spheres, reach, precision, kept):
+    """What spheres make at each other up to an order at least, made anew only if what was kept knows less."""
+    if kept.get("reach", 0) < reach:
+        kept |= {"reach": reach, "table": exchange(spheres, reach, precision)}
+    return kept["table"]
 
 
 def _share(history, order, last, done):

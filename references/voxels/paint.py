@@ -9,6 +9,7 @@ Engrg. 294 (2015) 168-188.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import singledispatch
 from typing import NamedTuple
 
@@ -22,6 +23,8 @@ from references.voxels.spheres import Balls, groups, windows
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
 MOST_PHASES = 2**16
 MOST_VOXELS = 2**31 - 1
+# Axes of the entries of a tensor.
+PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
 class Voxels(NamedTuple):
@@ -161,6 +164,25 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     fractions = (count + np.bincount(part[1], part[2], minlength=len(conductivity))) / phase.size
     moment = np.stack([np.bincount(rank, column, len(cut)) for column in cuts.moment.T], axis=1)
     return Voxels(spacing, phase, conductivity, cut, _laminate(part, conductivity, moment), fractions)
+
+
+def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
+    """The same voxels with axes order[0], order[1], order[2] as axes 0, 1, 2.
+
+    Parameters
+    ----------
+    voxels : Voxels
+    order : (3,) sequence of int
+    """
+    if tuple(order) == (0, 1, 2):
+        return voxels
+    phase = np.ascontiguousarray(voxels.phase.transpose(order))
+    place = np.unravel_index(voxels.cut, voxels.phase.shape)
+    cut = np.ravel_multi_index([place[axis] for axis in order], phase.shape)
+    ascending = np.argsort(cut)
+    columns = [PAIRS.index(tuple(sorted((order[a], order[b])))) for a, b in PAIRS]
+    tensor = voxels.tensor[np.ix_(ascending, columns)]
+    return voxels._replace(spacing=voxels.spacing[list(order)], phase=phase, cut=cut[ascending], tensor=tensor)
 
 
 def centers(shape, spacing) -> list:

@@ -8,8 +8,8 @@ A study is a module with
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
-- optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; and `TIMEOUT`,
-  seconds per row.
+- optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
+  sentences below it that are made of the rows; and `TIMEOUT`, seconds per row.
 
 One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
 made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by

@@ -183,6 +183,7 @@ def _page(study, df, claims, figure):
             *([rest.strip()] if rest.strip() else []),
             markdown(table),
             caption,
+            *(study.notes(df) if hasattr(study, "notes") else ()),
             f"![{title}]({figure.name})",
             "## Claims",
             markdown(judged),

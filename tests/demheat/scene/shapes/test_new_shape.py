@@ -10,6 +10,7 @@ from demheat import Layer, Material, Scene, Sphere, evolve, referee, solve
 from demheat.scene.inputs import vector
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.base import nearest
+from demheat.scene.symmetry import alike_axes, mirrors, reduced
 from references import exact, fem, fft, multipole
 from references.voxels.paint import voxelise
 
@@ -63,6 +64,12 @@ CENTRED = Brick((0.5, 0.5, 0.5), (0.5, 0.375, 0.75), OTHER)
 CROSSING = replace(CENTRED, center=(0.0, 0.5, 0.9375))
 # Across the whole cell: a layer.
 ACROSS = Brick((0.5, 0.5, 0.5), (1.0, 0.25, 1.0), OTHER)
+
+
+def test_its_symmetry_is_not_known():
+    for scene in (cell(CENTRED), cell(CENTRED, **WALLS)):
+        assert mirrors(scene) == (None, None, None) and alike_axes(scene) == (0, 1, 2)
+        assert reduced(scene).scene is scene
 
 
 def test_its_phases():

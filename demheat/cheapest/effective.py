@@ -1,0 +1,191 @@
+"""The conductivity tensor to an accuracy, by the method that gets there at least cost."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.cheapest.answers import reached
+from demheat.cheapest.loads import loads_of
+from demheat.cheapest.ways import HOMES, Way, ways
+from demheat.limits import free_memory
+from demheat.scene import Scene
+from demheat.scene.inputs import chosen, finite
+
+# Of the memory that is free.
+SHARE = 0.8
+
+
+@dataclass(frozen=True)
+class Effective:
+    """Conductivity tensor of a body, each entry with its interval.
+
+    Attributes
+    ----------
+    tensor, lower, upper : (3, 3) float array, W/(m K)
+        Symmetric. What each entry is, and between which values it is expected; of method "bracket" it is certain.
+    method : str
+    knobs : mapping
+        With which the method got there.
+    cost : mapping
+        `cpu_s`, `wall_s`, and `rounds` of refinement.
+    how : str
+        How the interval was found.
+    saved : tuple of str
+        What symmetry saved.
+    passed : tuple of str
+        Methods that were tried before, and why they did not do.
+    """
+
+    tensor: np.ndarray
+    lower: np.ndarray
+    upper: np.ndarray
+    method: str
+    knobs: Mapping
+    cost: Mapping
+    how: str
+    saved: tuple[str, ...] = ()
+    passed: tuple[str, ...] = field(default=(), repr=False)
+
+    @property
+    def accuracy(self) -> float:
+        """Half of the widest interval over the mean of the diagonal; 0 where nothing conducts."""
+        scale = float(np.trace(self.tensor)) / 3
+        return float(np.max(self.upper - self.lower)) / 2 / scale if scale > 0 else 0.0
+
+
+class Recommendation(NamedTuple):
+    """What `effective` would do.
+
+    Attributes
+    ----------
+    method : str
+        Empty if nothing gets there.
+    knobs : mapping
+    cpu_s : float, s
+        That are to be expected; NaN if unknown.
+    bytes : float
+    why : str
+        In words, a line for each way.
+    ways : tuple of Way
+    """
+
+    method: str
+    knobs: Mapping
+    cpu_s: float
+    bytes: float
+    why: str
+    ways: tuple[Way, ...]
+
+
+def effective(
+    scene: Scene, *, accuracy: float = 1e-3, method: str | Sequence[str] | None = None, memory: float | None = None
+) -> Effective:
+    """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
+
+    Laws of error and cost (study `speed_error`) say which method to begin with and how fine; the interval of each
+    answer (`Field.error`, study `estimates`) says whether to refine it. Mirror planes cut the body, alike axes share a
+    load, loads on one body share its set-up.
+
+    Parameters
+    ----------
+    scene : Scene
+        A periodic cell, or a box between two isothermal walls with four insulated faces; its own load does not matter.
+    accuracy : float
+        Half of each entry's interval, over the entry on the diagonal and over the mean of the diagonal beside it.
+    method : {"exact", "multipole", "fem", "fft", "dem", "bracket"} or sequence of them, optional
+        Only these. "bracket" gives certain bounds, and is taken only if it is named.
+    memory : float, bytes, optional
+        That may be used. Default: four fifths of what is free.
+
+    Returns
+    -------
+    Effective
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the load does not fix a steady temperature.
+    NotImplementedError
+        If the load is another.
+    RuntimeError
+        If no method gets there in the memory, with what each lacks.
+    """
+    accuracy, memory = _checked(accuracy, memory)
+    allowed = _allowed(method)
+    clock, cpu = time.perf_counter(), _cpu_seconds()
+    loads, passed = loads_of(scene), []
+    for way in _tried(loads, accuracy, allowed, memory):
+        try:
+            if way.refused:
+                raise NotImplementedError(way.refused)
+            found, knobs, rounds = reached(way, loads, accuracy, memory)
+        except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
+            passed.append(f"{way.method}: {' '.join(str(error).split())}")
+            continue
+        cost = {"cpu_s": _cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": rounds}
+        interval = (found.tensor - found.half, found.tensor + found.half)
+        return Effective(found.tensor, *interval, way.method, knobs, cost, found.how, loads.saved, tuple(passed))
+    raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
+
+
+def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = None) -> Recommendation:
+    """What `effective` would do for a scene, what it would cost, and why; nothing but closed forms is solved.
+
+    Parameters
+    ----------
+    scene, accuracy, memory
+        As those of `effective`, which says what is raised.
+
+    Returns
+    -------
+    Recommendation
+    """
+    accuracy, memory = _checked(accuracy, memory)
+    loads = loads_of(scene)
+    found = tuple(ways(loads, accuracy, memory))
+    lines = [*loads.saved, *map(_said, found)]
+    best = found[0] if not found[0].refused else Way("", {})
+    return Recommendation(best.method, best.knobs, best.cpu_s, best.bytes, "\n".join(lines), found)
+
+
+def _checked(accuracy, memory):
+    accuracy = finite("accuracy", accuracy, "a number from 1e-9 to below 1", lambda v: 1e-9 <= v < 1)
+    if memory is None:
+        return accuracy, SHARE * free_memory()
+    return accuracy, finite("memory", memory, "a number of bytes > 0", lambda v: v > 0)
+
+
+def _allowed(method):
+    """Names of methods."""
+    if method is None:
+        return tuple(name for name in HOMES if name != "bracket")
+    names = (method,) if isinstance(method, str) else tuple(method)
+    for name in names:
+        chosen("method", name, tuple(HOMES))
+    return names
+
+
+def _tried(loads, accuracy, allowed, memory):
+    """Ways by the laws, certain bounds last: nothing is known of their cost."""
+    found = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
+    return found + [Way("bracket", {})] * ("bracket" in allowed)
+
+
+def _said(way):
+    knobs = ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items())
+    if way.refused:
+        return f"{way.method}: no, {way.refused}"
+    cost = "cost unknown" if math.isnan(way.cpu_s) else f"{way.cpu_s:.2g} CPU-s, {way.bytes / 2**20:.2g} MiB"
+    return f"{way.method}{f' with {knobs}' if knobs else ''}: about {cost}"
+
+
+def _cpu_seconds():
+    """Of this process and its finished children, the mesher's among them."""
+    return sum(os.times()[:4])

@@ -1,0 +1,299 @@
+"""Laws of error and cost of each method, fitted by the study `speed_error` and kept beside this file in `laws.csv`.
+
+The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width, and
+g = strength^a (1 + contrast)^b fraction^c gap^d; of multipoles, whose errors fall by a factor with each degree, (h/s)
+stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
+B unknowns^q (1 + contrast)^r, the unknowns u V/h^3 + v S/h^2 + w n with the box's volume V, the interfaces' surface S
+and the number n of inclusions. The measures of a scene are those of `demheat.cheapest.measures`.
+
+The laws say what to expect, not what is certain: nine rows in ten that they were fitted to lie within the factors
+`error_within` and `cost_within`, and of scenes unlike those one in ten lies farther off. They are for steady heat in
+boxes with spheres apart, on the machine of the study's rows; layers are exact with most methods.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from functools import cache
+from pathlib import Path
+from types import MappingProxyType
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.cheapest.measures import Measures, measures
+from demheat.method import DEGREE, PARTICLES, SIZE, VOXELS
+from demheat.scene import Scene
+from demheat.scene.inputs import chosen, finite
+
+FILE = Path(__file__).with_name("laws.csv")
+KNOBS = {each.knob: each for each in (PARTICLES, SIZE, VOXELS, DEGREE)}
+KINDS = {"method": str, "knob": str, "rows": int, "scenes": int}
+# Edges of elements on a small sphere over its diameter, as `references.mesh` has them: no size asked for makes them
+# longer.
+ON_SPHERE = 0.165
+# Below that a measure makes no difference: exponents of it must not blow up where it vanishes.
+LEAST = 1e-3
+
+
+class Law(NamedTuple):
+    """Law of one method.
+
+    Attributes
+    ----------
+    method, knob : str
+        The method's name, and the keyword that refines it.
+    coarsest, finest : float
+        Values of it that were fitted; lengths in edges of the box.
+    error, refinement, strength, contrast, fraction, gap : float
+        A, p, a, b, c and d.
+    error_within : float
+        Factor within which nine of ten fitted errors are.
+    bulk, surface, each : float
+        u, v and w.
+    cost, unknowns, stiffness : float
+        B in seconds, q and r.
+    cost_within : float
+    bytes : float
+        For each unknown, at the peak.
+    bytes_within : float
+    rows, scenes : int
+        Rows and scenes that the law was fitted to.
+    """
+
+    method: str
+    knob: str
+    coarsest: float
+    finest: float
+    error: float
+    refinement: float
+    strength: float
+    contrast: float
+    fraction: float
+    gap: float
+    error_within: float
+    bulk: float
+    surface: float
+    each: float
+    cost: float
+    unknowns: float
+    stiffness: float
+    cost_within: float
+    bytes: float
+    bytes_within: float
+    rows: int
+    scenes: int
+
+
+class Predicted(NamedTuple):
+    """What a method will do: relative error of the conductivity, processor time in s, memory at its peak in bytes."""
+
+    error: float
+    cpu_s: float
+    bytes: float
+
+
+@cache
+def laws(file: Path = FILE) -> MappingProxyType:
+    """All laws by their method's name.
+
+    Parameters
+    ----------
+    file : path
+
+    Returns
+    -------
+    mapping of str to Law
+    """
+    with Path(file).open(newline="", encoding="utf-8") as stream:
+        rows = list(csv.DictReader(stream))
+    found = [Law(*(KINDS.get(name, float)(row[name]) for name in Law._fields)) for row in rows]
+    return MappingProxyType({law.method: law for law in found})
+
+
+def predicted(method: str, scene: Scene | Measures, value: float) -> Predicted:
+    """Error and cost of a method that are to be expected.
+
+    Parameters
+    ----------
+    method : str
+        Its name, as "fem".
+    scene : Scene or Measures
+        Steady.
+    value : float
+        Of the keyword that refines it, as its `solve` takes it.
+
+    Returns
+    -------
+    Predicted
+
+    Raises
+    ------
+    ValueError
+        If there is no law of the method, or the value is not positive.
+    """
+    law, m = law_of(method), _measured(scene)
+    finite("value", value, f"a finite number > 0, of {law.knob!r}", lambda v: v > 0)
+    return predicted_by(law, m, value)
+
+
+def needed(method: str, scene: Scene | Measures, accuracy: float, *, sure: bool = True) -> float | int:
+    """Coarsest value of a method's resolution with which the conductivity will be as accurate as asked.
+
+    Parameters
+    ----------
+    method : str
+    scene : Scene or Measures
+    accuracy : float
+        Relative error.
+    sure : bool
+        Nine times in ten; else as often as not.
+
+    Returns
+    -------
+    float or int
+        Of the keyword that refines it, as its `solve` takes it; never coarser than the coarsest value that was fitted.
+        It may be far beyond the finest: `predicted` says what it would cost.
+
+    Raises
+    ------
+    ValueError
+        If there is no law of the method, the accuracy is not between 0 and 1, or the law does not fall.
+    """
+    law, m = law_of(method), _measured(scene)
+    finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
+    if law.refinement <= 0:
+        raise ValueError(f"method = {method!r}: its errors were not found to fall with the resolution")
+    goal = math.log(accuracy) - (math.log(law.error_within) if sure else 0.0)
+    return _value(law, m, _refined(law, m, goal))
+
+
+def _refined(law, m, goal):
+    """Logarithm of h/s, or of what stands for it, at which the logarithm of the error is what is wanted."""
+    terms, powers = error_terms(law.knob, m, 1.0), _error_powers(law)
+    terms[1] = 0.0
+    return (goal - terms @ powers) / law.refinement
+
+
+def _value(law, m, refined):
+    """Of the knob, no coarser than the coarsest that was fitted."""
+    if law.knob == DEGREE.knob:
+        return max(math.ceil(-refined / _decay(m)), int(law.coarsest))
+    h = m.smallest * math.exp(refined)
+    if law.knob == SIZE.knob:
+        coarsest = law.coarsest * m.edge
+        return coarsest if h >= ON_SPHERE * m.narrowest else min(h, coarsest)
+    per_edge = m.edge / h
+    return max(math.ceil(per_edge**3 if law.knob == PARTICLES.knob else per_edge), int(law.coarsest))
+
+
+def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
+    """What a law predicts.
+
+    Parameters
+    ----------
+    law : Law
+    m : Measures
+    value : float
+        Of its knob.
+    """
+    number = unknowns(law, m, value)
+    return Predicted(
+        error=float(math.exp(error_terms(law.knob, m, value) @ _error_powers(law))),
+        cpu_s=float(math.exp(cost_terms(m, number) @ _cost_powers(law))),
+        bytes=float(law.bytes * number),
+    )
+
+
+def law_of(method: str) -> Law:
+    """Law of a method by its name; ValueError if there is none."""
+    chosen("method", method, tuple(laws()))
+    return laws()[method]
+
+
+def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
+    """Logarithms that the law of the error weighs, (6,) float array: 1, h/s, strength, 1 + contrast, fraction, gap.
+
+    Parameters
+    ----------
+    knob : str
+        Keyword that refines the method.
+    m : Measures
+    value : float
+    """
+    if knob == DEGREE.knob:
+        refined = -_decay(m) * value
+    else:
+        h = element(knob, m, value)
+        refined = math.log((min(h, ON_SPHERE * m.narrowest) if knob == SIZE.knob else h) / m.smallest)
+    strength, fraction = (math.log(max(value, LEAST)) for value in (m.strength, m.fraction))
+    # Beyond a radius neighbours are far.
+    return np.array([1.0, refined, strength, math.log1p(m.contrast), fraction, math.log(min(m.gap, 1.0))])
+
+
+def cost_terms(m: Measures, number: float) -> np.ndarray:
+    """Logarithms that the law of the cost weighs, (3,) float array: 1, unknowns, 1 + contrast.
+
+    Parameters
+    ----------
+    m : Measures
+    number : float
+        Of unknowns.
+    """
+    return np.array([1.0, math.log(number), math.log1p(m.contrast)])
+
+
+def size_terms(knob: str, m: Measures, value: float) -> np.ndarray:
+    """Numbers that the unknowns are made of, (3,) float array: V/h^3, S/h^2, n; of multipoles the waves alone.
+
+    Parameters
+    ----------
+    knob, m, value
+        As those of `error_terms`.
+    """
+    if knob == DEGREE.knob:
+        return np.array([m.count * ((value + 1) ** 2 - 1), 0.0, 0.0])
+    h = element(knob, m, value)
+    return np.array([(m.edge / h) ** 3, m.surface / h**2, m.count])
+
+
+def unknowns(law: Law, m: Measures, value: float) -> float:
+    """Number of unknowns by a law.
+
+    Parameters
+    ----------
+    law : Law
+    m : Measures
+    value : float
+        Of its knob.
+    """
+    return float(max(size_terms(law.knob, m, value) @ (law.bulk, law.surface, law.each), 1.0))
+
+
+def element(knob: str, m: Measures, value: float) -> float:
+    """Size of an element, m.
+
+    Parameters
+    ----------
+    knob, m, value
+        As those of `error_terms`.
+    """
+    resolution = KNOBS[knob]
+    return m.edge * resolution.size(value / m.edge if resolution.metric else value)
+
+
+def _measured(scene):
+    return scene if isinstance(scene, Measures) else measures(scene)
+
+
+def _decay(m):
+    return 2 * math.acosh(1 + m.gap / 2)
+
+
+def _error_powers(law):
+    return np.array([math.log(law.error), law.refinement, law.strength, law.contrast, law.fraction, law.gap])
+
+
+def _cost_powers(law):
+    return np.array([math.log(law.cost), law.unknowns, law.stiffness])

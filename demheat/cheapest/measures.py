@@ -1,0 +1,133 @@
+"""What laws of error and cost read off a scene: a few lengths and numbers, without solving anything."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene import Layer, Scene
+from demheat.scene.thickness import coats, extents
+
+# Gap of a lone sphere, over its diameter, beyond which it makes no difference.
+WIDEST = 10.0
+# A pore changes the flux no more than a body so many times less conducting.
+PORE = 1e3
+
+
+class Measures(NamedTuple):
+    """Measures of a scene.
+
+    Attributes
+    ----------
+    edge : float, m
+        Of the cube of the box's volume.
+    smallest : float, m
+        Least width of an inclusion, or of what an inclusion in it leaves of it; the edge without any.
+    narrowest : float, m
+        Least width of an inclusion alone.
+    fraction : float
+        Volume of all inclusions over the box's.
+    strength : float
+        Largest |k_i - k_o| / (k_i + 2 k_o) of an inclusion's conductivity and that around it: how much it disturbs a
+        uniform flux; 0 to 1.
+    contrast : float
+        Largest |ln(k_i / k_o)|, of a pore that of a thousandth.
+    surface : float, m2
+        Of all interfaces.
+    count : int
+        Number of inclusions.
+    gap : float
+        Least gap between two spheres, or twice that to a wall, over the smaller one's radius.
+    """
+
+    edge: float
+    smallest: float
+    narrowest: float
+    fraction: float
+    strength: float
+    contrast: float
+    surface: float
+    count: int
+    gap: float
+
+
+def measures(scene: Scene) -> Measures:
+    """Measure a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    edge, shapes = scene.volume ** (1 / 3), scene.inclusions
+    if not shapes:
+        return Measures(edge, edge, edge, 0.0, 0.0, 0.0, 0.0, 0, WIDEST)
+    inner, around = _neighbours(scene)
+    widths, volumes = extents(scene), np.array([_volume(scene, shape) for shape in shapes])
+    outermost = np.array(scene.parents()[1:]) == 0
+    # Volume over width: of a layer half its two faces, of a ball a sixth of its surface.
+    faces = np.array([2 if isinstance(shape, Layer) else 6 for shape in shapes])
+    return Measures(
+        edge=edge,
+        smallest=float(min(widths.min(), coats(scene).min(), edge)),
+        narrowest=float(min(widths.min(), edge)),
+        fraction=float(volumes[outermost].sum() / scene.volume),
+        strength=float(np.max(np.abs(inner - around) / (inner + 2 * around))),
+        contrast=float(np.max(np.abs(_log_ratio(inner, around)))),
+        surface=float(np.sum(faces * volumes / widths)),
+        count=len(shapes),
+        gap=_gap(scene),
+    )
+
+
+def _neighbours(scene):
+    """Conductivity of each inclusion and of what is around it; bodies of nothing in nothing count as alike."""
+    k = scene.conductivities
+    inner, around = k[1:], k[np.array(scene.parents()[1:])]
+    none = (inner == 0) & (around == 0)
+    return np.where(none, 1.0, inner), np.where(none, 1.0, around)
+
+
+def _log_ratio(inner, around):
+    """Of conductivities; of a pore, or around a body that nothing around it conducts, that of PORE."""
+    none = (inner == 0) | (around == 0)
+    return np.where(none, math.log(PORE), np.log(np.where(none, 1.0, inner) / np.where(none, 1.0, around)))
+
+
+def _volume(scene, shape):
+    try:
+        return shape.volume_in(scene.size, periodic=scene.periodic)
+    except NotImplementedError:
+        # A wall cuts it: as much of it lies in the box as of the box around it, exactly so through its middle.
+        low, high = shape.bounds()
+        inside = np.minimum(high, scene.size) - np.maximum(low, 0.0)
+        return shape.volume * float(np.prod(inside / (high - low)))
+
+
+def _gap(scene):
+    """Of neighbouring spheres, nested ones aside, mirror images in walls or periodic ones included."""
+    from scipy.spatial import cKDTree
+
+    parents = scene.parents()[1:]
+    outer = [shape for shape, parent in zip(scene.inclusions, parents, strict=True) if parent == 0 and shape.bounded]
+    if not outer:
+        return WIDEST
+    centers, radii = (np.array(part) for part in zip(*(shape.ball() for shape in outer), strict=True))
+    size = np.array(scene.size)
+    if not scene.periodic:
+        low, high = centers - radii[:, None], size - centers - radii[:, None]
+        # A sphere that a wall cuts has its image in itself.
+        away = np.where(np.stack([low, high]) > 0, np.stack([low, high]), np.inf).min(axis=(0, 2))
+        nearest = float(np.min(2 * away / radii))
+    else:
+        # A sphere's own nearest image.
+        nearest = float(np.min((size.min() - 2 * radii) / radii))
+    tree = cKDTree(centers % size if scene.periodic else centers, boxsize=size if scene.periodic else None)
+    for i, j in tree.query_pairs(min(2.5 * radii.max(), 0.49 * size.min())):
+        apart = np.abs(centers[i] - centers[j])
+        if scene.periodic:
+            apart = np.minimum(apart % size, -apart % size)
+        gap = math.dist(apart, (0, 0, 0)) - radii[i] - radii[j]
+        nearest = min(nearest, gap / min(radii[i], radii[j]))
+    return float(np.clip(nearest, 1e-6, WIDEST))

@@ -1,0 +1,97 @@
+"""Rules for voxels that an interface cuts: which one suits a scene, and what each does not see."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from demheat.scene.thickness import coats, narrower
+from references.voxels.kernels import FULL
+from references.voxels.links import cut
+from references.voxels.paint import paint
+
+# Errors of the scalar scheme in % at 128^3, measured on a sphere with the radius a third of the cube's edge, against
+# log10 of its conductivity over the matrix's.  All rules are of first order in the voxel, so other grids choose alike.
+MEASURED = {
+    "decades": [-4, -3, -2, -1, 0, 1, 2, 3, 4],
+    "plain": [0.13, 0.13, 0.12, 0.063, 0, 0.18, 0.42, 0.46, 0.45],
+    "laminate": [0.32, 0.15, 0.036, 0.005, 0, 0.013, 0.13, 0.60, 1.58],
+    "links": [0.37, 0.37, 0.34, 0.20, 0, 0.058, 0.017, 0.006, 0.005],
+}
+# What rules make of an inclusion smaller than a voxel.
+MISSED = {
+    "plain": "miss them or see whole voxels instead",
+    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape; it misses "
+    "layers a billion times thinner",
+    "links": "miss them or see some of them only",
+}
+
+
+def automatic(scheme, scene) -> str:
+    """The rule with the smallest measured error for the worst of the scene's interfaces.
+
+    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
+    voxels in a way not known here has the phase of their centres only.
+
+    Parameters
+    ----------
+    scheme : {"cg", "eyre-milton"}
+    scene : Scene
+    """
+    if not (_registered(paint, scene) and _registered(cut, scene)):
+        return "plain"
+    if scheme == "eyre-milton":
+        return "laminate"
+    conductivity = scene.conductivities
+    rounded = np.array([True] + [shape.bounded for shape in scene.inclusions])
+    inner, outer = conductivity[rounded][1:], conductivity[scene.parents()][rounded][1:]
+    if not np.any(inner != outer):
+        return "laminate"
+    if conductivity.min() == 0:
+        return "plain"
+    decades = np.log10(inner / outer)
+    worst = {
+        rule: np.interp(decades, MEASURED["decades"], MEASURED[rule]).max() for rule in MEASURED if rule != "decades"
+    }
+    return min(worst, key=worst.get)
+
+
+def _registered(function, scene):
+    """Whether the shapes of all inclusions are registered with a `singledispatch` function."""
+    return all(function.dispatch(type(shape)) is not function.dispatch(object) for shape in scene.inclusions)
+
+
+def warn_of_thin(scene, rule, shape) -> None:
+    """Warn of what a rule does not see: a voxel that both faces of a coat cross holds three materials, rules know two.
+
+    Parameters
+    ----------
+    scene : Scene
+    rule : {"plain", "laminate", "links"}
+    shape : (3,) tuple of int
+        Voxels along each axis.
+    """
+    spacing = np.array(scene.size) / shape
+    voxel, left = float(spacing.max()), coats(scene)
+    thin = np.flatnonzero(left < voxel)
+    if len(thin):
+        warnings.warn(
+            f"inclusions {_listed(thin)} are coats thinner than a voxel of "
+            f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
+            stacklevel=4,
+        )
+    # Laminates are exact for layers of any thickness that they see.
+    small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
+    small |= narrower(scene, FULL * spacing)
+    small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
+    if small.any():
+        warnings.warn(
+            f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
+            f"{MISSED[rule]}; use more voxels",
+            stacklevel=4,
+        )
+
+
+def _listed(numbers):
+    return f"{numbers[:8].tolist()}{' and more' if len(numbers) > 8 else ''}"

@@ -1,0 +1,101 @@
+"""Error against CPU time and memory: every method over its resolutions on scenes of every kind.
+
+A centred sphere of radius L/3 ("third") in a matrix a hundredth, a tenth, a thousandth and next to nothing as
+conducting (contrast 1e6 stands in for infinity, as materials are finite), and a hundred times as conducting; one that
+fills half of the cube ("half") at 10 and 100; a sphere with a thin shell; 24 spheres whose radii differ by three, 83
+equal ones and 1000; layers that no grid meets; and in time a slab, a ball and a beam. Conductivities, and temperatures
+and fluxes at 400 random points, are held against exact solutions. The DEM is timed twice: with its packing made on the
+spot, and with the packing from the cache. The cost of a Laguerre tessellation is set beside Voro++'s, that of the
+steady solver beside plain pyamg's on the same matrix, and that of the scalar FFT scheme beside Eyre-Milton's, each pair
+on the same data. Laws of error and cost are fitted to the rows of steady scenes and shipped with the package
+(`demheat.cheapest.laws`); `python -m studies.speed_error.laws` writes them anew.
+"""
+
+from studies.harness.methods import EDGE
+from studies.speed_error.cases import TIMEOUT, all_cases
+
+CASES = list(all_cases())
+PAPER = {}
+
+__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "notes", "plot", "run", "table", "warm_up"]
+# Scenes of a quick run.
+FEW = ("third", "third at 0.01", "thin shell", "polydisperse", "laminate", "slab")
+
+
+def QUICK(case):
+    """Coarse rows of some scenes, all of the first."""
+    if case["name"] in ("tessellation", "steady"):
+        return case["particles"] <= 20_000
+    cheap = (
+        case.get("particles", 0) <= (20_000 if case["scene"] == "third" else 1_000)
+        and case.get("size", EDGE) > 0.06 * EDGE
+        and case.get("voxels", 0) <= (64 if case["scene"] == "third" else 32)
+    )
+    light = case["scene"] != "polydisperse" or not case["name"].startswith("fem")
+    return cheap and light and case["scene"] in FEW and case.get("seed", 0) == 0
+
+
+def run(name, particles=None, seed=None, scene=None, *, method, **solver):
+    """Solve one case, the DEM from an empty packing cache and then again; or time our kernels beside their peers."""
+    from studies.speed_error import rows
+
+    if scene is None:
+        return _beside_peers(name, particles, seed)
+    knobs = {} if particles is None else {"particles": particles, "seed": seed}
+    return rows.solved(scene, method=method, **knobs, **solver)
+
+
+def _beside_peers(name, particles, seed):
+    from demheat.gallery import sphere_in_cube
+    from studies.common import peers
+
+    if name == "tessellation":
+        return peers.tessellation(particles, seed)
+    return peers.steady(particles, seed, sphere_in_cube(10.0))
+
+
+def warm_up(name, particles=None, seed=None, scene=None, *, method, **solver):
+    """Load the solver; the peers load their own."""
+    from studies.speed_error import rows
+
+    if scene is not None:
+        knobs = {} if particles is None else {"particles": particles, "seed": seed}
+        rows.warm_up(scene, method=method, **knobs, **solver)
+
+
+def claims(df):
+    """Kernels beside their peers on the same data; how many methods reach 0.1 %; what the laws are worth.
+
+    A kernel must not be slower than its peer. Costs of a quick run are too small to judge. Limits of the laws were set
+    before they were fitted: of scenes left out nine errors in ten within a factor of 10, nine costs within 3.
+    """
+    from studies.speed_error.verdicts import all_claims
+
+    return all_claims(df)
+
+
+def table(df):
+    """The cheapest way to an accuracy, with all costs counted and with the DEM's beside it.
+
+    Of each method that resolution counts from which on every finer one stays within the target. Errors of fields are
+    root mean squares at 400 random points, in % of the span and of the mean flux; their costs count the asking.
+    "DEM's cost over it" is of CPU time with the packing made on the spot, then with the packing from the cache. "any
+    shape" is the cheapest without multipoles, which know spheres alone.
+    """
+    from studies.speed_error.tables import lines
+
+    return lines(df)
+
+
+def notes(df):
+    """Where the DEM loses, in words made of the rows."""
+    from studies.speed_error import means
+
+    return [means.in_words(df, target) for target in means.TARGETS]
+
+
+def plot(df):
+    """Error against CPU time, a panel for each scene, and of the flux at points for two of them."""
+    from studies.speed_error.figure import draw
+
+    return draw(df)

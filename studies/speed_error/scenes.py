@@ -1,0 +1,181 @@
+"""The scenes of speed against error, and what is known of them exactly."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache, lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from demheat import gallery
+from demheat.field import Field, Samples
+from demheat.gallery import HADDAD, scaled, sphere_in_cube
+from demheat.scene import Layer, Scene
+from studies.harness import methods
+
+CONTRAST = 10.0
+# Materials are finite: so high a contrast stands in for an infinite one, within 1e-5 of it for these spheres.
+INFINITE = 1e6
+INCLUSION = scaled(HADDAD, CONTRAST)
+# Where fields are compared: at random, the same for every method.
+POINTS, SEED = 400, 2026
+# Relative error that multipoles are asked for, a hundredth of what the finest target asks of a method at most.
+ACCURACY = {"1000 spheres": 1e-6}
+USUAL_ACCURACY = 1e-7
+WITNESSES = ("references.exact", "references.multipole")
+
+
+def _coated():
+    # A shell of a tenth of the core's conductivity, 0.016 L thick.
+    return gallery.coated_sphere(core=165.0, shell=16.5, radius=0.3, core_fraction=0.85)
+
+
+def _polydisperse():
+    # Radii from 0.07 to 0.21 L.
+    return gallery.dispersion(24, fraction=0.3, ratio=3.0, gap=0.05, matrix=HADDAD, inclusion=INCLUSION)
+
+
+def _laminate():
+    """Layers across the load that no grid of these studies meets."""
+    edges = np.array([0.1234, 0.3141, 0.5772, 0.8319]) * gallery.EDGE
+    layers = [Layer(gallery.AXIS, *pair, INCLUSION) for pair in edges.reshape(2, 2)]
+    return Scene((gallery.EDGE,) * 3, HADDAD, layers, **gallery.loaded((gallery.EDGE,) * 3))
+
+
+def _slab():
+    from studies.common.slab import slab
+
+    return slab()
+
+
+def _ball():
+    from studies.common.sphere_in_time import sphere
+
+    return sphere()
+
+
+def _beam():
+    from studies.common.terreros import beam
+
+    return beam()
+
+
+STEADY = {
+    "third": lambda: sphere_in_cube(CONTRAST, fraction=methods.THIRD),
+    "third at 0.01": lambda: sphere_in_cube(0.01, fraction=methods.THIRD),
+    "third at 1000": lambda: sphere_in_cube(1e3, fraction=methods.THIRD),
+    "third at infinity": lambda: sphere_in_cube(INFINITE, fraction=methods.THIRD),
+    "half": lambda: sphere_in_cube(CONTRAST, fraction=methods.HALF),
+    "half at 100": lambda: sphere_in_cube(100.0, fraction=methods.HALF),
+    "thin shell": _coated,
+    "polydisperse": _polydisperse,
+    "83 spheres": lambda: gallery.random_dispersion(fraction=0.2, matrix=HADDAD, inclusion=INCLUSION),
+    "1000 spheres": lambda: gallery.dispersion(1000, fraction=0.2, gap=0.05, matrix=HADDAD, inclusion=INCLUSION),
+    "laminate": _laminate,
+}
+IN_TIME = {"slab": _slab, "ball": _ball, "beam": _beam}
+# Times at which temperatures are compared, s: those of the papers' figures.
+TIMES = {"slab": (0.05, 0.1, 0.2), "ball": (1.0, 5.0, 10.0), "beam": (0.001, 0.01, 0.05, 0.1)}
+
+
+@lru_cache(2)
+def scene_of(name):
+    """A scene by its name.
+
+    Parameters
+    ----------
+    name : str
+
+    Returns
+    -------
+    Scene
+    """
+    return (STEADY | IN_TIME)[name]()
+
+
+@cache
+def points_of(name):
+    """Where its fields are compared, (n, 3) float array, m.
+
+    Parameters
+    ----------
+    name : str
+        Of a scene.
+    """
+    scene = scene_of(name)
+    # Elements' chords leave a little of a round body out.
+    inside = 0.98 * (np.random.default_rng(SEED).uniform(size=(4 * POINTS, 3)) - 0.5)
+    for axes in {"box": (), "sphere": ((0, 1, 2),), "cylinder-x": ((1, 2),)}[scene.domain]:
+        inside = inside[np.linalg.norm(inside[:, axes], axis=1) < 0.49]
+    return (0.5 + inside[:POINTS]) * scene.size
+
+
+@lru_cache(2)
+def exact_of(name):
+    """The exact steady field of a scene, known at its points and nowhere else.
+
+    Closed forms, Rayleigh's method for the cubic array, multipoles for random spheres; those of spheres are kept on
+    disk by scene and code, as they take longer than most rows.
+
+    Parameters
+    ----------
+    name : str
+        Of a steady scene.
+
+    Returns
+    -------
+    Field
+    """
+    found = _worked_out(name) if name == "laminate" else _kept(name)
+    scene = scene_of(name)
+    volumes = np.full(len(found["warm"]), scene.volume / len(found["warm"]))
+    samples = Samples(points_of(name), volumes, found["warm"], scene.phase_at(points_of(name)), found["flux"])
+    return Field(
+        scene=scene,
+        mean_flux=found["mean_flux"],
+        fractions=np.array([1.0]),
+        wall_temperature=scene.wall_temperatures,
+        sampler=lambda: samples,
+        temperature_at=lambda points: found["warm"],
+        flux_at=lambda points: found["flux"],
+        stats={"unknowns": 0, "iterations": 0, "residual": 0.0},
+    )
+
+
+def _worked_out(name):
+    from references import exact, multipole
+
+    scene, points = scene_of(name), points_of(name)
+    try:
+        field = exact.solve(scene)
+    except NotImplementedError:
+        field = multipole.solve(scene, accuracy=ACCURACY.get(name, USUAL_ACCURACY))
+    return {"mean_flux": field.mean_flux, "warm": field.temperature_at(points), "flux": field.flux_at(points)}
+
+
+def _kept(name):
+    path = _file(name)
+    if path.exists():
+        with np.load(path) as stored:
+            return dict(stored)
+    found = _worked_out(name)
+    from studies.harness.store import replaced
+
+    with replaced(path) as temporary:
+        np.savez(temporary, **found)
+    return found
+
+
+def _file(name):
+    """Where the exact solution of a scene is kept: named by all that it hangs on."""
+    from demheat.packing.cache import cache_folder
+    from studies.harness.provenance import code_hash
+
+    scene = scene_of(name)
+    spheres = [[*each.center, each.radius, each.material.conductivity] for each in scene.inclusions]
+    words = [scene.matrix.conductivity, scene.size, scene.gradient, spheres, POINTS, SEED]
+    words += [ACCURACY.get(name, USUAL_ACCURACY), *(code_hash(__file__, path) for path in WITNESSES)]
+    key = hashlib.sha256(json.dumps(words).encode()).hexdigest()[:24]
+    return Path(cache_folder()) / f"exact-{key}.npz"

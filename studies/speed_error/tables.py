@@ -1,0 +1,52 @@
+"""Lines of the table: the cheapest method for each scene and target."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from studies.speed_error import means
+
+# Of fields at points one target each: fluxes are of first order, so that hardly any method has a hundredth of a per
+# cent of them.
+OF_FIELDS = {"temperature": (0.1,), "flux": (1.0,)}
+
+
+def lines(df):
+    """One line for each scene, quantity and target.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    parts = [means.winners(df), *(means.winners(df, name, targets) for name, targets in OF_FIELDS.items())]
+    found = pd.concat([part for part in parts if len(part)])
+    second = pd.concat([_any_shape(df, "conductivity", means.TARGETS)])
+    keys = zip(found["scene"], found["quantity"], found["target"], strict=True)
+    return pd.DataFrame(
+        {
+            "scene": found["scene"],
+            "of the": found["quantity"],
+            "target, %": found["target"],
+            "cheapest": found["name"].map(means.label),
+            "resolution": found["resolution"],
+            "error, %": found["error"],
+            "CPU, s": found["cpu_s"],
+            "wall, s": found["wall_s"],
+            "MiB": found["peak_mib"],
+            "unknowns": found["unknowns"],
+            "DEM's cost over it": found["dem"].map(_times),
+            "packing at hand": found["dem_cached"].map(_times),
+            "any shape": [second.get(key, "") for key in keys],
+        }
+    )
+
+
+def _any_shape(df, quantity, targets):
+    """The cheapest method that is not of spheres alone, by scene, quantity and target."""
+    best = means.winners(means.without_multipoles(df), quantity, targets)
+    names = best["name"].map(means.label) + best["cpu_s"].map(lambda value: f", {value:.2g} s")
+    return pd.Series(names.to_numpy(), index=list(zip(best["scene"], best["quantity"], best["target"], strict=True)))
+
+
+def _times(ratio):
+    return "does not reach it" if ratio != ratio else f"{ratio:.2g}"

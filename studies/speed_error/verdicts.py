@@ -1,0 +1,82 @@
+"""Claims on the rows of speed against error."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat import referee
+from studies.harness.pick import pick, present
+from studies.speed_error import laws, means
+from studies.speed_error.cases import COMPARED, MARCHED, TIGHT, TO_LIMIT
+from studies.speed_error.scenes import IN_TIME, STEADY
+
+# Methods, at least, that reach a target on the scenes that all methods know.
+SEVERAL = 3
+# Scenes, at least, of which one can be left out.
+SCENES = 6
+LIMITS = {"error": 10.0, "cpu_s": 3.0}
+SAID = {"error": "errors", "cpu_s": "CPU times"}
+
+
+def all_claims(df):
+    """All claims whose rows are there.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    yield from present([*_kernels(df), *_schemes(df)])
+    for scene in (name for name in STEADY if name in set(df["scene"])):
+        found = means.cheapest(df[df["scene"] == scene], targets=(0.1,))
+        least = SEVERAL if scene in ("third", "half") else 1
+        yield f"Methods that reach 0.1 % on the scene {scene!r}", float(len(found)), f">= {least}"
+    for scene in IN_TIME:
+        most = MARCHED["particles"][-1]
+        finest = pick(df, scene=scene, name="dem", particles=most)
+        if len(finest):
+            text = f"DEM in time, {most} particles, {scene}: error rms at the worst time, % of the span"
+            yield text, finest["error_percent"].max(skipna=False), 0.1
+    yield from _worth(df)
+
+
+def _kernels(df):
+    row = pick(df, name="tessellation", particles=100_000)
+    if len(row):
+        ours, theirs = row["us_per_particle"].iloc[0], row["peer_us_per_particle"].iloc[0]
+        yield "Laguerre tessellation of 100000 particles: CPU microseconds per particle", ours, 40.0
+        if theirs == theirs:
+            yield "Laguerre tessellation of 100000 particles: CPU time over that of Voro++", ours / theirs, 1.0
+    row = pick(df, name="steady", particles=1_000_000)
+    if len(row):
+        best = row[["ruge_stuben_cpu_s", "aggregation_cpu_s"]].min(axis=1).iloc[0]
+        text = "Steady solve of 1e6 particles: CPU time over that of the best plain pyamg"
+        yield text, row["cpu_s"].iloc[0] / best, 1.0
+
+
+def _schemes(df):
+    for voxels in COMPARED:
+        loose, tight = (
+            [pick(df, name=name, scene="third", voxels=voxels, tolerance=each) for name, each in tolerances.items()]
+            for tolerances in (TO_LIMIT, dict.fromkeys(TO_LIMIT, TIGHT))
+        )
+        if not all(len(rows) == 1 for rows in (*loose, *tight)):
+            continue
+        pairs = ((a["k_ratio"].iloc[0], b["k_ratio"].iloc[0]) for a, b in zip(loose, tight, strict=True))
+        off = max(abs(referee.value_error(*pair)) for pair in pairs)
+        yield f"FFT {voxels}^3: difference of either scheme from its own limit", off, 1e-6
+        if voxels == COMPARED[-1]:
+            scalar, eyre_milton = (rows["cpu_s"].iloc[0] for rows in loose)
+            text = f"FFT {voxels}^3: CPU time of Eyre-Milton over that of the scalar scheme"
+            yield text, eyre_milton / scalar, ">= 3"
+
+
+def _worth(df):
+    """What the laws are worth on scenes that they were not fitted to."""
+    if laws.usable(df)["scene"].nunique() < SCENES:
+        return
+    ratios = laws.left_out(df)
+    for column, limit in LIMITS.items():
+        found = ratios[column].dropna()
+        text = f"Laws of {SAID[column]}, each scene left out in turn: factor within which"
+        yield f"{text} nine rows in ten are", laws.within(found), limit
+        yield f"{text} half of the rows are", laws.within(found, 0.5), float(np.sqrt(limit))

@@ -1,0 +1,105 @@
+"""The reader of the laws: what they predict, and its inverse."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Layer, Material, Scene, Sphere, gallery
+from demheat.cheapest import laws
+from demheat.cheapest.measures import measures
+
+SCENE = gallery.sphere_in_cube(10.0)
+
+
+def test_measures_of_a_sphere_in_a_cube():
+    edge, radius = 0.1, 0.1 / 3
+    found = measures(SCENE)
+    assert_allclose(found.edge, edge, rtol=1e-14)
+    # Rounding of a few products.
+    assert_allclose([found.smallest, found.narrowest], 2 * radius, rtol=1e-12)
+    assert_allclose(found.fraction, 4 * math.pi / 81, rtol=1e-12)
+    assert_allclose(found.strength, 9 / 12, rtol=1e-12)
+    assert_allclose(found.contrast, math.log(10), rtol=1e-12)
+    assert_allclose(found.surface, 4 * math.pi * radius**2, rtol=1e-12)
+    # Its image in a wall is a third of the edge away, which is a radius.
+    assert_allclose(found.gap, 1.0, rtol=1e-12)
+    assert found.count == 1
+
+
+def test_measures_do_not_hang_on_units_or_on_the_load():
+    one = measures(SCENE)
+    other = measures(gallery.sphere_in_cube(10.0, edge=2.0, periodic=True, matrix=Material(7.0)))
+    for name in ("fraction", "strength", "contrast", "gap", "count"):
+        assert_allclose(getattr(other, name), getattr(one, name), rtol=1e-12)
+    assert_allclose(other.smallest / other.edge, one.smallest / one.edge, rtol=1e-12)
+
+
+def test_measures_of_layers_shells_and_neighbours():
+    layered = Scene((1, 1, 1), Material(1.0), [Layer(0, 0.2, 0.5, Material(4.0))], gradient=(1, 0, 0))
+    found = measures(layered)
+    assert_allclose([found.smallest, found.surface, found.fraction], [0.3, 2.0, 0.3], rtol=1e-12)
+    coated = measures(gallery.coated_sphere(core=165.0, shell=16.5, radius=0.3, core_fraction=0.85))
+    assert_allclose(coated.smallest, 0.1 * 0.3 * (1 - 0.85 ** (1 / 3)), rtol=1e-12)
+    assert_allclose(coated.narrowest, 0.1 * 0.6 * 0.85 ** (1 / 3), rtol=1e-12)
+    # The core is in the shell: its volume does not count twice, and the jump between them does.
+    assert_allclose(coated.fraction, 4 / 3 * math.pi * 0.3**3, rtol=1e-12)
+    assert_allclose(coated.contrast, math.log(10), rtol=1e-12)
+    pair = [Sphere(c, r, Material(2.0)) for c, r in (((0.05, 0.5, 0.5), 0.1), ((0.8, 0.5, 0.5), 0.12))]
+    # Nearest through the face of the periodic cell.
+    assert_allclose(measures(Scene((1, 1, 1), Material(1.0), pair, gradient=(1, 0, 0))).gap, 0.03 / 0.1, rtol=1e-12)
+
+
+def test_pores_and_superconductors_are_measured():
+    assert_allclose(measures(gallery.sphere_in_cube(0.0)).contrast, math.log(1e3), rtol=1e-12)
+    assert_allclose(measures(gallery.sphere_in_cube(0.0)).strength, 0.5, rtol=1e-12)
+    assert_allclose(measures(gallery.sphere_in_cube(1e6)).contrast, math.log(1e6), rtol=1e-12)
+
+
+def test_an_empty_box_has_measures():
+    assert measures(gallery.slab()).contrast == 0.0
+
+
+@pytest.mark.parametrize("method", sorted(laws.laws()))
+def test_what_is_needed_is_what_is_predicted(method):
+    law = laws.laws()[method]
+    if law.refinement <= 0.2:
+        pytest.skip("errors that hardly fall")
+    # At the finest value: coarse meshes are finer on the sphere than what is asked for.
+    value = law.finest * (0.1 if law.knob == "size" else 1)
+    error = laws.predicted(method, SCENE, value).error
+    found = laws.needed(method, SCENE, error, sure=False)
+    if law.knob == "size":
+        assert_allclose(found, value, rtol=1e-9)
+    else:
+        assert value * (1 - 1e-9) <= found <= value + 1
+    # Nine times in ten costs more.
+    finer = laws.needed(method, SCENE, error)
+    assert laws.predicted(method, SCENE, finer).error <= error / law.error_within * (1 + 1e-9)
+    assert laws.predicted(method, SCENE, finer).cpu_s >= laws.predicted(method, SCENE, found).cpu_s
+
+
+def test_predictions_do_not_hang_on_the_unit_of_length():
+    larger = gallery.sphere_in_cube(10.0, edge=10.0)
+    for method, law in laws.laws().items():
+        value = law.finest
+        scale = (0.1, 10.0) if law.knob == "size" else (1.0, 1.0)
+        one, other = (laws.predicted(method, s, value * f) for s, f in zip((SCENE, larger), scale, strict=True))
+        assert_allclose(other, one, rtol=1e-9)
+
+
+def test_the_main_methods_have_laws():
+    assert {"dem", "fem", "fft"} <= set(laws.laws())
+    for law in laws.laws().values():
+        assert law.cost > 0 and law.bytes > 0 and law.error_within >= 1 and law.scenes > 1
+        assert np.isfinite(law[2:]).all()
+
+
+def test_nonsense_is_refused():
+    with pytest.raises(ValueError, match="method = 'none'"):
+        laws.predicted("none", SCENE, 10)
+    with pytest.raises(ValueError, match="value = 0"):
+        laws.predicted("fem", SCENE, 0)
+    with pytest.raises(ValueError, match="accuracy = 2"):
+        laws.needed("fem", SCENE, 2)

@@ -1,0 +1,112 @@
+"""The cheapest way to an accuracy: what it chooses, that it gets there, and what it refuses."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Flux, Layer, Material, Scene, Sphere, effective, gallery, recommend
+from demheat.cheapest import answers, ways
+from demheat.cheapest.loads import loads_of
+from demheat.tensor import conductivity_tensor
+from references import exact, multipole
+
+CUBE = gallery.sphere_in_cube(10.0)
+# Two unlike spheres askew in a periodic cell: no symmetry, a full tensor.
+ASKEW = Scene(
+    (1.0, 1.2, 0.9),
+    Material(1.0),
+    [Sphere((0.3, 0.3, 0.3), 0.22, Material(8.0)), Sphere((0.55, 0.62, 0.52), 0.15, Material(20.0))],
+    gradient=(0.0, 1.0, 0.0),
+)
+
+
+def test_loads_are_as_few_as_axes_are_unlike():
+    loads = loads_of(CUBE)
+    assert (set(loads.parts), loads.alike, loads.diagonal) == ({0}, (0, 0, 0), True)
+    assert loads.parts[0].volume == pytest.approx(CUBE.volume / 8, rel=1e-12)
+    assert loads.saved == ("1 of 3 loads: axes alike", "1/8 of the body: mirror planes")
+
+
+def test_a_body_without_symmetry_takes_three_loads_on_one_set_up():
+    loads = loads_of(ASKEW)
+    assert (set(loads.parts), loads.diagonal, loads.together, loads.saved) == ({0, 1, 2}, False, True, ())
+    # Between walls nothing is beside the diagonal, symmetry or not.
+    walled = Scene(ASKEW.size, ASKEW.matrix, ASKEW.inclusions, walls={"z-": 0.0, "z+": 1.0})
+    assert loads_of(walled).diagonal and loads_of(walled).together
+
+
+@pytest.mark.parametrize("method", ["exact", "multipole", "fem", "fft", "dem", "bracket"])
+def test_every_method_gets_there(method):
+    right = exact.solve(CUBE).conductivity
+    found = effective(CUBE, accuracy=1e-2, method=method)
+    assert found.method == method
+    assert found.accuracy <= 1e-2
+    assert_allclose(np.diag(found.tensor), right, rtol=1e-2)
+    assert np.all(np.diag(found.lower) <= right) and np.all(right <= np.diag(found.upper))
+    # Nothing beside the diagonal, and certainly so.
+    off = ~np.eye(3, dtype=bool)
+    assert np.all(found.tensor[off] == 0) and np.all(found.upper[off] == 0)
+    assert found.cost["cpu_s"] > 0 and found.how and found.saved
+
+
+@pytest.mark.parametrize("method", ["fem", "fft", "dem", "bracket"])
+def test_the_whole_tensor_lies_in_its_intervals(method):
+    right = conductivity_tensor(multipole.solve_axes(ASKEW))
+    assert abs(right[0, 1]) > 5e-3 * right[0, 0]  # there is something beside the diagonal
+    found = effective(ASKEW, accuracy=3e-2, method=method)
+    assert_allclose(found.tensor, found.tensor.T, rtol=1e-12)
+    assert np.all(found.lower <= right) and np.all(right <= found.upper)
+
+
+def test_a_laminate_is_closed():
+    layer = Layer(2, 0.2, 0.45, Material(5.0))
+    found = effective(Scene((1.0, 2.0, 1.0), Material(1.0), [layer], gradient=(1.0, 1.0, 0.0)))
+    assert found.method == "exact"
+    assert_allclose(np.diag(found.tensor), [2.0, 2.0, 1 / (0.75 + 0.25 / 5)], rtol=1e-12)
+
+
+def test_what_is_too_coarse_is_refined(monkeypatch):
+    first = ways.Way("fft", {"voxels": 8})
+    found, knobs, rounds = answers.reached(first, loads_of(CUBE), 3e-3, 1e9)
+    assert rounds > 1 and knobs["voxels"] > 8
+    assert found.half[0, 0] <= 3e-3 * found.tensor[0, 0]
+    with pytest.raises(RuntimeError, match="would need .* GiB for {'voxels'"):
+        answers.reached(first, loads_of(CUBE), 1e-6, 1e5)
+
+
+def test_what_nobody_reaches_is_refused_with_reasons():
+    core = Sphere((0.3, 0.3, 0.3), 0.1, Material(1.0))  # multipoles know no spheres in spheres
+    with pytest.raises(RuntimeError, match=r"no method gets to accuracy = 0.001 here\. .*fem: needs about"):
+        effective(replace(ASKEW, inclusions=[*ASKEW.inclusions, core]), memory=1e3)
+    with pytest.raises(RuntimeError, match="exact: no closed form"):
+        effective(ASKEW, method="exact")
+    assert effective(ASKEW, accuracy=5e-2, method=("exact", "fft")).method == "fft"
+
+
+def test_recommendations_say_why():
+    told = recommend(CUBE, 1e-3)
+    assert told.method == "exact" == told.ways[0].method
+    assert told.cpu_s == 0.0
+    assert {"exact", "fem", "fft", "dem", "multipole"} == {way.method for way in told.ways}
+    assert "1/8 of the body: mirror planes" in told.why
+    # What costs least is named first, and what is refused last.
+    costs = [way.cpu_s for way in recommend(ASKEW, 1e-3).ways if way.cpu_s == way.cpu_s and not way.refused]
+    assert costs == sorted(costs)
+    assert recommend(ASKEW, 1e-3).ways[-1].refused.startswith("no closed form")
+    assert recommend(ASKEW, 1e-3, memory=1.0).method in ("", "multipole")
+
+
+def test_nonsense_is_refused():
+    for knobs, words in (
+        ({"accuracy": 0.0}, "accuracy = 0.0: must be a number from 1e-9 to below 1"),
+        ({"accuracy": "fine"}, "accuracy = 'fine': must be"),
+        ({"method": "magic"}, "method = 'magic': must be one of exact, multipole, fem, fft, dem, bracket"),
+        ({"memory": -1.0}, "memory = -1.0: must be a number of bytes > 0"),
+    ):
+        with pytest.raises(ValueError, match=words):
+            effective(CUBE, **knobs)
+    flux = Scene((1.0,) * 3, Material(1.0), walls={"x-": 0.0, "x+": Flux(1.0)})
+    with pytest.raises(NotImplementedError, match="Scene.walls"):
+        effective(flux)

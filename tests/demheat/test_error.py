@@ -1,0 +1,140 @@
+"""Estimates of error: what they read off coarser runs, and that they hold where the exact solution is known."""
+
+import math
+import warnings
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from method_scenes import METHODS
+
+from demheat import Layer, Material, Scene, Sphere, evolve, gallery, solve
+from demheat.error import Refinement, by_refinement, known, missing
+from references import exact, fem, fft, multipole, series
+
+RULE = Refinement(2.0, 2, 1.5, 3.0, 1.0, 2.0)
+
+
+def made(level, *, off=1.0, scene=None):
+    """A solution of a body that conducts 5, off by 0.1 2^(1.5 level) and by 0.01 2^level degrees."""
+    scene = scene or Scene((1.0,) * 3, Material(1.0), walls={"x-": 0.0, "x+": 1.0})
+    return SimpleNamespace(
+        scene=scene,
+        time=None,
+        conductivity=5 + off * 0.1 * 2 ** (1.5 * level),
+        mean_flux=np.array([-5 - off * 0.1 * 2 ** (1.5 * level), 0.2 * 2 ** (1.5 * level), 0.0]),
+        temperature_at=lambda points: points[:, 0] + 0.01 * 2**level,
+        wall_temperature={"x-": 0.0, "x+": 1.0},
+    )
+
+
+def test_what_is_missing_is_read_off_the_changes():
+    changes = np.diff([5 + 0.1 * 2 ** (1.5 * level) for level in range(3)])
+    assert missing(changes, 2.0, 1.5) == pytest.approx(0.1, rel=1e-12)
+    # An error that crosses zero between the first two: the next change tells.
+    assert missing([0.0, 0.8], 2.0, 1.5) == pytest.approx(0.8 / (2**1.5 * (2**1.5 - 1)), rel=1e-12)
+    # A faster fall than the order that is known of the method is not believed.
+    assert missing([0.1], 2.0, 1.0) == pytest.approx(0.1, rel=1e-12)
+
+
+def test_another_refinement_adds_what_it_changes():
+    rule = RULE._replace(also=2.0)
+    estimate = by_refinement(made(0), made, rule, how="coarser", also=lambda first: made(1, off=0.5))
+    nowhere = by_refinement(made(0), made, rule, how="coarser", also=lambda first: None)
+    # Half of the error of the first coarser run, 0.1 2^1.5, twice.
+    assert estimate.upper - nowhere.upper == pytest.approx(0.1 * 2**1.5, rel=1e-10)
+
+
+def test_intervals_are_what_is_missing_times_a_safety():
+    estimate = by_refinement(made(0), made, RULE, how="coarser")
+    assert estimate.runs == (made(0).conductivity, made(1).conductivity, made(2).conductivity)
+    middle = made(0).conductivity
+    # Rounding of a sum besides, 1e-12.
+    assert estimate.upper - middle == pytest.approx(3 * 0.1, rel=1e-10)
+    assert middle - estimate.lower == pytest.approx(3 * 0.1, rel=1e-10)
+    assert estimate.temperature == pytest.approx(2 * 0.01, rel=1e-10)
+    # The component that changes most tells of all.
+    assert estimate.flux == pytest.approx(3 * 0.2, rel=1e-10)
+    # What iterations and steps leave is added.
+    left = by_refinement(made(0), made, RULE, how="coarser", residual=0.01, steps=0.1)
+    assert left.upper - middle == pytest.approx(0.3 + 0.01 * middle, rel=1e-10)
+    span = np.ptp([0.0, 1.01])  # of the points and walls; the points do not reach the ends
+    assert 0.02 + 0.11 * 0.98 < left.temperature < 0.02 + 0.11 * 1.001 * span
+
+
+def test_the_level_of_a_periodic_cell_is_no_error():
+    scene = Scene((1.0,) * 3, Material(1.0), gradient=(1.0, 0.0, 0.0))
+    estimate = by_refinement(made(0, scene=scene), lambda level: made(level, scene=scene), RULE, how="coarser")
+    assert estimate.temperature < 1e-9
+
+
+def test_coarser_runs_that_cannot_be_made():
+    def only_one(level):
+        if level > 1:
+            raise ValueError("voxels: too few")
+        warnings.warn("particles are large", stacklevel=1)
+        return made(level)
+
+    # Its warning is kept back: a warning would be an error here.
+    assert len(by_refinement(made(0), only_one, RULE, how="coarser").runs) == 2
+
+    def none(level):
+        raise ValueError("voxels: too few")
+
+    with pytest.raises(RuntimeError, match="no coarser run to compare with: voxels: too few"):
+        by_refinement(made(0), none, RULE, how="coarser")
+
+
+def test_a_conductivity_below_zero_is_none():
+    estimate = by_refinement(made(0), lambda level: made(level, off=100.0), RULE, how="coarser")
+    assert estimate.lower == 0.0 < estimate.upper
+    assert known(made(0), 0.1, "tables").lower == pytest.approx(0.9 * made(0).conductivity, rel=1e-10)
+
+
+@pytest.mark.parametrize("name", [name for name, m in METHODS.items() if m.call == "solve" and m.resolution])
+def test_methods_know_how_far_they_are_off(name):
+    """On the sphere in a cube, at the suite's coarse resolution; off the middle, for no symmetry to help."""
+    method, scene = METHODS[name], gallery.sphere_in_cube(10.0)
+    right = exact.solve(scene)
+    module = {"dem": None, "fem": fem, "fft": fft, "multipole": multipole}[method.module]
+    knobs = method.knobs | method.at(method.coarse, scene.size[0])
+    field = (module.solve if module else solve)(scene, **knobs)
+    estimate = field.error
+    assert estimate.lower <= right.conductivity <= estimate.upper
+    assert estimate is field.error  # made once
+    points = np.random.default_rng(5).random((300, 3)) * scene.size
+    off = np.sqrt(np.mean((field.temperature_at(points) - right.temperature_at(points)) ** 2))
+    assert off <= estimate.temperature
+
+
+def test_exact_solutions_say_so():
+    estimate = exact.solve(gallery.sphere_in_cube(10.0)).error
+    assert estimate.how.startswith("exact to")
+    assert 0 < estimate.upper / estimate.lower - 1 < 1e-9
+
+
+def test_stopped_heat_is_exactly_none():
+    layer = Layer(1, 0.4, 0.6, Material(0.0))
+    scene = Scene((1.0,) * 3, Material(1.0), [layer], walls={"y-": 0.0, "y+": 1.0})
+    for field in (solve(scene, particles=1000), fft.solve(scene, voxels=16)):
+        assert (field.error.lower, field.error.upper) == (0.0, 0.0)
+
+
+def test_loads_without_a_conductivity_have_none():
+    scene = Scene((1.0,) * 3, Material(1.0), [Sphere((0.5,) * 3, 0.3, Material(5.0))], walls={"x-": 0.0, "y+": 1.0})
+    estimate = solve(scene, particles=1000).error
+    assert math.isnan(estimate.lower) and math.isnan(estimate.upper)
+    assert 0 < estimate.temperature < 1
+
+
+def test_in_time_temperatures_are_estimated():
+    metal = Material(conductivity=2.0, density=1.0, heat_capacity=1.0)
+    scene = Scene((1.0,) * 3, metal, walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
+    points = np.random.default_rng(5).random((300, 3))
+    (right,) = series.evolve(scene, [0.02])
+    for fields in (evolve(scene, [0.02], particles=1000), fem.evolve(scene, [0.02], size=0.25)):
+        (field,) = fields
+        off = np.sqrt(np.mean((field.temperature_at(points) - right.temperature_at(points)) ** 2))
+        assert off <= field.error.temperature < 0.2
+        assert math.isnan(field.error.lower)
+    assert right.error.temperature < 1e-11
