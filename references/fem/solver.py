@@ -111,7 +111,7 @@ def _answers(scenes, tolerance, **elements):
     fields = []
     for scene, each in zip(scenes, solved, strict=True):
         again = partial(_again, scene, tolerance, elements)
-        fields.append(_field(scene, mesh, each, partial(estimated, coarser=again, kind=kind)))
+        fields.append(_field(scene, mesh, each, tolerance, partial(estimated, coarser=again, kind=kind)))
     return fields
 
 
@@ -120,7 +120,7 @@ def _again(scene, tolerance, elements, factor):
     return _answers([scene], tolerance, **elements | {"coarser": factor})[0]
 
 
-def _field(scene, mesh, solved, estimator):
+def _field(scene, mesh, solved, tolerance, estimator):
     alone = one_blas_thread()
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()
