@@ -190,6 +190,7 @@ TABLE = [
     (multipole.zeta2, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT)}),
     (bracket.solve, {"scene": WALLED}, {"scene": OBJECT, "size": or_none(POSITIVE), "width": or_none(POSITIVE), "tolerance": (*POSITIVE, 1.0)}),
     (bracket.solve_tensor, {"scene": CELL}, {"scene": OBJECT, "size": or_none(POSITIVE), "tolerance": (*POSITIVE, 1.0)}),
+    *((method.solve_axes, {"scene": CELL}, {"scene": OBJECT}) for method in (exact, fem, fft, multipole)),
     (bounds.estimate, {"scene": BALL}, {"scene": OBJECT, "formula": WORD}),
     (bounds.voigt, {"conductivities": [1.0, 2.0], "fractions": [0.5, 0.5]}, {"conductivities": (None, "a", ["1", "2"], [NAN, 1.0], [-1.0, 1.0], [1.0, 2.0, 3.0], [1j, 1.0], [True, True]), "fractions": (None, "a", ["0.5", "0.5"], [0.5, 0.6], [-0.5, 1.5], [NAN, 1.0])}),
     (bounds.reuss, {"conductivities": [1.0, 2.0], "fractions": [0.5, 0.5]}, {"conductivities": (None, "a", [NAN, 1.0], [-1.0, 1.0], [1.0, 2.0, 3.0]), "fractions": (None, "a", [0.5, 0.6], [NAN, 1.0])}),
@@ -211,6 +212,8 @@ OTHERS = {
     "Packing": "made by hand without a check; asked for by the gate of packings wherever it is given",
     "Error": "made by the referee",
     "CurveError": "made by the referee",
+    "Bracket": "made by the bounds",
+    "Tensor": "made by the bounds",
     "cached": "keeps what any function makes",
 }
 CALLS = [(row, argument) for row in range(len(TABLE)) for argument in TABLE[row][2]]
