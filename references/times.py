@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.scene.inputs import reals
+from demheat.scene.inputs import LEAST, MOST, moderate, reals
 
 
 def checked_times(times) -> list[float]:
@@ -13,11 +13,11 @@ def checked_times(times) -> list[float]:
     Raises
     ------
     ValueError
-        Unless they are finite numbers >= 0, increasing, one at least.
+        Unless they are increasing numbers, 0 or from 1e-50 to 1e50, one at least.
     """
-    valid = "increasing numbers >= 0, in seconds, one at least"
+    valid = f"increasing numbers, 0 or from {LEAST:g} to {MOST:g} s, one at least"
     array = np.atleast_1d(reals("times", times, valid))
-    good = array.ndim == 1 and array.size and np.all(np.isfinite(array)) and array[0] >= 0
+    good = array.ndim == 1 and array.size and all(map(moderate, array)) and array[0] >= 0
     if not good or not np.all(np.diff(array) > 0):
         raise ValueError(f"times = {times!r}: must be {valid}")
     return array.tolist()

@@ -49,6 +49,11 @@ class Image(NamedTuple):
     def mean_turn(self):
         return self.turn if self.mean is None else self.mean
 
+    @property
+    def capacity(self):
+        """Heat capacity of a volume by which heat takes as long to settle: conductivity over the square of a length."""
+        return (self.flux / self.warmth) ** 2 / self.conductivity
+
 
 class Relation(NamedTuple):
     """How a scene is changed, and whose discretisation changes with it.

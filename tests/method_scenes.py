@@ -93,21 +93,24 @@ def asked(scene):
     return {name for name, is_asked in found.items() if is_asked}
 
 
-def answered(method, scene, **other):
-    """The Field of a scene at the size of the suite, or with other knobs; of a formula what it knows."""
+def answered(method, scene, *, capacity=1.0, **other):
+    """The Field of a scene at the size of the suite, or with other knobs; of a formula what it knows.
+
+    What settles in time does so with a heat capacity, J/(m3 K), of all materials.
+    """
     module = methods.load(method.module)
     if method.call == "estimate":
         return Estimated(scene, module.estimate(scene, **method.knobs), fractions(scene))
     knobs = {**method.knobs, **method.at(method.coarse, max(scene.size)), **method.tight, **other}
     if method.call == "evolve":
-        *_, last = module.evolve(resting(scene), (SETTLED,), **knobs)
+        *_, last = module.evolve(resting(scene, capacity), (SETTLED,), **knobs)
         return last
     return module.solve(scene, **knobs)
 
 
-def resting(scene):
-    """The scene with heat capacities, and at a temperature at time 0."""
-    heavy = {"density": 1.0, "heat_capacity": 1.0}
+def resting(scene, capacity=1.0):
+    """The scene with heat capacities, J/(m3 K), and at a temperature at time 0."""
+    heavy = {"density": 1.0, "heat_capacity": capacity}
     inclusions = [replace(each, material=replace(each.material, **heavy)) for each in scene.inclusions]
     return replace(scene, matrix=replace(scene.matrix, **heavy), inclusions=inclusions, initial=LOW)
 

@@ -136,7 +136,7 @@ def second(name, relation, seed):
         return None
     if image.in_time:
         return _last(method, image.scene)
-    return _known(method, image.scene, **_size(method, image, max(drawn(seed).size)))
+    return _known(method, image.scene, capacity=image.capacity, **_size(method, image, max(drawn(seed).size)))
 
 
 def _size(method, image, edge):

@@ -19,7 +19,7 @@ from demheat.build import network_of
 from demheat.dem import evolve, solve, solve_axes
 from demheat.packing import dispersion, domain, lsa, make_packing, neighbours, relax, statistics
 from demheat.sampling import halo
-from references import bounds, exact, fem, fft, mesh, multipole, richardson
+from references import bounds, bracket, exact, fem, fft, mesh, multipole, richardson
 from references.fft import zeta
 
 NAN, INF = float("nan"), float("inf")
@@ -39,7 +39,23 @@ SIDES = (*VECTOR, (0.0, 1.0, 1.0), (-1.0, 1.0, 1.0))
 PLACES = (None, "a", 0.5, [["0.5"] * 3], [[NAN, 0.5, 0.5]], [[1j, 0.5, 0.5]], [[0.5, 0.5]])
 PLACES = (*PLACES, np.ma.array([[0.5] * 3], mask=True))
 RADII = ("a", 5, ["1", "2"], [NAN, 1.0], [-1.0, 1.0], [0.0, 1.0], [1j, 1.0], [[1.0, 2.0]])
-TIMES = (None, "a", [], ["1"], [NAN], [INF], [-1.0], [2.0, 1.0], [1.0, 1.0], [True], [1j], [[1.0, 2.0]], HIDDEN)
+TIMES = (
+    None,
+    "a",
+    [],
+    ["1"],
+    [NAN],
+    [INF],
+    [5e-324],
+    [1e51],
+    [-1.0],
+    [2.0, 1.0],
+    [1.0, 1.0],
+    [True],
+    [1j],
+    [[1.0, 2.0]],
+    HIDDEN,
+)
 SERIES = (None, "a", 5.0, [], ["1", "2", "3"], [1j, 2.0, 3.0], [1.0, 2.0])
 PAIR = (None, "a", 5, (1.0,), (1.0, 2.0, 3.0), ("1", "2"), (NAN, 1.0), (True, 1.0), (1j, 1.0))
 CURVE = (None, "a", 5.0, [], ["1", "2"])
@@ -87,11 +103,11 @@ TABLE = [
     (demheat.Sphere, {"center": (0.5,) * 3, "radius": 0.2, "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "material": MATERIAL}),
     (demheat.Layer, {"axis": 0, "start": 0.2, "stop": 0.4, "material": OTHER}, {"axis": (*WHOLE, 3), "start": NUMBER, "stop": POSITIVE, "material": MATERIAL}),
     (demheat.Flux, {}, {"value": NUMBER}),
-    (demheat.UniformSource, {}, {"power_density": POSITIVE}),
-    (demheat.MovingCylinder, MOVING, {"axis": (*WHOLE, 3), "diameter": POSITIVE, "power_density": POSITIVE, "start": PAIR, "velocity": PAIR, "clip": FLAG}),
+    (demheat.UniformSource, {}, {"power_density": (*POSITIVE, 1e300)}),
+    (demheat.MovingCylinder, MOVING, {"axis": (*WHOLE, 3), "diameter": (*POSITIVE, 1e-300), "power_density": (*POSITIVE, 1e300), "start": PAIR, "velocity": PAIR, "clip": FLAG}),
     (demheat.Scene, CUBE | {"gradient": (1, 0, 0)}, {"size": SIDES, "matrix": MATERIAL, "gradient": (*without(VECTOR, None), (0.0, 0.0, 0.0))}),
     (demheat.Scene, CUBE | {"gradient": (1, 0, 0)}, {"inclusions": (None, "a", 5, [None], ["a"], [METAL], object), "sources": (None, "a", 5, [METAL]), "domain": WORD}),
-    (demheat.Scene, CUBE | {"walls": {"x-": 0.0}}, {"initial": or_none(NUMBER)}),
+    (demheat.Scene, CUBE | {"walls": {"x-": 0.0}}, {"initial": or_none((*NUMBER, 1e300))}),
     (demheat.Scene, CUBE, {"walls": ("a", 5, {}, {"q": 1.0}, {1: 1.0}, {"round": 1.0}, *({"x-": value} for value in NUMBER))}),
     (demheat.Laguerre, {}, {"conforming": FLAG, "interface": WORD}),
     (demheat.Calibrated, {}, LAWS | {"mean": WORD, "additive": FLAG, "factor": or_none(POSITIVE)}),
@@ -129,7 +145,7 @@ TABLE = [
     (packing.grown, {"number": 8, "allow_few": True}, {"size": SIDES, "radii": RADII, "periodic": FLAG, "start": (EIGHT,)}),
     (relax.relax, {"number": 8, "allow_few": True}, {"number": COUNT, "size": SIDES, "phi": POSITIVE, "radii": RADII, "periodic": FLAG, "domain": WORD, "seed": WHOLE, "allow_few": FLAG, "overlap": PART, "steps": WHOLE, "progress": ("a", 5)}),
     (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"number": COUNT, "size": SIDES, "phi": or_none(POSITIVE), "radii": RADII, "periodic": FLAG, "domain": WORD, "seed": WHOLE, "allow_few": FLAG}),
-    (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"pressure": or_none(POSITIVE), "growth": (*without(POSITIVE, [0.5]), [], [(1, 2, 3)]), "progress": ("a", 5), "start": ("a", 5)}),
+    (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"pressure": or_none(POSITIVE), "most": POSITIVE, "growth": (*without(POSITIVE, [0.5]), [], [(1, 2, 3)]), "progress": ("a", 5), "start": ("a", 5)}),
     (packing.settle, {"packing": EIGHT}, {"packing": OBJECT, "fixed": ("a", 5, [True], np.ones(8)), "steps": WHOLE, "overlap": PART, "progress": ("a", 5)}),
     (neighbours.neighbours, {"packing": EIGHT}, {"packing": OBJECT, "scale": PART, "skin": PART}),
     (packing.contacts, {"packing": EIGHT, "coordination": 3.0}, {"packing": OBJECT, "gap": or_none((*NUMBER, -1.0)), "additive": FLAG, "coordination": POSITIVE, "margin": PART}),
@@ -177,6 +193,9 @@ TABLE = [
     (multipole.solve, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),
     (multipole.solve_axes, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),
     (multipole.zeta2, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT)}),
+    (bracket.solve, {"scene": WALLED}, {"scene": OBJECT, "size": or_none(POSITIVE), "width": or_none(POSITIVE), "tolerance": (*POSITIVE, 1.0)}),
+    (bracket.solve_tensor, {"scene": CELL}, {"scene": OBJECT, "size": or_none(POSITIVE), "tolerance": (*POSITIVE, 1.0)}),
+    *((method.solve_axes, {"scene": CELL}, {"scene": OBJECT}) for method in (exact, fem, fft, multipole)),
     (bounds.estimate, {"scene": BALL}, {"scene": OBJECT, "formula": WORD}),
     (bounds.voigt, {"conductivities": [1.0, 2.0], "fractions": [0.5, 0.5]}, {"conductivities": (None, "a", ["1", "2"], [NAN, 1.0], [-1.0, 1.0], [1.0, 2.0, 3.0], [1j, 1.0], [True, True]), "fractions": (None, "a", ["0.5", "0.5"], [0.5, 0.6], [-0.5, 1.5], [NAN, 1.0])}),
     (bounds.reuss, {"conductivities": [1.0, 2.0], "fractions": [0.5, 0.5]}, {"conductivities": (None, "a", [NAN, 1.0], [-1.0, 1.0], [1.0, 2.0, 3.0]), "fractions": (None, "a", [0.5, 0.6], [NAN, 1.0])}),
@@ -198,6 +217,8 @@ OTHERS = {
     "Packing": "made by hand without a check; asked for by the gate of packings wherever it is given",
     "Error": "made by the referee",
     "CurveError": "made by the referee",
+    "Bracket": "made by the bounds",
+    "Tensor": "made by the bounds",
     "cached": "keeps what any function makes",
 }
 CALLS = [(row, argument) for row in range(len(TABLE)) for argument in TABLE[row][2]]
@@ -233,7 +254,7 @@ def test_the_table_is_whole():
         for name, made in vars(gallery).items()
         if getattr(made, "__module__", "") == gallery.__name__ and name[0] != "_"
     }
-    for module in (exact, fem, fft, multipole, bounds):
+    for module in (exact, fem, fft, multipole, bounds, bracket):
         names = [name for name in getattr(module, "__all__", ()) if not name.isupper()]
         assert names, module
         public |= {name for name in names if callable(getattr(module, name))}

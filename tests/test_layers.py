@@ -218,6 +218,7 @@ LAYERS = {
     ),
     "references.bracket": (
         "demheat.scene",
+        "demheat.limits",
         "demheat.process_state",
         "demheat.progress",
         "references.mesh",

@@ -1,10 +1,11 @@
 """Requests that no machine can do are refused before anything is made, whoever is asked."""
 
 import re
+from dataclasses import replace
 
 import pytest
 
-from demheat import Layer, Material, Scene, evolve, gallery, solve
+from demheat import Layer, Material, MovingCylinder, Scene, evolve, gallery, solve
 from demheat.packing.domain import replicate
 from demheat.packing.lsa import lsa
 from demheat.packing.relax import relax, settle
@@ -15,6 +16,7 @@ from references.fft.zeta import zeta2
 HUGE = 10**12
 SLAB, CELL = gallery.slab(), gallery.simple_cubic()
 IN_TIME = Scene((0.1, 0.1, 0.1), Material(33.0, 7800.0, 900.0), walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
+WIRE = MovingCylinder(axis=2, diameter=1e-13, power_density=1.0, start=(0.05, 0.05), velocity=(0.01, 0.0))
 REQUESTS = {
     "particles = 1000000000000: takes": lambda: solve(SLAB, particles=HUGE),
     "particles = 100000000000...": lambda: evolve(IN_TIME, [1.0], particles=10**300),
@@ -25,6 +27,7 @@ REQUESTS = {
     "pressure = 1e+300: must be >= 10 and <= 1e+12": lambda: lsa(100, pressure=1e300),
     "growth = 1e+300: must be a rate": lambda: lsa(100, growth=1e300),
     "growth = 1e-06: takes some 1.8e+07 collisions": lambda: lsa(1000, growth=1e-6),
+    "growth = 1e-09: takes some 3.9e+09 collisions": lambda: lsa(1000, phi=0.3, growth=1e-9),
     "growth = 1e-300: takes some": lambda: lsa(100, phi=0.3, growth=1e-300),
     "growth = [[0.0, 0.02], [1000.0, 1e-09]]: takes": lambda: lsa(1000, growth=[(0, 0.02), (1e3, 1e-9)]),
     "repeats = [10000, 10000, 10000]: takes": lambda: replicate(relax(100), (10_000,) * 3),
@@ -44,6 +47,9 @@ REQUESTS = {
     "step = 1e-12: takes ": lambda: next(fem.evolve(IN_TIME, [1.0], step=1e-12)),
     "times, the last = 1000000000000.0: takes": lambda: next(
         evolve(IN_TIME, [1e12], particles=300, integrator="euler")
+    ),
+    "Scene.sources: diameter over velocity, s = 1e-11: takes": lambda: list(
+        evolve(replace(IN_TIME, sources=[WIRE]), [1.0], particles=300)
     ),
     "times, the last = 1e+30: takes": lambda: next(evolve(IN_TIME, [1e30], particles=300, integrator="rkl2")),
 }

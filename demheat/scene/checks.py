@@ -84,7 +84,8 @@ def _check_walls(walls, valid, *, or_none):
 def check_initial(initial) -> None:
     """Raise ValueError unless an initial temperature is None, a finite number or callable."""
     if initial is not None and not callable(initial):
-        finite("Scene.initial", initial, "a finite temperature or a function of points")
+        valid = f"a finite temperature of at most {MOST:g}, or a function of points"
+        finite("Scene.initial", initial, valid, lambda v: abs(v) <= MOST)
 
 
 def checked_sources(sources) -> tuple[UniformSource | MovingCylinder, ...]:

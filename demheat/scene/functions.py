@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import MOST, finite
 from demheat.scene.parts import Flux
 
 
@@ -32,7 +32,7 @@ def load_at(name, load, time) -> float:
         found = value(time)
     except Exception as error:
         raise ValueError(f"{what}: the function raises {type(error).__name__}: {error}") from error
-    return finite(what, found, "a finite number")
+    return finite(what, found, f"a finite number of at most {MOST:g}", lambda v: abs(v) <= MOST)
 
 
 def initial_at(scene, points) -> np.ndarray:
@@ -59,8 +59,8 @@ def initial_at(scene, points) -> np.ndarray:
     if values.shape != (len(points),) or values.dtype.kind not in "iuf":
         what = f"shape {values.shape} of {values.dtype}"
         raise ValueError(f"Scene.initial: gives {what} for {len(points)} points; must be real numbers, (n,)")
-    odd = np.flatnonzero(~np.isfinite(values))
+    odd = np.flatnonzero(~(np.abs(values) <= MOST))
     if len(odd):
-        where = points[odd[0]].tolist()
-        raise ValueError(f"Scene.initial = {values[odd[0]]} at {where} m: must be finite at all points of the body")
+        what = f"{values[odd[0]]} at {points[odd[0]].tolist()} m"
+        raise ValueError(f"Scene.initial = {what}: must be finite, at most {MOST:g}, at all points of the body")
     return values.astype(float)

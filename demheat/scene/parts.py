@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from demheat.scene.inputs import MOST, moderate, number, vector, whole
+from demheat.scene.inputs import LEAST, MOST, moderate, number, vector, whole
+
+WITHIN = f", from {LEAST:g} to {MOST:g}"
 
 
 @dataclass(frozen=True)
@@ -40,7 +42,7 @@ class UniformSource:
     power_density: float
 
     def __post_init__(self):
-        number(self, "power_density", "a finite number > 0 W/m3", lambda v: v > 0)
+        number(self, "power_density", f"a finite number > 0 W/m3{WITHIN}", _positive)
 
 
 @dataclass(frozen=True)
@@ -73,8 +75,8 @@ class MovingCylinder:
     def __post_init__(self):
         axis = whole("MovingCylinder.axis", self.axis, "0, 1 or 2", lambda v: 0 <= v <= 2)
         object.__setattr__(self, "axis", axis)
-        number(self, "diameter", "a finite number > 0 m", lambda v: v > 0)
-        number(self, "power_density", "a finite number > 0 W/m3", lambda v: v > 0)
+        number(self, "diameter", f"a finite number > 0 m{WITHIN}", _positive)
+        number(self, "power_density", f"a finite number > 0 W/m3{WITHIN}", _positive)
         for name in ("start", "velocity"):
             object.__setattr__(self, name, vector(f"MovingCylinder.{name}", getattr(self, name), length=2))
         if not isinstance(self.clip, bool):
@@ -83,3 +85,7 @@ class MovingCylinder:
     def position(self, time):
         """Where its axis is at a time in seconds, (2,) float array, m."""
         return np.array(self.start) + np.array(self.velocity) * time
+
+
+def _positive(value):
+    return value > 0 and moderate(value)

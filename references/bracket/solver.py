@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from demheat.limits import free_memory
 from demheat.process_state import one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
 from demheat.scene.inputs import finite
@@ -16,7 +17,7 @@ from references.bracket.equations import balanced_flux
 from references.bracket.surfaces import pushed
 from references.fem.system import solve_nodes
 from references.mesh import make
-from references.mesh.sizes import checked_size
+from references.mesh.sizes import BYTES, MOST_CELLS, checked_size
 
 # The integral of |normal flux| over a face is at most so many times the sum of the magnitudes of its three moments:
 # each corner's value is 12/area times (its moment less a quarter of the sum), and weighs a third of the area.
@@ -27,6 +28,8 @@ OF_MOMENTS = 7.0
 DROPS = 10.0
 # A finer mesh's edges over a coarser one's: by the width's third power, but neither more nor less than these.
 POWER, FINER = 1 / 3, (0.5, 0.85)
+# Of edges over the width's powers, where bounds close in like the edges' fourth power.
+FASTEST = 1 / 4
 # The first mesh on the way to a width: edges over the mesher's usual ones, a tenth of its cost.
 FIRST = 2.5
 # Of the best conductor: what conducts less is stopped by pores, and no ratio of bounds tells how well it is known.
@@ -123,7 +126,21 @@ def _narrowed(scene, size, width, tolerance, drop, power):
         found = _once(scene, size, tolerance, drop, power)
         if width is None or found.width <= width or found.upper <= NOTHING * max(scene.conductivities):
             return found
+        _check_width(width, found)
         size = found.stats["size"] * float(np.clip((width / found.width) ** POWER, *FINER))
+
+
+def _check_width(width, found):
+    """Refuse a width far beyond any mesh as soon as one mesh tells; `make` refuses what is nearer."""
+    elements, most = found.stats["elements"], min(MOST_CELLS, free_memory() / BYTES[2])
+    # Wherever bounds close in as fast as is found anywhere.
+    needed = elements * (found.width / width) ** (3 * FASTEST)
+    if math.isfinite(found.width) and needed > most:
+        least = found.width * (elements / most) ** (1 / (3 * FASTEST))
+        raise ValueError(
+            f"width = {width!r}: takes some {needed:.1e} tetrahedra, here {most:.1e} are possible; must be >= "
+            f"{least:.1g} here, as {elements} give {found.width:.1e}"
+        )
 
 
 def _unit_load(scene):

@@ -88,6 +88,13 @@ class NodalField:
             total -= self.conductivity[ids] @ np.einsum("bq,bqx->bx", volumes, gradient)
         return total / self.scene.volume
 
+    def power(self):
+        """Conductivity times the square of the gradient, over the volume of the body, W K."""
+        total = 0.0
+        for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
+            total += float(self.conductivity[ids] @ np.einsum("bq,bqx->b", volumes, gradient**2))
+        return total
+
     def spread(self, points, amounts):
         """Share amounts at points among the nodes by their shape functions.
 

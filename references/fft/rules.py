@@ -7,6 +7,7 @@ import warnings
 import numpy as np
 
 from demheat.scene.thickness import coats, narrower
+from references.voxels.kernels import FULL
 from references.voxels.links import cut
 from references.voxels.paint import paint
 
@@ -21,7 +22,8 @@ MEASURED = {
 # What rules make of an inclusion smaller than a voxel.
 MISSED = {
     "plain": "miss them or see whole voxels instead",
-    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape",
+    "laminate": "see many times their effect at high contrast: a voxel has their volume, not their shape; it misses "
+    "layers a billion times thinner",
     "links": "miss them or see some of them only",
 }
 
@@ -79,8 +81,9 @@ def warn_of_thin(scene, rule, shape) -> None:
             f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
             stacklevel=4,
         )
-    # Laminates are exact for layers of any thickness.
+    # Laminates are exact for layers of any thickness that they see.
     small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
+    small |= narrower(scene, FULL * spacing)
     small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
     if small.any():
         warnings.warn(

@@ -27,8 +27,8 @@ from references.multipole.system import dipoles
 from references.multipole.translations import background_share
 from references.threads import Team
 
-# Smallest edge of a cell, in largest diameters.
-SMALLEST = 1.05
+# Smallest edge of a cell, in largest diameters; and the most cells, of tiny spheres in a large box.
+SMALLEST, MOST_CELLS = 1.05, 1e9
 # Seconds of an exchange between two spheres over (order + 1)^3, of one between all cells over (degree + 1)^4 and per
 # cell, and of one far sum: about, on one processor.
 PAIR, CELL, SUM = 2e-9, 7e-10, 1e-5
@@ -75,6 +75,7 @@ def plan(spheres, order, precision) -> Plan:
     Plan
     """
     edge, best = SMALLEST * 2 * float(spheres.radii.max()), None
+    edge = max(edge, (float(np.prod(spheres.size)) / MOST_CELLS) ** (1 / 3))
     while best is None or edge < 1.3 * spheres.size.max():
         shape = np.maximum(1, (spheres.size / edge).astype(np.int64))
         degree, cells = far_degree(spheres.size / shape, precision), int(np.prod(shape))
@@ -106,7 +107,8 @@ def far_degree(edge, precision) -> int:
     """
     half = float(np.linalg.norm(edge)) / 2
     ratio = half / ((WIDTH + 1) * float(np.min(edge)) - half)
-    if not ratio < 0.9:
+    # Of flat cells even near corners may be farther apart than those that count as far.
+    if not 0.0 < ratio < 0.9:
         ratio = 0.9
     return max(4, math.ceil(FASTER * math.log(ABOVE * precision) / math.log(ratio)))
 

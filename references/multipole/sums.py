@@ -90,7 +90,8 @@ def splitting(size, contact, degree, eta=None) -> Splitting:
 def _first_small(terms, where):
     """The first place from which on the terms of all degrees are negligible."""
     large = np.flatnonzero(np.any(terms > NEGLIGIBLE, axis=0))
-    return float(where[min(large[-1] + 1, len(where) - 1)])
+    # Of tiny spheres in a large cell all may be.
+    return float(where[min(large[-1] + 1, len(where) - 1)] if len(large) else where[0])
 
 
 def _log_weight(degree, k, eta, volume):

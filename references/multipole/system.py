@@ -222,7 +222,8 @@ def gmres(system, load, start, tolerance, heard=None):
         target[0] = size
         weights = np.linalg.lstsq(columns[: k + 2, : k + 1], target, rcond=None)[0]
         left = float(np.linalg.norm(target - columns[: k + 2, : k + 1] @ weights))
-        if left <= wanted or norm <= 1e-15 * size:
+        # The vectors of the basis have length 1, whatever that of the load.
+        if left <= wanted or norm <= 1e-15:
             break
         if heard:
             heard(math.log(min(left / size, 1.0)) / math.log(wanted / size))

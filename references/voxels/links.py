@@ -85,6 +85,8 @@ def _finish(scene, axis, resistance, least, phase):
         view[:, :, [0, -1]] *= 2.0
     if _rounded(scene):
         kernels.keep_off(view, np.moveaxis(phase, axis, 2), least, scene.periodic)
+    # Next to a resistivity 1e16 times as large rounding leaves nothing of the least: half a link of it at both ends.
+    np.maximum(resistance, least.min() / NEAREST / 2, out=resistance)
     np.divide(1.0, resistance, out=resistance)
     if not scene.periodic and axis != scene.axis:
         view[:, :, [0, -1]] = 0.0

@@ -298,12 +298,15 @@ def _(shape: Layer, grid, spacing, number, *, cutting):
     axis, h = shape.axis, spacing[shape.axis]
     planes = np.arange(grid.shape[axis])
     middle = (planes + 0.5) * h
+    inside = np.clip((np.minimum(shape.stop, (planes + 1) * h) - np.maximum(shape.start, planes * h)) / h, 0.0, 1.0)
     whole = [slice(None)] * 3
     whole[axis] = (middle >= shape.start) & (middle <= shape.stop)
+    if cutting:
+        # What is thinner than rounding cuts no voxel, and fills none.
+        whole[axis] &= inside > kernels.FULL
     grid[tuple(whole)] = number
     if not cutting:
         return _none()
-    inside = np.clip((np.minimum(shape.stop, (planes + 1) * h) - np.maximum(shape.start, planes * h)) / h, 0.0, 1.0)
     cut = np.flatnonzero((inside > kernels.FULL) & (inside < 1 - kernels.FULL))
     places = [np.arange(n) for n in grid.shape]
     places[axis] = cut

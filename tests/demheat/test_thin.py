@@ -82,6 +82,16 @@ def test_many_more_twins_than_particles():
     assert field.stats["unknowns"] > 6 * 216
 
 
+def test_layers_that_a_laminate_does_not_see():
+    """Thinner than a billionth of a voxel, but with all the resistance."""
+    foil = Layer(0, 0.5, 0.5 + 1e-11, demheat.Material(1e-10))
+    with pytest.warns(UserWarning, match=r"inclusions \[0\] are smaller than a voxel .* misses layers"):
+        fft.solve(cell(foil), voxels=8)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        fft.solve(cell(Layer(0, 0.5, 0.5 + 1e-6, demheat.Material(1e-6))), voxels=8)
+
+
 def test_coats_thinner_than_a_voxel():
     """A coat that nothing outside notices was 2 % off."""
     with pytest.warns(UserWarning, match=r"inclusions \[0\] are coats thinner than a voxel of 0.125 m, down to 0.1 m"):

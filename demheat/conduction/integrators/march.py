@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
-from demheat.conduction.integrators.pace import ANY, Pace
+from demheat.conduction.integrators.pace import ANY, STEP, Pace
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
 from demheat.limits import check_steps
 from demheat.network.base import SIDES
-from demheat.scene.inputs import chosen, finite, reals
+from demheat.scene.inputs import LEAST, MOST, chosen, finite, moderate, reals
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 # An implicit solve may leave an error of this part of the accuracy asked for. What solves leave adds up over the steps,
@@ -21,8 +21,8 @@ LINEAR = 0.2
 # Loads that change in time may force more steps than the accuracy does. Beyond so many of them the part falls as their
 # number grows: where little heat flows, nothing damps what each solve has left.
 FEW = 4.0
-# Least seconds that a step takes, and a pass over a link.
-STEP, LINK = 1e-5, 5e-10
+# Least seconds that a pass over a link takes.
+LINK = 5e-10
 
 
 def linear_tolerance(accuracy, steps=1):
@@ -82,8 +82,8 @@ def check_request(times, integrator, accuracy, step):
         If one of them is not as described.
     """
     array = _numbers(times)
-    if array is None or not np.all(np.isfinite(array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
-        raise ValueError(f"times = {times!r}: must be a sequence of numbers, finite, >= 0 s and increasing")
+    if array is None or not all(map(moderate, array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
+        raise ValueError(f"times = {times!r}: must be increasing numbers, 0 or from {LEAST:g} to {MOST:g} s")
     chosen("integrator", integrator, choose.INTEGRATORS)
     finite("accuracy", accuracy, "between 1e-9 and 0.1 of the temperature span", lambda v: 1e-9 <= v <= 0.1)
     if step is not None:

@@ -9,6 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.limits import check_steps
+
+# Least seconds that a step takes.
+STEP = 1e-5
+
 # Functions of time are sampled at so many equal parts of the run; neighbours that differ by this part of the range are
 # looked at for a jump between them, which is then known to this part of the run.
 SAMPLES, STEEP, SHARP = 1000, 0.02, 1e-9
@@ -93,6 +98,9 @@ def pace_of(functions, transits, end, accuracy):
     for start, stop, crossing in transits:
         breaks += [start, stop]
         part = min(LONGEST, CROSSING * math.sqrt(accuracy / 1e-3))
+        count = max(min(stop, end) - max(start, 0.0), 0.0) / (part * crossing)
+        remedy = "slower or wider, or the last time earlier"
+        check_steps("Scene.sources: diameter over velocity, s", crossing, count, STEP, remedy=remedy)
         windows.append([(start, stop, part * crossing)] if math.isfinite(crossing) else [])
     for function in functions:
         jumps, limits = _sampled(function, end) if end > 0 else ([], [])

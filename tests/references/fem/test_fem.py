@@ -137,6 +137,20 @@ def test_extreme_contrasts(conductivity):
     assert_allclose(field.wall_heat["y+"], -field.wall_heat["y-"], rtol=1e-6)  # residual times root of the contrast
 
 
+PERIODIC, WALLED = {"gradient": (0.0, 1.0, 0.0)}, {"walls": {"y-": 0.0, "y+": 1.0}}
+
+
+def test_a_flux_that_rounding_drowns_is_no_answer():
+    """In a sphere of 1e16 it is any number, behind a layer of 1e-12 what the tolerance leaves: 8 times too much."""
+    good, best = (ball(k, radius=0.3) for k in (1e12, 1e16))
+    assert_allclose(fem.solve(scene(good, **PERIODIC), size=0.25).conductivity, 1.38295, rtol=0.01)  # 0.2 % of mesh
+    poor, along = Layer(1, 0.3, 0.6, Material(1e-12)), Layer(0, 0.3, 0.6, Material(1e-20))
+    assert_allclose(fem.solve(scene(along, **WALLED), size=0.25).conductivity, 0.7, rtol=1e-8)  # the tolerance
+    for inclusion, load in ((best, PERIODIC), (poor, WALLED)):
+        with pytest.raises(RuntimeError, match=r"^fem.solve: the flux is off by .* at a contrast of 1.0e\+1[26]"):
+            fem.solve(scene(inclusion, **load), size=0.25)
+
+
 def test_the_periodic_cell_equals_the_walls_and_does_not_depend_on_where_the_cell_is_cut():
     walls = EXACT[10] * (1 + sphere_error(10, 2, True, 0.11))
     gradient = {"gradient": (0.0, 2.0, 0.0)}

@@ -166,6 +166,36 @@ def test_thin_layers_are_counted_and_refused_in_time(monkeypatch):
         mesh.make(Scene((1.0,) * 3, Material(1.0), foil, walls={"x-": 0.0, "x+": 1.0}), size=0.1)
 
 
+def coated(radius, inner):
+    spheres = [Sphere((0.5,) * 3, radius, Material(2.0)), Sphere((0.5,) * 3, inner, Material(3.0))]
+    return Scene((1.0,) * 3, Material(1.0), spheres, gradient=(1.0, 0.0, 0.0))
+
+
+def test_thin_shells_are_counted_and_refused_in_time(monkeypatch):
+    """Without the shell in it the estimate is a tenth of what is found."""
+    of = coated(0.2, 0.196)
+    expected = sizes.estimated_cells(sizes.wanted_sizes(of, 0.2), np.ones(3))
+    assert 0.5 < len(mesh.make(of, size=0.2, order=1).cells) / expected < 2
+    monkeypatch.setattr(cad, "attempts", None)
+    with pytest.raises(ValueError, match=r"size = 0.2 m: about .* shells down to 3e-06 m thick take .*, too thin"):
+        mesh.make(coated(0.3, 0.3 * (1 - 1e-5)), size=0.2)
+
+
+@pytest.mark.parametrize(
+    ("inclusion", "says"),
+    [
+        (Sphere((0.5,) * 3, 1e-30, Material(2.0)), "sphere of radius 1e-30 m at .*: too small for a mesh"),
+        (Sphere((0.5,) * 3, 1e-6, Material(2.0)), "sphere of radius 1e-06 m"),
+        (Layer(1, 0.5, 0.5 + 1e-15, Material(2.0)), "layer along axis 1 from 0.5 to .*: too thin to mesh"),
+        (Layer(1, 0.0, 1e-300, Material(2.0)), "layer along axis 1"),
+    ],
+)
+def test_what_gmsh_is_lost_in_is_refused_first(inclusion, says, monkeypatch):
+    monkeypatch.setattr(cad, "attempts", None)
+    with pytest.raises(NotImplementedError, match=says):
+        mesh.make(Scene((1.0,) * 3, Material(1.0), [inclusion], gradient=(1.0, 0.0, 0.0)))
+
+
 def test_pairs_looked_at_grow_like_the_spheres():
     """Lattices of ever more spheres: each has as many neighbours, whatever their number."""
     for n in (4, 8):

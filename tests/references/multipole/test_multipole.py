@@ -91,6 +91,19 @@ def test_dilute_spheres_of_two_materials():
     assert abs(first**2 / 3) > 3e-7
 
 
+@pytest.mark.parametrize("radius", [1e-3, 1e-10, 1e-30])
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 0.1, 1.0)])
+def test_tiny_spheres_in_large_and_flat_cells(radius, size):
+    """In the limit each is alone: a dipole in a matrix, the flux within it 3 k/(k + 2) times the matrix's."""
+    spheres = [Sphere(np.multiply(where, size), radius, Material(5.0)) for where in ((0.5, 0.5, 0.5), (0.2, 0.3, 0.4))]
+    field = multipole.solve(Scene(size, Material(1.0), spheres, gradient=(0.0, 1.0, 0.0)), points_per_axis=2)
+    dilute = 1 + 3 * (5 - 1) / (5 + 2) * 2 * 4 / 3 * math.pi * radius**3 / math.prod(size)
+    # Neighbours, their images included, are 0.1 away at least: 8 of their fields of (r/0.1)^3, and rounding.
+    assert_allclose(field.conductivity, dilute, rtol=8 * (10 * radius) ** 3 * (dilute - 1) + 1e-13)
+    inside = field.flux_at([spheres[0].center])[0]
+    assert_allclose(inside, [0, -15 / 7, 0], atol=20 * (10 * radius) ** 3 + 1e-13)
+
+
 def test_no_contrast_and_no_spheres():
     for parts in ([], [(center, radius, 1.0) for center, radius, _ in PARTS]):
         field = multipole.solve(box((1.0, 2.0, 3.0), parts=parts))

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+import pytest
 from numpy.testing import assert_allclose
 
 from demheat import gallery
@@ -31,3 +32,14 @@ def test_gmres_solves_and_stops():
     assert_allclose(matrix @ found, load, rtol=0, atol=1e-10 * np.linalg.norm(load))
     assert 5 < iterations <= 30
     assert gmres(lambda v: matrix @ v, load, found, 1e-9)[1] == 0
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e30])
+def test_gmres_knows_no_scale(scale):
+    """A large load counted as an exhausted basis."""
+    rng = np.random.default_rng(0)
+    matrix, load = np.eye(30) + 0.3 * rng.normal(size=(30, 30)) / math.sqrt(30), rng.normal(size=30)
+    found, iterations = gmres(lambda v: matrix @ v, scale * load, np.zeros(30), 1e-10)
+    expected, as_many = gmres(lambda v: matrix @ v, load, np.zeros(30), 1e-10)
+    assert iterations == as_many
+    assert_allclose(found / scale, expected, rtol=0, atol=1e-13)  # rounding of sums of 30

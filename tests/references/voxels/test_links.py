@@ -42,6 +42,13 @@ def test_links_against_points_along_them(walls):
             assert_allclose(found[axis][tuple(index)], expected, rtol=4e-3)
 
 
+def test_links_in_a_conductor_beyond_rounding():
+    """1 + (1e-18 - 1) is nothing, and so was the resistance."""
+    for walls in (None, {"x-": 0.0, "x+": 1.0}):
+        for found in links(cell(Sphere((0.5, 0.5, 0.5), 0.4, Material(1e18)), walls=walls), (5, 5, 5)):
+            assert np.all(np.isfinite(found)) and 1e17 < found.max() < 1e19
+
+
 def test_links_of_a_periodic_cell_close():
     for axis, link in enumerate(links(cell(Sphere((0.02, 0.97, 0.5), 0.3, GOOD)), (8, 9, 10))):
         ends = np.moveaxis(link, axis, 0)

@@ -64,6 +64,13 @@ def test_layers_are_exact_on_and_off_the_faces():
     assert_allclose(row, [tangent, normal, tangent, 0, 0, 0], atol=1e-12)
 
 
+@pytest.mark.parametrize("thick", [1e-16, 1e-14, 1e-11])
+def test_a_layer_as_thin_as_rounding_fills_no_voxel(thick):
+    """One that begins in the middle of a voxel filled it, as its centre is in it."""
+    grid = voxelise(cell(Layer(1, 0.5, 0.5 + thick, GOOD)), (4, 17, 4), laminate=True)
+    assert grid.fractions[0] == 1.0 and not grid.phase.any()
+
+
 def test_touching_layers_in_one_voxel_block_only_by_their_own_pores():
     scene = Scene(
         (1, 1, 1), Material(0.0), [Layer(0, 0, 0.45, GOOD), Layer(0, 0.45, 1.0, POOR)], gradient=(1.0, 0.0, 0.0)
