@@ -42,6 +42,7 @@ LAYERS = {
         "demheat.scene.functions",
     ),
     "demheat.scene.thickness": (),
+    "demheat.scene.narrows": ("demheat.scene.shapes",),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
     "demheat.field": ("demheat.scene",),

@@ -67,6 +67,21 @@ def test_the_dem_without_twins_says_so(inclusions, knobs):
         demheat.solve(cell(*inclusions), packing=crystal(), **knobs)
 
 
+@pytest.mark.parametrize("law", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}])
+@pytest.mark.parametrize(("gap", "told"), [(0.1, True), (0.2, False)])
+def test_short_cuts_without_twins_are_told(law, gap, told):
+    """Particles of diameter .167 on either side of a gap of a tenth, between good conductors, touch."""
+    good = Material(1e3)
+    pair = [Sphere((x, 0.5, 0.5), 0.2, good) for x in (0.3 - gap / 2, 0.7 + gap / 2)]
+    scene = Scene(**CUBE, inclusions=pair, walls={"y-": 0.0, "y+": 1.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        demheat.solve(scene, packing=crystal(periodic=False), **law)
+    said = [str(each.message) for each in caught]
+    assert [words for words in said if "gaps beside inclusions [0, 1]" in words] == (said if told else [])
+    assert bool(said) == told
+
+
 def test_twins_and_thick_inclusions_are_not_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
