@@ -310,4 +310,26 @@ def estimated_cells(sizes: Sizes, box) -> float:
     middle = sizes.balls[:, :3]
     here = np.all((middle >= 0) & (middle <= box), axis=1)
     radius, h = sizes.balls[here, 3], sizes.balls[here, 4]
-    return cells + CELLS * float(np.sum(4 / 3 * math.pi * (radius / h) ** 3))
+    cells += CELLS * float(np.sum(4 / 3 * math.pi * (radius / h) ** 3))
+    return cells + CELLS * (_in_shells(sizes, box) + sum(_in_slabs(sizes, box, axis) for axis in range(3)))
+
+
+def _in_shells(sizes, box):
+    """The same for thin shells whose centre lies in the box: in each, and in what grows from it to either side."""
+    here = np.all((sizes.shells[:, :3] >= 0) & (sizes.shells[:, :3] <= box), axis=1)
+    inner, outer, h = sizes.shells[here, 3:].T
+    return float(np.sum(4 * math.pi * outer**2 * ((outer - inner) / h**3 + (h**-2 - sizes.size**-2) / GROWTH)))
+
+
+def _in_slabs(sizes, box, axis):
+    """Integral of the wanted size's inverse cube over the box, as far as thin slabs across an axis make it less."""
+    slabs = sizes.slabs[sizes.slabs[:, 0] == axis]
+    if len(slabs) == 0:
+        return 0.0
+    start, stop, h = slabs[:, 1:].T
+    ways = np.append(0.0, np.geomspace(0.1, 10 * max(box) / h.min(), 60)) * h.min()
+    x = np.unique(np.clip(np.append(start[:, None] - ways, stop[:, None] + ways), 0.0, box[axis]))
+    middle = (x[1:] + x[:-1]) / 2
+    away = np.maximum(0.0, np.maximum(start[:, None] - middle, middle - stop[:, None]))
+    wanted = np.minimum((h[:, None] + GROWTH * away).min(axis=0), sizes.size)
+    return float(np.diff(x) @ (wanted**-3 - sizes.size**-3)) * float(np.prod(box)) / box[axis]

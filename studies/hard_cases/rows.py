@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections import Counter
 
+from demheat.referee import value_error
 from studies.hard_cases.changes import relations
 from studies.hard_cases.scenes import rng_of, scene_of
 from studies.hard_cases.verdicts import OUTCOMES, Truth, answer, judged, refused, truth
@@ -66,7 +67,7 @@ def row_of(verdicts, source: str, known: Truth | None = None) -> dict:
     words = "; ".join(f"{each.method} {100 * each.error:+.3g} % {each.note}".strip() for each in wrong)
     row = {"cases": len(verdicts), **{name: counts[name] for name in OUTCOMES}, "truth": source}
     if known is not None and known.lower > 0:
-        row["width_percent"] = 100 * (known.upper / known.lower - 1)
+        row["width_percent"] = 100 * float(value_error(known.upper, known.lower))
     return row | {
         "wrongs": words,
         "relations": 0,

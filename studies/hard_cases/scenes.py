@@ -165,7 +165,8 @@ def _thin(rng, seed):
 def _shells(rng, seed):
     """A coated sphere, its coat a third to a hundredth of its radius; every other one is neutral to its matrix."""
     radius = float(rng.uniform(0.2, 0.45))
-    inner = radius * (1 - 10 ** rng.uniform(-2, -0.5))
+    # Certain bounds of thinner coats take hundreds of thousands of elements.
+    inner = radius * (1 - 10 ** rng.uniform(-2 if seed % 2 else -1.4, -0.5))
     coat, core = (10 ** rng.uniform(-3, 3, 2)).tolist()
     f, beta = (inner / radius) ** 3, (core - coat) / (core + 2 * coat)
     matrix = coat * (1 + 2 * beta * f) / (1 - beta * f) if seed % 2 else 1.0
