@@ -22,8 +22,8 @@ inequality for cubic arrays), duality for layers.
 from studies.harness.pick import present
 
 EACH = {
-    "contrast": 16, "gap": 18, "cut": 8, "ratio": 8, "dense": 6, "thin": 12, "shell": 8, "slender": 10, "islands": 10,
-    "coarse": 10, "units": 10, "corner": 6, "time": 10,
+    "contrast": 12, "gap": 12, "cut": 6, "ratio": 6, "dense": 4, "thin": 10, "shell": 6, "slender": 8, "islands": 10,
+    "coarse": 10, "units": 8, "corner": 6, "time": 8,
 }  # fmt: skip
 # Quick rows have an exact value that costs nothing.
 SHOWN = (("contrast", 0), ("thin", 0), ("islands", 1), ("corner", 0), ("time", 0))

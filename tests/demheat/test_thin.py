@@ -82,6 +82,23 @@ def test_short_cuts_without_twins_are_told(law, gap, told):
     assert bool(said) == told
 
 
+@pytest.mark.parametrize("rule", ["plain", "laminate", "links"])
+@pytest.mark.parametrize(("voxels", "told"), [(12, True), (24, False), (9, True)])
+def test_gaps_narrower_than_a_voxel_are_told(rule, voxels, told):
+    """A gap of .06 is less than one of 12 voxels, or than two of fewer than ten, but more than one of 24."""
+    pair = [Sphere((x, 0.5, 0.5), 0.2, Material(30.0)) for x in (0.27, 0.73)]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        fft.solve(cell(*pair), voxels=voxels, rule=rule)
+    assert ["gaps beside inclusions [0, 1]" in str(each.message) for each in caught] == [True] * told
+    # Laminates are exact for layers.
+    if rule == "laminate":
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            layers = [Layer(0, *ends, Material(30.0)) for ends in ((0.1, 0.4), (0.41, 0.7))]
+            fft.solve(cell(*layers), voxels=voxels, rule=rule)
+
+
 def test_twins_and_thick_inclusions_are_not_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
