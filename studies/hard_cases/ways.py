@@ -112,8 +112,8 @@ def allowed(way: Way, scene: Scene) -> float:
     """Largest relative error of the conductivity that is no fault where the method says nothing.
 
     What the method declares, at the resolution at which it does, grows with the size of an element over the thinnest
-    body: with the first order, which is less than declared orders grow. It stays between `LEAST` and `MOST`. Gaps
-    between bodies earn nothing: what they spoil must be said.
+    feature: with the first order, which is less than declared orders grow. It stays between `LEAST` and `MOST`.
+    Features are bodies, and gaps of an element or more. Narrower gaps earn nothing: what they spoil must be said.
 
     Parameters
     ----------
@@ -124,18 +124,40 @@ def allowed(way: Way, scene: Scene) -> float:
     if method.resolution == DEGREE or (scene.only(Layer) and "laminate" not in method.exceptions):
         return SOLVED
     at_declared = DECLARED / method.resolution.size(method.coarse)
-    grown = method.errors.conductivity * at_declared * way.element / thinnest(scene)
+    grown = method.errors.conductivity * at_declared * way.element / thinnest(scene, way.element)
     return float(np.clip(grown, LEAST, MOST))
 
 
-def thinnest(scene: Scene) -> float:
-    """Least thickness of a body, m: box, spheres, layers and what is between them, coats."""
-    found = [min(scene.size), *coats(scene)]
-    found += [2 * each.radius for each in scene.inclusions if isinstance(each, Sphere)]
+def thinnest(scene: Scene, least_gap: float = np.inf) -> float:
+    """Least thickness of a feature, m: box, spheres, layers and what is between them, coats, gaps that are not narrow.
+
+    Parameters
+    ----------
+    scene : Scene
+    least_gap : float, m
+        Narrower ones do not count.
+    """
+    spheres = [each for each in scene.inclusions if isinstance(each, Sphere)]
+    found = [min(scene.size), *coats(scene), *(2 * each.radius for each in spheres)]
     for axis, side in enumerate(scene.size):
         ends = {x for each in scene.inclusions if isinstance(each, Layer) and each.axis == axis for x in _ends(each)}
         found += np.diff(sorted({0.0, side} | ends)).tolist()
+    found += [gap for gap in _gaps(scene, spheres) if gap >= least_gap]
     return float(min(x for x in found if x > 0))
+
+
+def _gaps(scene, spheres):
+    """Between the surfaces of spheres, their images and walls; less than nothing where they are nested or cut."""
+    size = np.array(scene.size)
+    centers, radii = np.array([each.center for each in spheres]), np.array([each.radius for each in spheres])
+    for number, (center, radius) in enumerate(zip(centers, radii, strict=True)):
+        apart = centers[number + 1 :] - center
+        if scene.periodic:
+            apart -= size * np.round(apart / size)
+            yield size.min() - 2 * radius
+        else:
+            yield from (*(center - radius), *(size - center - radius))
+        yield from np.linalg.norm(apart, axis=1) - radii[number + 1 :] - radius
 
 
 def _ends(layer):

@@ -111,6 +111,10 @@ def test_what_is_allowed_follows_the_thinnest_body():
     thin = replace(BALL, inclusions=[replace(BALL.inclusions[0], radius=0.02)])
     layer = Scene(matrix=Material(1.0), inclusions=[Layer(0, 0.1, 0.1001, Material(5.0))], **CELL)
     assert_allclose([ways.thinnest(scene) for scene in (BALL, thin, layer)], [0.6, 0.04, 1e-4])
+    # The gap to the next image counts unless an element is wider.
+    assert_allclose([ways.thinnest(BALL, h) for h in (0.39, 0.41)], [0.4, 0.6])
+    walled = Scene(BALL.size, BALL.matrix, BALL.inclusions * 1, walls={"x-": 0.0, "x+": 1.0})
+    assert_allclose(ways.thinnest(walled, 0.1), 0.2)
     drawn = {way.name: way for way in ways.ways("contrast", BALL, np.random.default_rng(0))}
     for name, way in drawn.items():
         small, large = (ways.allowed(way._replace(element=h), thin) for h in (1e-3, 10.0))
