@@ -14,10 +14,10 @@ from demheat.scene.shapes import Layer, Sphere
 STRONG = 10.0
 
 
-def narrows(scene, reach: float) -> np.ndarray:
+def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
     """Which spheres and layers are less than a length from their like, or from a wall, where that matters.
 
-    It does between two that conduct `STRONG` times better than what is around both, or both worse; between a good one
+    It does between two that conduct so many times better than what is around both, or both worse; between a good one
     and a held wall. Other shapes are none.
 
     Parameters
@@ -25,6 +25,8 @@ def narrows(scene, reach: float) -> np.ndarray:
     scene : Scene
         A box.
     reach : float, m
+    strong : float
+        From so many times on.
 
     Returns
     -------
@@ -32,7 +34,7 @@ def narrows(scene, reach: float) -> np.ndarray:
     """
     found, parents = np.zeros(len(scene.inclusions), bool), scene.parents()[1:]
     k, around = scene.conductivities[1:], scene.conductivities[parents]
-    for alike, good in (((k >= STRONG * around) & (k > 0), True), ((STRONG * k <= around) & (around > 0), False)):
+    for alike, good in (((k >= strong * around) & (k > 0), True), ((strong * k <= around) & (around > 0), False)):
         for parent in np.unique(parents[alike]):
             ids = np.flatnonzero(alike & (parents == parent))
             for kind, near in ((Sphere, _near_spheres), (Layer, _near_layers)):

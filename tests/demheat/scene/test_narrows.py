@@ -38,6 +38,11 @@ def test_spheres_that_are_alike(materials, found):
     assert near(0.03, *balls(*materials)) == found
 
 
+def test_how_strong_matters():
+    scene = Scene(inclusions=balls(LIKE, LIKE), **CELL)
+    assert [np.flatnonzero(narrows(scene, 0.03, strong)).tolist() for strong in (9.5, 8.5)] == [[], [0, 1]]
+
+
 def test_how_far_is_near():
     assert [near(reach, *balls(GOOD, GOOD, GOOD)) for reach in (0.01, 0.03, 0.11)] == [[], [0, 1], [0, 1, 2]]
 
