@@ -106,7 +106,8 @@ def far_degree(edge, precision) -> int:
     """
     half = float(np.linalg.norm(edge)) / 2
     ratio = half / ((WIDTH + 1) * float(np.min(edge)) - half)
-    if not ratio < 0.9:
+    # Of long cells half the diagonal is more than that distance.
+    if not 0 < ratio < 0.9:
         ratio = 0.9
     return max(4, math.ceil(FASTER * math.log(ABOVE * precision) / math.log(ratio)))
 
