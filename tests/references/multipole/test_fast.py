@@ -187,7 +187,8 @@ def test_smallest_gap_is_that_of_all_pairs():
 
 def test_a_needle_of_cells_is_the_cell():
     """Cells as long as that have no far ones: half their diagonal is more than what lies between."""
-    assert far_degree(np.array([8.0, 1.0, 1.0]), 1e-6) == far_degree(np.array([100.0, 1.0, 1.0]), 1e-6) > 100
+    cube, needle, longer = (far_degree(np.array([length, 1.0, 1.0]), 1e-6) for length in (1.0, 8.0, 100.0))
+    assert longer == needle > cube
     good = Material(10.0)
     row = [Sphere((0.5 + n, 0.5, 0.5), 0.3, good) for n in range(8)]
     scene = Scene((8.0, 1.0, 1.0), Material(1.0), row, gradient=(1.0, 0.0, 0.0))
