@@ -19,6 +19,7 @@ from demheat.packing.conforming import conform
 from demheat.packing.gate import check_packing
 from demheat.progress import stage
 from demheat.scene import Scene, check_scene
+from demheat.scene.narrows import narrows
 from demheat.scene.thickness import coats, extents
 
 # Layers thinner than so many particle diameters are seen by chance where facets do not lie on interfaces. Errors of a
@@ -64,7 +65,8 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
     -----
     UserWarning
         If interfaces are so near to each other or to a wall that particles do not fit between them, or that twins are
-        over five times as many as particles; if an inclusion holds no particle, or is thin for particles without twins.
+        over five times as many as particles; if an inclusion holds no particle, or is thin for particles without twins,
+        or a gap between good or bad conductors is.
     """
     check_scene(scene)
     return _connected(scene, law, *_tessellated(scene, packing, law, seed))
@@ -120,6 +122,7 @@ def _connected(scene, law, packing, facets, tessellation_s):
         _warn_of_lost_phases(scene, phase)
         if not law.conforming:
             _warn_of_thin_phases(scene, phase, 2.0 * float(packing.radii.mean()))
+            _warn_of_narrow_gaps(scene, 2.0 * float(packing.radii.mean()))
         network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
     spent = {"tessellation_s": tessellation_s, "network_s": time.perf_counter() - begun}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
@@ -184,6 +187,18 @@ def _warn_of_thin_phases(scene, phase, diameter):
             f"{thickness[thin].min():.3g} m): what they do is left to chance; use more particles, or the conforming "
             "packing of law 'laguerre'",
             stacklevel=5,
+        )
+
+
+def _warn_of_narrow_gaps(scene, diameter):
+    """Links between particles on either side of a gap see nothing of it: good conductors are short-circuited."""
+    near = np.flatnonzero(narrows(scene, diameter)) if scene.domain == "box" else []
+    if len(near):
+        warnings.warn(
+            f"gaps beside inclusions {_few(near)}, narrower than a particle, are thin for particles of diameter "
+            f"{diameter:.3g} m: links across them miss what is between, and the conductivity may be off many times; "
+            "use more particles, or the conforming packing of law 'laguerre'",
+            stacklevel=4,
         )
 
 

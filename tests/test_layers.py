@@ -49,6 +49,7 @@ LAYERS = {
         "demheat.scene.scene",
         "demheat.scene.symmetry",
     ),
+    "demheat.scene.narrows": ("demheat.scene.shapes",),
     "demheat.scene": ("demheat.scene",),
     "demheat.addition": (),
     "demheat.error": ("demheat.scene",),

@@ -6,6 +6,7 @@ import warnings
 
 import numpy as np
 
+from demheat.scene.narrows import narrows
 from demheat.scene.thickness import coats, narrower
 from references.voxels.kernels import FULL
 from references.voxels.links import cut
@@ -26,6 +27,9 @@ MISSED = {
     "layers a billion times thinner",
     "links": "miss them or see some of them only",
 }
+# Voxels along a side below which gaps of up to two voxels are said, at contrasts from this on: at 7 voxels they were
+# found to cost a sixth of the conductivity, at two a half.
+FEW, WEAK = 10, 2.0
 
 
 def automatic(scheme, scene) -> str:
@@ -90,6 +94,20 @@ def warn_of_thin(scene, rule, shape) -> None:
             f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
             f"{MISSED[rule]}; use more voxels",
             stacklevel=4,
+        )
+    _warn_of_gaps(scene, rule, shape, voxel)
+
+
+def _warn_of_gaps(scene, rule, shape, voxel):
+    rounded = np.array([each.bounded for each in scene.inclusions], bool)
+    near = narrows(scene, voxel) & (rounded | (rule == "plain"))
+    if min(shape) < FEW:
+        near |= narrows(scene, 2 * voxel, WEAK) & rounded
+    if near.any():
+        warnings.warn(
+            f"gaps beside inclusions {_listed(np.flatnonzero(near))} are not wide for voxels of {voxel:.3g} m: between "
+            "good conductors, or bad ones, errors may be tens of percents; use more voxels",
+            stacklevel=5,
         )
 
 

@@ -97,7 +97,7 @@ def solve(
     -----
     UserWarning
         If an inclusion around another is a coat thinner than a voxel, or an inclusion smaller than a voxel, but for
-        layers in laminates.
+        layers in laminates; or a gap between two good conductors, or two bad ones, narrower than a voxel.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
     _check_load(scene)

@@ -67,6 +67,42 @@ def test_the_dem_without_twins_says_so(inclusions, knobs):
         demheat.solve(cell(*inclusions), packing=crystal(), **knobs)
 
 
+@pytest.mark.parametrize("law", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}])
+@pytest.mark.parametrize(("gap", "told"), [(0.1, True), (0.2, False)])
+def test_short_cuts_without_twins_are_told(law, gap, told):
+    """Particles of diameter .167 on either side of a gap of a tenth, between good conductors, touch."""
+    good = Material(1e3)
+    pair = [Sphere((x, 0.5, 0.5), 0.2, good) for x in (0.3 - gap / 2, 0.7 + gap / 2)]
+    scene = Scene(**CUBE, inclusions=pair, walls={"y-": 0.0, "y+": 1.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        demheat.solve(scene, packing=crystal(periodic=False), **law)
+    said = [str(each.message) for each in caught]
+    assert [words for words in said if "gaps beside inclusions [0, 1]" in words] == (said if told else [])
+    assert bool(said) == told
+
+
+@pytest.mark.parametrize("rule", ["plain", "laminate", "links"])
+@pytest.mark.parametrize(("voxels", "told"), [(12, True), (24, False), (9, True)])
+def test_gaps_narrower_than_a_voxel_are_told(rule, voxels, told):
+    """A gap of .06 is less than one of 12 voxels, or than two of fewer than ten, but more than one of 24."""
+    pair = [Sphere((x, 0.5, 0.5), 0.2, Material(30.0)) for x in (0.27, 0.73)]
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        fft.solve(cell(*pair), voxels=voxels, rule=rule)
+    assert ["gaps beside inclusions [0, 1]" in str(each.message) for each in caught] == [True] * told
+    if voxels < 10:
+        weak = [Sphere(each.center, 0.2, Material(2.5)) for each in pair]
+        with pytest.warns(UserWarning, match="gaps beside"):
+            fft.solve(cell(*weak), voxels=voxels, rule=rule)
+    # Laminates are exact for layers.
+    if rule == "laminate":
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            layers = [Layer(0, *ends, Material(30.0)) for ends in ((0.1, 0.4), (0.41, 0.7))]
+            fft.solve(cell(*layers), voxels=voxels, rule=rule)
+
+
 def test_twins_and_thick_inclusions_are_not_warned_of():
     with warnings.catch_warnings():
         warnings.simplefilter("error")
@@ -92,6 +128,7 @@ def test_layers_that_a_laminate_does_not_see():
         fft.solve(cell(Layer(0, 0.5, 0.5 + 1e-6, demheat.Material(1e-6))), voxels=8)
 
 
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 def test_coats_thinner_than_a_voxel():
     """A coat that nothing outside notices was 2 % off."""
     with pytest.warns(UserWarning, match=r"inclusions \[0\] are coats thinner than a voxel of 0.125 m, down to 0.1 m"):

@@ -42,7 +42,7 @@ SLOW = ("fig15_16_fields", "fig17_etc", "fig18_fields", "speed_error", "stabilit
 
 
 # Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.
-@pytest.mark.filterwarnings("ignore:.*do not fit into gaps:UserWarning")
+@pytest.mark.filterwarnings("ignore:.*do not fit into gaps:UserWarning", "ignore:gaps beside inclusions:UserWarning")
 @pytest.mark.parametrize(
     "name", [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in NAMES]
 )

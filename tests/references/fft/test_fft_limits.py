@@ -16,6 +16,7 @@ from references.voxels import links as voxel_links
 pytestmark = [
     pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel"),
     pytest.mark.filterwarnings("ignore:inclusions .* are smaller than a voxel"),
+    pytest.mark.filterwarnings("ignore:gaps beside inclusions"),
 ]
 
 # Grids, precision, extremes

@@ -12,7 +12,10 @@ from demheat.scene import Layer, Material, Scene, Sphere
 from references import fft
 
 # Grids here are coarse on purpose.
-pytestmark = pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel")
+pytestmark = [
+    pytest.mark.filterwarnings("ignore:inclusions .* are coats thinner than a voxel"),
+    pytest.mark.filterwarnings("ignore:gaps beside inclusions"),
+]
 
 # Closed forms
 

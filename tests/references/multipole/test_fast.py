@@ -183,3 +183,15 @@ def test_smallest_gap_is_that_of_all_pairs():
     pairs = unmirrored(centers, np.array([0.25, 0.25, 0.01, 0.01]), np.ones(4), SIZE)
     assert smallest_gap(pairs) == pytest.approx(0.01, rel=1e-12)
     assert smallest_gap(arrange(gallery.simple_cubic(10.0, fraction=0.3)).spheres) > 0
+
+
+def test_a_needle_of_cells_is_the_cell():
+    """Cells as long as that have no far ones: half their diagonal is more than what lies between."""
+    cube, needle, longer = (far_degree(np.array([length, 1.0, 1.0]), 1e-6) for length in (1.0, 8.0, 100.0))
+    assert longer == needle > cube
+    good = Material(10.0)
+    row = [Sphere((0.5 + n, 0.5, 0.5), 0.3, good) for n in range(8)]
+    scene = Scene((8.0, 1.0, 1.0), Material(1.0), row, gradient=(1.0, 0.0, 0.0))
+    right = lattice.conductivity("sc", 10.0, 4 / 3 * math.pi * 0.027)
+    # The accuracy by the method's own estimate.
+    assert_allclose(multipole.solve(scene, accuracy=1e-3).conductivity, right, rtol=1e-3)

@@ -1,0 +1,89 @@
+"""Where good conductors, or bad ones, nearly meet: gaps that carry much of the heat, or little, which grids may miss.
+
+At ten times the conductivity a missed gap between two spheres was found to cost a tenth of the scene's; at a million
+times all of it, since heat takes a short cut.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.scene.shapes import Layer, Sphere
+
+# Contrast to what is around, either way, from which on a gap matters.
+STRONG = 10.0
+
+
+def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
+    """Which spheres and layers are less than a length from their like, or from a wall, where that matters.
+
+    It does between two that conduct so many times better than what is around both, or both worse; between a good one
+    and a held wall. Other shapes are none.
+
+    Parameters
+    ----------
+    scene : Scene
+        A box.
+    reach : float, m
+    strong : float
+        From so many times on.
+
+    Returns
+    -------
+    (number of inclusions,) bool array
+    """
+    found, parents = np.zeros(len(scene.inclusions), bool), scene.parents()[1:]
+    k, around = scene.conductivities[1:], scene.conductivities[parents]
+    for alike, good in (((k >= strong * around) & (k > 0), True), ((strong * k <= around) & (around > 0), False)):
+        for parent in np.unique(parents[alike]):
+            ids = np.flatnonzero(alike & (parents == parent))
+            for kind, near in ((Sphere, _near_spheres), (Layer, _near_layers)):
+                own = np.array([i for i in ids if isinstance(scene.inclusions[i], kind)], int)
+                if len(own):
+                    shapes = [scene.inclusions[i] for i in own]
+                    found[own[near(scene, shapes, reach, _held(scene) if good else [])]] = True
+    return found
+
+
+def _held(scene):
+    """Walls with a temperature, as pairs of an axis and a side."""
+    return [] if scene.periodic else [("xyz".index(name[0]), name[1]) for name in scene.wall_temperatures]
+
+
+def _near_spheres(scene, spheres, reach, walls):
+    from scipy.spatial import cKDTree
+
+    size = np.array(scene.size)
+    centers, radii = np.array([s.center for s in spheres]), np.array([s.radius for s in spheres])
+    near = np.zeros(len(spheres), bool)
+    for axis, side in walls:
+        gap = (size[axis] - centers[:, axis] if side == "+" else centers[:, axis]) - radii
+        # One that the wall cuts leaves no gap.
+        near |= (gap >= 0) & (gap < reach)
+    if scene.periodic:
+        near |= size.min() - 2 * radii < reach
+        centers = centers % size % size
+    tree = cKDTree(centers, boxsize=size if scene.periodic else None)
+    one, other = tree.query_pairs(2 * radii.max() + reach, output_type="ndarray").T
+    apart = centers[one] - centers[other]
+    apart -= size * np.round(apart / size) if scene.periodic else 0.0
+    close = np.linalg.norm(apart, axis=1) - radii[one] - radii[other] < reach
+    near[one[close]] = near[other[close]] = True
+    return near
+
+
+def _near_layers(scene, layers, reach, walls):
+    """Layers that have a parent in common lie along one axis."""
+    axis = layers[0].axis
+    order = np.argsort([layer.start for layer in layers])
+    start, stop = np.array([(layers[n].start, layers[n].stop) for n in order]).T
+    gap = np.append(start[1:], start[0] + scene.size[axis] if scene.periodic else np.inf) - stop
+    close = (gap > 0) & (gap < reach)
+    close |= np.roll(close, 1)
+    for wall, side in walls:
+        if wall == axis:
+            gap = scene.size[axis] - stop if side == "+" else start
+            close |= (gap > 0) & (gap < reach)
+    near = np.zeros(len(layers), bool)
+    near[order] = close
+    return near

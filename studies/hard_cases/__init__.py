@@ -1,0 +1,93 @@
+"""A thousand hard cases: each answer is verified, refused with its reason, or comes with a warning.
+
+Scenes are drawn by seed, a family for each hardness: contrasts of 0 and 1e-6 to 1e6 and infinity; gaps of a tenth to a
+millionth of a diameter, touching spheres; spheres cut by walls; radii as 1 to 10; volume fractions up to .6; layers and
+coats down to a hundredth of an element; needles and plates 1:100; islands and pores; one to fifty elements across;
+lengths and conductivities of 1e-9 to 1e9; walls that meet; steps in time from a thousandth to twice the stable limit.
+Odd and prime grids and single precision are among the knobs, which are drawn too. A case is one scene by one method.
+
+What is right is exact, or lies between certain bounds (`references.bracket`, at most 10 % wide, 2 % where it is cheap;
+a case whose bounds are wider is "open" and counts for nothing). Verified: within the allowed error of that. What is
+allowed was set before any value was seen: the error that a method declares, grown with the first order of the size of
+its elements over the thinnest feature, but at least 5 % (nobody need be better where a body is a few elements thick)
+and at most 20 %; a tenth of a per cent where a method claims to be exact. Features are bodies and, since the first
+values were seen, gaps of an element or more; narrower ones earn nothing: what they spoil must be said. Silently wrong:
+off by more without a warning; or, with or without one, no number, a conductivity beyond Voigt's and Reuss's bounds for
+the method's own volume fractions (networks of contacts claim none, and have their allowed error), or a refusal without
+a reason. Temperatures, of walls that meet and in time, are judged alike, from 2 % of the span.
+
+Of every fifth scene, invariants: turned by a right angle, mirrored, moved, other units, swapped phases (Schulgasser's
+inequality for cubic arrays), duality for layers.
+"""
+
+from studies.harness.pick import present
+
+EACH = {
+    "contrast": 12, "gap": 12, "cut": 6, "ratio": 6, "dense": 4, "thin": 10, "shell": 6, "slender": 8, "islands": 10,
+    "coarse": 10, "units": 8, "corner": 6, "time": 8,
+}  # fmt: skip
+# Quick rows have an exact value that costs nothing.
+SHOWN = (("contrast", 0), ("thin", 0), ("islands", 1), ("corner", 0), ("time", 0))
+# Of five scenes, that which is changed.
+CHANGED = 5
+MODULES = {"all": "studies.hard_cases.ways"}
+PAPER = {}
+TIMEOUT = 900.0
+CASES = [
+    {"family": family, "seed": seed, "method": "all"}
+    for seed in range(max(EACH.values()))
+    for family, number in EACH.items()
+    if seed < number
+]
+# Share of a method's answers that must be verified: of the main ones and witnesses, and of those beside.
+MAIN, BESIDE = 0.7, 0.4
+
+
+def QUICK(case):
+    """A scene each of some families."""
+    return (case["family"], case["seed"]) in SHOWN
+
+
+def run(family, seed, method):
+    """Verdicts on one scene by all methods."""
+    from studies.hard_cases import bodies, rows
+
+    if family == "corner":
+        return bodies.corner(seed)
+    if family == "time":
+        return bodies.in_time(seed)
+    return rows.steady(family, seed, changed=seed % CHANGED == 0)
+
+
+def warm_up(family, seed, method):
+    """Nothing: costs are not what is shown."""
+
+
+def claims(df):
+    """A thousand, none silently wrong; what share each method answers right; invariants."""
+    from studies.hard_cases.means import share, verdicts
+
+    each = verdicts(df)
+    yield from present([("Cases", len(each) if len(df) == len(CASES) else None, ">= 1000")])
+    yield "Silently wrong, refusals without a reason among them", int((each["outcome"] == "wrong").sum()), "= 0"
+    yield "Share of cases whose certain bounds are too wide to judge", (each["outcome"] == "open").mean(), 0.05
+    for title, found, least in share(each, MAIN, BESIDE):
+        yield f"{title}: share of its answers that are verified", found, f">= {least:g}"
+    yield f"Invariants broken, of {int(df['relations'].sum())}", int(df["broken"].sum()), "= 0"
+
+
+def table(df):
+    """Cases of each family by method: verified / refused / warned / silently wrong.
+
+    Those whose certain bounds are too wide to judge by are left out; a scene that refuses itself has no method.
+    """
+    from studies.hard_cases.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """Outcomes by method and family, and the errors of what is verified or warned of."""
+    from studies.hard_cases.figure import draw
+
+    return draw(df)

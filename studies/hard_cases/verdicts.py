@@ -1,0 +1,197 @@
+"""What is true of a scene, and what is said of one answer to it."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.referee import value_error
+from demheat.scene import Scene, Sphere
+
+OUTCOMES = ("verified", "refused", "warned", "wrong", "open")
+REFUSALS = (ValueError, NotImplementedError, RuntimeError)
+# A bracket is narrowed to the first width, if a mesh of so many elements does; a wider one than the second judges none.
+NARROW, WIDE = 0.02, 0.10
+# Edges of the bracket's elements over the mesher's usual ones, coarse to fine.
+STEPS = (5.0, 3.0, 1.8, 1.2)
+# Bounds of touching spheres, at most a hundred times as conducting: those of spheres a hundred-thousandth of the box
+# apart, widened by what the contact can add: found below 1 %.
+APART, CONTACT = 1e-5, 0.02
+# Rounding and solvers' tolerances, of the elementary bounds.
+SLACK = 1e-6
+
+
+class Truth(NamedTuple):
+    """An interval that holds the conductivity along the load, W/(m K), and where it is from."""
+
+    lower: float
+    upper: float
+    source: str
+
+    @property
+    def wide(self):
+        """Too wide to judge by."""
+        return self.upper > (1 + WIDE) * self.lower and self.upper > 0
+
+
+class Verdict(NamedTuple):
+    """What is said of one case.
+
+    Attributes
+    ----------
+    method : str
+    outcome : str
+        Of `OUTCOMES`.
+    error : float
+        Relative, signed, to the nearer end of the true interval; not-a-number without an answer.
+    allowed : float
+    note : str
+        Words of the refusal or of the warning, or which bound is passed.
+    """
+
+    method: str
+    outcome: str
+    error: float
+    allowed: float
+    note: str
+
+
+def truth(scene: Scene) -> Truth:
+    """The conductivity, exact or between certain bounds.
+
+    Parameters
+    ----------
+    scene : Scene
+
+    Raises
+    ------
+    RuntimeError
+        If nothing here knows it.
+    """
+    from references import bracket, exact
+
+    try:
+        k = exact.solve(scene).conductivity
+        return Truth(k, k, "exact")
+    except NotImplementedError:
+        pass
+    try:
+        return _bracketed(bracket, scene)
+    except NotImplementedError:
+        found = _bracketed(bracket, _shrunk(scene))
+        return Truth(found.lower * (1 - CONTACT), found.upper * (1 + CONTACT), "bracket, apart")
+
+
+def _bracketed(bracket, scene):
+    from references.mesh.sizes import checked_size
+
+    usual = checked_size(scene, None, 2)
+    for step in STEPS:
+        found = bracket.solve(scene, size=step * usual)
+        if found.width <= NARROW or found.upper <= 1e-9 * max(scene.conductivities):
+            break
+    return Truth(found.lower, found.upper, "bracket")
+
+
+def _shrunk(scene):
+    less = APART * max(scene.size)
+    inclusions = [
+        replace(each, radius=each.radius - less) if isinstance(each, Sphere) else each for each in scene.inclusions
+    ]
+    return replace(scene, inclusions=inclusions)
+
+
+def answer(call):
+    """What a call returns, what it warns of and what it refuses: (answer, warnings, refusal), or the last one alone.
+
+    Raises
+    ------
+    Exception
+        Whatever is no refusal.
+    """
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        try:
+            found, refusal = call(), None
+        except REFUSALS as error:
+            found, refusal = None, error
+    # Of the numbers, not of caches, nor of overflows on the way.
+    said = [str(each.message) for each in caught if each.category is UserWarning and "cache" not in str(each.message)]
+    return found, list(dict.fromkeys(said)), refusal
+
+
+def refused(name: str, error: Exception) -> Verdict:
+    """Verdict of a refusal; one without a reason, in one line of some words, is wrong.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+    error : Exception
+    """
+    words = str(error)
+    told = len(words.split()) >= 4 and "\n" not in words
+    return Verdict(name, "refused" if told else "wrong", math.nan, math.nan, " ".join(words.split()))
+
+
+def judged(name: str, field, known: Truth, allowed: float, said) -> Verdict:
+    """Verdict of an answer.
+
+    Parameters
+    ----------
+    name : str
+        Of the method.
+    field : Field
+    known : Truth
+    allowed : float
+        Relative.
+    said : list of str
+        What it warned of.
+    """
+    off = error(field.conductivity, known, float(max(field.scene.conductivities)) or 1.0)
+    passed = beyond_elementary(field, allowed if "calibrated" in name else SLACK)
+    if passed or not math.isfinite(off):
+        return Verdict(name, "wrong", off, allowed, passed or "no number")
+    if abs(off) <= allowed:
+        # A warning beside a right answer is no harm.
+        return Verdict(name, "open" if known.wide else "verified", off, allowed, "; ".join(said))
+    return Verdict(name, "warned" if said else "wrong", off, allowed, "; ".join(said))
+
+
+def error(found: float, known: Truth, scale: float) -> float:
+    """Signed relative error to the nearer end of an interval, 0 inside; of heat that is stopped over a scale.
+
+    Parameters
+    ----------
+    found : float, W/(m K)
+    known : Truth
+    scale : float, W/(m K)
+    """
+    if known.lower <= found <= known.upper:
+        return 0.0
+    end = known.upper if found > known.upper else known.lower
+    return float(value_error(found, end, scale=scale) if end == 0 else value_error(found, end))
+
+
+def beyond_elementary(field, slack: float) -> str:
+    """Which of Voigt's and Reuss's bounds, for the fractions that the method saw, a field passes; empty if none.
+
+    Parameters
+    ----------
+    field : Field
+    slack : float
+        Relative.
+    """
+    shares, k = np.asarray(field.fractions), field.scene.conductivities
+    seen = shares > 0
+    voigt = float(shares @ k)
+    reuss = 1 / float(np.sum(shares[seen] / k[seen])) if np.all(k[seen] > 0) else 0.0
+    if field.conductivity > voigt * (1 + slack):
+        return f"above Voigt's bound {voigt:.6g}"
+    if field.conductivity < reuss * (1 - slack):
+        return f"below Reuss's bound {reuss:.6g}"
+    return ""

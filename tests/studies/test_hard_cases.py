@@ -1,0 +1,194 @@
+"""Hard cases: what is drawn, what is true of it, and that a wrong answer is called so."""
+
+import json
+import math
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Layer, Material, Scene, Sphere
+from references import exact
+from studies import hard_cases
+from studies.hard_cases import bodies, changes, means, rows, scenes, tables, verdicts, ways
+
+CELL = {"size": (1.0, 1.0, 1.0), "gradient": (1.0, 0.0, 0.0)}
+BALL = Scene(matrix=Material(1.0), inclusions=[Sphere((0.5, 0.5, 0.5), 0.3, Material(10.0))], **CELL)
+SHARE = 4 / 3 * math.pi * 0.027
+TRUE = verdicts.Truth(1.30, 1.32, "bounds")
+
+
+def made_up(k, scene=BALL):
+    """An answer as a method would give it."""
+    return SimpleNamespace(conductivity=k, scene=scene, fractions=np.array([1 - SHARE, SHARE]))
+
+
+@pytest.mark.parametrize(
+    ("k", "said", "outcome"),
+    [
+        (1.31, [], "verified"),
+        (1.25, [], "verified"),  # 4 % below the lower bound
+        (1.25, ["thin"], "verified"),
+        (1.20, [], "wrong"),
+        (1.42, [], "wrong"),
+        (1.42, ["thin"], "warned"),
+        (math.nan, [], "wrong"),
+        (math.nan, ["thin"], "wrong"),
+        (1 + 9 * SHARE + 1e-4, ["thin"], "wrong"),  # beyond Voigt's bound, whatever is said
+        (1 / (1 - 0.9 * SHARE) - 1e-4, ["thin"], "wrong"),  # and Reuss's
+    ],
+)
+def test_a_wrong_answer_is_called_so(k, said, outcome):
+    assert verdicts.judged("fem", made_up(k), TRUE, 0.05, said).outcome == outcome
+
+
+def test_wide_bounds_verify_nothing():
+    wide = verdicts.Truth(1.2, 1.4, "bounds")
+    assert verdicts.judged("fem", made_up(1.3), wide, 0.05, []).outcome == "open"
+    assert verdicts.judged("fem", made_up(1.6), wide, 0.05, []).outcome == "wrong"
+
+
+def test_heat_that_is_stopped():
+    scene = Scene(matrix=Material(2.0), inclusions=[Layer(0, 0.1, 0.4, Material(0.0))], **CELL)
+    none = verdicts.truth(scene)
+    assert none == (0.0, 0.0, "exact")
+    for k, outcome in ((0.0, "verified"), (0.2, "wrong")):
+        assert verdicts.judged("fem", made_up(k, scene), none, 0.05, []).outcome == outcome
+
+
+@pytest.mark.parametrize(
+    ("words", "outcome"),
+    [
+        ("", "wrong"),
+        ("no", "wrong"),
+        ("a conductivity\nis 0: no such thing", "wrong"),
+        ("a conductivity is 0", "refused"),
+    ],
+)
+def test_a_refusal_says_why(words, outcome):
+    _, said, error = verdicts.answer(lambda: exec("raise NotImplementedError(words)", {"words": words}))
+    assert said == [] and verdicts.refused("fft", error).outcome == outcome
+
+
+def test_what_is_no_refusal_is_raised():
+    with pytest.raises(ZeroDivisionError):
+        verdicts.answer(lambda: 1 / 0)
+
+
+@pytest.mark.parametrize("family", scenes.FAMILIES)
+def test_scenes_are_drawn_the_same_again(family):
+    for seed in range(5):
+        found = scenes.scene_of(family, seed)
+        assert scenes.scene_of(family, seed) == found
+        names = [way.name for way in ways.ways(family, found, np.random.default_rng(0))]
+        # Finite elements are left out of what they would take too many for.
+        assert [name for name in ways.NAMES if name in names or not name.startswith("fem")] == names
+
+
+def test_an_infinite_conductivity_is_refused_by_the_scene():
+    row = rows.steady("contrast", 7)
+    assert (row["cases"], row["refused"]) == (1, 1) and "inf" in row["verdicts"]
+
+
+def test_bounds_of_a_drawn_scene_hold_its_exact_value():
+    from references import bracket
+
+    known = verdicts._bracketed(bracket, BALL)
+    assert known.lower < exact.solve(BALL).conductivity < known.upper
+    assert not known.wide and known.upper < known.lower * (1 + verdicts.NARROW)
+
+
+def test_touching_spheres_have_bounds_too():
+    pair = [Sphere((x, 0.5, 0.5), 0.2, Material(5.0)) for x in (0.3, 0.7)]
+    known = verdicts.truth(Scene(matrix=Material(1.0), inclusions=pair, **CELL))
+    assert known.source == "bracket, apart" and not known.wide
+
+
+def test_what_is_allowed_follows_the_thinnest_body():
+    thin = replace(BALL, inclusions=[replace(BALL.inclusions[0], radius=0.02)])
+    layer = Scene(matrix=Material(1.0), inclusions=[Layer(0, 0.1, 0.1001, Material(5.0))], **CELL)
+    assert_allclose([ways.thinnest(scene) for scene in (BALL, thin, layer)], [0.6, 0.04, 1e-4])
+    # The gap to the next image counts unless an element is wider.
+    assert_allclose([ways.thinnest(BALL, h) for h in (0.39, 0.41)], [0.4, 0.6])
+    walled = Scene(BALL.size, BALL.matrix, BALL.inclusions * 1, walls={"x-": 0.0, "x+": 1.0})
+    assert_allclose(ways.thinnest(walled, 0.1), 0.2)
+    drawn = {way.name: way for way in ways.ways("contrast", BALL, np.random.default_rng(0))}
+    for name, way in drawn.items():
+        small, large = (ways.allowed(way._replace(element=h), thin) for h in (1e-3, 10.0))
+        if name == "multipole":
+            assert small == large == ways.SOLVED
+        else:
+            assert small == ways.LEAST and large == ways.MOST
+    assert ways.allowed(drawn["fft"], layer) == ways.SOLVED < ways.allowed(drawn["fft-links"], layer)
+
+
+def test_temperature_of_a_corner():
+    """Cold walls, the flux that is imposed, insulation, and no source in between."""
+    scene = bodies._corner_scene(np.random.default_rng(3))
+    size, q = np.array(scene.size), scene.wall_fluxes["x+"]
+
+    def warm(*where):
+        return bodies._corner_temperature(scene, np.array([where]) * size)[0] - scenes.LOW
+
+    span, h = warm(1, 1, 0.5), 1e-3
+    assert_allclose([warm(0, 0.5, 0.5) / span, warm(0.5, 0, 0.5) / span], 0, atol=1e-9)  # sums of rounded terms
+    # Differences of first order, and the series' last term at the wall.
+    slope = (warm(1, 0.5, 0.5) - warm(1 - h, 0.5, 0.5)) / (h * size[0])
+    assert_allclose(scene.matrix.conductivity * slope, q, rtol=0.02)
+    assert_allclose(warm(0.4, 1, 0.5), warm(0.4, 1 - h, 0.5), rtol=1e-4)
+    h = 1e-2
+    bend = [
+        (warm(0.5 + h * a, 0.5 + h * b, 0.5) + warm(0.5 - h * a, 0.5 - h * b, 0.5) - 2 * warm(0.5, 0.5, 0.5))
+        / (h * size[axis]) ** 2
+        for axis, (a, b) in enumerate(((1, 0), (0, 1)))
+    ]
+    assert_allclose(sum(bend) / abs(bend[0]), 0, atol=1e-3)  # h squared
+
+
+def test_changes_keep_what_is_exact():
+    rng, seen = np.random.default_rng(0), set()
+    layers = [Layer(1, 0.1, 0.3, Material(5.0)), Layer(1, 0.5, 0.75, Material(0.2))]
+    walled = {"size": (1.0, 0.8, 0.9), "walls": {"y-": 20.0, "y+": 50.0}}
+    for scene in (BALL, Scene(matrix=Material(2.0), inclusions=layers, **walled)):
+        k = exact.solve(scene).conductivity
+        for name, other, right in changes.images(scene, rng):
+            found = exact.solve(other).conductivity
+            seen.add(name)
+            if name == "swapped":
+                assert found > right(k)
+            else:
+                assert_allclose(found, right(k), rtol=1e-11)  # ten digits and more of the lattice
+    assert seen == {"units", "turned", "mirrored", "moved", "swapped", "dual"}
+
+
+def test_a_broken_relation_is_seen():
+    drawn = {way.name: way for way in ways.ways("contrast", BALL, np.random.default_rng(0))}
+    dem, fft = drawn["dem"], drawn["fft"]
+    assert changes.holds("turned", 1e-5, fft, BALL) and not changes.holds("turned", 1e-3, fft, BALL)
+    assert changes.holds("turned", 0.09, dem, BALL) and not changes.holds("turned", -0.11, dem, BALL)
+    assert changes.holds("swapped", 5.0, fft, BALL) and not changes.holds("swapped", -0.11, fft, BALL)
+    assert not changes.holds("units", 1e-3, dem, BALL)
+
+
+def frame(outcomes):
+    each = [verdicts.Verdict(name, outcome, 0.0, 0.05, "") for name, outcome in outcomes]
+    row = {"family": "gap", "seed": 0, "method": "all", "status": "ok", **rows.row_of(each, "exact")}
+    return pd.DataFrame([row])
+
+
+def test_claims_fail_where_a_number_is_silently_wrong():
+    good, bad = frame([("fem", "verified"), ("dem", "verified")]), frame([("fem", "verified"), ("dem", "wrong")])
+    wrong = [dict((claim[0], claim[1]) for claim in hard_cases.claims(df)) for df in (good, bad)]
+    assert [next(v for k, v in claims.items() if k.startswith("Silently")) for claims in wrong] == [0, 1]
+    assert wrong[1]["DEM: share of its answers that are verified"] == 0.0
+
+
+def test_table_counts_outcomes():
+    table = tables.lines(frame([("dem, euler", "verified"), ("dem", "warned"), ("fem", "refused"), ("scene", "open")]))
+    assert list(table["family"]) == ["gap", "all"]
+    assert list(table.iloc[1][["DEM", "FEM", "all"]]) == ["1 / 0 / 1 / 0", "0 / 1 / 0 / 0", "1 / 1 / 1 / 0"]
+    assert len(means.verdicts(frame([("dem", "open")]))) == 1
+    assert json.loads(frame([("dem", "open")])["verdicts"][0])[0][:2] == ["dem", "open"]
