@@ -6,7 +6,8 @@ import numpy as np
 
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY
 from studies.harness.pick import pick
-from studies.tuning import BENT, MAIN, SPHERE, means
+from studies.tuning import means
+from studies.tuning.cases import BENT, MAIN, SPHERE
 
 COLOURS = dict(zip(MAIN, (RED, BLUE, GREEN, ORANGE, PINK), strict=True))
 MARKS = {2_000: "o", 8_000: "s"}

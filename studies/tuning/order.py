@@ -108,9 +108,9 @@ def _distance(scene, points):
     return scene.inclusions[0].distance(points, period=scene.period)
 
 
-def _powers(network, temperature, gradient):
-    """Heat that each link turns, half of it for either end, (m,) float array, W K in a unit of its own."""
+def _powers(network, potential, gradient):
+    """Power of each link under a temperature and a mean gradient, half for either end, (m,) float array, W K."""
     row, code = np.repeat(np.arange(len(network.volumes)), np.diff(network.indptr)), network.image.astype(int)
     image = np.stack([code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1], axis=1) * network.size
-    jump = temperature[network.indices] - temperature[row] + image @ gradient
+    jump = potential[network.indices] - potential[row] + image @ gradient
     return 0.5 * network.conductance * jump**2
