@@ -180,3 +180,25 @@ def fitted(table, name, *, draws=400):
     drawn = drawn[(np.sign(drawn) == np.sign(values)).all(axis=1)]
     orders = [order(sizes, each) for each in drawn]
     return order(sizes, values), float(np.std(orders)) if len(orders) > draws / 2 else float("nan")
+
+
+def two_powers(table, name="error"):
+    """A column as a h^2 + b h^3, h = particles^(-1/3), by least squares weighted by the errors of its means.
+
+    Parameters
+    ----------
+    table : DataFrame
+        From `parts`, of three or more numbers of particles.
+    name : str
+
+    Returns
+    -------
+    values, doubts : (2,) float arrays
+        a and b, in the column's unit, and their standard errors; of a poor fit larger by as much as it is poor.
+    """
+    size = table["particles"].to_numpy(float) ** (-1 / 3)
+    weight = 1 / table[f"{name}_sem"].to_numpy(float)
+    matrix, right = np.column_stack([size**2, size**3]) * weight[:, None], table[name].to_numpy(float) * weight
+    values = np.linalg.lstsq(matrix, right, rcond=None)[0]
+    poor = max(1.0, np.sum((matrix @ values - right) ** 2) / (len(size) - 2))
+    return values, np.sqrt(poor * np.diag(np.linalg.inv(matrix.T @ matrix)))

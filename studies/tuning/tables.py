@@ -59,5 +59,8 @@ def _series(df):
 def _order(table, name):
     if len(table) < 2 or abs(table[name]).min() < 1e-9:
         return ""
+    if name == "error" and len(table) > 2:
+        (two, three), doubts = means.two_powers(table)
+        return f"{two:.3g} +- {doubts[0]:.2g} h^2, {three:.3g} +- {doubts[1]:.2g} h^3"
     found, doubt = means.fitted(table, name)
     return f"{found:.2f} +- {doubt:.2f}" if doubt == doubt else ""

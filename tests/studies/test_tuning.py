@@ -104,7 +104,24 @@ def test_claims_see_a_constant_that_is_better_elsewhere_and_one_that_is_better_e
     assert values(some)[wins] == 0 and values(half, some)[wins] == 1
     assert_allclose(values(half, some)[ratio], 2.0, rtol=1e-9)
     assert values(some)[ratio] == 1.0
-    assert_allclose(values()["|mean error| as shipped over its standard error"], 0.15 / 0.08660254, rtol=1e-6)
+
+
+def test_claims_see_a_bias():
+    """Of -.1, .3, .2 and .2 %: their standard deviation is .173 %."""
+    rows = made_up()
+    assert not any("mean error" in text for text, _, _ in study.claims(rows))
+    rows.loc[rows["part"] == "varied", "particles"] = 8000
+    value = next(value for text, value, _ in study.claims(rows) if "mean error" in text)
+    assert_allclose(value, 0.15 / (np.sqrt(0.03) / 2), rtol=1e-9)
+
+
+def test_two_powers_are_told_apart():
+    particles = np.array([1000.0, 8000.0, 27000.0, 64000.0])
+    h = particles ** (-1 / 3)
+    table = pd.DataFrame({"particles": particles, "error": 5 * h**2 - 100 * h**3, "error_sem": 1e-3 * h**2})
+    values, doubts = means.two_powers(table)
+    assert_allclose(values, [5, -100], rtol=1e-9)
+    assert np.all(doubts > 0) and np.all(doubts / np.abs(values) < 1e-3)
 
 
 def test_orders_are_fitted_with_their_errors():
