@@ -83,7 +83,7 @@ def _room(value):
 MARGIN = float(conforming._margin(1.0))
 # What the margin was before it became wider: with the other sign of EXCESS.
 NARROW = MARGIN - 2 * conforming.EXCESS
-SPHERE = "centred sphere, four contrasts"
+SPHERE, UNSAID = "centred sphere, four contrasts", "nobody wrote it down"
 CONSTANTS = {
     "OFFSET": Constant("of twins from the interface", conforming.OFFSET, SPHERE, _offset),
     # Not shipped: what would lower the errors of most scenes, and raise those of dense dispersions.
@@ -103,7 +103,7 @@ CONSTANTS = {
     "CLEARANCE": Constant(
         "a particle nearer than the twins beside it plus this gives way",
         conforming.CLEARANCE,
-        SPHERE,
+        UNSAID,
         _named("CLEARANCE"),
     ),
     "EXCESS": Constant(
