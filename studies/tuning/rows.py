@@ -1,0 +1,50 @@
+"""Rows of the study of tuning: conductivities of unseen scenes with one constant changed; where errors come from."""
+
+from __future__ import annotations
+
+import warnings
+
+import numpy as np
+
+from demheat import solve
+from studies.harness.cells import cell
+from studies.tuning.constants import constant_set
+from studies.tuning.scenes import reference, scene_of
+
+DIGITS = ".10g"
+
+
+def references(family, seeds):
+    """Conductivities by a witness.
+
+    Parameters
+    ----------
+    family : str
+    seeds : sequence of int
+    """
+    known, doubts = zip(*(reference(family, seed) for seed in seeds), strict=True)
+    return {"k": cell(known, DIGITS), "doubt": cell(doubts, ".2g")}
+
+
+def varied(families, seeds, constant, factor, particles):
+    """Conductivities by the DEM with one constant changed; packings have the scenes' seeds.
+
+    Parameters
+    ----------
+    families : sequence of str
+    seeds : sequence of int
+    constant : str or None
+    factor : float
+    particles : int
+    """
+    row, unknowns = {}, []
+    with constant_set(constant, factor), warnings.catch_warnings():
+        # Gaps that twins do not fit into are counted.
+        warnings.simplefilter("ignore", UserWarning)
+        left_out = 0
+        for family in families:
+            fields = [solve(scene_of(family, seed), particles=particles, seed=seed) for seed in seeds]
+            row[family] = cell([field.conductivity for field in fields], DIGITS)
+            unknowns += [field.stats["unknowns"] for field in fields]
+            left_out += sum(field.stats["packing"]["pairs_left_out"] for field in fields)
+    return row | {"unknowns": float(np.mean(unknowns)), "left_out": left_out}
