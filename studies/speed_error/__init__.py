@@ -1,8 +1,8 @@
 """Error against CPU time and memory: every method over its resolutions on scenes of every kind.
 
-A centred sphere of radius L/3 ("third") in a matrix a hundredth, a tenth, a thousandth and next to nothing as
-conducting (contrast 1e6 stands in for infinity, as materials are finite), and a hundred times as conducting; one that
-fills half of the cube ("half") at 10 and 100; a sphere with a thin shell; 24 spheres whose radii differ by three, 83
+A centred sphere of radius L/3 ("third") a hundredth, ten and a thousand times as conducting as its matrix, and 1e6
+times, which stands in for infinity, as materials are finite; one that fills half of the cube ("half") at 10 and 100; a
+sphere in a thin shell, which the matrix around does not notice; 24 spheres whose radii differ by three, 83
 equal ones and 1000; layers that no grid meets; and in time a slab, a ball and a beam. Conductivities, and temperatures
 and fluxes at 400 random points, are held against exact solutions. The DEM is timed twice: with its packing made on the
 spot, and with the packing from the cache. The cost of a Laguerre tessellation is set beside Voro++'s, that of the
