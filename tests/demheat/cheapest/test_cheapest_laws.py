@@ -80,6 +80,14 @@ def test_what_is_needed_is_what_is_predicted(method):
     assert laws.predicted(method, SCENE, finer).cpu_s >= laws.predicted(method, SCENE, found).cpu_s
 
 
+def test_small_spheres_are_meshed_finely_whatever_the_size():
+    law, small = laws.laws()["fem"], measures(gallery.sphere_in_cube(10.0, radius=0.005))
+    one, other = (laws.predicted("fem", small, size).error for size in (0.01, 0.02))
+    assert_allclose(one, other, rtol=1e-12)
+    # So that errors as large as theirs ask for no size of their own.
+    assert laws.needed("fem", small, min(0.99, 2 * one), sure=False) == law.coarsest * small.edge
+
+
 def test_predictions_do_not_hang_on_the_unit_of_length():
     larger = gallery.sphere_in_cube(10.0, edge=10.0)
     for method, law in laws.laws().items():
