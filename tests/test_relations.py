@@ -87,3 +87,11 @@ def _share(scene):
 def test_every_scene_has_its_turn():
     names = [name for name, method in METHODS.items() if method.resolution is not None]
     assert len({seed for name in names for seed in hand(name).values()}) > COUNT / 2
+
+
+def test_heat_settles_as_fast_in_other_units():
+    """Conductivity over capacity goes with the square of lengths; without that bricks were compared half-way."""
+    for seed in range(COUNT):
+        image = image_of("units", seed)
+        metre = image.scene.size[0] / drawn(seed).size[0]
+        assert image.capacity == pytest.approx(image.conductivity / metre**2, rel=1e-12)  # rounding
