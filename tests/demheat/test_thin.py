@@ -67,6 +67,16 @@ def test_the_dem_without_twins_says_so(inclusions, knobs):
         demheat.solve(cell(*inclusions), packing=crystal(), **knobs)
 
 
+@pytest.mark.parametrize(("core", "told"), [(40.0, False), (60.0, True), (0.6, False), (0.4, True)])
+def test_coats_unlike_their_cores_are_told(core, told):
+    """A coat of .12, of conductivity 5, for particles of .167."""
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        scene = cell(ball(0.4), Sphere((0.5, 0.5, 0.5), 0.28, Material(core)))
+        demheat.solve(scene, packing=crystal(), conforming=False)
+    assert ["inclusions [0] are thin for particles" in str(each.message) for each in caught] == [True] * told
+
+
 @pytest.mark.parametrize("law", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}])
 @pytest.mark.parametrize(("gap", "told"), [(0.1, True), (0.2, False)])
 def test_short_cuts_without_twins_are_told(law, gap, told):
