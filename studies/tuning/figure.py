@@ -38,9 +38,7 @@ def draw(df):
     _factors(left, means.summed(means.errors(df, "unseen")))
     _parts(middle, means.parts(df, **SPHERE))
     _powers(right, df)
-    figure.suptitle(
-        "The shipped constants suit fine packings; coarse ones would gain from twins nearer to the interface"
-    )
+    figure.suptitle("The shipped constants suit fine packings; coarse ones would gain from others")
     return figure
 
 
