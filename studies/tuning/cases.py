@@ -11,7 +11,7 @@ GROUPS = {"unseen": (200, 203)}
 # Factors of each constant: of the five that shape every layer of twins some at more particles too.
 MAIN = {
     "OFFSET": (0.5, 0.7, 0.85, 1.2, 1.4),
-    "CURVATURE": (-0.5, 0.5, 1.0, 1.4),
+    "CURVATURE": (0.5, 1.0, 1.4),
     "SPACING": (0.5, 0.7, 1.4, 2.0),
     "MARGIN": (0.372, 0.7, 1.4, 2.0),  # the first is that with the other sign of EXCESS
     "CLEARANCE": (0.5, 0.7, 1.4, 2.0),

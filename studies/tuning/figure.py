@@ -38,9 +38,7 @@ def draw(df):
     _factors(left, means.summed(means.errors(df, "unseen")))
     _parts(middle, means.parts(df, **SPHERE))
     _powers(right, df)
-    figure.suptitle(
-        "The shipped constants suit fine packings; coarse ones would gain from twins nearer to the interface"
-    )
+    figure.suptitle("The shipped constants suit fine packings; coarse ones would gain from others")
     return figure
 
 
@@ -52,9 +50,8 @@ def _factors(axes, sums):
             continue
         own = shipped["median"].iloc[0]
         axes.axhline(own, color=GREY, linewidth=0.8)
-        axes.annotate(
-            f"{particles} particles, as shipped", (1.45, own), fontsize=8, color=GREY, ha="right", va="bottom"
-        )
+        where = {"xy": (0.99, own), "xycoords": axes.get_yaxis_transform(), "ha": "right", "va": "bottom"}
+        axes.annotate(f"{particles} particles, as shipped", **where, fontsize=8, color=GREY)
         for constant, colour in COLOURS.items():
             mine = pick(rows, constant=constant)
             # Nothing is shipped of CURVATURE.
@@ -82,22 +79,24 @@ def _powers(axes, df):
             ends = np.array([0.0, h.max()])
             axes.plot(ends, two + three * ends, color=colour, linewidth=0.8)
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
-    axes.set(xlabel="h = particles^(-1/3)", ylabel="error / h^2, %", xlim=(0, None))
+    axes.set(xlabel="h = particles^(-1/3)", ylabel="error / h^2, %", xlim=(0.0, 0.105))
     axes.set_title("Constants move the second order, not the third")
     axes.legend()
 
 
 def _parts(axes, table):
     axes.set_title("One sphere as shipped: two parts of opposite sign")
-    axes.set(xscale="log", yscale="log", xlabel="particles", ylabel="share of the conductivity, %")
+    axes.set(xscale="log", yscale="log", xlim=(700, 140_000), xlabel="particles", ylabel="share of the conductivity, %")
     if table.empty:
         return
     for name, (mark, colour, label) in PARTS.items():
         sem = table.get(f"{name}_sem")
         axes.errorbar(table["particles"], table[name].abs(), sem, color=colour, marker=mark, label=label)
+    axes.legend()
+    if len(table) < 2:
+        return
     first, last = table.iloc[0], table.iloc[-1]
     for power in (2, 3):
         line = first["misfit"] * np.array([1.0, (last["particles"] / first["particles"]) ** (-power / 3)])
         axes.plot([first["particles"], last["particles"]], line, color=SKY, linewidth=0.8, linestyle=(0, (1, 2)))
         axes.annotate(f"order {power}", (last["particles"], line[1]), fontsize=8, color=SKY, ha="right", va="bottom")
-    axes.legend()
