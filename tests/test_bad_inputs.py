@@ -181,6 +181,8 @@ TABLE = [
     (referee.curve_error, {"curve": [1.0, 2.0], "reference": [1.0, 2.0]}, {"curve": (*CURVE, [1.0]), "reference": (*CURVE, [1.0, 2.0, 3.0])}),
     (referee.dispersion, {}, {"curves": (*CURVE, [1.0, 2.0])}),
     (exact.solve, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
+    (demheat.effective, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "method": ("a", 5, ["box"], object, b"fem"), "memory": or_none(POSITIVE)}),
+    (demheat.recommend, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "memory": or_none(POSITIVE)}),
     (exact.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
     (exact.evolve, {"scene": WARMING, "times": [1.0]}, {"scene": OBJECT, "times": TIMES, "points_per_axis": COUNT}),
     (fem.solve, {"scene": WALLED}, {"scene": OBJECT, "order": (*COUNT, 3), "size": or_none(POSITIVE), "curved": FLAG, "tolerance": POSITIVE}),

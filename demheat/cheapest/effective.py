@@ -166,7 +166,7 @@ def _allowed(method):
     """Names of methods."""
     if method is None:
         return tuple(name for name in HOMES if name != "bracket")
-    names = (method,) if isinstance(method, str) else tuple(method)
+    names = tuple(method) if isinstance(method, (list, tuple)) else (method,)
     for name in names:
         chosen("method", name, tuple(HOMES))
     return names

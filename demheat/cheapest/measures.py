@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Layer, Scene
+from demheat.scene import Scene
 from demheat.scene.thickness import coats, extents
 
 # Gap of a lone sphere, over its diameter, beyond which it makes no difference.
@@ -67,7 +67,7 @@ def measures(scene: Scene) -> Measures:
     widths, volumes = extents(scene), np.array([_volume(scene, shape) for shape in shapes])
     outermost = np.array(scene.parents()[1:]) == 0
     # Volume over width: of a layer half its two faces, of a ball a sixth of its surface.
-    faces = np.array([2 if isinstance(shape, Layer) else 6 for shape in shapes])
+    faces = np.array([6 if shape.bounded else 2 for shape in shapes])
     return Measures(
         edge=edge,
         smallest=float(min(widths.min(), coats(scene).min(), edge)),
