@@ -19,7 +19,7 @@ MAIN = {
 OTHERS = {
     "EXCESS": (0.7, 1.4),
     "ROOM": (0.7, 1.4),
-    "GAP_SPACING": (0.7, 1.4),
+    "GAP_SPACING": (0.5, 0.7),
     "THINNING": (0.7, 1.3),
     "LEAST_OFFSET": (0.5, 2.0),
 }

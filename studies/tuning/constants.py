@@ -12,6 +12,7 @@ from unittest.mock import patch
 
 import numpy as np
 
+from demheat.laws import Laguerre
 from demheat.packing import conforming, gaps, interfaces, patterns
 
 HOMES = (conforming, gaps, interfaces, patterns)
@@ -80,6 +81,7 @@ def _room(value):
     return {"_room": room}
 
 
+CLOSE = Laguerre().gap_spacing
 MARGIN = float(conforming._margin(1.0))
 # What the margin was before it became wider: with the other sign of EXCESS.
 NARROW = MARGIN - 2 * conforming.EXCESS
@@ -110,8 +112,12 @@ CONSTANTS = {
         "weight of a twin beyond its squared offset, squared mean radii", conforming.EXCESS, "by reasoning", _excess
     ),
     "ROOM": Constant("part that twins take up of a narrow gap, over a quarter", 1.0, "by reasoning", _room),
+    # A choice of the law: `studies.tuning.rows` sets it there.
     "GAP_SPACING": Constant(
-        "of twins in a gap, over its width", patterns.GAP_SPACING, "by reasoning", _named("GAP_SPACING")
+        "of twins in a gap, over its width",
+        CLOSE,
+        "by reasoning",
+        _named(),
     ),
     "THINNING": Constant(
         "spacing of points chosen from a fine pattern, over the one wanted",

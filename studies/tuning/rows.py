@@ -6,9 +6,9 @@ import warnings
 
 import numpy as np
 
-from demheat import solve
+from demheat import Laguerre, solve
 from studies.harness.cells import cell
-from studies.tuning.constants import constant_set
+from studies.tuning.constants import CLOSE, constant_set
 from studies.tuning.scenes import reference, scene_of
 
 DIGITS = ".10g"
@@ -38,12 +38,13 @@ def varied(families, seeds, constant, factor, particles):
     particles : int
     """
     row, unknowns = {}, []
+    law = Laguerre(gap_spacing=factor * CLOSE) if constant == "GAP_SPACING" else Laguerre()
     with constant_set(constant, factor), warnings.catch_warnings():
         # Gaps that twins do not fit into are counted.
         warnings.simplefilter("ignore", UserWarning)
         left_out = 0
         for family in families:
-            fields = [solve(scene_of(family, seed), particles=particles, seed=seed) for seed in seeds]
+            fields = [solve(scene_of(family, seed), law=law, particles=particles, seed=seed) for seed in seeds]
             row[family] = cell([field.conductivity for field in fields], DIGITS)
             unknowns += [field.stats["unknowns"] for field in fields]
             left_out += sum(field.stats["packing"]["pairs_left_out"] for field in fields)
