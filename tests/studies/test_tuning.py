@@ -28,7 +28,8 @@ def twins():
     return np.column_stack([packing.centers, packing.radii])
 
 
-@pytest.mark.parametrize("name", CONSTANTS)
+# The spacing in gaps is a choice of the law, not a constant of a module.
+@pytest.mark.parametrize("name", [name for name in CONSTANTS if name != "GAP_SPACING"])
 def test_a_constant_is_set_and_set_back(name):
     before = twins()
     with constant_set(name, 0.7 if name != "LEAST_OFFSET" else 3.0):

@@ -215,11 +215,11 @@ def test_twins_of_a_coat_are_the_same_in_any_unit(unit):
 
 
 def test_closer_twins_in_gaps_are_asked_of_the_law():
-    """Twice as close in a coat: four times as many; elsewhere and at the usual distance nothing changes."""
+    """Twice as close in a coat: four times as many, to the quarter that thinning may add; elsewhere nothing changes."""
     coat = [Sphere((0.5,) * 3, 0.3, Material(2.0)), Sphere((0.5,) * 3, 0.27, Material(5.0))]
     base = relaxed(2000, periodic=True, seed=1)
     usual, close = (conform(base, scene(*coat), seed=1, gap_spacing=each) for each in (GAP_SPACING, GAP_SPACING / 2))
-    assert 3.5 < close.provenance["twins"] / usual.provenance["twins"] < 4.5
+    assert 3 < close.provenance["twins"] / usual.provenance["twins"] < 5
     lone = [conform(base, scene(*coat[:1]), seed=1, gap_spacing=each).provenance["twins"] for each in (0.85, 0.4)]
     assert lone[0] == lone[1]
     assert Laguerre().gap_spacing == GAP_SPACING
