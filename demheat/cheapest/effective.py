@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.cheapest.answers import reached
+from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
-from demheat.cheapest.ways import HOMES, Way, ways
+from demheat.cheapest.ways import HOMES, Way, finer, ways
 from demheat.limits import free_memory
 from demheat.scene import Scene
+from demheat.scene.frozen import read_only
 from demheat.scene.inputs import chosen, finite
 
 # Of the memory that is free.
@@ -120,18 +121,36 @@ def effective(
     accuracy, memory = _checked(accuracy, memory)
     allowed = _allowed(method)
     clock, cpu = time.perf_counter(), _cpu_seconds()
-    loads, passed = loads_of(scene), []
-    for way in _tried(loads, accuracy, allowed, memory):
-        try:
-            if way.refused:
-                raise NotImplementedError(way.refused)
-            found, knobs, rounds = reached(way, loads, accuracy, memory)
-        except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
-            passed.append(f"{way.method}: {' '.join(str(error).split())}")
-            continue
-        cost = {"cpu_s": _cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": rounds}
-        interval = (found.tensor - found.half, found.tensor + found.half)
-        return Effective(found.tensor, *interval, way.method, knobs, cost, found.how, loads.saved, tuple(passed))
+    loads = loads_of(scene)
+    found, way, passed = _found(loads, accuracy, allowed, memory)
+    cost = {"cpu_s": _cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": way.rounds + 1}
+    arrays = map(read_only, (found.tensor, found.tensor - found.half, found.tensor + found.half))
+    return Effective(*arrays, way.method, dict(way.knobs), cost, found.how, loads.saved, passed)
+
+
+def _found(loads, accuracy, allowed, memory):
+    """Answer, way and the ways that did not do; of all ways the one expected to cost least goes a step further."""
+    left = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
+    passed = []
+    while left:
+        way = min(left, key=lambda each: each.rank)
+        left.remove(way)
+        if not way.refused:
+            try:
+                found = answer(way, loads)
+                missing = excess(found, accuracy)
+                if missing <= 1:
+                    return found, way, tuple(passed)
+                way = finer(way, loads, missing, memory)
+            except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
+                way = way._replace(refused=" ".join(str(error).split()))
+        if way.refused:
+            passed.append(f"{way.method}: {way.refused}")
+        else:
+            left.append(way)
+    if "bracket" in allowed:
+        found, knobs = certain(loads, accuracy)
+        return found, Way("bracket", knobs), tuple(passed)
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
 
 
@@ -151,7 +170,7 @@ def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = No
     loads = loads_of(scene)
     found = tuple(ways(loads, accuracy, memory))
     lines = [*loads.saved, *map(_said, found)]
-    best = found[0] if not found[0].refused else Way("", {})
+    best = found[0] if not found[0].refused and not found[0].doubt else Way("", {})
     return Recommendation(best.method, best.knobs, best.cpu_s, best.bytes, "\n".join(lines), found)
 
 
@@ -172,18 +191,12 @@ def _allowed(method):
     return names
 
 
-def _tried(loads, accuracy, allowed, memory):
-    """Ways by the laws, certain bounds last: nothing is known of their cost."""
-    found = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
-    return found + [Way("bracket", {})] * ("bracket" in allowed)
-
-
 def _said(way):
+    if way.refused or way.doubt:
+        return f"{way.method}: {f'no, {way.refused}' if way.refused else f'in doubt, {way.doubt}'}"
+    cost = "cost unknown" if math.isnan(way.cpu_s) else f"about {way.cpu_s:.2g} CPU-s, {way.bytes / 2**20:.2g} MiB"
     knobs = ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items())
-    if way.refused:
-        return f"{way.method}: no, {way.refused}"
-    cost = "cost unknown" if math.isnan(way.cpu_s) else f"{way.cpu_s:.2g} CPU-s, {way.bytes / 2**20:.2g} MiB"
-    return f"{way.method}{f' with {knobs}' if knobs else ''}: about {cost}"
+    return f"{way.method}: {cost}{f', beginning with {knobs}' if knobs else ''}"
 
 
 def _cpu_seconds():

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import NamedTuple
 
-from demheat.cheapest.laws import laws, needed, predicted
+from demheat.cheapest.laws import ON_SPHERE, laws, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
 
@@ -24,6 +24,12 @@ HOMES = {
 KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.0)}
 # An interval is so many times the error, in the median: what is asked of the laws is the error.
 INTERVAL = 2.5
+# Orders with which intervals fall, at least: errors scatter.
+ORDERS = {"fem": 2.5, "fft": 1.0, "dem": 1.8}
+# Edges of elements from one run to the next, and how many times.
+SMALLEST, LARGEST, ROUNDS = 0.4, 0.9, 8
+# Processor seconds of the first run at most, and the edges of elements to get there, again and again.
+FIRST, COARSER = 3.0, 1.25
 # What coarser runs for the interval cost, of the solve.
 BESIDES = 1.5
 
@@ -44,6 +50,10 @@ class Way(NamedTuple):
         At the peak; NaN if unknown.
     refused : str
         Why it is none; empty if it is one.
+    doubt : str
+        Why it may be none: what the laws expect it to need; empty if there is no doubt.
+    rounds : int
+        Times that it was refined.
     """
 
     method: str
@@ -52,10 +62,17 @@ class Way(NamedTuple):
     cpu_s: float = math.nan
     bytes: float = math.nan
     refused: str = ""
+    doubt: str = ""
+    rounds: int = 0
+
+    @property
+    def rank(self):
+        """By which ways are tried."""
+        return bool(self.refused), bool(self.doubt), math.isnan(self.cpu_s), self.cpu_s
 
 
 def ways(loads: Loads, accuracy: float, memory: float) -> list[Way]:
-    """All ways, the cheapest first, those that are none last.
+    """All ways, the cheapest first, then those in doubt, and those that are none last.
 
     Parameters
     ----------
@@ -71,7 +88,41 @@ def ways(loads: Loads, accuracy: float, memory: float) -> list[Way]:
     """
     found = [_exact(loads, accuracy), _multipole(loads, accuracy, memory)]
     found += [_refined(name, loads, accuracy, memory) for name in KNOBS]
-    return sorted(found, key=lambda way: (bool(way.refused), math.isnan(way.cpu_s), way.cpu_s))
+    return sorted(found, key=lambda way: way.rank)
+
+
+def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
+    """The same way on smaller elements, as far as its interval says, and what that is now expected to cost.
+
+    Parameters
+    ----------
+    way : Way
+        That did not get there.
+    loads : Loads
+    missing : float
+        Largest half of an interval over what is allowed.
+    memory : float
+        Bytes.
+
+    Returns
+    -------
+    Way
+        Refused if it cannot get there.
+    """
+    told = f"half of its interval is {missing:.2g} times what is allowed with {_knobs(way)}"
+    if way.method not in KNOBS or way.rounds >= ROUNDS:
+        return way._replace(refused=told)
+    knob, power = KNOBS[way.method]
+    wanted = min(0.9 * missing ** (-1 / ORDERS[way.method]), LARGEST)
+    value, part = way.knobs[knob], _largest(loads)
+    if way.method == "fem":
+        # Longer edges than those on the spheres change nothing there.
+        value = min(value, ON_SPHERE * part.narrowest)
+    cost = predicted(way.method, part, _scaled(value, wanted, power))
+    if cost.bytes > memory:
+        return way._replace(refused=f"{told}; narrower ones would need {_gib(cost.bytes)}")
+    knobs = {knob: _scaled(value, max(wanted, SMALLEST), power)}
+    return way._replace(knobs=knobs, cpu_s=_all(cost, loads), bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
 
 
 def module_of(method: str):
@@ -113,30 +164,43 @@ def _multipole(loads, accuracy, memory):
 
 
 def _refined(name, loads, accuracy, memory):
-    knob, power = KNOBS[name]
-    part = measures(max(loads.parts.values(), key=lambda each: each.volume))
+    (knob, power), part = KNOBS[name], _largest(loads)
     value = needed(name, part, accuracy / INTERVAL, sure=False)
-    cost = predicted(name, part, value)
-    if cost.bytes > memory:
-        # Laws are not that good: the finest that fits may do.
-        finest = _rounded(value * (1.05 * (cost.bytes / memory) ** (1 / 3)) ** power, power)
-        least = predicted(name, part, finest)
-        if least.error <= laws()[name].error_within * accuracy:
-            value, cost = finest, least
-    cpu = BESIDES * len(loads.parts) * cost.cpu_s
-    return _within(Way(name, {knob: value}, cost.error, cpu, cost.bytes), memory)
+    cost, first = predicted(name, part, value), value
+    # Laws of the error may be far off: begin with what costs little, its interval says how far to go from there.
+    while predicted(name, part, first).cpu_s > FIRST:
+        first = _scaled(first, COARSER, power)
+    way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads), cost.bytes), memory)
+    least = predicted(name, part, first).bytes
+    return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
 
 
-def _rounded(value, power):
-    """Lengths as they are; voxels and particles are whole."""
+def _largest(loads):
+    return measures(max(loads.parts.values(), key=lambda each: each.volume))
+
+
+def _scaled(value, edge, power):
+    """A knob for elements with edges so many times as long; voxels and particles are whole."""
+    value *= edge**power
     return value if power > 0 else max(int(value), 1)
+
+
+def _all(cost, loads):
+    return BESIDES * len(loads.parts) * cost.cpu_s
+
+
+def _knobs(way):
+    return ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items()) or "nothing to refine"
 
 
 def _within(way, memory):
     if way.bytes <= memory:
         return way
-    gib = 2**30
-    return way._replace(refused=f"needs about {way.bytes / gib:.2g} GiB, {memory / gib:.2g} are to be had")
+    return way._replace(doubt=f"expected to need {_gib(way.bytes)}, {_gib(memory)} may be used")
+
+
+def _gib(number):
+    return f"{number / 2**30:.2g} GiB"
 
 
 def _line(error):
