@@ -153,7 +153,7 @@ def judged(name: str, field, known: Truth, allowed: float, said) -> Verdict:
         What it warned of.
     """
     off = error(field.conductivity, known, float(max(field.scene.conductivities)) or 1.0)
-    passed = beyond_elementary(field, allowed if "calibrated" in name else SLACK)
+    passed = beyond_elementary(field, allowed if name.startswith("dem") or name == "fft-links" else SLACK)
     if passed or not math.isfinite(off):
         return Verdict(name, "wrong", off, allowed, passed or "no number")
     if abs(off) <= allowed:
