@@ -113,12 +113,23 @@ def _multipole(loads, accuracy, memory):
 
 
 def _refined(name, loads, accuracy, memory):
-    knob, _ = KNOBS[name]
-    part = max(loads.parts.values(), key=lambda each: each.volume)
-    value = needed(name, measures(part), accuracy / INTERVAL, sure=False)
-    cost = predicted(name, measures(part), value)
+    knob, power = KNOBS[name]
+    part = measures(max(loads.parts.values(), key=lambda each: each.volume))
+    value = needed(name, part, accuracy / INTERVAL, sure=False)
+    cost = predicted(name, part, value)
+    if cost.bytes > memory:
+        # Laws are not that good: the finest that fits may do.
+        finest = _rounded(value * (1.05 * (cost.bytes / memory) ** (1 / 3)) ** power, power)
+        least = predicted(name, part, finest)
+        if least.error <= laws()[name].error_within * accuracy:
+            value, cost = finest, least
     cpu = BESIDES * len(loads.parts) * cost.cpu_s
     return _within(Way(name, {knob: value}, cost.error, cpu, cost.bytes), memory)
+
+
+def _rounded(value, power):
+    """Lengths as they are; voxels and particles are whole."""
+    return value if power > 0 else max(int(value), 1)
 
 
 def _within(way, memory):

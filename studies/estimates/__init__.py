@@ -7,6 +7,8 @@ hundred more `demheat.effective` is asked for the conductivity tensor to a tenth
 or the DEM, whichever it takes for the cheapest: closed forms and multipoles, which it would take, are the judges here.
 """
 
+from functools import partial
+
 from studies.common.drawn import KINDS
 from studies.harness.methods import found
 from studies.harness.pick import pick
@@ -59,13 +61,11 @@ def claims(df):
     from studies.estimates.means import inside, over, present
 
     asked, df = pick(df, part="effective"), pick(df, part="unseen")
-    for name in (*NAMES, *BESIDE):
-        if not present(df, name):
-            continue
+    for name in filter(partial(present, df), (*NAMES, *BESIDE)):
         title = found()[name].title
         yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
         yield f"{title}: half of the interval over the error, median", over(df, name).median(), "<= 5"
-    for name in NAMES:
+    for name in filter(partial(present, df), NAMES):
         title = found()[name].title
         yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
         yield f"{title}: what is said of the temperature over its error, median", over(df, name, "t_").median(), "<= 5"

@@ -1,0 +1,72 @@
+"""The study of estimates: what counts as held, and that claims fail where intervals do."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from studies import estimates
+from studies.common.drawn import CLOSED, KINDS, exact_field, scene_of
+from studies.estimates import means
+
+
+def rows(*, off, half, part="unseen"):
+    """Rows of one method with these errors and half intervals, %."""
+    df = pd.DataFrame({"fft_off": off, "fft_half": half, "fft_t_off": off, "fft_t_half": half})
+    return df.assign(part=part, scene="cubic array", seed=range(len(df)), exact=2.0, fft_cpu_s=1.0, fft_more_s=0.5)
+
+
+def test_an_interval_holds_up_to_its_ends():
+    df = rows(off=[0.1, -0.1, 0.1, 0.2], half=[0.1, 0.2, 0.05, 0.0])
+    assert means.inside(df, "fft").tolist() == [True, True, False, False]
+    # What the judge may be off itself counts for neither.
+    assert means.inside(rows(off=[1e-6], half=[0.0]), "fft").all()
+
+
+def test_nothing_is_compared_where_there_is_no_error():
+    found = means.over(rows(off=[0.1, 1e-9, -0.2], half=[0.3, 0.1, 0.2]), "fft")
+    np.testing.assert_allclose(found, [3.0, 1.0])
+
+
+def judged(df):
+    asked = pd.DataFrame(
+        {"part": "effective", "inside": [True] * 100, "worst_percent": [0.05] * 100, "exact": np.nan, "status": "ok"}
+    )
+    found = estimates.claims(pd.concat([df, asked], ignore_index=True))
+    return {sentence: (value, limit) for sentence, value, limit in found}
+
+
+def held(value, limit):
+    return value >= float(limit[3:]) if limit.startswith(">=") else value <= float(limit[3:])
+
+
+def test_claims_fail_where_intervals_do():
+    good = rows(off=[0.1] * 100, half=[0.3] * 100)
+    assert all(held(*each) for each in judged(good).values())
+    narrow = rows(off=[0.1] * 100, half=[0.05] * 6 + [0.3] * 94)
+    assert not all(held(*each) for each in judged(narrow).values())
+    blankets = rows(off=[0.1] * 100, half=[0.6] * 100)
+    assert not all(held(*each) for each in judged(blankets).values())
+    # Scenes that constants were found on count for nothing.
+    tuned = pd.concat([good, rows(off=[0.1] * 100, half=[0.0] * 100, part="tuned")], ignore_index=True)
+    assert all(held(*each) for each in judged(tuned).values())
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_drawn_scenes_have_an_exact_solution(kind):
+    """Two of each kind; the same seed draws the same scene."""
+    for seed in (0, 1):
+        scene = scene_of(kind, seed)
+        assert scene == scene_of(kind, seed) != scene_of(kind, seed + 1)
+        k = scene.conductivities
+        found = exact_field(kind, scene).conductivity
+        assert k.min() * (1 - 1e-9) <= found <= k.max() * (1 + 1e-9)
+        if kind == "neutral spheres":
+            assert found == pytest.approx(1.0, abs=1e-12)
+    assert CLOSED[-1] == "neutral spheres"
+
+
+def test_unseen_scenes_are_others_than_those_tuned_on():
+    seeds = {part: {case["seed"] for case in estimates.CASES if case["part"] == part} for part in ("tuned", "unseen")}
+    assert not seeds["tuned"] & seeds["unseen"]
+    assert sum(case["part"] == "unseen" for case in estimates.CASES) == 200
+    assert sum(case["part"] == "effective" for case in estimates.CASES) == 100
