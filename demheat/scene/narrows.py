@@ -18,7 +18,7 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
     """Which spheres and layers are less than a length from their like, or from a wall, where that matters.
 
     It does between two that conduct so many times better than what is around both, or both worse; between a good one
-    and a held wall. Other shapes are none.
+    and a held wall, between a bad one and an insulated one, which mirrors it. Other shapes are none.
 
     Parameters
     ----------
@@ -41,13 +41,16 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
                 own = np.array([i for i in ids if isinstance(scene.inclusions[i], kind)], int)
                 if len(own):
                     shapes = [scene.inclusions[i] for i in own]
-                    found[own[near(scene, shapes, reach, _held(scene) if good else [])]] = True
+                    found[own[near(scene, shapes, reach, _walls(scene, held=good))]] = True
     return found
 
 
-def _held(scene):
-    """Walls with a temperature, as pairs of an axis and a side."""
-    return [] if scene.periodic else [("xyz".index(name[0]), name[1]) for name in scene.wall_temperatures]
+def _walls(scene, held):
+    """Walls with a temperature, or those that are insulated, as pairs of an axis and a side."""
+    if scene.periodic:
+        return []
+    insulated = [name for name in ("x-", "x+", "y-", "y+", "z-", "z+") if name not in scene.walls]
+    return [("xyz".index(name[0]), name[1]) for name in (scene.wall_temperatures if held else insulated)]
 
 
 def _near_spheres(scene, spheres, reach, walls):

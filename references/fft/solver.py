@@ -20,7 +20,7 @@ from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
 from references.fft.problem import Problem, SolvedGrid
-from references.fft.rules import automatic, warn_of_thin
+from references.fft.rules import LEAST_LINKED, automatic, warn_of_thin
 from references.threads import Team, thread_count
 from references.voxels.bodies import bodies, settle
 from references.voxels.links import links
@@ -87,7 +87,7 @@ def solve(
     Raises
     ------
     ValueError
-        If an argument is not as described, or the grid has too few voxels for the scheme.
+        If an argument is not as described, or the grid has too few voxels for the scheme or for links.
     NotImplementedError
         If the load is another, or the scheme or rule cannot do with a zero conductivity that leaves heat a way.
     RuntimeError
@@ -97,7 +97,7 @@ def solve(
     -----
     UserWarning
         If an inclusion around another is a coat thinner than a voxel, or an inclusion smaller than a voxel, but for
-        layers in laminates; or a gap between two good conductors, or two bad ones, narrower than a voxel.
+        layers in laminates; or a gap between two good conductors, or two bad ones, little wider than a voxel.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
     _check_load(scene)
@@ -147,7 +147,7 @@ def _solved(scenes, voxels, knobs):
     boxes = [_turned(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
     if knobs.rule == "auto":
-        knobs = knobs._replace(rule=automatic(knobs.scheme, scenes[0]))
+        knobs = knobs._replace(rule=automatic(knobs.scheme, scenes[0], grid))
     for box, shape in zip(boxes, shapes, strict=True):
         _check_grid(box, knobs.rule, shape)
     # What each solution keeps, on top of the first.
@@ -239,6 +239,12 @@ def _check_load(scene):
 def _check_grid(box, rule, shape):
     if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
+    linked = rule == "links" and box.conductivities.min() > 0
+    if linked and min(shape) < LEAST_LINKED and any(each.bounded for each in box.inclusions):
+        raise ValueError(
+            f"voxels: {min(shape)} along a side are too few for rule 'links' with round inclusions, which may pass "
+            f"Voigt's and Reuss's bounds; must be >= {LEAST_LINKED}, or take rule 'laminate'"
+        )
 
 
 def _check_scheme(box, scheme, rule):

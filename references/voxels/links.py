@@ -52,7 +52,7 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
             for group in parts:
                 _cut_group(group, found[axis], axis, change, np.array(scene.size) / shape)
                 done(axis / 3)
-            _finish(scene, axis, found[axis], NEAREST * resistivity, phase)
+            _finish(scene, axis, found[axis], resistivity, phase)
     return tuple(found)
 
 
@@ -75,7 +75,7 @@ def _cut_group(group, resistance, axis, change, spacing):
         cut(shape, resistance, axis, change[number], spacing)
 
 
-def _finish(scene, axis, resistance, least, phase):
+def _finish(scene, axis, resistance, resistivity, phase):
     """Make resistances conductivities, in place: faces of the box, surfaces next to nodes."""
     view = np.moveaxis(resistance, axis, 2)
     if scene.periodic:
@@ -84,9 +84,9 @@ def _finish(scene, axis, resistance, least, phase):
     else:
         view[:, :, [0, -1]] *= 2.0
     if _rounded(scene):
-        kernels.keep_off(view, np.moveaxis(phase, axis, 2), least, scene.periodic)
+        kernels.keep_off(view, np.moveaxis(phase, axis, 2), NEAREST * resistivity, scene.periodic)
     # Next to a resistivity 1e16 times as large rounding leaves nothing of the least: half a link of it at both ends.
-    np.maximum(resistance, least.min() / NEAREST / 2, out=resistance)
+    np.maximum(resistance, resistivity.min() / 2, out=resistance)
     np.divide(1.0, resistance, out=resistance)
     if not scene.periodic and axis != scene.axis:
         view[:, :, [0, -1]] = 0.0

@@ -78,24 +78,26 @@ def test_coats_unlike_their_cores_are_told(core, told):
 
 
 @pytest.mark.parametrize("law", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}])
-@pytest.mark.parametrize(("gap", "told"), [(0.1, True), (0.2, False)])
-def test_short_cuts_without_twins_are_told(law, gap, told):
-    """Particles of diameter .167 on either side of a gap of a tenth, between good conductors, touch."""
-    good = Material(1e3)
-    pair = [Sphere((x, 0.5, 0.5), 0.2, good) for x in (0.3 - gap / 2, 0.7 + gap / 2)]
+@pytest.mark.parametrize(
+    ("gap", "contrast", "told"),
+    [(0.1, 1e3, True), (0.19, 1e3, True), (0.21, 1e3, False), (0.19, 7.5, True), (0.19, 6.5, False)],
+)
+def test_short_cuts_without_twins_are_told(law, gap, contrast, told):
+    """Particles of diameter .1 on either side of a gap below two of them, between good conductors."""
+    pair = [Sphere((x, 0.5, 0.5), 0.15, Material(contrast)) for x in (0.35 - gap / 2, 0.65 + gap / 2)]
     scene = Scene(**CUBE, inclusions=pair, walls={"y-": 0.0, "y+": 1.0})
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
-        demheat.solve(scene, packing=crystal(periodic=False), **law)
+        demheat.solve(scene, packing=crystal(10, periodic=False), **law)
     said = [str(each.message) for each in caught]
     assert [words for words in said if "gaps beside inclusions [0, 1]" in words] == (said if told else [])
     assert bool(said) == told
 
 
 @pytest.mark.parametrize("rule", ["plain", "laminate", "links"])
-@pytest.mark.parametrize(("voxels", "told"), [(12, True), (24, False), (9, True)])
+@pytest.mark.parametrize(("voxels", "told"), [(12, True), (23, True), (24, False), (9, True)])
 def test_gaps_narrower_than_a_voxel_are_told(rule, voxels, told):
-    """A gap of .06 is less than one of 12 voxels, or than two of fewer than ten, but more than one of 24."""
+    """A gap of .06 is less than 1.4 of 12 or 23 voxels, or than two of fewer than ten, but more than 1.4 of 24."""
     pair = [Sphere((x, 0.5, 0.5), 0.2, Material(30.0)) for x in (0.27, 0.73)]
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

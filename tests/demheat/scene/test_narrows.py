@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_array_equal
 
-from demheat import Layer, Material, Scene, Sphere
+from demheat import Flux, Layer, Material, Scene, Sphere
 from demheat.scene.narrows import narrows
 
 METAL, GOOD, BAD, LIKE = (Material(k) for k in (1.0, 10.0, 0.1, 9.0))
@@ -51,9 +51,13 @@ def test_images_and_walls():
     ends = [Sphere((x, 0.5, 0.5), 0.1, GOOD) for x in (0.11, 0.89)]
     assert near(0.03, *ends) == [0, 1]
     assert near(0.03, *ends, **WALLS) == [0, 1]
-    # Bad ones are no short cut from a wall, insulated walls no sources, and what a wall cuts leaves no gap.
+    # Bad ones are no short cut from a held wall, insulated walls no sources, and what a wall cuts leaves no gap.
     assert near(0.03, *(Sphere(s.center, s.radius, BAD) for s in ends), **WALLS) == []
     assert near(0.03, Sphere((0.5, 0.11, 0.5), 0.1, GOOD), Sphere((0.05, 0.5, 0.5), 0.1, GOOD), **WALLS) == []
+    # An insulated wall mirrors a bad one, which a way between two is narrow for; a flux through it does not.
+    assert near(0.03, Sphere((0.5, 0.11, 0.5), 0.1, BAD), Sphere((0.5, 0.5, 0.5), 0.1, BAD), **WALLS) == [0]
+    fluxes = WALLS | {"walls": {"x-": 0.0, "x+": 1.0, "y-": Flux(1.0)}}
+    assert near(0.03, Sphere((0.5, 0.11, 0.5), 0.1, BAD), **fluxes) == []
     large = Sphere((0.5, 0.5, 0.5), 0.49, GOOD)
     assert near(0.03, large) == [0] and near(0.01, large) == []
 

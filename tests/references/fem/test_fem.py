@@ -1,6 +1,7 @@
 """Finite elements: exact solutions, accuracy, what any linear conductor owes, pores, bad input."""
 
 import math
+import warnings
 from functools import cache
 
 import numpy as np
@@ -8,8 +9,8 @@ import pytest
 from fem_scenes import COARSE, ELEMENTS, ball, points_in, scene
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Layer, Material
-from references import fem
+from demheat.scene import Flux, Layer, Material, Scene, Sphere
+from references import exact, fem
 
 # The simple cubic array with a = L/3, k/k_m by Rayleigh's multipole method (McPhedran and McKenzie 1978).
 EXACT = {0.01: 0.786847280, 0.1: 0.812845293, 10: 1.395734838, 100: 1.533386809, 1e6: 1.552615028}
@@ -330,3 +331,26 @@ def test_stats_and_the_callers_random_numbers():
     assert 0 < field.stats["residual"] <= 1e-9 and 0 < field.stats["iterations"] < 40
     again = fem.solve(scene(ball()), size=COARSE)
     assert again.conductivity == field.conductivity  # the same bits each time
+
+
+@pytest.mark.parametrize(
+    ("contrast", "size", "order", "told"),
+    [
+        (30.0, 0.25, 1, True),
+        (15.0, 0.25, 1, True),
+        (30.0, 0.06, 1, False),
+        (10.0, 0.25, 1, False),
+        (0.01, 0.25, 1, False),
+        (30.0, 0.25, 2, False),
+    ],
+)
+def test_linear_elements_in_gaps_are_told(contrast, size, order, told):
+    """A sphere a tenth from two walls: what is over the 5 % allowed to a hard case is told."""
+    ball = Sphere((0.5, 0.5, 0.5), 0.4, Material(contrast))
+    scene = Scene((1, 1, 1), Material(1.0), [ball], walls={"x-": 0.0, "x+": 1.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = fem.solve(scene, order=order, size=size).conductivity
+    assert ["gaps beside inclusions [0] have an element or so" in str(each.message) for each in caught] == [True] * told
+    off = found / exact.solve(scene).conductivity - 1
+    assert 0.05 < off < 0.1 if told else abs(off) < 0.05

@@ -1,13 +1,14 @@
 """Solvers on voxels at their limits: tiny grids, single precision, pores, no convergence, bad input."""
 
 import contextlib
+import warnings
 
 import numpy as np
 import pytest
 from fft_scenes import RULES, SCHEMES, dispersion, sphere_cell
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Material, Scene, Sphere
+from demheat.scene import Flux, Layer, Material, Scene, Sphere
 from references import exact, fft
 from references.fft import eyre_milton, solver
 from references.voxels import links as voxel_links
@@ -91,6 +92,19 @@ def test_pores():
         fft.solve(scene, voxels=4, scheme="eyre-milton")
     with pytest.raises(NotImplementedError, match="conductivity is 0"):
         fft.solve(scene, voxels=4, rule="links")
+
+
+def test_links_want_some_voxels():
+    """On fewer they were beyond Voigt's and Reuss's bounds; layers are links enough."""
+    ball, layer = Sphere((0.5,) * 3, 0.3, Material(100.0)), Layer(0, 0.25, 0.5, Material(100.0))
+    slim = {"size": (2.0, 0.8, 1.0), "matrix": Material(2.0), "walls": {"x-": 0.0, "x+": 1.0}}
+    with pytest.raises(ValueError, match="voxels: 4 along a side are too few for rule 'links'.* must be >= 5"):
+        fft.solve(Scene(inclusions=[ball], **slim), voxels=(10, 4, 5), rule="links")
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of the gap
+        assert fft.solve(Scene(inclusions=[ball], **slim), voxels=(10, 4, 5)).stats["rule"] == "laminate"
+        assert fft.solve(Scene(inclusions=[ball], **slim), voxels=(10, 5, 5)).stats["rule"] == "links"
+    assert fft.solve(Scene(inclusions=[layer], **slim), voxels=(8, 2, 2), rule="links").conductivity > 2.0
 
 
 def test_a_body_without_conductivity_conducts_nothing():
