@@ -212,7 +212,7 @@ def _compared(field, points, values, mask, name):
     values = None if values is None else reals("values", values, "numbers, one for each point")
     shape = (len(points),) if name == "temperature" else (len(points), 3)
     if values is not None and values.shape != shape:
-        raise ValueError(f"values of shape {values.shape}: must be {shape}, one for each of {len(points)} points")
+        raise ValueError(f"values of shape {values.shape}: must be one for each of {len(points)} points, {shape}")
     keep = mask(np.array(points)) if callable(mask) else mask
     if keep is not None:
         keep = np.asarray(keep)
