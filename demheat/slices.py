@@ -12,7 +12,7 @@ from demheat.field import Field, check_field
 from demheat.limits import check_memory
 from demheat.scene import check_scene
 from demheat.scene.bodies import inside
-from demheat.scene.inputs import axis_number, finite, whole
+from demheat.scene.inputs import axis_number, finite, reals, whole
 
 # Least bytes that a pixel takes: its middle, and where it is in the body.
 BYTES = 50
@@ -96,7 +96,10 @@ def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np
     if flux_at is not None and not callable(flux_at):
         raise ValueError(f"flux_at = {flux_at!r}: must be a function of points, or None")
     points, mask = plane(field.scene, axis=axis, at=at, n=n)
-    return Slice(filled(mask, field.temperature_at(points)), filled(mask, (flux_at or field.flux_at)(points.copy())))
+    flux = reals("flux_at(points)", (flux_at or field.flux_at)(points.copy()), "real numbers, three for each point")
+    if flux.shape != points.shape:
+        raise ValueError(f"flux_at(points) of shape {flux.shape}: must be {points.shape}, three for each point")
+    return Slice(filled(mask, field.temperature_at(points)), filled(mask, flux))
 
 
 def filled(mask, values):
@@ -111,10 +114,18 @@ def filled(mask, values):
     Returns
     -------
     (rows, columns) or (rows, columns, d) float array
+
+    Raises
+    ------
+    ValueError
+        If they are not as described.
     """
-    values = np.asarray(values, dtype=float)
-    if len(values) != np.count_nonzero(mask):
-        raise ValueError(f"values of length {len(values)}: must be one for each of {np.count_nonzero(mask)} points")
+    mask = np.asarray(mask)
+    if mask.dtype != bool or mask.ndim != 2:
+        raise ValueError(f"mask of shape {mask.shape}, {mask.dtype}: must be rows of booleans, as `plane` returns it")
+    values = reals("values", values, "real numbers, one for each point")
+    if values.ndim == 0 or len(values) != np.count_nonzero(mask):
+        raise ValueError(f"values of shape {values.shape}: must be one for each of {np.count_nonzero(mask)} points")
     picture = np.full(mask.shape + values.shape[1:], math.nan)
     picture[mask] = values
     return picture

@@ -17,8 +17,9 @@ import demheat
 from demheat import gallery, packing, referee, slices
 from demheat.build import network_of
 from demheat.dem import evolve, solve, solve_axes
-from demheat.packing import dispersion, domain, lsa, make_packing, neighbours, relax, statistics
+from demheat.packing import dispersion, domain, io, lsa, make_packing, neighbours, relax, statistics
 from demheat.sampling import halo
+from demheat.scene.symmetry import reduced, unfold
 from references import bounds, bracket, exact, fem, fft, mesh, multipole, richardson
 from references.fft import zeta
 
@@ -35,10 +36,22 @@ WHOLE = (None, "a", "5", NAN, 2.5, True, 1j, [5], -1)
 COUNT = (*WHOLE, 0)
 VECTOR = (None, "a", 0.5, ("0.5", "0.5", "0.5"), (0.5, 0.5), (0.5,) * 4, (NAN, 0.5, 0.5), (INF, 0.5, 0.5), HIDDEN)
 VECTOR = (*VECTOR, (True, 0.5, 0.5), (1j, 0.5, 0.5), (None, 0.5, 0.5), [[0.5, 0.5, 0.5]], {0.5})
-SIDES = (*VECTOR, (0.0, 1.0, 1.0), (-1.0, 1.0, 1.0))
+SIDES = (*VECTOR, (0.0, 1.0, 1.0), (-1.0, 1.0, 1.0), (1e-300,) * 3, (1e300,) * 3)
 PLACES = (None, "a", 0.5, [["0.5"] * 3], [[NAN, 0.5, 0.5]], [[1j, 0.5, 0.5]], [[0.5, 0.5]])
 PLACES = (*PLACES, np.ma.array([[0.5] * 3], mask=True))
-RADII = ("a", 5, ["1", "2"], [NAN, 1.0], [-1.0, 1.0], [0.0, 1.0], [1j, 1.0], [[1.0, 2.0]])
+RADII = (
+    packing.Gaussian,
+    packing.Listed,
+    "a",
+    5,
+    [1e-300, 1e300, "a"],
+    ["1", "2"],
+    [NAN, 1.0],
+    [-1.0, 1.0],
+    [0.0, 1.0],
+    [1j, 1.0],
+    [[1.0, 2.0]],
+)
 TIMES = (
     None,
     "a",
@@ -147,6 +160,8 @@ TABLE = [
     (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"number": COUNT, "size": SIDES, "phi": or_none(POSITIVE), "radii": RADII, "periodic": FLAG, "domain": WORD, "seed": WHOLE, "allow_few": FLAG}),
     (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"pressure": or_none(POSITIVE), "most": POSITIVE, "growth": (*without(POSITIVE, [0.5]), [], [(1, 2, 3)]), "progress": ("a", 5), "start": ("a", 5)}),
     (packing.settle, {"packing": EIGHT}, {"packing": OBJECT, "fixed": ("a", 5, [True], np.ones(8)), "steps": WHOLE, "overlap": PART, "progress": ("a", 5)}),
+    (io.write, {"packing": EIGHT, "path": "nowhere/none.npz"}, {"packing": OBJECT, "path": (None, 5, "", "none", "a\0.npz"), "format": or_none((5, "box", ["npz"])), "temperature": ([1.0] * 8,)}),
+    (io.read, {"path": "nowhere/none.xyz"}, {"path": (None, 5, "", "none", "a\0.npz"), "format": or_none((None, 5, "box", ["npz"])), "size": or_none(SIDES), "periodic": or_none(FLAG), "domain": or_none((None, 5, "box ", ["box"])), "step": (True, 1.0, "a"), "order": WORD}),
     (neighbours.neighbours, {"packing": EIGHT}, {"packing": OBJECT, "scale": PART, "skin": PART}),
     (packing.contacts, {"packing": EIGHT, "coordination": 3.0}, {"packing": OBJECT, "gap": or_none((*NUMBER, -1.0)), "additive": FLAG, "coordination": POSITIVE, "margin": PART}),
     (packing.cut, {"packing": EIGHT}, {"packing": OBJECT, "domain": WORD, "size": or_none(SIDES), "center": or_none(VECTOR), "keep": WORD}),
@@ -161,27 +176,32 @@ TABLE = [
     (statistics.fabric, ROWS, {"packing": OBJECT, "indptr": (None, "a"), "indices": (None, "a"), "margin": PART}),
     (statistics.directions, ROWS, {"packing": OBJECT, "indptr": (None, "a"), "indices": (None, "a"), "bins": (*COUNT, 5), "margin": PART}),
     (slices.plane, {"scene": CELL, "axis": 0, "at": 0.5, "n": 3}, {"scene": OBJECT, "axis": (*WHOLE, 3), "at": PART, "n": COUNT}),
-    (slices.on_plane, {"field": SOLVED, "axis": 0, "at": 0.5, "n": 3}, {"field": OBJECT, "axis": (*WHOLE, 3), "at": PART, "n": COUNT, "flux_at": ("a", 5)}),
+    (slices.on_plane, {"field": SOLVED, "axis": 0, "at": 0.5, "n": 3}, {"field": OBJECT, "axis": (*WHOLE, 3), "at": PART, "n": COUNT, "flux_at": ("a", 5, lambda p: None, lambda p: "a", lambda p: 5.0, lambda p: p[:, 0], lambda p: p[:1], lambda p: p * 1j)}),
+    (slices.filled, {"mask": np.ones((2, 2), bool), "values": np.ones(4)}, {"mask": (None, "a", np.ones((2, 2)), np.ones(4, bool)), "values": (None, 5.0, ["a"] * 4, [1j] * 4, [1.0])}),
     (halo.halo_flux, {"field": SOLVED}, {"field": OBJECT}),
     (halo.halo_average, {"points": [[0.5] * 3], "values": [1.0], "volumes": [1.0], "radius": 0.1, "size": (1, 1, 1), "periodic": True}, {"points": PLACES, "values": (None, "a", ["1"], [NAN], [1j], [1.0, 2.0]), "volumes": (None, ["1"], [NAN], [-1.0]), "radius": POSITIVE, "size": SIDES, "periodic": FLAG}),
     (SOLVED.temperature_at, {}, {"points": PLACES}),
     (SOLVED.flux_at, {}, {"points": PLACES}),
     (SOLVED.heat_through, {"axis": 0, "position": 0.5}, {"axis": (*WHOLE, 3), "position": PART}),
     (referee.conductivity_error, {"field": SOLVED, "reference": 1.0}, {"field": OBJECT, "reference": POSITIVE}),
-    (referee.temperature_error, {"field": SOLVED, "reference": SOLVED}, {"field": OBJECT, "reference": OBJECT, "points": without(PLACES, None), "values": ("a", 5, [1.0], ["1"] * 8), "mask": ("a", 5, [True]), "unit": WORD}),
-    (referee.flux_error, {"field": SOLVED, "reference": SOLVED}, {"field": OBJECT, "reference": OBJECT, "points": without(PLACES, None), "unit": WORD, "along": FLAG}),
+    (referee.temperature_error, {"field": SOLVED, "reference": SOLVED}, {"field": OBJECT, "reference": OBJECT, "points": without(PLACES, None), "values": ("a", 5, [1.0], ["1"] * 8, np.ones((8, 2))), "mask": ("a", 5, [True]), "unit": WORD}),
+    (referee.flux_error, {"field": SOLVED, "reference": SOLVED}, {"field": OBJECT, "reference": OBJECT, "points": without(PLACES, None), "values": ("a", 5, np.ones(8), np.ones((8, 2))), "unit": WORD, "along": FLAG}),
+    (referee.temperature_error(SOLVED, SOLVED).part, {}, {"mask": (None, "a", [True], np.ones(8))}),
     (referee.heat_balance, {}, {"field": OBJECT}),
     (referee.span, {"scene": WALLED}, {"scene": OBJECT, "reference": or_none(OBJECT)}),
     (referee.bound_violation, {"field": 1.0, "lower": 0.0, "upper": 2.0}, {"field": (None, "a", [], 1j, True), "lower": without(PART, 10**400), "upper": without(PART, INF, 10**400)}),
-    (referee.value_error, {"found": 1.0, "exact": 2.0}, {"found": (None, "a", 1j), "exact": (None, "a", 1j), "scale": ("a", "1")}),
+    (referee.value_error, {"found": 1.0, "exact": 2.0}, {"found": (None, "a", 1j), "exact": (None, "a", 1j, 0.0), "scale": ("a", "1", 0.0)}),
+    (referee.value_error, {"found": [1.0, 2.0], "exact": [1.0, 2.0]}, {"found": ([1.0] * 3,), "exact": ([1.0] * 3,)}),
+    (referee.vector_error, {"found": np.ones((2, 3)), "exact": np.ones((2, 3))}, {"found": (np.ones((4, 3)),), "exact": (np.ones((4, 3)),)}),
     (referee.vector_error, {"found": [1.0, 2.0], "exact": [1.0, 2.0]}, {"found": (None, "a", 1.0, [1.0] * 3), "exact": (None, "a", 1.0), "scale": POSITIVE}),
-    (referee.rms, {"errors": [1.0, 2.0]}, {"errors": CURVE, "weights": ("a", [1.0], [0.0, 0.0], [-1.0, 1.0])}),
-    (referee.variation, {"values": [1.0, 2.0]}, {"values": CURVE, "weights": ("a", [1.0], [0.0, 0.0], [-1.0, 1.0])}),
-    (referee.worst, {}, {"errors": CURVE}),
-    (referee.curve_error, {"curve": [1.0, 2.0], "reference": [1.0, 2.0]}, {"curve": (*CURVE, [1.0]), "reference": (*CURVE, [1.0, 2.0, 3.0])}),
-    (referee.dispersion, {}, {"curves": (*CURVE, [1.0, 2.0])}),
+    (referee.rms, {"errors": [1.0, 2.0]}, {"errors": CURVE, "weights": ("a", [1.0], [0.0, 0.0], [-1.0, 1.0], [INF, 1.0])}),
+    (referee.variation, {"values": [1.0, 2.0]}, {"values": (*CURVE, [0.0, 0.0]), "weights": ("a", [1.0], [0.0, 0.0], [-1.0, 1.0], [INF, 1.0])}),
+    (referee.worst, {}, {"errors": (*CURVE, [[1.0, 2.0], [3.0, 4.0]])}),
+    (referee.curve_error, {"curve": [1.0, 2.0], "reference": [1.0, 2.0]}, {"curve": (*CURVE, [1.0]), "reference": (*CURVE, [1.0, 2.0, 3.0], [0.0, 0.0])}),
+    (referee.dispersion, {}, {"curves": (*CURVE, [1.0, 2.0], [[0.0, 0.0]])}),
+    (unfold, {"part": reduced(CELL), "points": [[0.5] * 3]}, {"part": (None, "a", CELL), "points": PLACES}),
     (exact.solve, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
-    (demheat.effective, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "method": ("a", 5, ["box"], object, b"fem"), "memory": or_none(POSITIVE)}),
+    (demheat.effective, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "method": ("a", 5, ["box"], object, b"fem", [], {"fem"}), "memory": or_none(POSITIVE)}),
     (demheat.recommend, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "memory": or_none(POSITIVE)}),
     (exact.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
     (exact.evolve, {"scene": WARMING, "times": [1.0]}, {"scene": OBJECT, "times": TIMES, "points_per_axis": COUNT}),

@@ -3,9 +3,12 @@
 import re
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from demheat import Layer, Material, MovingCylinder, Scene, evolve, gallery, solve
+from demheat.packing.base import make_packing
+from demheat.packing.conforming import conform
 from demheat.packing.domain import replicate
 from demheat.packing.lsa import lsa
 from demheat.packing.relax import relax, settle
@@ -17,6 +20,7 @@ HUGE = 10**12
 SLAB, CELL = gallery.slab(), gallery.simple_cubic()
 IN_TIME = Scene((0.1, 0.1, 0.1), Material(33.0, 7800.0, 900.0), walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
 WIRE = MovingCylinder(axis=2, diameter=1e-13, power_density=1.0, start=(0.05, 0.05), velocity=(0.01, 0.0))
+SCATTERED = make_packing(np.random.default_rng(0).random((99, 3)) * CELL.size, np.full(99, 1e-9), CELL.size, True, {})
 REQUESTS = {
     "particles = 1000000000000: takes": lambda: solve(SLAB, particles=HUGE),
     "particles = 100000000000...": lambda: evolve(IN_TIME, [1.0], particles=10**300),
@@ -50,6 +54,13 @@ REQUESTS = {
     ),
     "Scene.sources: diameter over velocity, s = 1e-11: takes": lambda: list(
         evolve(replace(IN_TIME, sources=[WIRE]), [1.0], particles=300)
+    ),
+    "times, the last = 1000000000000.0: takes ": lambda: next(
+        evolve(IN_TIME, [1e12], particles=300, integrator="rkl2")
+    ),
+    "packing: of mean radius 1e-09 m, by which interfaces would have": lambda: conform(SCATTERED, CELL),
+    "packing: of mean radius 1e-40 m, by which interfaces would have": lambda: conform(
+        SCATTERED._replace(radii=np.full(99, 1e-40)), CELL
     ),
     "times, the last = 1e+30: takes": lambda: next(evolve(IN_TIME, [1e30], particles=300, integrator="rkl2")),
 }

@@ -186,6 +186,8 @@ def _allowed(method):
     if method is None:
         return tuple(name for name in HOMES if name != "bracket")
     names = tuple(method) if isinstance(method, (list, tuple)) else (method,)
+    if not names:
+        raise ValueError(f"method = {method!r}: must name one at least, or be None for any")
     for name in names:
         chosen("method", name, tuple(HOMES))
     return names

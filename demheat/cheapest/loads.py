@@ -59,6 +59,8 @@ def loads_of(scene: Scene) -> Loads:
         As `demheat.tensor.axis_loads`.
     """
     wholes = dict(enumerate(axis_loads(scene)))
+    if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
+        raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")
     planes = [plane is not None for plane in mirrors(scene)]
     diagonal = not scene.periodic or sum(planes) >= 2
     if not diagonal:

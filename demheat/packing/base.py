@@ -8,10 +8,12 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
-from demheat.scene.inputs import finite, reals
+from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals
 
 # Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
 MORTON_BITS = 21
+# As of scenes: volumes beyond are zero or infinite.
+MODERATE = f"from {LEAST:g} to {MOST:g} m"
 
 
 class Packing(NamedTuple):
@@ -89,8 +91,8 @@ def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: st
         raise ValueError(f"provenance = {provenance!r}: must be a dict")
     if centers.ndim != 2 or centers.shape[1] != 3 or len(centers) == 0 or not np.all(np.isfinite(centers)):
         raise ValueError(f"centers of shape {centers.shape}: must be (n, 3) finite numbers, n > 0")
-    if radii.shape != (len(centers),) or not np.all(np.isfinite(radii)) or np.any(radii <= 0):
-        raise ValueError(f"radii of shape {radii.shape}: must be {len(centers)} finite numbers > 0")
+    if radii.shape != (len(centers),) or not (radii.min() >= LEAST and radii.max() <= MOST):
+        raise ValueError(f"radii of shape {radii.shape}: must be {len(centers)} finite numbers > 0, {MODERATE}")
     outside = ~periodic & ((centers < 0) | (centers > size))
     if outside.any():
         which = int(np.flatnonzero(outside.any(axis=1))[0])
@@ -124,9 +126,9 @@ def check_box(size, periodic):
     ValueError
         If they are not as described, or a side is not > 0.
     """
-    valid = "three finite lengths > 0"
+    valid = f"three finite lengths > 0, {MODERATE}"
     sides = np.array(reals("size", size, valid))
-    odd = sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0)
+    odd = sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0) or not all(map(moderate, sides))
     if odd or any(isinstance(side, bool | np.bool_) for side in size):
         raise ValueError(f"size = {size!r}: must be {valid}")
     flags = np.asarray(periodic)

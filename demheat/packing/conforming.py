@@ -30,6 +30,9 @@ GAP_SPACING = 0.85
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
 # points need up to 0.77 near their poles.
 COVER = 0.8
+# Twins for each particle, at most. A sphere of radius s among particles of radius a has 10 (s / a)^2 twins in place of
+# (s / a)^3 particles or so; many more say that the mean radius is not the distance between the particles.
+MOST_TWINS = 300
 
 
 class _Twins(NamedTuple):
@@ -61,6 +64,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float
 
     Raises
     ------
+    ValueError
+        If the packing is so loose, or its radii so unequal, that there would be over 300 twins for each particle.
     NotImplementedError
         If there is an inclusion of a shape whose surface is not known; see `demheat.packing.interfaces.surfaces`.
     """
@@ -69,6 +74,7 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "even_twins": 0, "pairs_left_out": 0})
     radius = packing.radii.mean()
+    _check_number(packing, scene, radius)
     interfaces = Interfaces(scene, _reach(packing, radius, gap_spacing))
     tally = Tally(radius)
     twins, left_out = _twins_on(interfaces, radius, seed, tally, gap_spacing)
@@ -84,6 +90,19 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float
     return make_packing(
         np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
     )
+
+
+def _check_number(packing, scene, radius):
+    """Refuse packings whose mean radius is far below the distance between their particles, before anything is made."""
+    lows, highs = zip(*(shape.bounds() for shape in scene.inclusions), strict=True)
+    x, y, z = np.minimum(np.array(highs) - np.array(lows), scene.size).T
+    # Surfaces that fill their bounds, a sphere's to within a factor of two.
+    twins = 2 * float(np.sum(2 * (x * y + y * z + z * x) / (SPACING * radius) ** 2))
+    if twins > MOST_TWINS * packing.number:
+        raise ValueError(
+            f"packing: of mean radius {radius:.3g} m, by which interfaces would have some {twins:.2g} twins for "
+            f"{packing.number} particles; must have radii less unequal, or be denser; or conforming=False"
+        )
 
 
 def _reach(packing, radius, gap_spacing):

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from demheat.packing.base import Packing, check_box, check_domain
+from demheat.packing.base import MODERATE, Packing, check_box, check_domain
 from demheat.scene.bodies import ROUND_AXES, from_middle, round_radius
+from demheat.scene.inputs import LEAST, MOST
 
 # Of the box: centres may be so far beyond it, by rounding when a packing is stretched or moved.
 ROUNDING = 1e-9
@@ -40,9 +41,9 @@ def check_packing(packing, name="packing") -> None:
         raise ValueError(f"{name}.radii of shape {radii.shape}: must be ({len(centers)},), one for each centre")
     _check_body(packing, name)
     # Comparisons with not-a-number are false.
-    if not (radii.min() > 0 and radii.max() < np.inf):
-        which = int(np.argmin((radii > 0) & (radii < np.inf)))
-        raise ValueError(f"{name}.radii[{which}] = {radii[which]}: must be a finite length > 0 m")
+    if not (radii.min() >= LEAST and radii.max() <= MOST):
+        which = int(np.argmin((radii >= LEAST) & (radii <= MOST)))
+        raise ValueError(f"{name}.radii[{which}] = {radii[which]}: must be a finite length > 0, {MODERATE}")
     _check_inside(packing, name)
     if not isinstance(packing.provenance, Mapping):
         raise ValueError(f"{name}.provenance = {packing.provenance!r}: must be a dict")

@@ -186,9 +186,11 @@ class Listed:
 
 def distribution(radii):
     """A radius distribution as it is, or the list of radii that an array is; raises ValueError for anything else."""
+    valid = "a distribution such as Gaussian(0.3), or numbers > 0"
+    if isinstance(radii, type):
+        raise ValueError(f"radii = {radii.__name__}: must be {valid}; this is a class, not one of its distributions")
     if hasattr(radii, "draw"):
         return radii
-    valid = "a distribution such as Gaussian(0.3), or numbers > 0"
     values = reals("radii", radii, valid)
     try:
         return Listed(tuple(values.tolist()))

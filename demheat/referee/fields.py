@@ -51,7 +51,10 @@ class Error(NamedTuple):
         return self.points[worst(self.values)[0]]
 
     def part(self, mask: np.ndarray) -> Error:
-        """The same over some of the points, those of a (n,) bool array."""
+        """The same over some of the points, those of a (n,) bool array; raises ValueError for anything else."""
+        mask = np.asarray(mask)
+        if mask.dtype != bool or mask.shape != (len(self.points),):
+            raise ValueError(f"mask of shape {mask.shape}, {mask.dtype}: must be {len(self.points)} booleans")
         return Error(self.values[mask], self.points[mask], None if self.weights is None else self.weights[mask])
 
 
@@ -207,8 +210,9 @@ def _compared(field, points, values, mask, name):
     if points.ndim != 2 or points.shape[1] != 3:
         raise ValueError(f"points of shape {points.shape}: must be (n, 3) coordinates in metres")
     values = None if values is None else reals("values", values, "numbers, one for each point")
-    if values is not None and (values.ndim == 0 or len(values) != len(points)):
-        raise ValueError(f"values of shape {values.shape}: must be one for each of {len(points)} points")
+    shape = (len(points),) if name == "temperature" else (len(points), 3)
+    if values is not None and values.shape != shape:
+        raise ValueError(f"values of shape {values.shape}: must be one for each of {len(points)} points, {shape}")
     keep = mask(np.array(points)) if callable(mask) else mask
     if keep is not None:
         keep = np.asarray(keep)

@@ -17,7 +17,7 @@ from demheat.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES
 from demheat.scene.bodies import inside
-from demheat.scene.inputs import chosen, finite, flag, reals, vector
+from demheat.scene.inputs import LEAST, MOST, chosen, finite, flag, moderate, reals, vector
 
 # Sides of the cells: this part of the radius, but no fewer samples to a cell on average than this. Cheapest of 1 to 1/4
 # and 1 to 8 for 1e5 points and radii of 2 to 15 mean radii; sides of a whole or a third of the radius cost up to twice.
@@ -184,7 +184,8 @@ def _reflected(scene, axis, side, flux):
 def _dims(n, size, radius):
     """Cells along each axis."""
     edge = max(radius * PART, np.cbrt(FEWEST * np.prod(size) / max(n, 1)))
-    return np.maximum(np.floor(size / edge), 1).astype(np.int64)
+    # Of a box that is long and thin, the volume asks for many more cells along it than there are samples.
+    return np.clip(np.floor(size / edge), 1, max(n, 1)).astype(np.int64)
 
 
 def _cells(points, volumes, phase, radius, size, periodic):
@@ -228,8 +229,8 @@ def _checked_at(at, scene):
 
 def _checked_box(size, periodic):
     size, flags = np.array(vector("size", size)), np.asarray(periodic)
-    if np.any(size <= 0):
-        raise ValueError(f"size = {size.tolist()}: must be three finite lengths > 0 m")
+    if np.any(size <= 0) or not all(map(moderate, size)):
+        raise ValueError(f"size = {size.tolist()}: must be three finite lengths > 0, from {LEAST:g} to {MOST:g} m")
     if flags.dtype != bool or flags.shape not in ((), (3,)):
         raise ValueError(f"periodic = {periodic!r}: must be a bool or three bools, one per axis")
     return size, np.broadcast_to(flags, 3)

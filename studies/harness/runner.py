@@ -81,7 +81,8 @@ def find_case(study, case):
     dict
     """
     cases = {case_key(each): each for each in study.CASES}
-    if case.isdecimal() and int(case) < len(study.CASES):
+    # Not of thousands of digits, which Python refuses to read.
+    if case.isdecimal() and len(case) < 10 and int(case) < len(study.CASES):
         return study.CASES[int(case)]
     if case not in cases:
         raise ValueError(f"no case {case!r}; the first of {len(cases)} is {next(iter(cases), None)!r}")

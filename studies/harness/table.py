@@ -49,10 +49,22 @@ def render(study, csv_path):
         traceback.print_exc()
         figure.unlink(missing_ok=True)
         claims.append(Claim(f"the figure can be drawn ({type(error).__name__}: {error})", math.nan, "= 1", False))
-    text = _page(study, df, claims, figure)
+    try:
+        text = _page(study, df, claims, figure)
+    except Exception as error:
+        traceback.print_exc()
+        claims.append(Claim(f"the table can be made ({type(error).__name__}: {error})", math.nan, "= 1", False))
+        text = _page(_Plain(study), df, claims, figure)
     with replaced(csv_path.with_suffix(".md")) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return claims, text
+
+
+class _Plain:
+    """A study without its table and notes, which rows that are few or odd may not make."""
+
+    def __init__(self, study):
+        self.CASES, self.__doc__, self.__name__ = study.CASES, study.__doc__, study.__name__
 
 
 def read_frame(study, csv_path):

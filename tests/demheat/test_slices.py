@@ -114,5 +114,5 @@ def test_a_plane_that_touches_only_is_refused():
 
 
 def test_values_must_fit_the_mask():
-    with pytest.raises(ValueError, match="length 3: must be one for each of 4"):
+    with pytest.raises(ValueError, match="shape \\(3,\\): must be one for each of 4"):
         slices.filled(np.ones((2, 2), dtype=bool), np.zeros(3))

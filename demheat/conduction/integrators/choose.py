@@ -16,6 +16,21 @@ STAGE, ITERATION, SOLVE, MULTIGRID, SOLVES = 1.2, 1.5, 3.0, 70.0, 4.0
 JACOBI = 0.6
 
 
+def steps_of(accuracy, outputs):
+    """Steps of equal size that a second-order method takes at least.
+
+    Parameters
+    ----------
+    accuracy, outputs
+        As in `costs`.
+
+    Returns
+    -------
+    int
+    """
+    return max(outputs, math.ceil(STEPS * math.sqrt(1e-3 / accuracy)))
+
+
 def costs(spectrum, interval, accuracy, outputs):
     """Estimated work of each integrator, in passes over the network.
 
@@ -32,7 +47,7 @@ def costs(spectrum, interval, accuracy, outputs):
     -------
     dict
     """
-    count = max(outputs, math.ceil(STEPS * math.sqrt(1e-3 / accuracy)))
+    count = steps_of(accuracy, outputs)
     size = interval / count
     solves = GRADED * count * SOLVES
     iterations = JACOBI * math.sqrt(1.0 + size / 3.0 * spectrum.mean_row)

@@ -101,6 +101,18 @@ def _check_steps(end, step, links, limit=None):
         check_steps("times, the last", end, end / step, STEP + LINK * links, remedy=f"less, or not {what}")
 
 
+def _check_stages(rates, times, accuracy, seconds):
+    """Refuse more stages than a day holds, or than a step may have."""
+    end, remedy = float(times[-1]), "less, or tr-bdf2 the integrator"
+    work = choose.costs(rates, end, accuracy, len(times))["rkl2"]
+    check_steps("times, the last", end, work, seconds, remedy=remedy)
+    stages = rkl2.stages_of(end / choose.steps_of(accuracy, len(times)), rates.radius)
+    if stages > rkl2.MOST:
+        raise ValueError(
+            f"times, the last = {end!r}: takes steps of {stages} stages, {work:.2g} in all; must be {remedy}"
+        )
+
+
 def _numbers(values):
     """A sequence of numbers as a (k,) float array; None if it is anything else, or empty."""
     try:
@@ -182,9 +194,7 @@ def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=
         limit = None if step is not None else largest
         _check_steps(float(times[-1]), largest if step is None else step, len(system.links.indices), limit)
     elif integrator == "rkl2":
-        work = choose.costs(rates, float(times[-1]), accuracy, len(times))[integrator]
-        remedy = "less, or tr-bdf2 the integrator"
-        check_steps("times, the last", float(times[-1]), work, STEP + LINK * len(system.links.indices), remedy=remedy)
+        _check_stages(rates, times, accuracy, STEP + LINK * len(system.links.indices))
     x = initial_state(system, temperature, 0.0)
     span = control.span_of(system, x)
     advance = _stepper(system, rates, integrator, linear_tolerance(accuracy, needed), span)

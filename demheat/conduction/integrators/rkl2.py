@@ -15,6 +15,9 @@ ORDER = 2
 ESTIMATES = True
 # The error estimate takes the solution at four times of the step.
 LEAST, LEAST_ESTIMATED = 3, 5
+# Stages of a step at most: some minutes of work on the smallest networks, where implicit steps take a fraction of a
+# second whatever their size.
+MOST = 100_000
 
 
 def stages_of(step, radius, least=LEAST):

@@ -28,6 +28,7 @@ from numbers import Integral
 from pathlib import Path
 
 from demheat.packing.base import Packing, check_box, make_packing
+from demheat.packing.gate import check_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
 from demheat.packing.io.text import Lines, broken
@@ -69,8 +70,8 @@ def write(packing: Packing, path, *, format: str | None = None, network=None, te
         If an argument is not as described, or the suffix does not tell the format.
     """
     path, name, packed = _format(path, format)
-    if not isinstance(packing, Packing):
-        raise ValueError(f"packing = {type(packing).__name__}: must be a Packing")
+    check_packing(packing)
+    # What is read back lies inside to the last bit.
     make_packing(*packing[:5], domain=packing.domain)
     if name != "vtp" and not (network is None and temperature is None):
         raise ValueError(f"network, temperature: the format {name} has no place for them; must be None, or use vtp")
@@ -146,11 +147,18 @@ def read(
 
 def _format(path, format):
     """Path, name of the format, and whether the text is packed."""
-    path = Path(path)
+    try:
+        path = Path(path)
+    except TypeError:
+        raise ValueError(f"path = {path!r}: must be the name of a file, or its path") from None
+    if "\0" in str(path):
+        raise ValueError(f"path = {str(path)!r}: must be the name of a file; none has a zero byte")
     packed = path.suffix.lower() == ".gz"
     suffix = (path.with_suffix("") if packed else path).suffix.lower()
-    name = format or next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), None)
-    if name not in SUFFIXES:
+    name = format
+    if format is None:
+        name = next((name for name, suffixes in SUFFIXES.items() if suffix in suffixes), None)
+    if not isinstance(name, str) or name not in SUFFIXES:
         known = "; ".join(f"{name} ({' '.join(suffixes)})" for name, suffixes in SUFFIXES.items())
         said = f"path = {str(path)!r}: the suffix tells no format, and " if format is None else ""
         raise ValueError(f"{said}format = {format!r}: must be one of {known}")

@@ -6,6 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.scene.inputs import reals
+
 # Code of the image that is the particle itself, see demheat.network.base.Facets.
 NO_SHIFT = 13
 NEEDED = ("centers", "indptr", "indices", "image", "conductance")
@@ -75,7 +77,7 @@ def drawn(packing, network, temperature) -> Drawn | None:
 
 
 def _temperatures(temperature, number):
-    array = np.asarray(temperature, dtype=float)
+    array = reals("temperature", temperature, f"{number} numbers, one per sphere")
     if array.shape != (number,) or np.any(np.isinf(array)):
         raise ValueError(f"temperature of shape {array.shape}: must be {number} numbers, one per sphere, none infinite")
     return array

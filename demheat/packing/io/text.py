@@ -273,13 +273,20 @@ def _check_widths(lines, texts, numbers, widths, names, count):
         raise lines.broken(None, f"row {len(texts) + 1}{said}")
 
 
+def _is_number(word):
+    """Whether the fast reader takes a word; Python takes more: underscores between digits, digits of all scripts."""
+    try:
+        float(word)
+    except ValueError:
+        return False
+    return word.isascii() and "_" not in word
+
+
 def _not_a_number(lines, texts, numbers, columns, error):
     """The error of the first word that is not a number; `error` is what the fast reader said."""
     for number, text in zip(numbers, texts, strict=True):
         words = text.split()
         for name, index in columns.items():
-            try:
-                float(words[index])
-            except ValueError:
+            if not _is_number(words[index]):
                 return lines.broken(f"{name} = {words[index]!r}", f"a number in column {index + 1}", number=number)
     return ValueError(f"{lines.path}: {error}")

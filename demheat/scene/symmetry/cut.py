@@ -115,8 +115,10 @@ def unfold(part: Reduced, points) -> Unfolded:
     Raises
     ------
     ValueError
-        If the points are not (n, 3) finite numbers.
+        If the part is none, or the points are not (n, 3) finite numbers.
     """
+    if not isinstance(part, Reduced):
+        raise ValueError(f"part = {part!r}: must be what `reduced` returns")
     points = reals("points", points, "(n, 3) finite coordinates in metres")
     if points.ndim != 2 or points.shape[1] != 3 or not np.all(np.isfinite(points)):
         raise ValueError(f"points of shape {points.shape}: must be (n, 3) finite coordinates in metres")

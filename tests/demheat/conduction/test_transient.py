@@ -1,6 +1,7 @@
 """Transients by the discrete element method: against exact series, its heat balance, and what it refuses."""
 
 import re
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -340,7 +341,7 @@ def test_bad_input_before_any_work(change, words):
 )
 def test_scenes_that_lack_something(change, words):
     with pytest.raises(ValueError, match=re.escape(words)):
-        evolve(Scene(**vars(SLAB) | change), [0.1])
+        evolve(replace(SLAB, **change), [0.1])
 
 
 def test_numbers_of_other_types():
@@ -379,7 +380,7 @@ def test_what_is_not_supported_says_why():
         evolve(sphere, [1.0], law="calibrated", wall="surface")
     ball = Sphere((0.05, 0.05, 0.05), 0.01, METAL)
     with pytest.raises(NotImplementedError, match="conforming"):
-        evolve(Scene(**vars(sphere) | {"inclusions": [ball]}), [1.0])
+        evolve(replace(sphere, inclusions=[ball]), [1.0])
     with pytest.raises(NotImplementedError, match="two held walls meet|held walls meet"):
         corner = Scene(size=BOX, matrix=METAL, walls={"x-": 1.0, "y-": 2.0}, initial=25.0)
         evolve(corner, [1.0], law="calibrated")
@@ -393,7 +394,7 @@ def test_what_is_not_supported_says_why():
             for name in ("tr-bdf2", "tr-bdf2-multigrid")
             for how in [(1e-3, 1e7), (1e-3, 1e12), (1e-6, 1e17)]
         ),
-        ("tr-bdf2", 1e-3, 1e120),
+        ("tr-bdf2", 1e-3, 1e49),
     ],
 )
 def test_far_beyond_the_steady_state(integrator, accuracy, relaxations):

@@ -82,6 +82,12 @@ WRONG = {
     "radius nan": (changed("radii", 5, np.nan), r"radii\[5\] = nan: must be a finite length > 0"),
     "radius infinite": (changed("radii", 5, np.inf), r"radii\[5\] = inf"),
     "radius negative": (changed("radii", 5, -0.2), r"radii\[5\] = -0.2"),
+    "radius whose volume is zero": (
+        changed("radii", 5, 1e-300),
+        r"radii\[5\] = 1e-300: must be .* from 1e-50 to 1e\+50",
+    ),
+    "radius whose volume is infinite": (changed("radii", 5, 1e300), r"radii\[5\] = 1e\+300: must be"),
+    "size whose volume is zero": (good(size=np.full(3, 1e-300)), "size = .*three finite lengths > 0, from 1e-50"),
     "radius zero": (changed("radii", 5, 0.0), r"radii\[5\] = 0.0"),
     "fewer radii": (good(radii=np.full(7, 0.2)), r"radii of shape \(7,\): must be \(8,\)"),
     "flat centres": (good(centers=np.zeros(24)), r"centers of shape \(24,\): must be \(n, 3\)"),

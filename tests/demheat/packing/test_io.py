@@ -326,7 +326,7 @@ def test_vtk_reads_what_is_written(tmp_path):
         ({"temperature": [1.0, 2.0, np.inf]}, "temperature"),
         ({"temperature": [1.0, 2.0, 3.0], "path": "a.data"}, "lammps-data has no place"),
         ({"network": "own", "path": "a.npz"}, "npz has no place"),
-        ({"packing": "own"}, "packing = str"),
+        ({"packing": "own"}, "packing = 'own': must be a Packing"),
         ({"packing": "nan"}, "centers"),
     ],
 )

@@ -19,7 +19,7 @@ from packing_files import (
     put,
 )
 
-from demheat.packing import io
+from demheat.packing import io, make_packing
 
 
 def swapped(text, old, new):
@@ -240,3 +240,19 @@ def test_arguments_are_judged_before_the_file(tmp_path):
         io.read(tmp_path / "absent.data")
     with pytest.raises(FileNotFoundError):
         io.write(awkward(0), tmp_path / "absent" / "a.data")
+
+
+@pytest.mark.parametrize("word", ["1_0", "\u0663"])
+def test_numbers_of_python_alone_name_their_line(tmp_path, word):
+    path = tmp_path / "a.yade"
+    path.write_text(f"#format x_y_z_r\n.5 .5 .5 .1\n{word} .5 .5 .1\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=f"line 3: found x = '{word}'; expected a number in column 1"):
+        io.read(path)
+
+
+def test_a_packing_outside_of_its_box_is_not_written(tmp_path):
+    """Not even of a periodic one, whose images lie inside: readers of others would take the places as they are."""
+    good = make_packing([[0.2] * 3, [0.7] * 3], [0.1, 0.1], (1, 1, 1), True, {})
+    with pytest.raises(ValueError, match=r"packing.centers\[0\] = .*must be finite, in the box"):
+        io.write(good._replace(centers=good.centers + 5.0), tmp_path / "a.yade")
+    assert not list(tmp_path.iterdir())

@@ -370,3 +370,12 @@ def test_halo_of_the_solver():
     assert_allclose(field.stats["mean_radius"], right, rtol=0.02)
     assert mean.std() < 0.25 * raw.std()
     assert_allclose(mean.mean(), field.mean_flux[1], rtol=0.01)  # halos share out their volume unevenly
+
+
+def test_a_long_thin_box_takes_no_more_cells_than_samples():
+    """Its volume per sample asks for some 1e9 cells along it."""
+    rng = np.random.default_rng(4)
+    points, values = rng.random((1000, 3)) * [1e12, 1.0, 1.0], rng.random(1000)
+    means = halo_average(points, values, np.ones(1000), radius=0.4, size=(1e12, 1.0, 1.0), periodic=True)
+    # Each lies alone in its halo.
+    np.testing.assert_array_equal(means, values)

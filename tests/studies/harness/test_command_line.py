@@ -36,6 +36,8 @@ def test_row_prints_one_row_and_finds_it_by_number_or_key(tiny, capsys):
     assert main(["row", tiny.name, "name=plain,x=1.5"]) == 0
     assert main(["row", tiny.name, "name=none"]) == 2
     assert "no case 'name=none'" in capsys.readouterr().err
+    assert main(["row", tiny.name, "9" * 5000]) == 2
+    assert "no case '999" in capsys.readouterr().err
 
 
 def test_render_needs_the_csv_alone(tiny, capsys):

@@ -24,6 +24,16 @@ def test_what_cannot_be_judged_or_drawn_fails(tiny, broken, capsys):
     assert "KeyError" in capsys.readouterr().err
 
 
+def test_a_table_that_cannot_be_made_is_a_claim_that_fails(tiny, capsys):
+    """As of a run that was killed before the rows that a table is made of."""
+    tiny.write(**{"def plot(df)": 'def table(df):\n    return df[["nothing"]]\n\ndef plot(df)'})
+    assert tiny.run() == 1
+    page = (tiny.out / f"{tiny.name}.md").read_text()
+    assert "| FAIL | the table can be made (KeyError" in page and "| ok   | squares are small" in page
+    assert "plain,x=1.5" in page
+    assert "FAIL: the table can be made" in capsys.readouterr().err
+
+
 def test_claims():
     assert table.claim("a", 0.06, 0.06).ok and not table.claim("a", 0.061, 0.06).ok
     assert table.claim("a", 1.7, ">= 1.7").ok and not table.claim("a", 1.69, ">= 1.7").ok
