@@ -118,10 +118,12 @@ def test_no_write_out_of_bounds(monkeypatch):
     assert len(calls) >= 40 and max(calls) > 20
 
 
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")  # coarse on purpose
 @pytest.mark.parametrize(("scheme", "rule"), RULES)
 def test_conductivities_are_within_bounds(scheme, rule):
     for seed in range(12):
-        shape, scene = drawn(seed, sides=(2, 3, 4, 5, 7))
+        # Links are refused on fewer than five voxels a side.
+        shape, scene = drawn(seed, sides=(5, 7) if rule == "links" else (2, 3, 4, 5, 7))
         if seed % 3 == 0:
             scene = cell(*(s for s in scene.inclusions if not cut_by_walls(s)), walls={"x-": 0.0, "x+": 1.0})
         field = fft.solve(scene, voxels=shape, scheme=scheme, rule=rule)
