@@ -47,7 +47,13 @@ def test_a_wrong_answer_is_called_so(k, said, outcome):
 
 @pytest.mark.parametrize(
     ("name", "outcome"),
-    [("fem", "wrong"), ("fft", "wrong"), ("fft-links", "verified"), ("dem", "verified"), ("dem-calibrated", "verified")],
+    [
+        ("fem", "wrong"),
+        ("fft", "wrong"),
+        ("fft-links", "verified"),
+        ("dem", "verified"),
+        ("dem-calibrated", "verified"),
+    ],
 )
 def test_networks_claim_no_elementary_bounds(name, outcome):
     voigt = 1 + 9 * SHARE
