@@ -18,10 +18,10 @@ REFUSALS = (ValueError, NotImplementedError, RuntimeError)
 NARROW, WIDE = 0.02, 0.10
 # Edges of the bracket's elements over the mesher's usual ones, coarse to fine.
 STEPS = (5.0, 3.0, 1.8, 1.2)
-# Bounds of touching spheres, at most a hundred times as conducting: those of spheres whose radii are a hundred-thousandth
-# of the box less, widened by what the contact adds. That was found by multipoles, two spheres of a fifth of the cell
-# along the load: .001 % at contrast .01, .006 % at 10, .03 % at 30, .06 % at 50 and .1 % at 100 (there of order 32 on
-# either side, known to .8 %). Pairs drawn so far have contrasts of 3.2 and 0.
+# Bounds of touching spheres, at most a hundred times as conducting: those of spheres whose radii are less by a
+# hundred-thousandth of the box, widened by what the contact adds. That was found by multipoles, two spheres of a fifth
+# of the cell along the load: .001 % at contrast .01, .006 % at 10, .03 % at 30, .06 % at 50 and .1 % at 100 (there of
+# order 32 on either side, known to .8 %). Pairs drawn so far have contrasts of 3.2 and 0.
 APART, CONTACT = 1e-5, 0.02
 # Rounding and solvers' tolerances, of the elementary bounds.
 SLACK = 1e-6

@@ -45,6 +45,23 @@ def test_a_wrong_answer_is_called_so(k, said, outcome):
     assert verdicts.judged("fem", made_up(k), TRUE, 0.05, said).outcome == outcome
 
 
+@pytest.mark.parametrize(
+    ("name", "outcome"),
+    [
+        ("fem", "wrong"),
+        ("fft", "wrong"),
+        ("fft-links", "verified"),
+        ("dem", "verified"),
+        ("dem-calibrated", "verified"),
+    ],
+)
+def test_networks_claim_no_elementary_bounds(name, outcome):
+    voigt = 1 + 9 * SHARE
+    near = verdicts.Truth(0.98 * voigt, 0.99 * voigt, "bounds")
+    assert verdicts.judged(name, made_up(1.01 * voigt), near, 0.05, []).outcome == outcome
+    assert verdicts.judged(name, made_up(1.06 * voigt), near, 0.05, ["thin"]).outcome == "wrong"
+
+
 def test_wide_bounds_verify_nothing():
     wide = verdicts.Truth(1.2, 1.4, "bounds")
     assert verdicts.judged("fem", made_up(1.3), wide, 0.05, []).outcome == "open"
