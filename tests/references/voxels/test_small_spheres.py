@@ -177,9 +177,9 @@ def test_laminates_of_a_small_sphere_are_near_maxwell(scheme, conductivity):
 def test_inclusions_smaller_than_a_voxel_are_named(rule, said):
     small, large = Sphere((0.3,) * 3, 0.06, OTHER), Sphere((0.7,) * 3, 0.13, OTHER)
     with pytest.warns(
-        UserWarning, match=rf"inclusions \[0\] are smaller than a voxel of 0.25 m: rule '{rule}' .*{said}"
+        UserWarning, match=rf"inclusions \[0\] are smaller than a voxel of 0.2 m: rule '{rule}' .*{said}"
     ):
-        fft.solve(cell(small, large), voxels=4, rule=rule)
+        fft.solve(cell(small, large), voxels=5, rule=rule)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fft.solve(cell(small, large), voxels=9, rule=rule)
