@@ -186,8 +186,9 @@ def _as_they_are(name, values):
     return array if isinstance(values, list | tuple) else values
 
 
-def _check_shapes(found, exact, *others):
-    shapes = [np.shape(each) for each in (found, exact, *others)]
+def _check_shapes(*values):
+    """Of arrays; columns of data frames find their rows by themselves."""
+    shapes = [each.shape for each in values if isinstance(each, np.ndarray)]
     try:
         np.broadcast_shapes(*shapes)
     except ValueError:

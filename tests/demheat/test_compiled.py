@@ -97,6 +97,23 @@ def test_without_any_folder_kernels_are_compiled_for_this_run_and_a_line_says_so
         compiled.base_folder.cache_clear()
 
 
+def test_without_any_home_kernels_are_kept_beside_the_package(tmp_path, monkeypatch):
+    """A user whom the system does not know, and who has no HOME: asking for the folder raises RuntimeError."""
+
+    def nobody(path):
+        raise RuntimeError("Could not determine home directory.")
+
+    for name in ("XDG_CACHE_HOME", "NUMBA_CACHE_DIR"):
+        monkeypatch.delenv(name, raising=False)
+    monkeypatch.setattr(compiled.Path, "expanduser", nobody)
+    monkeypatch.setattr(compiled, "__file__", str(tmp_path / "compiled.py"))
+    compiled.base_folder.cache_clear()
+    try:
+        assert compiled.base_folder() == tmp_path / "__pycache__" / "kernels"
+    finally:
+        compiled.base_folder.cache_clear()
+
+
 def test_an_unwritable_home_is_passed_over_in_silence_for_the_package(tmp_path):
     (tmp_path / "file").touch()
     below = str(tmp_path / "file" / "home")

@@ -1,6 +1,7 @@
 """Packing files: as other programs write them, and there and back bit for bit."""
 
 import gzip
+import locale
 import subprocess
 import sys
 import xml.etree.ElementTree as ET
@@ -33,6 +34,19 @@ from demheat.network.base import Network
 from demheat.packing import io
 from demheat.packing.base import Packing, make_packing
 from demheat.scene import ROUND_AXES
+
+
+@pytest.mark.parametrize("name", TEXTS)
+def test_a_locale_with_decimal_commas_changes_nothing(tmp_path, monkeypatch, name):
+    """As if the user's were German: what formats numbers by the locale is told of a comma."""
+    here, there = (tmp_path / f"{k}{FORMATS[name]}" for k in range(2))
+    io.write(awkward(0), here)
+    monkeypatch.setattr(locale, "_override_localeconv", {"decimal_point": ",", "thousands_sep": "."})
+    assert locale.str(0.5) == "0,5"
+    io.write(awkward(0), there)
+    assert there.read_bytes() == here.read_bytes()
+    assert_array_equal(io.read(there, periodic=True).radii, awkward(0).radii)
+
 
 # --- files of other programs
 

@@ -135,6 +135,18 @@ def test_unequal_spheres_may_be_denser_than_equal_ones():
     assert packing.phi > 0.74048 and least_gap(packing) >= -1e-14
 
 
+def test_what_takes_too_long_is_refused_by_the_estimate_alone():
+    """To the limit and no further; nothing moves meanwhile."""
+    with pytest.raises(
+        ValueError, match="growth = 1e-06: takes some .* 1.8e\\+10 in all; must be faster by 18"
+    ) as said:
+        Growth(growth=1e-6).check_length(1000, 0.4)
+    assert "now 1e+09" in str(said.value)
+    Growth(growth=1e-6, most=1.9e10).check_length(1000, 0.4)
+    with pytest.raises(ValueError, match="now 1.7e"):
+        Growth(growth=1e-6, most=1.7e10).check_length(1000, 0.4)
+
+
 def test_growth_schedule():
     """A fast end saves collisions; its first rate decides as long as its pressure is not reached."""
     slow = lsa(300, seed=1)

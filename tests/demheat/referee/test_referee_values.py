@@ -53,3 +53,9 @@ def test_variation(weights, expected):
     weights = weights if weights is None else np.array(weights)
     assert_allclose(referee.variation(values, weights), expected, rtol=1e-14)
     assert referee.variation(np.full(3, 7.0), weights) == 0.0
+
+
+def test_columns_find_their_rows_by_name():
+    """Of unlike length too: what only one of them has is not-a-number."""
+    found, exact = pd.Series([2.0, 3.0], ["a", "b"]), pd.Series([4.0, 1.0, 5.0], ["b", "a", "c"])
+    assert referee.value_error(found, exact).fillna(9.0).to_dict() == {"a": 1.0, "b": -0.25, "c": 9.0}

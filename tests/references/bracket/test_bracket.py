@@ -1,5 +1,8 @@
 """Brackets hold what is known exactly, close in with the mesh, and refuse what they do not bound."""
 
+import re
+from types import SimpleNamespace
+
 import fem_scenes  # noqa: F401, skips without gmsh
 import numpy as np
 import pytest
@@ -61,6 +64,20 @@ def test_bounds_close_in():
     widths = [bracket.solve(scene, size=scene.size[0] / n).width for n in (8, 16)]
     # Theory 3 to 4 between regular meshes; second order, as from straight elements, would be a factor of 4.
     assert widths[0] > 6 * widths[1]
+
+
+def test_a_width_beyond_any_mesh_is_refused_by_one_mesh(monkeypatch):
+    """Without another mesh; what it says is the least is one that would be tried."""
+    monkeypatch.setattr(solver, "free_memory", lambda: 2.0**33)
+    found = SimpleNamespace(width=1e-2, stats={"elements": 1000})
+    with pytest.raises(ValueError, match="width = 1e-09: takes some .* must be >= [0-9.e-]+ here") as said:
+        solver._check_width(1e-9, found)
+    least = float(re.search(">= ([0-9.e-]+)", str(said.value))[1])
+    # One digit of it is printed.
+    assert 1e-9 < least < 1e-2
+    solver._check_width(1.5 * least, found)
+    with pytest.raises(ValueError, match="width"):
+        solver._check_width(least / 1.5, found)
 
 
 def test_a_width_is_reached():
