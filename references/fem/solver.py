@@ -9,7 +9,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.process_state import one_blas_thread
-from demheat.scene import Scene, Sphere, check_scene
+from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite
 from demheat.scene.narrows import narrows
 from demheat.tensor import axis_loads
@@ -120,11 +120,8 @@ def _warn_of_gaps(scene, size):
     """Linear elements are stiff, a straight drop of temperature each: a gap needs some across."""
     k, parents = scene.conductivities, scene.parents()[1:]
     near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (k[0] > 0) & (parents == 0)
-    near = [
-        number
-        for number in np.flatnonzero(near).tolist()
-        if isinstance(scene.inclusions[number], Sphere) and FINE * size > scene.inclusions[number].radius
-    ]
+    # Layers have no end; larger spheres have elements of their own size all round.
+    near = [n for n in np.flatnonzero(near).tolist() if FINE * size > scene.inclusions[n].ball()[1]]
     if near:
         warnings.warn(
             f"gaps beside inclusions {near[:8]}{' and more' if len(near) > 8 else ''} have an element or so across at "
