@@ -119,7 +119,7 @@ def _solved(scenes, order, size, curved, tolerance):
 def _warn_of_gaps(scene, size):
     """Linear elements are stiff, a straight drop of temperature each: a gap needs some across."""
     k, parents = scene.conductivities, scene.parents()[1:]
-    near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (parents == 0)
+    near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (parents == 0) & (k[0] > 0)
     near = [
         number
         for number in np.flatnonzero(near).tolist()
