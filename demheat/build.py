@@ -31,9 +31,9 @@ THIN = 1.5
 THIN_COAT, STRONG_COAT = 0.5, 1.0
 
 # Gaps without twins, in particle diameters, and contrasts from which on they are said. Errors of a sphere between walls
-# by 300 to 4000 particles, contacts that are calibrated and cells: gaps of 1.8 diameters 13 and 5 %, of 1.2 diameters
-# 39 and 8 %; contacts at contrast 10 up to 25 %, at 5 up to 18 %, and 17 % they declare.
-GAP, UNLIKE = 2.0, 7.0
+# by 300 to 4000 particles, contacts that are calibrated and cells: gaps of 1.8 diameters 13 and 5 %, of 1.4 diameters
+# 18 and 6 %, of 1.2 diameters 39 and 8 %; contacts at contrast 10 up to 25 %, at 5 up to 18 %, and 17 % they declare.
+GAP, UNLIKE = 1.5, 7.0
 
 # Twins over particles, and over the twins of wide gaps, from which on that is said: what takes six times as much as was
 # asked for comes as a surprise.
@@ -212,7 +212,7 @@ def _warn_of_narrow_gaps(scene, diameter):
     near = np.flatnonzero(narrows(scene, GAP * diameter, UNLIKE)) if scene.domain == "box" else []
     if len(near):
         warnings.warn(
-            f"gaps beside inclusions {_few(near)}, narrower than two particles, are thin for particles of diameter "
+            f"gaps beside inclusions {_few(near)}, of a particle or so, are thin for particles of diameter "
             f"{diameter:.3g} m: links across them miss what is between, and the conductivity may be off many times; "
             "use more particles, or the conforming packing of law 'laguerre'",
             stacklevel=4,

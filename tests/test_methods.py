@@ -27,6 +27,8 @@ from numpy.testing import assert_allclose
 from demheat import Flux, gallery, referee
 from references import bounds, multipole
 
+# The poor sphere is 1.3 particles of the coarse packings from an insulated wall: said, and within what is declared.
+pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 # Identities hold to the solvers' tolerances below, times the condition of the system and of a sum over the walls.
 IDENTITY = 1e-7
 

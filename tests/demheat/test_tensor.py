@@ -19,6 +19,8 @@ from demheat.tensor import axis_loads, conductivity_tensor
 from references import exact, fem, fft, multipole
 from studies.harness import methods
 
+# How far a packing so coarse is off is not asked.
+pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 OBLIQUE = (3.0, 0.0, -4.0)
 # Two spheres with room around them, in a cell without any symmetry: few elements do.
 SPHERES = [Sphere((0.3, 0.35, 0.25), 0.2, Material(20.0)), Sphere((0.7, 0.8, 0.5), 0.2, Material(0.2))]
