@@ -60,7 +60,6 @@ def same_fields(found, wanted):
         assert_allclose(one.fractions, other.fractions, rtol=0, atol=1e-12)
 
 
-@pytest.mark.filterwarnings("ignore:gaps beside inclusions")  # coarse on purpose
 @pytest.mark.parametrize("kind", ["cell", "box"])
 @pytest.mark.parametrize("name", STEADY)
 def test_as_three_solves(name, kind):
