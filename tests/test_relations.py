@@ -10,6 +10,9 @@ from relations import applies, first, image_of, limit, second, spread
 from demheat import Sphere
 from demheat.method import PARTICLES, VOXELS
 
+# What is kept when a scene is moved or turned is asked on coarse grids, whatever they miss.
+pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
+
 # Meshes of many spheres take seconds, and so do equations between their multipoles: as many inclusions as the scenes
 # have of which others than packings and voxels are asked here.
 FEW = 2
