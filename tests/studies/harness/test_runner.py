@@ -272,7 +272,7 @@ def test_broken_results_are_named(tiny, capsys):
 def test_a_row_ends_with_all_that_it_started(tiny, tmp_path):
     """A solver's own process, in the same session, must not go on when its row has run out of time."""
     child = 'import subprocess; child = subprocess.Popen(["sleep", "60"]); _log(f"pid {child.pid}"); time.sleep(60)'
-    tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": child})
+    tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": child, "TIMEOUT = 60.0": "TIMEOUT = 4.0"})
     study = runner.load(tiny.name)
     assert runner.spawn_row(tiny.name, study, study.CASES[2])["status"] == "timeout"
     assert _wait_for(lambda: not _alive(_logged_pid(tmp_path / "log")), seconds=5)
