@@ -3,7 +3,7 @@
 A method that knows its own error says so (`known`). One that does not solves the same scene on coarser and coarser
 elements (`by_refinement`): what changes between two of them is what a method of that order still lacks, and the largest
 that any pair asks for counts, since errors cross zero by luck. How much the largest is to be raised to hold nearly
-always was found once for each method on drawn scenes; study `estimates` judges it on others.
+always was found on drawn scenes for the main methods; study `estimates` judges it on others.
 """
 
 from __future__ import annotations

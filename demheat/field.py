@@ -133,7 +133,8 @@ class Field:
     def error(self) -> Estimate:
         """How far conductivity and temperature may be off: an interval, and what was done to know it.
 
-        What solves on elements solves the scene again on coarser ones, which costs about half of the solve.
+        What solves on elements solves the scene again on coarser ones, which costs about half of a large solve, and as
+        much as a small one or more.
 
         Raises
         ------
