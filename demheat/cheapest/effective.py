@@ -13,7 +13,7 @@ import numpy as np
 
 from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
-from demheat.cheapest.ways import HOMES, Way, finer, ways
+from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, one_line, ways
 from demheat.limits import free_memory
 from demheat.scene import Scene
 from demheat.scene.frozen import read_only
@@ -143,7 +143,7 @@ def _found(loads, accuracy, allowed, memory):
                     return found, way, tuple(passed)
                 way = finer(way, loads, missing, memory)
             except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
-                way = way._replace(refused=" ".join(str(error).split()))
+                way = way._replace(refused=one_line(error))
         if way.refused:
             passed.append(f"{way.method}: {way.refused}")
         else:
@@ -197,8 +197,7 @@ def _said(way):
     if way.refused or way.doubt:
         return f"{way.method}: {f'no, {way.refused}' if way.refused else f'in doubt, {way.doubt}'}"
     cost = "cost unknown" if math.isnan(way.cpu_s) else f"about {way.cpu_s:.2g} CPU-s, {way.bytes / 2**20:.2g} MiB"
-    knobs = ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items())
-    return f"{way.method}: {cost}{f', beginning with {knobs}' if knobs else ''}"
+    return f"{way.method}: {cost}{f', beginning with {knobs_of(way)}' if way.knobs else ''}"
 
 
 def _cpu_seconds():

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import import_module
 from typing import NamedTuple
 
-from demheat.cheapest.laws import ON_SPHERE, laws, needed, predicted
+from demheat.cheapest.laws import ON_SPHERE, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
 
@@ -109,7 +109,7 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     Way
         Refused if it cannot get there.
     """
-    told = f"half of its interval is {missing:.2g} times what is allowed with {_knobs(way)}"
+    told = f"half of its interval is {missing:.2g} times what is allowed with {knobs_of(way) or 'nothing to refine'}"
     if way.method not in KNOBS or way.rounds >= ROUNDS:
         return way._replace(refused=told)
     knob, power = KNOBS[way.method]
@@ -141,7 +141,7 @@ def _exact(loads, accuracy):
     try:
         digits = min(module_of("exact").solve(whole).stats["digits"] for whole in loads.wholes.values())
     except NotImplementedError as error:
-        return Way("exact", {}, refused=_line(error))
+        return Way("exact", {}, refused=one_line(error))
     if 10.0**-digits > accuracy:
         return Way("exact", {}, refused=f"{digits:.0f} digits only")
     return Way("exact", {}, 10.0**-digits, 0.0, 0.0)
@@ -154,10 +154,10 @@ def _multipole(loads, accuracy, memory):
         for whole in loads.wholes.values():
             arrange(whole, any_matrix=True)
     except NotImplementedError as error:
-        return Way("multipole", {}, refused=_line(error))
+        return Way("multipole", {}, refused=one_line(error))
     whole = next(iter(loads.wholes.values()))
     knobs = {"accuracy": accuracy}
-    if "multipole" not in laws() or not whole.inclusions:
+    if not whole.inclusions:
         return Way("multipole", knobs, accuracy)
     cost = predicted("multipole", whole, needed("multipole", whole, accuracy, sure=False))
     return _within(Way("multipole", knobs, accuracy, len(loads.wholes) * cost.cpu_s, cost.bytes), memory)
@@ -189,8 +189,14 @@ def _all(cost, loads):
     return BESIDES * len(loads.parts) * cost.cpu_s
 
 
-def _knobs(way):
-    return ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items()) or "nothing to refine"
+def knobs_of(way: Way) -> str:
+    """Knobs of a way in words; empty without one.
+
+    Parameters
+    ----------
+    way : Way
+    """
+    return ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items())
 
 
 def _within(way, memory):
@@ -203,5 +209,11 @@ def _gib(number):
     return f"{number / 2**30:.2g} GiB"
 
 
-def _line(error):
+def one_line(error: Exception) -> str:
+    """Message of an error without its line breaks.
+
+    Parameters
+    ----------
+    error : Exception
+    """
     return " ".join(str(error).split())
