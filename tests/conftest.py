@@ -13,6 +13,8 @@ os.environ["DEMHEAT_WARM"] = "0"
 # Workers share the processors: one thread each, of libraries and (below) of Numba. Tests of two threads ask for them.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+# Where kernels and packings are kept.
+FOLDERS = ("NUMBA_CACHE_DIR", "DEMHEAT_CACHE", "XDG_CACHE_HOME")
 # Python looks for unreachable cycles whenever 700 objects are new; compiling makes a million that live on.
 gc.set_threshold(50_000, 20, 20)
 
@@ -44,6 +46,12 @@ def compiled_once(tmp_path_factory):
 
 @pytest.fixture(scope="module", autouse=True)
 def settled():
-    """What is loaded by now stays: a search for garbage, which every measured cost begins with, passes it over."""
+    """What is loaded by now stays: a search for garbage, which every measured cost begins with, passes it over.
+
+    And no module leaves other folders behind: those after it would compile and pack anew, for minutes.
+    """
     gc.collect()
     gc.freeze()
+    before = [os.environ.get(name) for name in FOLDERS]
+    yield
+    assert [os.environ.get(name) for name in FOLDERS] == before

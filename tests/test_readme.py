@@ -27,23 +27,27 @@ def test_links_lead_somewhere():
     assert targets and all((ROOT / target).exists() for target in targets)
 
 
-def test_the_example_runs():
-    code = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1].replace("100_000", "1_000")
-    names = {}
-    exec(code, names)
-    # The exact value at contrast 5; 1000 particles err by 0.2 %.
-    assert_allclose(names["field"].conductivity, 42.6403350747, rtol=5e-3)
-    assert names["field"].flux_at(names["points"]).shape == (2, 3)
-
-
 def _block(word):
     """The example in which a word stands."""
     return next(code for code in re.findall(r"```python\n(.*?)```", PAGE, re.DOTALL) if word in code)
 
 
-def test_the_example_of_fluxes_runs():
+@pytest.fixture(scope="module")
+def first():
+    """Names that the first example makes: those after it go on with them."""
     names = {}
     exec(_block("import numpy").replace("100_000", "1_000"), names)
+    return names
+
+
+def test_the_example_runs(first):
+    # The exact value at contrast 5; 1000 particles err by 0.2 %.
+    assert_allclose(first["field"].conductivity, 42.6403350747, rtol=5e-3)
+    assert first["field"].flux_at(first["points"]).shape == (2, 3)
+
+
+def test_the_example_of_fluxes_runs(first):
+    names = dict(first)
     exec(_block("halo_flux"), names)
     smooth = names["halo_flux"](names["field"], ratio=2.0)
     # As many as particles, twins at the interface included; halos of two radii calm the flux.
@@ -51,9 +55,8 @@ def test_the_example_of_fluxes_runs():
     assert smooth.std(axis=0).max() < names["field"].samples.flux.std(axis=0).max()
 
 
-def test_the_example_of_estimates_runs(capsys):
-    names = {}
-    exec(_block("import numpy").replace("100_000", "1_000"), names)
+def test_the_example_of_estimates_runs(first, capsys):
+    names = dict(first)
     exec(_block("effective("), names)
     # The exact value, as above; by symmetry that along all axes.
     assert names["field"].error.lower < 42.6403350747 < names["field"].error.upper
@@ -61,9 +64,8 @@ def test_the_example_of_estimates_runs(capsys):
     assert "exact: about 0 CPU-s" in capsys.readouterr().out
 
 
-def test_the_example_of_bounds_runs():
-    names = {}
-    exec(_block("import numpy").replace("100_000", "1_000"), names)
+def test_the_example_of_bounds_runs(first):
+    names = dict(first)
     exec(_block("bracket.solve("), names)
     # The exact value, as above.
     assert names["found"].lower < 42.6403350747 < names["found"].upper

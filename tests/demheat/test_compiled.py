@@ -86,7 +86,9 @@ def test_without_any_folder_kernels_are_compiled_for_this_run_and_a_line_says_so
     # Below a file nobody can write, not even root.
     (tmp_path / "file").touch()
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
-    monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
+    # Set before it is taken away, so that what the run sets is taken back: else all after this test would compile anew.
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "")
+    monkeypatch.delenv("NUMBA_CACHE_DIR")
     monkeypatch.setattr(compiled, "__file__", str(tmp_path / "file" / "compiled.py"))
     compiled.base_folder.cache_clear()
     try:

@@ -149,7 +149,7 @@ def test_a_keyword_that_nobody_knows(law):
 @pytest.mark.parametrize(
     ("law", "scene", "words"),
     [
-        (Laguerre(), Scene(**vars(SPHERE) | {"inclusions": [BALL]}), "a sphere: inclusions there have no conforming"),
+        (Laguerre(), dataclasses.replace(SPHERE, inclusions=[BALL]), "a sphere: inclusions there have no conforming"),
         (Calibrated(wall="surface"), SPHERE, "flat walls only"),
         (Platonic(wall="surface"), SPHERE, "flat walls only"),
         (Platonic(), Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}, initial=0.0), "two held walls meet"),
@@ -166,7 +166,7 @@ def test_scenes_that_a_law_can_do():
     for law in (Laguerre(), Calibrated(), Platonic()):
         for scene in (WALLED, CELL, SPHERE):
             law.check(scene)
-    Laguerre(conforming=False).check(Scene(**vars(SPHERE) | {"inclusions": [BALL]}))
+    Laguerre(conforming=False).check(dataclasses.replace(SPHERE, inclusions=[BALL]))
     Calibrated(wall="surface").check(Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}))
 
 

@@ -1,0 +1,50 @@
+"""No circle of modules that import each other, nor of folders."""
+
+from imported import MODULES, imports
+
+
+def edges(modules=MODULES):
+    """Pairs (module, module of ours that it imports)."""
+    return [
+        (name, target)
+        for name, path in modules.items()
+        for target in imports(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
+        if target in modules and target != name
+    ]
+
+
+def circle(pairs):
+    """Names on some circle of a directed graph, and what leads into or out of it; empty without one."""
+    pairs = set(pairs)
+    while True:
+        between = {a for a, _ in pairs} & {b for _, b in pairs}
+        kept = {(a, b) for a, b in pairs if a in between and b in between}
+        if kept == pairs:
+            return sorted(between)
+        pairs = kept
+
+
+def side_by_side(pairs):
+    """For every folder the arrows between its members, modules and folders: those of all that lies in them."""
+    found = {}
+    for name, target in pairs:
+        a, b = name.split("."), target.split(".")
+        same = next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), None)
+        # A front imports what it shows: that is no arrow between members.
+        if same is not None:
+            members = ".".join(a[: same + 1]), ".".join(b[: same + 1])
+            found.setdefault(".".join(a[:same]), set()).add(members)
+    return found
+
+
+def test_no_circle_of_modules_or_folders():
+    assert circle(edges()) == []
+    assert {folder: circle(pairs) for folder, pairs in side_by_side(edges()).items() if circle(pairs)} == {}
+
+
+def test_a_circle_is_seen():
+    assert circle([("a", "b"), ("b", "c"), ("c", "d")]) == []
+    assert circle([("a", "b"), ("b", "c"), ("c", "b"), ("c", "d")]) == ["b", "c"]
+    # No circle of modules, but one of folders.
+    pairs = [("p.a.one", "p.b.one"), ("p.b.two", "p.a.two"), ("p", "p.a.one"), ("p.a.one", "p.a.three")]
+    assert circle(pairs) == [] and circle(side_by_side(pairs)["p"]) == ["p.a", "p.b"]

@@ -1,0 +1,31 @@
+"""What `import demheat` loads, and the modules that declare methods: numpy, and nothing that takes long."""
+
+import re
+import subprocess
+import sys
+
+import pytest
+from imported import MODULES, ROOT
+
+HEAVY = ("numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy")
+# Modules that declare methods: whoever looks for methods imports them all.
+DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(\n    Method", path.read_text(), re.M)]
+
+
+@pytest.mark.parametrize(
+    "statement",
+    [
+        "import demheat",
+        "from demheat import gallery, referee",
+        "from demheat import Calibrated, Laguerre, Platonic",
+        *(f"import {name}" for name in DECLARING),
+    ],
+)
+def test_the_package_loads_numpy_only(statement):
+    code = f"import sys; {statement}; print([name for name in {HEAVY} if name in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
+
+
+def test_declaring_modules_are_found():
+    assert {"demheat.dem", "references.fem", "references.fft", "references.bounds"} <= set(DECLARING)
