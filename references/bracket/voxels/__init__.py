@@ -8,13 +8,14 @@ sides with trigonometric polynomials; those are spread over the whole cell and r
 these are exact voxel by voxel and fall wherever voxels do.
 """
 
-__all__ = ["bounds", "lower_bound", "solve", "upper_bound"]  # noqa: F822, found by `__getattr__`
+__all__ = ["bounds", "bounds_tensor", "lower_bound", "solve", "solve_tensor", "upper_bound"]  # noqa: F822, found by `__getattr__`
 
 
 def __getattr__(name):
     # What is heavy loads with the first call.
     if name in __all__:
-        from references.bracket.voxels import image, solver
+        from references.bracket.voxels import image, solver, tensor
 
-        return getattr(solver if name == "solve" else image, name)
+        home = tensor if "tensor" in name else solver if name == "solve" else image
+        return getattr(home, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

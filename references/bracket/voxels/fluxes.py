@@ -1,4 +1,4 @@
-"""The lower bound: a balanced flux, normal parts constant on the faces of voxels, of nearly least energy."""
+"""Lower bounds: balanced fluxes, normal parts constant on the faces of voxels, of nearly least energy."""
 
 from __future__ import annotations
 
@@ -14,14 +14,8 @@ from references.fft.transforms import fourier
 from references.threads import Team
 
 
-def greatest_conductivity(
-    cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team
-) -> tuple[float, dict]:
-    """What a balanced flux proves: by Thomson's principle (flux along the load)^2 / energy is no more than the truth.
-
-    The mean flux across the load is free. What rounding leaves unbalanced, d in each voxel, a flux of energy at most
-    rho |d|^2 / s^2 would balance, where rho is the largest resistivity and s^2 the least eigenvalue of the grid's
-    Laplacian; that is counted by the triangle inequality.
+def flux(cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team) -> tuple[np.ndarray, dict]:
+    """A balanced flux, up to rounding, of nearly least energy for what it is along a direction; free across that.
 
     Parameters
     ----------
@@ -36,36 +30,77 @@ def greatest_conductivity(
 
     Returns
     -------
-    bound : float
-        In the unit of the conductivities.
+    flux : (3, nx, ny, nz) float array
+        Normal parts on the lower faces of each voxel.
     stats : dict
-        `unknowns`, `iterations` and `unbalanced`, how much of the bound was given up for that.
+        `unknowns` and `iterations`.
     """
-    shape = cells.scalar.shape
-
-    def slope(flux):
-        work = np.empty(flux.shape)
-        team.run(kernels.resist, shape[0], flux, work, cells)
-        return work
-
-    flux = np.empty((3, *shape))
-    flux[:] = gradient[:, None, None, None]
-    first = slope(flux)
+    start = np.empty((3, *cells.scalar.shape))
+    start[:] = gradient[:, None, None, None]
+    first = _slope(cells, start, team)
     with stage("fluxes") as done:
-        inverse, balanced = _balancing(shape, spacing, gradient, team.threads)
-        begin = first, float(np.einsum("aijk,aijk->", flux, first))
-        found = descend(slope, inverse, flux, loaded=begin, tolerance=tolerance, most=most, done=done)
-        flux = balanced(found.field)
-    energy = float(np.einsum("aijk,aijk->", flux, slope(flux))) / cells.scalar.size
-    off = _unbalanced(flux, spacing) * math.sqrt(_largest(cells))
-    along = float(gradient @ flux.mean(axis=(1, 2, 3)))
-    left = 1 / (1 + off / math.sqrt(energy)) ** 2
-    stats = {"unknowns": flux.size, "iterations": found.iterations, "unbalanced": 1 - left}
-    return along**2 / energy * left, stats
+        inverse, balanced = _balancing(cells.scalar.shape, spacing, gradient, team.threads)
+        found = descend(
+            lambda direction: _slope(cells, direction, team),
+            inverse,
+            start,
+            loaded=(first, _dot(start, first)),
+            tolerance=tolerance,
+            most=most,
+            done=done,
+        )
+        return balanced(found.field), {"unknowns": start.size, "iterations": found.iterations}
+
+
+def least(cells: Cells, spacing, fluxes, *, team: Team) -> tuple[np.ndarray, float]:
+    """What fluxes prove: by Thomson's principle g . L g is no more than the conductivity along g.
+
+    With q_i of means m_i and energies E_ij, of which the best combination is taken, L = m E^-1 m. What rounding leaves
+    unbalanced, d in each voxel, a flux of energy at most rho |d|^2 / s^2 would balance, where rho is the largest
+    resistivity and s^2 the least eigenvalue of the grid's Laplacian; that is added, since for any t > 0
+    (a + b)^2 <= (1 + t) a^2 + (1 + 1 / t) b^2.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of resistivities.
+    spacing : (3,) float array
+    fluxes : sequence of l (3, nx, ny, nz) float arrays
+    team : Team
+
+    Returns
+    -------
+    bound : (3, 3) float array
+        L, in the unit of the conductivities.
+    unbalanced : float
+        The energy that was added, over the least of any combination of the fluxes.
+    """
+    slopes = [_slope(cells, each, team) for each in fluxes]
+    means = np.array([each.mean(axis=(1, 2, 3)) for each in fluxes])
+    size = cells.scalar.size
+    energies = np.array([[_dot(one, slope) for slope in slopes] for one in fluxes]) / size
+    energies = (energies + energies.T) / 2
+    off = _largest(cells) * sum(_unbalanced(each, spacing) ** 2 for each in fluxes)
+    smallest = np.linalg.eigvalsh(energies)[0]
+    # The best t for that combination.
+    t = math.sqrt(off / smallest)
+    energies = (1 + t) * energies + (off + math.sqrt(off * smallest)) * np.eye(len(fluxes))
+    return means.T @ np.linalg.solve(energies, means), t * (2 + t)
+
+
+def _slope(cells, flux, team):
+    """Half the slope of the energy, times the number of voxels."""
+    work = np.empty(flux.shape)
+    team.run(kernels.resist, flux.shape[1], flux, work, cells)
+    return work
+
+
+def _dot(one, other):
+    return float(np.einsum("aijk,aijk->", one, other))
 
 
 def _balancing(shape, spacing, gradient, threads):
-    """What inverts the slope of unit resistivity within balanced fluxes; and the balanced part of a flux."""
+    """What inverts the slope of unit resistivity within balanced fluxes, and takes the balanced part of a flux."""
     transform = fourier(3, shape, np.float64, threads)
     values = transform.real[..., : shape[2]]
     angles = [2 * np.pi * np.arange(m) / n for m, n in zip((*shape[:2], shape[2] // 2 + 1), shape, strict=True)]
@@ -75,8 +110,8 @@ def _balancing(shape, spacing, gradient, threads):
     plain = Modes(turn, tuple(np.ones(len(angle)) for angle in angles), np.zeros(3))
 
     def by(modes):
-        def apply(flux):
-            values[:] = flux
+        def apply(given):
+            values[:] = given
             transform.planes(forward=True)
             transform.columns(kernels.balance, modes, transform.scale)
             transform.planes(backward=True)
@@ -90,10 +125,10 @@ def _balancing(shape, spacing, gradient, threads):
 def _unbalanced(flux, spacing):
     """Bound of the root mean square of a flux of no mean that balances another's rest."""
     rest = sum((np.roll(part, -1, axis=a) - part) / spacing[a] for a, part in enumerate(flux))
-    least = min(
+    frequency = min(
         (2 * math.sin(math.pi / n) / h for n, h in zip(rest.shape, spacing, strict=True) if n > 1), default=math.inf
     )
-    return math.sqrt(float(np.einsum("ijk,ijk->", rest, rest)) / rest.size) / least
+    return math.sqrt(float(np.einsum("ijk,ijk->", rest, rest)) / rest.size) / frequency
 
 
 def _largest(cells):

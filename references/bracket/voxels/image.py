@@ -12,8 +12,7 @@ from demheat.limits import check_memory
 from demheat.process_state import one_blas_thread
 from demheat.scene.inputs import LEAST, MOST, finite, reals, vector, whole
 from references.bracket.solver import ROUNDING, Bracket
-from references.bracket.voxels.fluxes import greatest_conductivity
-from references.bracket.voxels.temperatures import least_energy
+from references.bracket.voxels import fluxes, temperatures
 from references.bracket.voxels.voxel_kernels import Cells
 from references.threads import Team, thread_count
 
@@ -69,7 +68,7 @@ def bounds(
     -------
     Bracket
         `stats` holds `voxels` (of the finest grid), `temperatures` and `fluxes`, each with `unknowns` and `iterations`,
-        `unbalanced`, how much of the lower bound was given up for rounding, and `cpu_s` of lower and upper.
+        `unbalanced`, the part of the lower bound given up for rounding, and `cpu_s` of lower and upper.
 
     Raises
     ------
@@ -78,10 +77,10 @@ def bounds(
     NotImplementedError
         If a conductivity is 0; `upper_bound` takes it.
     """
-    values, load = _checked(conductivity, spacing, gradient, refine, "lower")
+    values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["lower"])
     effort = checked_effort(tolerance, threads)
-    _check_pores(values)
-    return bracketed(_conducting(values), _resisting(values), load, effort)
+    check_pores(values)
+    return bracketed(conducting(values), resisting(values), load, effort)
 
 
 def upper_bound(
@@ -100,9 +99,9 @@ def upper_bound(
     conductivity, spacing, gradient, refine, tolerance, threads
         As those of `bounds`.
     """
-    values, load = _checked(conductivity, spacing, gradient, refine, "upper")
+    values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["upper"])
     effort = checked_effort(tolerance, threads)
-    return _upper(_conducting(values), load, effort)[0]
+    return _upper(conducting(values), load, effort)[0]
 
 
 def lower_bound(
@@ -121,10 +120,10 @@ def lower_bound(
     conductivity, spacing, gradient, refine, tolerance, threads
         As those of `bounds`.
     """
-    values, load = _checked(conductivity, spacing, gradient, refine, "lower")
+    values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["lower"])
     effort = checked_effort(tolerance, threads)
-    _check_pores(values)
-    return _lower(_resisting(values), load, effort)[0]
+    check_pores(values)
+    return _lower(resisting(values), load, effort)[0]
 
 
 class Load(NamedTuple):
@@ -161,47 +160,89 @@ def scaled_load(conductivity: np.ndarray, shape: Sequence[int], spacing, gradien
     return Load(float(unit), spacing / np.max(spacing * shape), gradient / np.linalg.norm(gradient))
 
 
-def _conducting(values):
+def conducting(values: np.ndarray) -> Cells:
+    """An image's conductivities as kernels read them."""
     return Cells(values, np.full(values.shape, -1, np.int32), np.empty((0, 3, 3, 3)))
 
 
-def _resisting(values):
+def resisting(values: np.ndarray) -> Cells:
+    """An image's resistivities as kernels read them."""
     return Cells(1 / values, np.full(values.shape, -1, np.int32), np.empty((0, 3, 3)))
 
 
-def bracketed(conducting: Cells, resisting: Cells, load: Load, effort: Effort) -> Bracket:
+def bracketed(above: Cells, below: Cells, load: Load, effort: Effort) -> Bracket:
     """Both bounds.
 
     Parameters
     ----------
-    conducting, resisting : Cells
-        Conductivities nowhere below the true ones, resistivities nowhere below the true ones.
-        Both in the load's unit.
+    above, below : Cells
+        Conductivities, and resistivities, nowhere less than the true ones; in the load's unit.
     load : Load
     effort : Effort
     """
     begin = time.process_time()
-    below, fluxes = _lower(resisting, load, effort)
+    lower, said = _lower(below, load, effort)
     middle = time.process_time()
-    above, temperatures = _upper(conducting, load, effort)
+    upper, told = _upper(above, load, effort)
     cpu = {"lower": middle - begin, "upper": time.process_time() - middle}
-    stats = {"voxels": conducting.scalar.shape, "unbalanced": fluxes.pop("unbalanced"), "cpu_s": cpu}
-    return Bracket(below, above, stats | {"temperatures": temperatures, "fluxes": fluxes})
+    stats = {"voxels": above.scalar.shape, "unbalanced": said.pop("unbalanced"), "cpu_s": cpu}
+    return Bracket(lower, upper, stats | {"temperatures": told, "fluxes": said})
 
 
 def _upper(cells, load, effort):
-    value, stats = _by(least_energy, cells, load, effort)
-    return float(value * load.unit * (1 + ROUNDING)), stats
+    form, stats = greatest_form(cells, load.spacing, [load.gradient], effort)
+    return float(form[0, 0] * load.unit * (1 + ROUNDING)), stats
 
 
 def _lower(cells, load, effort):
-    value, stats = _by(greatest_conductivity, cells, load, effort)
-    return float(value * load.unit * (1 - ROUNDING)), stats
+    form, stats = least_form(cells, load.spacing, [load.gradient], effort)
+    return float(load.gradient @ form @ load.gradient * load.unit * (1 - ROUNDING)), stats
 
 
-def _by(principle, cells, load, effort):
+def greatest_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.ndarray, dict]:
+    """Upper bounds of all combinations of some loads.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of conductivities.
+    spacing : (3,) float array
+    gradients : sequence of l (3,) float arrays
+    effort : Effort
+
+    Returns
+    -------
+    (l, l) float array, and `stats` of the last load
+        See `references.bracket.voxels.temperatures.greatest`.
+    """
+    knobs = {"tolerance": effort.tolerance, "most": ITERATIONS}
     with one_blas_thread(), Team(effort.threads) as team:
-        return principle(cells, load.spacing, load.gradient, tolerance=effort.tolerance, most=ITERATIONS, team=team)
+        found = [temperatures.temperature(cells, spacing, each, team=team, **knobs) for each in gradients]
+        thetas = [theta for theta, _ in found]
+        return temperatures.greatest(cells, spacing, thetas, gradients, team=team), found[-1][1]
+
+
+def least_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.ndarray, dict]:
+    """Lower bounds of the conductivity by fluxes along some directions.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of resistivities.
+    spacing : (3,) float array
+    gradients : sequence of (3,) float arrays
+    effort : Effort
+
+    Returns
+    -------
+    (3, 3) float array, and `stats` of the last flux, with what is `unbalanced`
+        See `references.bracket.voxels.fluxes.least`.
+    """
+    knobs = {"tolerance": effort.tolerance, "most": ITERATIONS}
+    with one_blas_thread(), Team(effort.threads) as team:
+        found = [fluxes.flux(cells, spacing, each, team=team, **knobs) for each in gradients]
+        form, unbalanced = fluxes.least(cells, spacing, [flux for flux, _ in found], team=team)
+    return form, found[-1][1] | {"unbalanced": unbalanced}
 
 
 def checked_effort(tolerance: float, threads: int | None) -> Effort:
@@ -216,7 +257,16 @@ def checked_effort(tolerance: float, threads: int | None) -> Effort:
     return Effort(float(tolerance), thread_count(threads))
 
 
-def _checked(conductivity, spacing, gradient, refine, bound):
+def checked_image(conductivity, spacing, gradient, refine: int, bytes_each: int) -> tuple[np.ndarray, Load]:
+    """Conductivities of the finest grid in units of the load, and the load; raises what `bounds` does.
+
+    Parameters
+    ----------
+    conductivity, spacing, gradient, refine
+        As those of `bounds`.
+    bytes_each : int
+        That a voxel of the finest grid takes.
+    """
     values = reals("conductivity", conductivity, "(nx, ny, nz) numbers >= 0, W/(m K)")
     sizes = (values == 0) | ((values >= LEAST) & (values <= MOST))
     if values.ndim != 3 or not values.size or not np.all(sizes):
@@ -229,14 +279,15 @@ def _checked(conductivity, spacing, gradient, refine, bound):
     if not np.any(vector("gradient", gradient)):
         raise ValueError(f"gradient = {gradient!r}: must have some length to be a direction")
     whole("refine", refine, "a whole number >= 1", lambda v: v >= 1)
-    check_memory("refine", refine, BYTES[bound] * values.size * float(refine) ** 3, power=3)
+    check_memory("refine", refine, bytes_each * values.size * float(refine) ** 3, power=3)
     for axis in range(3):
         values = np.repeat(values, refine, axis=axis) if refine > 1 else values
     load = scaled_load(values, values.shape, spacing / refine, gradient)
     return values / load.unit, load
 
 
-def _check_pores(values):
+def check_pores(values: np.ndarray) -> None:
+    """Refuse pores; raises what `bounds` does."""
     if values.min() == 0:
         raise NotImplementedError(
             "a conductivity is 0: a balanced flux would have to keep out of pores, which Fourier modes fill; "

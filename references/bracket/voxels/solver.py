@@ -12,8 +12,9 @@ from demheat.progress import stage
 from demheat.scene import Scene
 from demheat.scene.symmetry import mirrors
 from references.bracket.solver import Bracket, check
-from references.bracket.voxels.image import BYTES, bracketed, checked_effort, scaled_load
+from references.bracket.voxels.image import BYTES, Load, bracketed, checked_effort, scaled_load
 from references.bracket.voxels.painting import GRAIN, mirrored, painted
+from references.bracket.voxels.voxel_kernels import Cells
 from references.voxels.paint import grid_shape
 
 
@@ -49,14 +50,45 @@ def solve(
     NotImplementedError
         If the load is another, a shape, or a conductivity is 0.
     """
-    check(scene, tolerance)
     effort = checked_effort(tolerance, threads)
+    above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
+    found = bracketed(above, below, load, effort)
+    stats = found.stats | {"cut": len(above.table)}
+    return Bracket(found.lower * max(1 - slack, 0.0), found.upper * (1 + slack), stats)
+
+
+def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Cells, Cells, Load, float]:
+    """A scene as a periodic grid; raises what `solve` does.
+
+    Parameters
+    ----------
+    scene, voxels, tolerance
+        As those of `solve`.
+    bytes_each : int
+        That a voxel takes.
+
+    Returns
+    -------
+    above, below : Cells
+        Conductivities, and resistivities, nowhere less than the scene's; in the load's unit.
+    load : Load
+    slack : float
+        Part of the bounds by which what counts as rounding may move them.
+    """
+    check(scene, tolerance)
     scene.require("bounds on voxels know one pair of isothermal walls", walls="one isothermal pair")
     scene.require("Fourier modes of a balanced flux fill pores; references.bracket.solve takes them", pores=False)
     factors = _factors(scene)
     shape = tuple(n * factor for n, factor in zip(grid_shape(scene, voxels), factors, strict=True))
-    check_memory("voxels", voxels, BYTES["lower"] * math.prod(shape), power=3)
-    return _bounded(scene, shape, factors, effort)
+    check_memory("voxels", voxels, bytes_each * math.prod(shape), power=3)
+    spacing, conductivity = np.array(scene.size) * factors / shape, scene.conductivities
+    load = scaled_load(conductivity, shape, spacing, scene.gradient if scene.periodic else np.eye(3)[scene.axis])
+    images = mirrored(scene.images(), scene.size, [factor == 2 for factor in factors])
+    with stage("voxels"):
+        cells = painted(conductivity / load.unit, images, shape, spacing)
+    # Faces of layers count as on those of voxels, and bodies as mirrored, within rounding: what that matters at most.
+    slack = 2 * GRAIN * len(scene.inclusions) * conductivity.max() / conductivity.min()
+    return cells.conducting, cells.resisting, load, slack
 
 
 def _factors(scene):
@@ -64,17 +96,3 @@ def _factors(scene):
     if scene.periodic:
         return (1, 1, 1)
     return tuple(2 if plane is None else 1 for plane in mirrors(scene))
-
-
-def _bounded(scene, shape, factors, effort):
-    spacing = np.array(scene.size) * factors / shape
-    gradient = scene.gradient if scene.periodic else np.eye(3)[scene.axis]
-    load = scaled_load(scene.conductivities, shape, spacing, gradient)
-    images = mirrored(scene.images(), scene.size, [factor == 2 for factor in factors])
-    with stage("voxels"):
-        cells = painted(scene.conductivities / load.unit, images, shape, spacing)
-    found = bracketed(cells.conducting, cells.resisting, load, effort)
-    # Faces of layers count as on those of voxels, and bodies as mirrored, within rounding: what that matters at most.
-    doubt = 2 * GRAIN * len(scene.inclusions) * scene.conductivities.max() / scene.conductivities.min()
-    stats = found.stats | {"cut": len(cells.conducting.table)}
-    return Bracket(found.lower * max(1 - doubt, 0.0), found.upper * (1 + doubt), stats)

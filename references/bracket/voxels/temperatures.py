@@ -1,8 +1,9 @@
-"""The upper bound: a continuous temperature, trilinear in each voxel, of nearly least energy."""
+"""Upper bounds: continuous temperatures, trilinear in each voxel, of nearly least energy."""
 
 from __future__ import annotations
 
 import math
+from itertools import combinations
 
 import numpy as np
 
@@ -16,8 +17,8 @@ from references.fft.transforms import fourier
 from references.threads import Team
 
 
-def least_energy(cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team) -> tuple[float, dict]:
-    """Energy of a temperature that fits the load: by Dirichlet's principle no less than the conductivity along it.
+def temperature(cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team) -> tuple[np.ndarray, dict]:
+    """A temperature that fits the load, of nearly least energy.
 
     Parameters
     ----------
@@ -25,33 +26,68 @@ def least_energy(cells: Cells, spacing, gradient, *, tolerance: float, most: int
         Of conductivities.
     spacing : (3,) float array
     gradient : (3,) float array
-        Of length 1.
     tolerance, most
         Of the descent, see `descend`.
     team : Team
 
     Returns
     -------
-    energy : float
-        In the unit of the conductivities.
+    theta : (nx, ny, nz) float array
+        At the lower corner of each voxel, less the linear part.
     stats : dict
         `unknowns` and `iterations`.
     """
     shape = cells.scalar.shape
-    energies = np.zeros(shape[0])
-
-    def slope(theta, load=0.0):
-        work = np.empty(shape)
-        team.run(kernels.conduct, shape[0], theta, work, cells, np.array([1 / spacing, load * gradient]), energies)
-        return work
-
     theta = np.zeros(shape)
-    begin = slope(theta, 1.0), math.fsum(energies)
+    first, energy = _slope(cells, spacing, theta, gradient, team)
     with stage("temperatures") as done:
         inverse = _homogeneous(shape, spacing, team.threads)
-        found = descend(slope, inverse, theta, loaded=begin, tolerance=tolerance, most=most, done=done)
-    slope(found.field, 1.0)
-    return math.fsum(energies) / theta.size, {"unknowns": theta.size, "iterations": found.iterations}
+        found = descend(
+            lambda direction: _slope(cells, spacing, direction, np.zeros(3), team)[0],
+            inverse,
+            theta,
+            loaded=(first, energy),
+            tolerance=tolerance,
+            most=most,
+            done=done,
+        )
+    return found.field, {"unknowns": theta.size, "iterations": found.iterations}
+
+
+def greatest(cells: Cells, spacing, thetas, gradients, *, team: Team) -> np.ndarray:
+    """What temperatures prove: by Dirichlet's principle c . E c is no less than the conductivity along sum c_i g_i.
+
+    Parameters
+    ----------
+    cells : Cells
+        Of conductivities.
+    spacing : (3,) float array
+    thetas : sequence of l (nx, ny, nz) float arrays
+    gradients : (l, 3) float array
+    team : Team
+
+    Returns
+    -------
+    (l, l) float array
+        E, in the unit of the conductivities.
+    """
+    count = len(thetas)
+
+    def energy(theta, gradient):
+        return _slope(cells, spacing, theta, gradient, team)[1] / theta.size
+
+    found = np.diag([energy(*pair) for pair in zip(thetas, gradients, strict=True)])
+    for i, j in combinations(range(count), 2):
+        both = energy(thetas[i] + thetas[j], gradients[i] + gradients[j])
+        found[i, j] = found[j, i] = (both - found[i, i] - found[j, j]) / 2
+    return found
+
+
+def _slope(cells, spacing, theta, gradient, team):
+    """Half the slope of the energy, and the energy, times the number of voxels."""
+    work, energies = np.empty(theta.shape), np.zeros(len(theta))
+    team.run(kernels.conduct, len(theta), theta, work, cells, np.array([1 / spacing, gradient]), energies)
+    return work, math.fsum(energies)
 
 
 def _homogeneous(shape, spacing, threads):
