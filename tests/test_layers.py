@@ -231,6 +231,16 @@ LAYERS = {
         "references.voxels",
         "references.fft",
     ),
+    "references.bracket.voxels": (
+        "demheat.scene",
+        "demheat.limits",
+        "demheat.process_state",
+        "demheat.progress",
+        "references.threads",
+        "references.voxels",
+        "references.fft",
+        "references.bracket",
+    ),
     # Old names of what lies in folders now.
     "references.series": ("references.exact.series",),
     "references.zeta": ("references.fft.zeta",),

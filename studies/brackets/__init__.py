@@ -4,8 +4,8 @@ A temperature that fits the load bounds the conductivity from above (Dirichlet),
 `references.bracket` works both out on one mesh whose curved interfaces are pushed to the safe side. `drawn`: a hundred
 scenes with an exact conductivity, drawn by seed, none of them used for anything else: cubic arrays, spheres between
 walls, coated spheres, laminates, random spheres of several sizes and materials. `refined`: the sphere in a cube and 83
-spheres on finer and finer meshes. `judged`: 40 spheres at contrast 150 between walls as each method answers by
-default, beside the bracket.
+spheres on finer and finer meshes. `voxels`: the same sphere on voxels that know nothing of it but how much is in them.
+`judged`: 40 spheres at contrast 150 between walls as each method answers by default, beside the bracket.
 """
 
 from studies.brackets.scenes import DRAWN, KINDS
@@ -15,8 +15,9 @@ from studies.harness.pick import pick, present
 EACH = 20  # drawn scenes of a kind
 # Edges of the finest of elements beside the box, by scene.
 REFINED = {"sphere": (6, 8, 12, 16, 24, 32), "83 spheres": (10, 30, 40, 50)}
+VOXELS = (8, 16, 32, 64, 128)  # along the cube's edge
 JUDGED = ("dem", "fft", "fem")
-MODULES = {"bracket": "references.bracket"}
+MODULES = {"bracket": "references.bracket", "bracket-voxels": "references.bracket.voxels"}
 PAPER = {}
 TIMEOUT = 3600.0
 
@@ -28,6 +29,8 @@ def _cases():
     for scene, sizes in REFINED.items():
         for parts in sizes:
             yield {"part": "refined", "scene": scene, "parts": parts, "method": "bracket"}
+    for voxels in VOXELS:
+        yield {"part": "voxels", "scene": "sphere", "voxels": voxels, "method": "bracket-voxels"}
     yield {"part": "judged", "scene": "40 spheres", "parts": 40, "method": "bracket"}
     for name in JUDGED:
         yield methods.case(name, part="judged", scene="40 spheres")
@@ -37,9 +40,11 @@ CASES = list(_cases())
 
 
 def QUICK(case):
-    """One scene of each kind; the sphere on its coarsest meshes."""
+    """One scene of each kind; the sphere on its coarsest meshes and grids."""
     if case["part"] == "drawn":
         return case["seed"] < 1
+    if case["part"] == "voxels":
+        return case["voxels"] <= 16
     return case["scene"] == "sphere" and case["parts"] <= 12
 
 
@@ -47,6 +52,8 @@ def run(part, scene, parts=None, seed=None, name=None, *, method, **knobs):
     """Bound the conductivity of a scene, or answer by a method."""
     from studies.brackets import rows
 
+    if part == "voxels":
+        return rows.on_voxels(scene, **knobs)
     if name is not None:
         return rows.answered(scene, method=method, **knobs)
     return rows.bounded(scene, seed, parts)
@@ -56,7 +63,9 @@ def warm_up(part, scene, parts=None, seed=None, name=None, *, method, **knobs):
     """Load what meshes and solves; compile what a method needs."""
     from studies.brackets import rows
 
-    if name is None:
+    if part == "voxels":
+        rows.on_voxels(scene, voxels=4)
+    elif name is None:
         rows.bounded("sphere", None, 3)
     else:
         methods.warm_up(method, **knobs)
@@ -72,6 +81,7 @@ def claims(df):
     )
     yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 1.0
     yield from present(_refined(pick(df, part="refined")))
+    yield from present(_on_voxels(pick(df, part="voxels")))
     judged = pick(df, part="judged", method="bracket")
     if len(judged):
         yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 1.0
@@ -87,6 +97,14 @@ def _refined(rows):
     yield "83 spheres, at most 200 CPU seconds: narrowest bracket, %", narrowest(many, cpu_s=200.0), 0.3
     outside = rows[~rows["inside"].astype(bool)]
     yield "Refined scenes: exact values outside of their brackets", len(outside), 0
+
+
+def _on_voxels(rows):
+    """First order, for what a surface cuts goes as the edge of voxels; few of them are not regular."""
+    from studies.brackets.means import order_of_width
+
+    yield "Sphere on voxels: order of the width in their edge", order_of_width(rows), ">= 0.8"
+    yield "Sphere on voxels: exact values outside of their brackets", len(rows[~rows["inside"].astype(bool)]), 0
 
 
 def table(df):

@@ -22,19 +22,20 @@ def draw(df):
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8))
-    _widths(left, pick(df, part="refined"))
+    _widths(left, pick(df, part="refined"), pick(df, part="voxels"))
     _places(right, pick(df, part="drawn"))
     figure.suptitle("The true conductivity is certain to a fraction of a per cent within seconds to minutes")
     return figure
 
 
-def _widths(axes, rows):
+def _widths(axes, rows, grids):
     for scene, (colour, mark, label) in LINES.items():
         mine = pick(rows, scene=scene)
         axes.plot(mine["cpu_s"], mine["width_percent"], color=colour, marker=mark, label=label)
+    axes.plot(grids["cpu_s"], grids["width_percent"], "C0:o", fillstyle="none", label="the sphere on voxels")
     axes.set(xscale="log", yscale="log", xlabel="CPU seconds", ylabel="upper over lower bound less 1, %")
     axes.set_title("What a narrower bracket costs")
-    if len(rows):
+    if len(rows) + len(grids):
         axes.legend()
 
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 from references import bracket
+from references.bracket import voxels as on_grid
 from studies.brackets.scenes import exact_of, scene_of
 from studies.harness import methods
 from studies.harness.cost import measured
@@ -20,9 +23,27 @@ def bounded(name, seed, parts):
         Edges of elements: the longest side of the box over this.
     """
     scene = scene_of(name, seed)
-    known = exact_of(name, scene)
     found, cost = measured(bracket.solve, scene, size=max(scene.size) / parts)
-    stats = found.stats
+    return _row(name, scene, found, found.stats["elements"]) | cost
+
+
+def on_voxels(name, *, voxels):
+    """Bounds of a scene's conductivity by fields on voxels, beside the exact one.
+
+    Parameters
+    ----------
+    name : str
+        Of the scene.
+    voxels : int
+        Along the box's longest side.
+    """
+    scene = scene_of(name)
+    found, cost = measured(on_grid.solve, scene, voxels=voxels)
+    return _row(name, scene, found, math.prod(found.stats["voxels"])) | cost
+
+
+def _row(name, scene, found, elements):
+    stats, known = found.stats, exact_of(name, scene)
     unit = scene.matrix.conductivity or max(scene.conductivities)
     return {
         "lower": found.lower / unit,
@@ -31,11 +52,10 @@ def bounded(name, seed, parts):
         "inside": bool(found.lower <= known <= found.upper),
         "width_percent": 100 * found.width,
         "inclusions": len(scene.inclusions),
-        "elements": stats["elements"],
+        "elements": elements,
         "temperatures": stats["temperatures"]["unknowns"],
         "fluxes": stats["fluxes"].get("unknowns", 0),
         "unbalanced": stats["unbalanced"],
-        **cost,
     }
 
 

@@ -18,6 +18,7 @@ def lines(df):
     """
     rows = [_kind(kind, group) for kind, group in pick(df, part="drawn").groupby("scene", sort=False)]
     rows += [_mesh(row) for _, row in pick(df, part="refined").iterrows()]
+    rows += [_mesh(row) for _, row in pick(df, part="voxels").iterrows()]
     judge = pick(df, part="judged", method="bracket")
     rows += [_mesh(row) for _, row in judge.iterrows()]
     rows += [_answer(row, judge) for _, row in df[df["part"].eq("judged") & df["method"].ne("bracket")].iterrows()]
@@ -42,8 +43,9 @@ def _kind(kind, group):
 
 
 def _mesh(row):
+    parts = f"voxels of 1/{row['voxels']:.0f}" if row["part"] == "voxels" else f"edges of 1/{row['parts']:.0f}"
     return {
-        "scene": f"{row['scene']}, edges of 1/{row['parts']:.0f}",
+        "scene": f"{row['scene']}, {parts}",
         "lower": row["lower"],
         "upper": row["upper"],
         "width, %": f"{row['width_percent']:.2g}",

@@ -1,0 +1,98 @@
+"""Bounds of a scene's conductivity on a regular grid, whatever its surfaces cut."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from demheat.limits import check_memory
+from demheat.progress import stage
+from demheat.scene import Scene
+from demheat.scene.symmetry import mirrors
+from references.bracket.solver import Bracket, check
+from references.bracket.voxels.image import BYTES, Load, bracketed, checked_effort, scaled_load
+from references.bracket.voxels.painting import GRAIN, mirrored, painted
+from references.bracket.voxels.voxel_kernels import Cells
+from references.voxels.paint import grid_shape
+
+
+def solve(
+    scene: Scene, *, voxels: int | Sequence[int] = 64, tolerance: float = 1e-6, threads: int | None = 2
+) -> Bracket:
+    """Bound the conductivity of a scene along its load from both sides, on voxels.
+
+    Surfaces may touch, and no mesh is made; but fields that know nothing of the surfaces inside a voxel close in with
+    first order only: `references.bracket.solve` is narrower by far wherever it has a mesh.
+
+    Parameters
+    ----------
+    scene : Scene
+        Spheres and layers, all of some conductivity, in a periodic cell, or between two opposite isothermal walls; a
+        box without mirror planes of its own is doubled by its mirror images, along each axis that lacks one.
+    voxels : int or (3,) sequence of int
+        Along the longest side of the scene, the others as nearly cubic as they can be; or along each side.
+    tolerance : float
+        Of the energies at which iterations stop; it costs width, never certainty.
+    threads : int or None
+        None takes one per processor.
+
+    Returns
+    -------
+    Bracket
+        With `stats` as those of `bounds`, and `cut`, the number of voxels that a surface may cut.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described, or the grid does not fit into memory.
+    NotImplementedError
+        If the load is another, a shape, or a conductivity is 0.
+    """
+    effort = checked_effort(tolerance, threads)
+    above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
+    found = bracketed(above, below, load, effort)
+    stats = found.stats | {"cut": len(above.table)}
+    return Bracket(found.lower * max(1 - slack, 0.0), found.upper * (1 + slack), stats)
+
+
+def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Cells, Cells, Load, float]:
+    """A scene as a periodic grid; raises what `solve` does.
+
+    Parameters
+    ----------
+    scene, voxels, tolerance
+        As those of `solve`.
+    bytes_each : int
+        That a voxel takes.
+
+    Returns
+    -------
+    above, below : Cells
+        Conductivities, and resistivities, nowhere less than the scene's; in the load's unit.
+    load : Load
+    slack : float
+        Part of the bounds by which what counts as rounding may move them.
+    """
+    check(scene, tolerance)
+    scene.require("bounds on voxels know one pair of isothermal walls", walls="one isothermal pair")
+    scene.require("Fourier modes of a balanced flux fill pores; references.bracket.solve takes them", pores=False)
+    factors = _factors(scene)
+    shape = tuple(n * factor for n, factor in zip(grid_shape(scene, voxels), factors, strict=True))
+    check_memory("voxels", voxels, bytes_each * math.prod(shape), power=3)
+    spacing, conductivity = np.array(scene.size) * factors / shape, scene.conductivities
+    load = scaled_load(conductivity, shape, spacing, scene.gradient if scene.periodic else np.eye(3)[scene.axis])
+    images = mirrored(scene.images(), scene.size, [factor == 2 for factor in factors])
+    with stage("voxels"):
+        cells = painted(conductivity / load.unit, images, shape, spacing)
+    # Faces of layers count as on those of voxels, and bodies as mirrored, within rounding: what that matters at most.
+    slack = 2 * GRAIN * len(scene.inclusions) * conductivity.max() / conductivity.min()
+    return cells.conducting, cells.resisting, load, slack
+
+
+def _factors(scene):
+    """1, or 2 where mirror images are needed to make a periodic cell of the box, along each axis."""
+    if scene.periodic:
+        return (1, 1, 1)
+    return tuple(2 if plane is None else 1 for plane in mirrors(scene))
