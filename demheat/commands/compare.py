@@ -35,7 +35,8 @@ def run(file, options) -> int:
     options : Namespace
         Of `demheat.commands.parser`.
     """
-    wanted = asked(file, names(options.methods), options.knob, default=usual(everything=options.all))
+    chosen = names(options.methods) or (usual(everything=True) if options.all else None)
+    wanted = asked(file, chosen, options.knob, default=usual())
     folder = Path(options.out or OUT)
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{file.path.stem}.csv"
