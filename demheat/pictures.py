@@ -78,7 +78,7 @@ def of_field(field, *, axis: int | None = None, at: float | None = None, pixels:
     figure, panels = _figure(2)
     size = np.linalg.norm(found.flux, axis=-1)
     for panel, values, cmap, label in (
-        (panels[0], found.temperature, "inferno", "temperature, as that of the walls"),
+        (panels[0], found.temperature, "inferno", "temperature"),
         (panels[1], size, "viridis", "size of the flux, W/m2"),
     ):
         # A few corners with a flux without bound would hide all else.
@@ -121,7 +121,7 @@ def of_comparison(scene, entries, bounds, temperature=None):
     if temperature is not None:
         axis = across_of(scene)
         image = _shown(panels[1], scene, axis, temperature, {"cmap": "inferno"})
-        figure.colorbar(image, ax=panels[1], shrink=0.8, label="temperature, as that of the walls")
+        figure.colorbar(image, ax=panels[1], shrink=0.8, label="temperature")
         panels[1].set_title(f"{AXES[axis]} = {_length(scene, scene.size[axis] / 2)}")
     return figure
 

@@ -52,7 +52,7 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
 )
 # What may be left out.
 OPTIONAL = ("velocity", "clip")
-NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?: and \[(\d+)\])?")
+NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
 
 class Placed(NamedTuple):
@@ -102,8 +102,10 @@ def _placed_error(table, placed, error):
     if not found:
         return table.blamed(error)
     first, *others = (placed[int(number)].place for number in found.groups() if number)
-    told = str(error).removeprefix("Scene.")
-    return ValueError(f"{first}: {told}" + "".join(f" (the other stands in {other})" for other in others))
+    told = str(error)[found.end() :].lstrip(": ")
+    if others:
+        told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {others[0]})"
+    return ValueError(f"{first}: {told}")
 
 
 def _materials(table):

@@ -19,6 +19,8 @@ except ModuleNotFoundError:  # Python 3.10
 LONGEST = 2**24
 SHOWN = 60
 POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)")
+# As "x+ = 5".
+UNQUOTED = re.compile(r"\s*\w+\+")
 
 
 class Source(NamedTuple):
@@ -77,7 +79,8 @@ def read_source(path) -> Source:
         found = POSITION.fullmatch(str(error))
         lines = text.count("\n") + (not text.endswith("\n"))
         told, line = (found[1], found[2] or lines) if found else (str(error), 1)
-        raise ValueError(f"{path}:{line}: no TOML: {told[0].lower()}{told[1:]}") from None
+        hint = "; a key with a plus needs quotes" if UNQUOTED.match(text.splitlines()[int(line) - 1]) else ""
+        raise ValueError(f"{path}:{line}: no TOML: {told[0].lower()}{told[1:]}{hint}") from None
     except (RecursionError, ValueError) as error:
         # Numbers of too many digits, and brackets within brackets without end.
         raise ValueError(f"{path}: no TOML that can be read: {shown(str(error))}") from None

@@ -43,7 +43,8 @@ class Table:
         """
         found = [name + end for end in ("", *_ends(quantity)) if name + end in self.values]
         if len(found) > 1:
-            raise self.error(found[1], f": is {found[0]} once more; must be one of them")
+            first, *_, last = sorted(found, key=lambda each: self.source.line((*self.path, each)))
+            raise self.error(last, f": is {first} once more; must be one of them")
         self.keys[name] = found[0] if found else None
         return self.keys[name]
 
@@ -237,9 +238,8 @@ class Table:
         scales.setdefault(scale, path)
         other = next((each for each in scales if each != scale), None)
         if other is not None:
-            told = (
-                f"is {scale or 'of no unit'}, and that in line {self.source.line(scales[other])} {other or 'of none'}"
-            )
+            line = self.source.line(scales[other])
+            told = f"is {_scaled(scale)}, and that in line {line} {_scaled(other)}"
             raise self.source.error(path, f": {told}; all temperatures of a file must be of one scale")
 
 

@@ -94,7 +94,11 @@ def scaled(value: float, factor: Fraction) -> float:
     value : float
     factor : Fraction
     """
-    return float(Fraction(repr(float(value))) * factor) if math.isfinite(value) else float(value)
+    try:
+        return float(Fraction(repr(float(value))) * factor)
+    except (OverflowError, ValueError):
+        # Not a number, or beyond floats: refused by those who are to use it.
+        return math.nan if value != value else (math.inf if value > 0 else -math.inf)
 
 
 def factor_of(unit: str, quantity: Quantity) -> tuple[Fraction, str]:
