@@ -9,7 +9,7 @@ from __future__ import annotations
 import sys
 from importlib import import_module
 
-from demheat.commands.parser import parser
+from demheat.commands.options import parser
 from demheat.files import read_file
 
 DONE, WITHOUT, BAD, INTERRUPTED = 0, 1, 2, 130

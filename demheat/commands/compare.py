@@ -33,7 +33,7 @@ def run(file, options) -> int:
     ----------
     file : SceneFile
     options : Namespace
-        Of `demheat.commands.parser`.
+        Of `demheat.commands.options`.
     """
     chosen = names(options.methods) or (usual(everything=True) if options.all else None)
     wanted = asked(file, chosen, options.knob, default=usual())

@@ -13,7 +13,7 @@ def run(file, options) -> int:
     ----------
     file : SceneFile
     options : Namespace
-        Of `demheat.commands.parser`.
+        Of `demheat.commands.options`.
     """
     accuracy = wanted_accuracy(file, options)
     found = effective(file.scene, accuracy=accuracy, method=names(options.methods))

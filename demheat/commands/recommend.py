@@ -14,7 +14,7 @@ def run(file, options) -> int:
     ----------
     file : SceneFile
     options : Namespace
-        Of `demheat.commands.parser`.
+        Of `demheat.commands.options`.
     """
     accuracy = wanted_accuracy(file, options)
     found = recommend(file.scene, accuracy)

@@ -62,8 +62,9 @@ def read(path: Path) -> dict[str, dict[str, str]]:
         return {}
     try:
         with path.open(newline="", encoding="utf-8") as file:
-            rows = list(csv.DictReader(file, strict=True))
-        if any(set(row) != set(COLUMNS) or None in row.values() for row in rows):
+            reader = csv.DictReader(file, strict=True)
+            rows = list(reader)
+        if reader.fieldnames != list(COLUMNS) or any(None in row or None in row.values() for row in rows):
             raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
         for row in rows:
             for name in NUMBERS:

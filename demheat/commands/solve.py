@@ -8,6 +8,7 @@ from pathlib import Path
 from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
+from demheat.files.whole import replaced
 
 
 def run(file, options) -> int:
@@ -17,7 +18,7 @@ def run(file, options) -> int:
     ----------
     file : SceneFile
     options : Namespace
-        Of `demheat.commands.parser`.
+        Of `demheat.commands.options`.
     """
     wanted = asked(file, names(options.methods), options.knob, default=("dem",))
     folder = Path(options.out) if options.out else None
@@ -48,7 +49,9 @@ def _shown(each, found):
 
 
 def _stored(folder, name, field):
-    for suffix in ("npz", "png"):
-        path = folder / f"{name}.{suffix}"
-        field.write(path)
-        print(f"  written       {path}")
+    path = folder / f"{name}.npz"
+    field.write(path)
+    print(f"  written       {path}")
+    with replaced(path.with_suffix(".png")) as part:
+        field.plot().savefig(part, dpi=120)
+    print(f"  picture       {path.with_suffix('.png')}", flush=True)

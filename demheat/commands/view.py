@@ -19,7 +19,7 @@ def run(file, options) -> int:
     ----------
     file : SceneFile
     options : Namespace
-        Of `demheat.commands.parser`.
+        Of `demheat.commands.options`.
     """
     folder = Path(options.out or OUT)
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.

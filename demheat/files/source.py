@@ -18,6 +18,8 @@ except ModuleNotFoundError:  # Python 3.10
 # A text of so many bytes has some hundred thousand spheres, which are better off in a table of their own.
 LONGEST = 2**24
 SHOWN = 60
+# Letters at least of a word within another.
+PART = 4
 POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)")
 # As "x+ = 5".
 UNQUOTED = re.compile(r"\s*\w+\+")
@@ -166,7 +168,10 @@ def nearest(word: str, words) -> str:
     words : iterable of str
     """
     lower = {each.lower(): each for each in words}
-    found = difflib.get_close_matches(word.lower(), lower, n=1)
+    word = word.lower()
+    found = difflib.get_close_matches(word, lower, n=1)
+    # "points" for "points_per_axis".
+    found = found or [each for each in lower if min(len(word), len(each)) >= PART and (word in each or each in word)]
     return f"; did you mean {lower[found[0]]!r}?" if found else ""
 
 
