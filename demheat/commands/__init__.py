@@ -40,7 +40,10 @@ def main(words=None) -> int:
     except (NotImplementedError, RuntimeError, MemoryError, ImportError) as error:
         return _said(error, WITHOUT)
     except KeyboardInterrupt:
-        print("\ndemheat: interrupted", file=sys.stderr)
+        print(
+            "\ndemheat: interrupted; rows of `compare` that are done are kept, the same command goes on",
+            file=sys.stderr,
+        )
         return INTERRUPTED
 
 

@@ -69,22 +69,21 @@ def compared(scene, wanted: list[Asked], path: Path, *, interval: bool, force: b
     scene : Scene
     wanted : list of Asked
     path : Path
-        Of the rows; what its rows of other knobs or code hold is dropped.
+        Of the rows; those of another scene, or by other code, are dropped.
     interval, force : bool
     """
     text = text_of_scene(scene)
-    keys = [rows.made_of(text, each, interval) for each in wanted]
-    known = {} if force else rows.read(path)
-    kept = {key: known[key] for key in keys if key in known}
-    for key, each in zip(keys, wanted, strict=True):
-        if key not in kept:
+    known = rows.read(path)
+    for each in wanted:
+        key = rows.key_of(each, text, interval=interval)
+        if force or key not in known:
             print(f"{each.title} ...", file=sys.stderr, flush=True)
             answer = answered(scene, each, interval=interval)
-            kept[key] = rows.row_of(each, answer, key)
+            known[key] = rows.row_of(each, answer, key)
             if answer.field is not None:
                 _keep_slice(answer.field, path, text, again=each.method.role == "witness")
-            rows.write(path, [kept[other] for other in keys if other in kept])
-        yield kept[key]
+            rows.add(path, key, known[key])
+        yield known[key]
 
 
 def table(made, bounds) -> str:

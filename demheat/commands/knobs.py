@@ -72,9 +72,7 @@ def known(method: Method) -> set[str]:
     ----------
     method : Method
     """
-    module = load(method.module)
-    call = getattr(module, "solve" if method.call == "estimate" and hasattr(module, "solve") else method.call)
-    parameters = inspect.signature(call).parameters.values()
+    parameters = inspect.signature(getattr(load(method.module), method.call)).parameters.values()
     names = {each.name for each in parameters if each.kind is each.KEYWORD_ONLY}
     if any(each.kind is each.VAR_KEYWORD for each in parameters):
         names |= {field.name for law in LAWS.values() for field in fields(law)} | set(BESIDES)

@@ -13,41 +13,48 @@ from demheat.commands.knobs import Asked
 from demheat.declared import HOMES
 from demheat.files.whole import replaced
 
+# What a row depends on: it is used again only if all of these are the same.
+KEY = ("method", "knobs", "with_interval", "scene", "code")
 COLUMNS = (
     *("method", "title", "knobs", "status", "conductivity", "lower", "upper", "how"),
-    *("wall_s", "cpu_s", "interval_cpu_s", "unknowns", "iterations", "note", "made_of"),
+    *("wall_s", "cpu_s", "interval_cpu_s", "unknowns", "iterations", "note", *KEY[2:]),
 )
 NUMBERS = ("conductivity", "lower", "upper", "wall_s", "cpu_s", "interval_cpu_s")
 
 
-def row_of(each: Asked, found: Answer, made_of: str) -> dict[str, str]:
+def key_of(each: Asked, scene_text: str, *, interval: bool) -> tuple[str, ...]:
+    """What the row of a method depends on, `KEY`.
+
+    Parameters
+    ----------
+    each : Asked
+    scene_text : str
+        The scene as a file.
+    interval : bool
+        Whether it is asked for.
+    """
+    knobs = " ".join(f"{name}={value}" for name, value in sorted(each.knobs.items()))
+    scene = hashlib.sha256(scene_text.encode()).hexdigest()[:12]
+    return each.method.name, knobs, str(interval), scene, code()
+
+
+def row_of(each: Asked, found: Answer, key: tuple[str, ...]) -> dict[str, str]:
     """A row, all of it text, floats to the last bit.
 
     Parameters
     ----------
     each : Asked
     found : Answer
-    made_of : str
-        See `made_of`.
+    key : tuple of str
+        See `key_of`.
     """
-    values = {
-        "method": each.method.name,
-        "title": each.method.label,
-        "knobs": " ".join(f"{name}={value}" for name, value in each.knobs.items()),
-        "status": found.status,
-        "conductivity": found.conductivity,
-        "lower": found.lower,
-        "upper": found.upper,
-        "how": found.how,
-        **found.cost,
-        "note": "; ".join(found.notes),
-        "made_of": made_of,
-    }
+    values = {**found._asdict(), **found.cost, "title": each.method.label, "note": "; ".join(found.notes)}
+    values |= dict(zip(KEY, key, strict=True))
     return {name: _text(values.get(name)) for name in COLUMNS}
 
 
-def read(path: Path) -> dict[str, dict[str, str]]:
-    """Rows of a file by what they are made of; empty if there is none.
+def read(path: Path) -> dict[tuple, dict[str, str]]:
+    """Rows of a file by their keys; empty if there is none.
 
     Parameters
     ----------
@@ -71,35 +78,23 @@ def read(path: Path) -> dict[str, dict[str, str]]:
                 float(row[name] or "nan")
     except (OSError, ValueError, csv.Error) as error:
         raise ValueError(f"{path}: must hold rows of a comparison: {error}; mend it or move it away") from None
-    return {row["made_of"]: row for row in rows}
+    return {tuple(row[name] for name in KEY): row for row in rows}
 
 
-def write(path: Path, rows) -> None:
-    """Write rows, whole or not at all.
+def add(path: Path, key: tuple[str, ...], row: dict[str, str]) -> None:
+    """Put a row into a file as it is now, whole or not at all; rows of another scene or other code are dropped.
 
     Parameters
     ----------
     path : Path
-    rows : iterable of dict
+    key : tuple of str
+    row : dict
     """
+    rows = {other: old for other, old in read(path).items() if other[-2:] == key[-2:]} | {key: row}
     with replaced(path) as part, part.open("w", newline="", encoding="utf-8") as file:
         writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(rows)
-
-
-def made_of(scene_text: str, each: Asked, interval: bool) -> str:
-    """Digest of all that a row depends on: scene, method, knobs, whether the interval is asked for, and the code.
-
-    Parameters
-    ----------
-    scene_text : str
-        The scene as a file.
-    each : Asked
-    interval : bool
-    """
-    parts = (scene_text, each.method.name, repr(sorted(each.knobs.items(), key=str)), str(interval), code())
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest()[:16]
+        writer.writerows(rows.values())
 
 
 @cache
@@ -109,7 +104,7 @@ def code() -> str:
     for home in HOMES:
         for path in sorted(Path(find_spec(home).origin).parent.rglob("*.py")):
             found.update(path.read_bytes())
-    return found.hexdigest()
+    return found.hexdigest()[:12]
 
 
 def _text(value):

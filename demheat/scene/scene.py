@@ -211,7 +211,9 @@ class Scene:
         """What is most asked of a scene, in words."""
         kinds = Counter(shape.kind for shape in self.inclusions)
         k = sorted(set(self.conductivities.tolist()))
-        load = {"gradient": f"{self.gradient} K/m, a periodic cell"} if self.periodic else {"walls": dict(self.walls)}
+        load = (
+            {"gradient": f"{self.gradient} K/m, a periodic cell"} if self.periodic else {"walls": _listed(self.walls)}
+        )
         return {
             "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
             "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
@@ -278,3 +280,7 @@ def check_scene(scene, name="scene") -> None:
 
 def _plain(load):
     return load if callable(load) else float(load)
+
+
+def _listed(walls):
+    return ", ".join(f"{name}: {load}" for name, load in walls.items()) or "insulated"

@@ -3,7 +3,9 @@
 # ruff: noqa: E501 (a row of the table is a line)
 
 import csv
+import random
 import re
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -170,6 +172,10 @@ def test_rows_are_stored_one_by_one_and_used_again(capsys, scene, tmp_path, monk
     assert asked[4:] == ["exact"]
     run(capsys, *command, "--force")
     assert asked[5:] == CHEAP.split(",")
+    # Rows of other methods and knobs stay, until the scene is another.
+    run(capsys, "compare", scene, "--methods", "bruggeman", "--out", tmp_path / "out")
+    assert list(rows(tmp_path / "out" / "scene.csv")) == [*CHEAP.split(","), "bruggeman"]
+    assert run(capsys, *command)[0] == 0 and asked[8:] == ["bruggeman"]
 
 
 def test_another_scene_is_another_row(capsys, scene, tmp_path):
@@ -178,7 +184,8 @@ def test_another_scene_is_another_row(capsys, scene, tmp_path):
     before = rows(tmp_path / "out" / "scene.csv")
     files.write(gallery.sphere_in_cube(6.0), scene)
     run(capsys, *command)
-    assert rows(tmp_path / "out" / "scene.csv")["maxwell"]["conductivity"] != before["maxwell"]["conductivity"]
+    after = rows(tmp_path / "out" / "scene.csv")
+    assert list(after) == ["maxwell"] and after["maxwell"]["conductivity"] != before["maxwell"]["conductivity"]
 
 
 def test_a_spoilt_table_is_not_overwritten(capsys, scene, tmp_path):
@@ -253,3 +260,21 @@ def test_the_module_is_the_command(scene):
     words = [sys.executable, "-m", "demheat", "solve", str(scene), "--method", "none"]
     done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("demheat: --method none: no such method")
+
+
+def test_a_killed_comparison_goes_on(scene, tmp_path):
+    """Killed at random moments: what is stored is whole, and the end is that of a run that nobody killed."""
+    words = [sys.executable, "-m", "demheat", "compare", str(scene), "--methods", CHEAP, "--out", str(tmp_path / "out")]
+    path, moments, before = tmp_path / "out" / "scene.csv", random.Random(5), {}
+    for _ in range(3):
+        run = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        try:
+            run.wait(moments.uniform(0.2, 1.2))
+        except subprocess.TimeoutExpired:
+            run.send_signal(signal.SIGKILL)
+        run.wait()
+        now = rows(path) if path.exists() else {}
+        assert before.items() <= now.items()
+        before = now
+    subprocess.run(words, cwd=ROOT, check=True, capture_output=True)
+    assert list(rows(path)) == CHEAP.split(",") and before.items() <= rows(path).items()
