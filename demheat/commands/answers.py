@@ -60,8 +60,10 @@ def answered(scene, asked: Asked, *, interval: bool = True) -> Answer:
             found = Answer("refused", notes=(one_line(error),))
         except ValueError as error:
             found = Answer("invalid", notes=(one_line(error),))
-        except (RuntimeError, MemoryError, ImportError, ArithmeticError, OSError) as error:
+        except (RuntimeError, MemoryError, ImportError, OSError) as error:
             found = Answer("failed", notes=(one_line(error),))
+        except Exception as error:  # noqa: BLE001 - a slip in one method must not cost the answers of others
+            found = Answer("failed", notes=(f"{type(error).__name__}: {one_line(error)}",))
     told = dict.fromkeys(one_line(each.message) for each in caught if issubclass(each.category, UserWarning))
     return found._replace(notes=(*found.notes, *(f"warning: {each}" for each in told)))
 

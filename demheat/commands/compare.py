@@ -77,13 +77,18 @@ def compared(scene, wanted: list[Asked], path: Path, *, interval: bool, force: b
     for each in wanted:
         key = rows.key_of(each, text, interval=interval)
         if force or key not in known:
-            print(f"{each.title} ...", file=sys.stderr, flush=True)
-            answer = answered(scene, each, interval=interval)
-            known[key] = rows.row_of(each, answer, key)
-            if answer.field is not None:
-                _keep_slice(answer.field, path, text, again=each.method.role == "witness")
+            known[key] = _made(scene, each, key, path, interval=interval)
             rows.add(path, key, known[key])
         yield known[key]
+
+
+def _made(scene, each, key, path, *, interval):
+    """A new row; the field is let go before the next is made."""
+    print(f"{each.title} ...", file=sys.stderr, flush=True)
+    answer = answered(scene, each, interval=interval)
+    if answer.field is not None:
+        _keep_slice(answer.field, path, text_of_scene(scene), again=each.method.role == "witness")
+    return rows.row_of(each, answer, key)
 
 
 def table(made, bounds) -> str:

@@ -15,7 +15,7 @@ COMMANDS = {
 }
 
 OPTIONS = ("--help", "--version", "--method", "--methods", "--knob", "--accuracy", "--no-interval", "--all", "--force")
-OPTIONS = (*OPTIONS, "--out")
+OPTIONS = (*OPTIONS, "--out", "--write")
 
 
 class Parser(argparse.ArgumentParser):
@@ -65,6 +65,8 @@ def _options(command, name):
         command.add_argument("--accuracy", type=float, metavar="PART", help="default: the file's, or 1e-3")
     if several:
         command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
+    if name == "solve":
+        command.add_argument("--write", metavar="FILE", help="the field of one method: .vti, .vtp, .vtu or .npz")
     if name == "compare":
         command.add_argument("--all", action="store_true", help="methods that are seldom compared, too")
         command.add_argument("--force", action="store_true", help="repeat rows that could be reused")

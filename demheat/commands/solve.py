@@ -21,6 +21,8 @@ def run(file, options) -> int:
         Of `demheat.commands.options`.
     """
     wanted = asked(file, names(options.methods), options.knob, default=("dem",))
+    if options.write and len(wanted) > 1:
+        raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
     folder = Path(options.out) if options.out else None
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
@@ -31,6 +33,9 @@ def run(file, options) -> int:
         worst = max(worst, _shown(each, found))
         if folder and found.field is not None:
             _stored(folder, each.method.name, found.field)
+        if options.write and found.field is not None:
+            found.field.write(options.write)
+            print(f"  written       {options.write}", flush=True)
     return worst
 
 

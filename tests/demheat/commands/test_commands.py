@@ -8,13 +8,14 @@ import re
 import signal
 import subprocess
 import sys
+import warnings
 from pathlib import Path
 
 import pytest
 
 import demheat
 from demheat import files, gallery
-from demheat.commands import compare, main, options
+from demheat.commands import answers, compare, main, options
 from demheat.declared import found
 
 ROOT = Path(__file__).parents[3]
@@ -63,6 +64,41 @@ def test_solve_stores_fields(capsys, laminate, tmp_path):
     status, out, _ = run(capsys, "solve", laminate, "--method", "exact", "--out", tmp_path / "out")
     assert status == 0 and str(tmp_path / "out" / "exact.npz") in out
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["exact.npz", "exact.png"]
+
+
+def test_solve_writes_one_field(capsys, laminate, tmp_path):
+    status, out, _ = run(capsys, "solve", laminate, "--method", "exact", "--write", tmp_path / "field.vti")
+    assert status == 0 and (tmp_path / "field.vti").stat().st_size > 1000
+    status, _, err = run(capsys, "solve", laminate, "--method", "exact", "--write", tmp_path / "field.vtu")
+    assert status == 1 and "this field has no mesh" in err and err.count("\n") == 1
+    status, _, err = run(capsys, "solve", laminate, "--methods", "exact,maxwell", "--write", tmp_path / "field.vti")
+    assert status == 2 and "of one method, and 2 are asked for" in err
+
+
+def test_a_slip_in_one_method_does_not_cost_the_others(capsys, laminate, tmp_path, monkeypatch):
+    real = answers.load
+
+    def load(name):
+        if name == "bounds":
+            raise KeyError("a slip\nof two lines")
+        return real(name)
+
+    monkeypatch.setattr(answers, "load", load)
+    status, out, _ = run(capsys, "compare", laminate, "--methods", "maxwell,exact", "--out", tmp_path / "out")
+    stored = rows(tmp_path / "out" / "laminate.csv")
+    assert status == 1 and stored["exact"]["status"] == "ok"
+    assert stored["maxwell"]["status"] == "failed" and stored["maxwell"]["note"].startswith("KeyError: ")
+    assert "maxwell failed: KeyError" in out
+
+
+def test_warnings_are_notes(capsys, laminate, monkeypatch):
+    def warned(scene, method, knobs, interval):
+        warnings.warn("thin\nlayers", stacklevel=1)
+        return answers.Answer("ok", 1.0, cost={"wall_s": 1.0, "cpu_s": 1.0})
+
+    monkeypatch.setattr(answers, "_run", warned)
+    status, _, err = run(capsys, "solve", laminate, "--method", "exact")
+    assert status == 0 and err == "demheat: exact: warning: thin layers\n"
 
 
 def test_the_status_is_that_of_the_worst(capsys, scene, laminate):
