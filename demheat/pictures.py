@@ -19,7 +19,7 @@ PIXELS = 241
 LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
 # The matrix grey, then colours that the colour-blind tell apart; more conductivities than that share a scale.
 COLOURS = ("#d9d9d9", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00", "#f0e442")
-POINT, BARS = "#0072b2", ("#e4e4e4", "#bdbdbd")
+POINT, BARS = "#0072b2", ("#f0f0f0", "#dadada")
 
 
 def of_scene(scene, *, pixels: int = PIXELS):
@@ -109,15 +109,20 @@ def of_comparison(scene, entries, bounds, temperature=None):
     figure, panels = _figure(1 if temperature is None else 2)
     panel = panels[0]
     for (name, low, high, *_), colour in zip(bounds, BARS, strict=False):
-        panel.axvspan(low, high, color=colour, label=f"bounds, {name}", zorder=0)
+        panel.axvspan(low, high, color=colour, label=f"{name}: {low:.5g} to {high:.5g}", zorder=0)
+    least, most = _limits(entries)
     for place, (_, k, low, high) in enumerate(entries):
-        panel.plot([low, high], [place, place], color=POINT, linewidth=3, alpha=0.4, solid_capstyle="butt")
-        panel.plot([k], [place], "o", color=POINT, markersize=5)
+        panel.plot([low, high], [place, place], color=POINT, linewidth=4, alpha=0.4, solid_capstyle="butt")
+        # What lies beyond the picture is at its edge.
+        mark = "o" if least <= k <= most else "<" if k < least else ">"
+        panel.plot([min(max(k, least), most)], [place], mark, color=POINT, markersize=5, clip_on=False)
+    panel.set_xlim(least, most)
+    panel.locator_params(axis="x", nbins=5)
     panel.set_yticks(range(len(entries)), labels=[name for name, *_ in entries])
     panel.set_ylim(len(entries) - 0.5, -0.5)
     panel.set_xlabel("effective conductivity, W/(m K)")
     if bounds:
-        panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, fontsize="small")
+        panel.legend(loc="lower center", bbox_to_anchor=(0.5, 1.0), frameon=False, fontsize="small", title="bounds")
     if temperature is not None:
         axis = across_of(scene)
         image = _shown(panels[1], scene, axis, temperature, {"cmap": "inferno"})
@@ -133,6 +138,16 @@ def across_of(scene) -> int:
     else:
         load = next((AXES.index(name[0]) for name in scene.walls or {} if name[0] in AXES), 0)
     return 1 if load == 2 else 2
+
+
+def _limits(entries):
+    """Ends of the axis: around what has an interval, since formulas may be far off; around all if nothing has."""
+    ends = np.array([entry[1:] for entry in entries if np.isfinite(entry[2])] or [entry[1:] for entry in entries])
+    if not ends.size:
+        return 0.0, 1.0
+    low, high = float(np.nanmin(ends)), float(np.nanmax(ends))
+    room = max(0.3 * (high - low), 1e-3 * abs(high), 1e-12)
+    return low - room, high + room
 
 
 def _figure(number):
