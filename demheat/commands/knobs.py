@@ -88,6 +88,8 @@ def _add(knobs, word):
     if names and names[0] not in knobs:
         raise ValueError(f"--knob {word}: no method {names[0]!r} is asked for{nearest(names[0], knobs)}")
     takers = names or [name for name in knobs if knob in known(found()[name])]
+    # What fixes it says so.
+    takers = takers or [name for name in knobs if knob in found()[name].knobs]
     if not takers:
         everything = set().union(*(known(found()[name]) for name in knobs))
         near = nearest(knob, everything) or f"; must be one of {', '.join(sorted(everything)) or 'none'}"

@@ -16,6 +16,7 @@ import pytest
 import demheat
 from demheat import files, gallery
 from demheat.commands import answers, compare, main, options
+from demheat.commands.knobs import asked
 from demheat.declared import found
 
 ROOT = Path(__file__).parents[3]
@@ -121,7 +122,7 @@ WRONG = [
     (["solve", "SCENE", "--method", "maxwell", "--knob", "voxels=4"], "--knob voxels=4: no knob of maxwell; must be one of formula"),
     (["solve", "SCENE", "--method", "exact", "--knob", "voxels"], "--knob voxels: must be like voxels=64"),
     (["solve", "SCENE", "--method", "exact", "--knob", "fft.voxels=4"], "no method 'fft' is asked for"),
-    (["solve", "SCENE", "--method", "rayleigh", "--knob", "formula=maxwell"], "no knob of rayleigh|method 'rayleigh' is what has"),
+    (["solve", "SCENE", "--method", "rayleigh", "--knob", "formula=maxwell"], "method 'rayleigh' is what has formula = 'rayleigh'; must be left out"),
     (["recommend", "SCENE", "--accuracy", "2"], "accuracy = 2.0: must be a number from 1e-9 to below 1"),
     (["recommend", "SCENE", "--accuracy", "much"], "argument --accuracy: invalid float value: 'much'"),
     (["effective", "SCENE", "--method", "fft-em"], "method = 'fft-em': must be one of exact"),
@@ -148,6 +149,33 @@ def test_a_wrong_knob_of_a_file_has_its_line(capsys, scene):
         status, _, err = run(capsys, "solve", path)
         assert status == 2 and told in err and err.count("\n") == 1
         assert f":{lines}: " in err or "must be" in err
+
+
+def test_a_knob_goes_to_the_methods_that_have_it(capsys, scene, tmp_path):
+    knobs = ["--knob", "points_per_axis=2", "--knob", "maxwell.formula=maxwell"]
+    assert run(capsys, "compare", scene, "--methods", CHEAP, *knobs, "--out", tmp_path / "out")[0] == 0
+    stored = rows(tmp_path / "out" / "scene.csv")
+    assert [row["knobs"] for row in stored.values()] == ["points_per_axis=2", "formula=maxwell", ""]
+
+
+def test_what_values_of_knobs_mean(scene):
+    file = files.read_file(scene)
+    words = [
+        "fem.size=20 mm",
+        "fem.curved=false",
+        "fft.tolerance=1e-5",
+        "fft.threads=none",
+        "fft.voxels=32",
+        "fft.rule=plain",
+    ]
+    with pytest.raises(ValueError, match="method 'fem' is what has curved = True; must be left out"):
+        asked(file, ["fem", "fft"], words, default=())
+    with pytest.raises(ValueError, match="--knob fem.size=2 kg: unit 'kg' does not fit"):
+        asked(file, ["fem"], ["fem.size=2 kg"], default=())
+    found = asked(file, ["fem", "fft"], [words[0], *words[2:5]], default=())
+    assert [each.knobs for each in found] == [{"size": 0.02}, {"tolerance": 1e-5, "threads": None, "voxels": 32}]
+    (dem,) = asked(file, None, ["particles=500", "allow_few=True"], default=("dem",))
+    assert dem.knobs == {"particles": 500, "allow_few": True}
 
 
 def test_version_and_help(capsys):
@@ -181,13 +209,14 @@ def test_compare_puts_all_in_one_table(capsys, scene, tmp_path):
 
 def test_rows_are_stored_one_by_one_and_used_again(capsys, scene, tmp_path, monkeypatch):
     """What a kill at any moment leaves is a table of whole rows; the same command goes on behind them."""
-    asked, real = [], compare.answered
+    calls, real = [], compare.answered
     # Pictures are others' matter.
     monkeypatch.setattr(compare, "picture", lambda *_: "none")
+    monkeypatch.setattr(compare, "_keep_slice", lambda *_, **__: None)
 
     def answered(of, each, **knobs):
-        asked.append(each.method.name)
-        if len(asked) == 2:
+        calls.append(each.method.name)
+        if len(calls) == 2:
             raise KeyboardInterrupt
         return real(of, each, **knobs)
 
@@ -198,20 +227,20 @@ def test_rows_are_stored_one_by_one_and_used_again(capsys, scene, tmp_path, monk
     before = rows(tmp_path / "out" / "scene.csv")
     assert list(before) == ["exact"]
     assert run(capsys, *command)[0] == 0
-    assert asked == ["exact", "maxwell", "maxwell", "rayleigh"]
+    assert calls == ["exact", "maxwell", "maxwell", "rayleigh"]
     after = rows(tmp_path / "out" / "scene.csv")
     assert list(after) == CHEAP.split(",") and after["exact"] == before["exact"]
     # Nothing to do; then other knobs, and all by force.
     run(capsys, *command)
-    assert len(asked) == 4
+    assert len(calls) == 4
     run(capsys, *command, "--knob", "points_per_axis=3")
-    assert asked[4:] == ["exact"]
+    assert calls[4:] == ["exact"]
     run(capsys, *command, "--force")
-    assert asked[5:] == CHEAP.split(",")
+    assert calls[5:] == CHEAP.split(",")
     # Rows of other methods and knobs stay, until the scene is another.
     run(capsys, "compare", scene, "--methods", "bruggeman", "--out", tmp_path / "out")
     assert list(rows(tmp_path / "out" / "scene.csv")) == [*CHEAP.split(","), "bruggeman"]
-    assert run(capsys, *command)[0] == 0 and asked[8:] == ["bruggeman"]
+    assert run(capsys, *command)[0] == 0 and calls[8:] == ["bruggeman"]
 
 
 def test_another_scene_is_another_row(capsys, scene, tmp_path):
@@ -221,6 +250,7 @@ def test_another_scene_is_another_row(capsys, scene, tmp_path):
     files.write(gallery.sphere_in_cube(6.0), scene)
     run(capsys, *command)
     after = rows(tmp_path / "out" / "scene.csv")
+    assert (tmp_path / "out" / "scene.csv").read_text(encoding="utf-8").count("\n") == 2
     assert list(after) == ["maxwell"] and after["maxwell"]["conductivity"] != before["maxwell"]["conductivity"]
 
 
@@ -302,7 +332,7 @@ def test_a_killed_comparison_goes_on(scene, tmp_path):
     """Killed at random moments: what is stored is whole, and the end is that of a run that nobody killed."""
     words = [sys.executable, "-m", "demheat", "compare", str(scene), "--methods", CHEAP, "--out", str(tmp_path / "out")]
     path, moments, before = tmp_path / "out" / "scene.csv", random.Random(5), {}
-    for _ in range(3):
+    for _ in range(2):
         run = subprocess.Popen(words, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         try:
             run.wait(moments.uniform(0.2, 1.2))
