@@ -18,7 +18,7 @@ SAME = [
     (units.CONDUCTIVITY, 1000.0, ["kW/(m K)", "W/(mm K)", "W/mm/K"]),
     (units.LENGTH, 1e-3, ["mm", " mm "]),
     (units.LENGTH, 1e-6, ["um", "\u00b5m", "\u03bcm"]),
-    (units.DENSITY, 1000.0, ["g/cm3", "g/cm^3", "g cm-3", "g/cm\u00b3", "kg/(100 mm)"][:4]),
+    (units.DENSITY, 1000.0, ["g/cm3", "g/cm^3", "g cm-3", "g/cm\u00b3"]),
     (units.HEAT_CAPACITY, 1000.0, ["kJ/(kg K)", "J/(g K)", "J/g/K"]),
     (units.FLUX, 10.0, ["mW/cm2"]),
     (units.GRADIENT, 1000.0, ["K/mm", "degC/mm", "kK/m"]),
@@ -44,8 +44,9 @@ def test_ends_of_keys_are_units_of_their_quantity(name):
 def test_what_is_written_is_what_is_read():
     """33.3 mm are the float 0.0333: products of floats are not."""
     assert 33.3 * 1e-3 != 0.0333
-    for value in np.random.default_rng(3).random(200).round(6).tolist():
-        assert scaled(value, Fraction(1, 1000)) == float(f"{value!r}e-3") if "e" not in repr(value) else True
+    for value in np.random.default_rng(3).random(200):
+        text = f"{100 * value:.3f}"
+        assert scaled(float(text), Fraction(1, 1000)) == float(f"{text}e-3")
 
 
 def test_temperatures_keep_their_scale():
