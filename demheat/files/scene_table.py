@@ -83,8 +83,11 @@ def scene_of(source: Source, table: Table) -> Scene:
     table.only(KEYS)
     materials = _materials(table)
     size = table.vector("size", LENGTH, ...)
+    if len(size) != 3 or not min(size) > 0:
+        key = table.keys["size"]
+        raise table.error(key, f" = {shown(table.values[key])}: all three lengths must be > 0 m")
     matrix = _material(table, "matrix", materials)
-    placed = _inclusions(table, materials)
+    placed = _inclusions(table, materials, size)
     walls, gradient = _walls(table), table.vector("gradient", GRADIENT)
     initial = table.number("initial", TEMPERATURE)
     sources = [_parts(each, "kind", SOURCES, {}) for each in table.tables("sources")]
@@ -136,13 +139,13 @@ def _material(table, key, known, default=...):
     return known[value]
 
 
-def _inclusions(table, materials):
+def _inclusions(table, materials, size):
     placed = []
     for each in table.tables("inclusions"):
         place = each.error(None, "").args[0]
         if "file" in each.values:
             default = _material(each, "material", materials, None)
-            spheres = spheres_of(each, materials, default)
+            spheres = spheres_of(each, materials, default, size)
             placed += [Placed(sphere, f"{place}, {where}") for sphere, where in spheres]
         else:
             placed.append(Placed(_parts(each, "shape", SHAPES, materials), place))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Iterator
 from fractions import Fraction
 
 from demheat.files.source import checked_path, nearest, shown, text_of
@@ -18,10 +17,15 @@ KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step"), PLAI
 UNITS = tuple(LENGTH.suffixes)
 # Bytes of memory that a byte of a table takes as rows of text and spheres; what is always read.
 OBJECTS, ALWAYS = 30, 2**24
+# Sides of a packing's box and the scene's differ by no more than this part: rounding of text in files.
+SAME = 1e-6
 
 
-def spheres_of(table, materials, default) -> Iterator[tuple[Sphere, str]]:
+def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
     """Spheres of an entry `file = ...`, each with the place where it stands.
+
+    Coordinates of a packing count from the corner of its own box, which must be that of the scene unless an `offset`
+    says where it lies; those of a file without a box count from the corner of the scene.
 
     Parameters
     ----------
@@ -30,6 +34,8 @@ def spheres_of(table, materials, default) -> Iterator[tuple[Sphere, str]]:
     materials : mapping of str to Material
     default : Material or None
         Of spheres without a name of their own.
+    size : tuple of float, m
+        Of the scene.
     """
     table.only(KEYS)
     path = checked_path(table.source.path.parent / table.text("file", ...))
@@ -47,7 +53,7 @@ def spheres_of(table, materials, default) -> Iterator[tuple[Sphere, str]]:
             raise table.error("step", f" = {step}: a table has one set of spheres; must be left out")
         rows = _rows(path, factor)
     else:
-        rows = _packed(table, path, factor, step)
+        rows = _packed(table, path, factor, step, size)
     return _made(table, rows, materials, default, offset, shrunk)
 
 
@@ -68,16 +74,30 @@ def _made(table, rows, materials, default, offset, shrunk):
     return found
 
 
-def _packed(table, path, factor, step):
+def _packed(table, path, factor, step, size):
     """Rows of a packing; its reader says what is wrong with it."""
     from demheat.packing.io import read
 
+    told = f" = {shown(table.values['file'])}"
     try:
         packing = read(path, step=step)
+        if "box" in packing.provenance:
+            # It has none: not that around its spheres, but that of the scene.
+            sides = tuple(scaled(side, 1 / factor) for side in size)
+            periodic = any(key.startswith("gradient") for key in table.source.values)
+            packing = read(path, step=step, size=sides, periodic=periodic)
     except OSError as error:
-        raise table.error("file", f" = {shown(table.values['file'])}: cannot be read: {error.strerror}") from None
+        raise table.error("file", f"{told}: cannot be read: {error.strerror}") from None
     except ValueError as error:
-        raise table.error("file", f" = {shown(table.values['file'])}: {error}") from None
+        raise table.error("file", f"{told}: {error}") from None
+    own = [scaled(side, factor) for side in packing.size.tolist()]
+    if table.keys["offset"] is None and any(abs(a - b) > SAME * b for a, b in zip(own, size, strict=True)):
+        box, wanted = (" x ".join(f"{side:.6g}" for side in sides) for sides in (own, size))
+        raise table.error("file", f"{told}: has a box of {box} m; must be {wanted} m, as size is, or have an offset")
+    return _placed(path, packing, factor)
+
+
+def _placed(path, packing, factor):
     for k, (center, radius) in enumerate(zip(packing.centers.tolist(), packing.radii.tolist(), strict=True)):
         yield f"{path}, sphere {k + 1}", [scaled(value, factor) for value in (*center, radius)], None
 

@@ -62,6 +62,7 @@ BROKEN = [
     ("center_mm = [5, 5, 5]", "center_mm = [\n5,\n false,\n5]", 11, r"center_mm\[1\] = false: must be a number"),
     ("center_mm = [5, 5, 5]", "center_mm = [50, 5, 5]", 7, r"inclusions\[0\]: .*lies outside the box"),
     ("size_mm = [10, 10, 10]", "size_mm = [10, 10, 0]", 1, r"size_mm = \[10, 10, 0\]: all three lengths must be > 0 m"),
+    ("size_mm = [10, 10, 10]", "size_mm = [10, 10]", 1, r"size_mm = \[10, 10\]: all three lengths must be > 0 m"),
     ("size_mm = [10, 10, 10]", 'size = "10 mm"', 1, r"size = '10 mm': must be an array"),
     ("size_mm = [10, 10, 10]", "", 1, r"size is missing"),
     ('"0.2 W/(m K)"', '"0.2 W/mK"', 4, r"materials.resin.conductivity.*'W/mK' does not fit; must be one like W/\(m K\)"),

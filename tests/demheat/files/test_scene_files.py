@@ -199,6 +199,28 @@ def test_a_foreign_extended_xyz(tmp_path):
     assert sorted(spheres_of(scene)) == [(0.25, 0.5, 0.5, 0.2, 2.0), (0.75, 0.5, 0.5, 0.1, 2.0)]
 
 
+def test_the_box_of_a_packing_is_that_of_the_scene(tmp_path):
+    """Else a unit was forgotten, or an offset must say where it lies."""
+    (tmp_path / "d.liggghts").write_text(DUMP)
+    words = r"scene.toml:10: .*has a box of 1000 x 1000 x 1000 m; must be 1 x 1 x 1 m, as size is, or have an offset"
+    with pytest.raises(ValueError, match=words):
+        files.read(written(tmp_path, ENTRY.format("d.liggghts", "")))
+    entry = ENTRY.replace("size = [1, 1, 1]", "size = [2, 2, 2]")
+    scene = files.read(written(tmp_path, entry.format("d.liggghts", 'unit = "mm"\noffset = [1, 0, 0.5]')))
+    assert spheres_of(scene) == [(1.25, 0.5, 1.0, 0.2, 2.0), (1.75, 0.5, 1.0, 0.1, 2.0)]
+
+
+def test_a_packing_without_a_box_counts_from_the_corner_of_the_scene(tmp_path):
+    """Not from that of the box around its spheres, nor are those that cross a face of a periodic cell refused."""
+    (tmp_path / "d.yade").write_text("0.25 0.5 0.5 0.1\n0.95 0.5 0.5 0.1\n")
+    scene = files.read(written(tmp_path, ENTRY.format("d.yade", "")))
+    assert spheres_of(scene) == [(0.25, 0.5, 0.5, 0.1, 2.0), (0.95, 0.5, 0.5, 0.1, 2.0)]
+    walled = ENTRY.replace("gradient = [1, 0, 0]", 'walls = {{x- = 0, "x+" = 1}}')
+    (tmp_path / "d.yade").write_text("250 500 500 100\n1950 500 500 100\n")
+    with pytest.raises(ValueError, match=r"scene.toml:10: .*d.yade, line 2: found x y z = .*between the walls"):
+        files.read(written(tmp_path, walled.format("d.yade", 'unit = "mm"')))
+
+
 def test_methods_and_accuracy_of_a_file(tmp_path):
     more = (
         "accuracy = 1e-4\n" + ENTRY.format("t.csv", "") + "[solve.fem-p1]\nsize_mm = 50\n[solve.dem]\nparticles = 500\n"
