@@ -154,7 +154,7 @@ def _figure(number):
     """A figure and its panels in a row."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(4.2 * number + 1.0, 4.0), layout="constrained")
+    figure = Figure(figsize=(4.0 * number + 1.4, 4.4), layout="constrained")
     return figure, np.atleast_1d(figure.subplots(1, number))
 
 
