@@ -14,6 +14,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ import numpy as np
 from demheat.scene import Scene
 from demheat.scene.bodies import inside
 from demheat.scene.frozen import ReadOnly, read_only
+from demheat.scene.html import table_of
 from demheat.scene.inputs import axis_number, finite, reals
 
 if TYPE_CHECKING:
@@ -55,7 +57,7 @@ class Samples(NamedTuple):
     flux: np.ndarray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Field:
     """A solution of one scene by one method.
 
@@ -85,6 +87,8 @@ class Field:
         See `heat_through`.
     estimator : callable (Field) -> Estimate, optional
         See `error`.
+    elements : callable () -> ((n, 3) float array, m, (m, 4 or 10) int array), optional
+        Nodes and tetrahedra of finite elements, in VTK's order, for `write`.
     """
 
     scene: Scene
@@ -99,6 +103,7 @@ class Field:
     time: float | None = None
     through: Callable[[int, float], float] | None = None
     estimator: Callable[[Field], Estimate] | None = None
+    elements: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.
@@ -196,6 +201,92 @@ class Field:
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
+
+    def write(self, path, *, cells: int = 64) -> None:
+        """Write into a file for ParaView (.vtp, .vti, .vtu) or NumPy (.npz), see `demheat.files.fields`.
+
+        Parameters
+        ----------
+        path : path
+        cells : int
+            Of a .vti, along the longest side, where the field has no voxels of its own.
+        """
+        # By name, here and below: what is solved knows nothing of those who store and draw it.
+        import_module("demheat.files.fields").write(self, path, cells=cells)
+
+    def plot(self, *, axis: int | None = None, at: float | None = None, pixels: int = 241):
+        """Temperature and size of the flux over a plane, as a matplotlib Figure.
+
+        Parameters
+        ----------
+        axis : {0, 1, 2}, optional
+            The plane lies across it; by default one along the load.
+        at : float, m, optional
+            Where; by default in the middle.
+        pixels : int
+            Along the longer side.
+        """
+        return import_module("demheat.pictures").of_field(self, axis=axis, at=at, pixels=pixels)
+
+    def __repr__(self):
+        return f"Field({', '.join(f'{name}: {value}' for name, value in self._told().items())})"
+
+    def _repr_html_(self):
+        """A short table for notebooks."""
+        return table_of(self._told())
+
+    def _told(self):
+        """What is most asked of a field, in words."""
+        told = {}
+        try:
+            told["conductivity"] = f"{self.conductivity:.6g} W/(m K)"
+        except (ValueError, KeyError):
+            told["mean flux"] = f"({', '.join(f'{each:.4g}' for each in self.mean_flux)}) W/m2"
+        # Not made for this: it may cost as much as the solution.
+        if "error" in self.__dict__:
+            told["expected"] = f"{self.error.lower:.6g} to {self.error.upper:.6g} W/(m K)"
+        if self.time is not None:
+            told["time"] = f"{self.time:.6g} s"
+        return told | {name: f"{self.stats[name]}" for name in ("unknowns",) if name in self.stats}
+
+    def __reduce__(self):
+        """What can be stored: all numbers, and the samples; solutions between them are made of the method's own parts.
+
+        A stored field has no temperature or flux at other points, and no error that was not asked for before.
+        """
+        names = ("scene", "mean_flux", "fractions", "wall_temperature", "wall_heat", "stats", "time")
+        return _restored, ({name: getattr(self, name) for name in names}, self.samples, self.__dict__.get("error"))
+
+    def __copy__(self):
+        """Itself, as it cannot be changed."""
+        return self
+
+    def __deepcopy__(self, memo):
+        """Itself, as it cannot be changed."""
+        return self
+
+
+class _Stored:
+    """What stands for a function of a field that was stored."""
+
+    def __init__(self, name):
+        self.name = name
+
+    def __call__(self, *_):
+        raise NotImplementedError(
+            f"Field.{self.name}: a stored field has its samples and conductivity, and nothing between; solve again"
+        )
+
+
+def _restored(numbers, samples, error):
+    """The field that was stored."""
+    functions = {name: _Stored(name) for name in ("temperature_at", "flux_at")}
+    field = Field(
+        **numbers, **functions, sampler=lambda: samples, through=_Stored("heat_through"), estimator=_Stored("error")
+    )
+    if error is not None:
+        field.__dict__["error"] = error
+    return field
 
 
 def check_field(field, name="field") -> None:

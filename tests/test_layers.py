@@ -23,7 +23,9 @@ LAYERS = {
     ),
     "demheat.scene.needs": ("demheat.scene.parts",),
     "demheat.scene.functions": ("demheat.scene.inputs", "demheat.scene.parts"),
+    "demheat.scene.html": (),
     "demheat.scene.scene": (
+        "demheat.scene.html",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.material",
@@ -53,10 +55,13 @@ LAYERS = {
     "demheat.blocks": (),
     "demheat.progress": (),
     "demheat.limits": (),
+    "demheat.vtk": (),
     "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.limits"),
+    # Nouns know nothing of those who draw them: `plot` loads this by its name.
+    "demheat.pictures": ("demheat.scene", "demheat.field", "demheat.slices"),
     "demheat.packing": (
         "demheat.addition",
         "demheat.scene",
@@ -65,6 +70,7 @@ LAYERS = {
         "demheat.progress",
         "demheat.compiled",
         "demheat.limits",
+        "demheat.vtk",
         "demheat.packing",
     ),
     "demheat.gallery": ("demheat.addition", "demheat.scene", "demheat.limits", "demheat.packing.dispersion"),
@@ -154,6 +160,33 @@ LAYERS = {
         "demheat.method",
         "demheat.cheapest",
     ),
+    # Finds methods where they are declared: by name alone, as the cheapest does.
+    "demheat.declared": ("demheat.method",),
+    "demheat.files": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.vtk",
+        "demheat.laws",
+        "demheat.limits",
+        "demheat.method",
+        "demheat.packing.io",
+        "demheat.declared",
+        "demheat.files",
+    ),
+    # The commands of the terminal, on top of all.
+    "demheat.commands": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.method",
+        "demheat.slices",
+        "demheat.pictures",
+        "demheat.cheapest",
+        "demheat.declared",
+        "demheat.files",
+        "demheat.commands",
+    ),
+    "demheat.__main__": ("demheat.commands",),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),
     # The front of the package and nothing else.

@@ -1,5 +1,6 @@
 """What any method owes, asked of all of them on the same scenes; what one does not claim has its reason beside it."""
 
+import pickle
 from functools import cache
 
 import numpy as np
@@ -89,6 +90,24 @@ def test_stats(name):
     assert stats["unknowns"] > 500 and stats["iterations"] >= 1
     # A residual of 0 was not measured.
     assert 0 < stats["residual"] < IDENTITY
+
+
+@fields
+def test_a_field_is_stored(name, tmp_path):
+    """Pickled, and written: with its samples and all its numbers."""
+    field = solved(name, mixed, walls=pair("y"))
+    again = pickle.loads(pickle.dumps(field))
+    assert again.conductivity == field.conductivity and again.scene == field.scene
+    assert again.stats.keys() == field.stats.keys() and again.wall_heat == field.wall_heat
+    for one, other in zip(again.samples, field.samples, strict=True):
+        assert np.array_equal(one, other)
+    with pytest.raises(NotImplementedError, match="Field.flux_at: a stored field has its samples .*; solve again"):
+        again.flux_at(field.samples.points[:1])
+    field.write(tmp_path / "field.npz")
+    with np.load(tmp_path / "field.npz") as stored:
+        assert float(stored["conductivity"]) == field.conductivity
+        assert np.array_equal(stored["flux"], field.samples.flux)
+    assert f"{field.conductivity:.6g} W/(m K)" in repr(field)
 
 
 @fields

@@ -5,9 +5,11 @@ A scene knows nothing of meshes, voxels or particles; every method reads the sam
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from importlib import import_module
 
 import numpy as np
 
@@ -22,6 +24,7 @@ from demheat.scene.checks import (
     checked_sources,
 )
 from demheat.scene.functions import load_at
+from demheat.scene.html import table_of
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
@@ -189,6 +192,35 @@ class Scene:
             walls[name] = Flux(value) if isinstance(load, Flux) else value
         return replace(self, walls=walls)
 
+    def plot(self, *, pixels: int = 241):
+        """Three slices through the middle, coloured by conductivity, as a matplotlib Figure.
+
+        Parameters
+        ----------
+        pixels : int
+            Along the longer side.
+        """
+        # By name: what is described knows nothing of those who draw it.
+        return import_module("demheat.pictures").of_scene(self, pixels=pixels)
+
+    def _repr_html_(self) -> str:
+        """A short table for notebooks."""
+        return table_of(self._told())
+
+    def _told(self):
+        """What is most asked of a scene, in words."""
+        kinds = Counter(shape.kind for shape in self.inclusions)
+        k = sorted(set(self.conductivities.tolist()))
+        load = (
+            {"gradient": f"{self.gradient} K/m, a periodic cell"} if self.periodic else {"walls": _listed(self.walls)}
+        )
+        return {
+            "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
+            "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
+            "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)",
+            **load,
+        }
+
     def require(
         self,
         knows: str = "",
@@ -248,3 +280,7 @@ def check_scene(scene, name="scene") -> None:
 
 def _plain(load):
     return load if callable(load) else float(load)
+
+
+def _listed(walls):
+    return ", ".join(f"{name}: {load}" for name, load in walls.items()) or "insulated"

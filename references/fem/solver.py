@@ -166,6 +166,7 @@ def _field(scene, mesh, solved, tolerance, estimator):
         wall_heat=solved.wall_heat,
         stats=stats,
         estimator=estimator,
+        elements=lambda: (mesh.points, mesh.cells),
     )
 
 

@@ -100,18 +100,3 @@ def test_what_is_no_property_is_refused(more, words):
     known = {"name": "toy", "title": "toy", "resolution": VOXELS, "coarse": 3, "errors": Errors(1.0)}
     with pytest.raises(ValueError, match=words):
         Method(**{**known, **more})
-
-
-def test_two_methods_of_one_name_are_refused(tmp_path, monkeypatch):
-    home = tmp_path / f"home_{tmp_path.name}"
-    home.mkdir()
-    source = "from demheat.method import Method\nMETHODS = (Method(name='one', title='one'),)\n"
-    for name, text in (("__init__", ""), ("first", source), ("second", source), ("other", "raise RuntimeError")):
-        (home / f"{name}.py").write_text(text)
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(methods, "HOMES", (home.name,))
-    with pytest.raises(ValueError, match="methods \\['one', 'one'\\]: declared more than once"):
-        methods.found.__wrapped__()
-    (home / "second.py").unlink()
-    # Modules that declare nothing are not loaded.
-    assert [method.module for method in methods.found.__wrapped__().values()] == ["first"]

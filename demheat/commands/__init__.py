@@ -1,0 +1,58 @@
+"""The commands `demheat solve | compare | effective | recommend | view scene.toml`.
+
+Exit status: 0; 1 if a method that was asked for refused or failed; 2 for bad input, which one line on standard error
+names; 130 if interrupted.
+"""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+from demheat.commands.options import parser
+from demheat.files import read_file
+
+DONE, WITHOUT, BAD, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(words=None) -> int:
+    """Do what a command line says.
+
+    Parameters
+    ----------
+    words : sequence of str, optional
+        Default: those of the process.
+
+    Returns
+    -------
+    int
+        Exit status.
+    """
+    for stream in (sys.stdout, sys.stderr):
+        # A name may hold a letter that a terminal of another alphabet has not: that must not cost the run.
+        getattr(stream, "reconfigure", lambda **knobs: None)(errors="backslashreplace")
+    try:
+        options = parser(version()).parse_args(words)
+        command = import_module(f"demheat.commands.{options.command}")
+        return command.run(read_file(options.scene), options)
+    except (ValueError, OSError) as error:
+        return _said(error, BAD)
+    except (NotImplementedError, RuntimeError, MemoryError, ImportError) as error:
+        return _said(error, WITHOUT)
+    except KeyboardInterrupt:
+        print(
+            "\ndemheat: interrupted; rows of `compare` that are done are kept, the same command goes on",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+
+
+def version() -> str:
+    """Version of the package."""
+    return import_module("demheat").__version__
+
+
+def _said(error, status):
+    told = " ".join(str(error).split()) or type(error).__name__
+    print(f"demheat: {told}", file=sys.stderr)
+    return status

@@ -1,0 +1,40 @@
+"""Bounds of a scene's conductivity by its volume fractions alone."""
+
+from __future__ import annotations
+
+import math
+from importlib import import_module
+from typing import NamedTuple
+
+from demheat.scene import Sphere
+
+
+class Bound(NamedTuple):
+    """Between which values the conductivity of a body lies, W/(m K), and for which bodies that holds."""
+
+    name: str
+    lower: float
+    upper: float
+    holds: str
+
+
+def bounds_of(scene) -> list[Bound]:
+    """Bounds of a scene; empty where its volume fractions are not known in closed form.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    formulas = import_module("references.bounds")
+    try:
+        fractions = import_module("references.exact.solver").fractions(scene)
+    except NotImplementedError:
+        return []
+    k = scene.conductivities
+    low, high = formulas.reuss(k, fractions), formulas.voigt(k, fractions)
+    found = [Bound("Reuss, Voigt", float(low), float(high), "all bodies")]
+    kinds = sorted(set(k.tolist()))
+    if len(kinds) == 2 and scene.only(Sphere):
+        low, high = formulas.hashin_shtrikman(*kinds, min(math.fsum(fractions[k == kinds[1]]), 1.0))
+        found.append(Bound("Hashin-Shtrikman", float(low), float(high), "isotropic bodies of two phases"))
+    return found

@@ -1,0 +1,163 @@
+"""`demheat compare`: all methods that take a scene in one table, with intervals, costs and bounds, and in a picture.
+
+Each row is stored as soon as its method is done; the same command goes on where it was stopped.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from demheat.commands import rows
+from demheat.commands.answers import answered
+from demheat.commands.bounds import bounds_of
+from demheat.commands.knobs import Asked, asked
+from demheat.commands.words import aligned, names, scene_line, spread
+from demheat.declared import found
+from demheat.files.whole import replaced
+from demheat.files.write import text_of_scene
+from demheat.slices import on_plane
+
+OUT = "demheat-out"
+# Pixels along the longer side of the slice in the picture.
+PIXELS = 121
+
+
+def run(file, options) -> int:
+    """Compare, print and store; the exit status.
+
+    Parameters
+    ----------
+    file : SceneFile
+    options : Namespace
+        Of `demheat.commands.options`.
+    """
+    chosen = names(options.methods) or (usual(everything=True) if options.all else None)
+    wanted = asked(file, chosen, options.knob, default=usual())
+    folder = Path(options.out or OUT)
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / f"{file.path.stem}.csv"
+    print(f"{file.path}: {scene_line(file.scene)}", flush=True)
+    made = list(compared(file.scene, wanted, path, interval=not options.no_interval, force=options.force))
+    bounds = bounds_of(file.scene)
+    print("\n" + table(made, bounds))
+    drawn = picture(file.scene, made, bounds, path)
+    print(f"\nrows {path}, picture {drawn}")
+    return 1 if any(row["status"] in ("failed", "invalid") for row in made) else 0
+
+
+def usual(*, everything: bool = False) -> list[str]:
+    """Names of the methods that are compared where none is named: the main ones, formulas and witnesses.
+
+    Parameters
+    ----------
+    everything : bool
+        Those that are seldom compared, too.
+    """
+    steady = [method for method in found().values() if method.call != "evolve"]
+    return [m.name for m in steady if everything or m.role != "beside" or m.call == "estimate"]
+
+
+def compared(scene, wanted: list[Asked], path: Path, *, interval: bool, force: bool) -> Iterator[dict[str, str]]:
+    """Rows of methods on a scene, those that are stored and hold as they are; each new one is stored at once.
+
+    Parameters
+    ----------
+    scene : Scene
+    wanted : list of Asked
+    path : Path
+        Of the rows; those of another scene, or by other code, are dropped.
+    interval, force : bool
+    """
+    text = text_of_scene(scene)
+    known = rows.read(path)
+    for each in wanted:
+        key = rows.key_of(each, text, interval=interval)
+        if force or key not in known:
+            known[key] = _made(scene, each, key, path, interval=interval)
+            rows.add(path, key, known[key])
+        yield known[key]
+
+
+def _made(scene, each, key, path, *, interval):
+    """A new row; the field is let go before the next is made."""
+    print(f"{each.title} ...", file=sys.stderr, flush=True)
+    answer = answered(scene, each, interval=interval)
+    if answer.field is not None:
+        _keep_slice(answer.field, path, text_of_scene(scene), again=each.method.role == "witness")
+    return rows.row_of(each, answer, key)
+
+
+def table(made, bounds) -> str:
+    """Rows and bounds as text.
+
+    Parameters
+    ----------
+    made : list of dict
+    bounds : list of Bound
+    """
+    lines = [("method", "W/(m K)", "expected from", "to", "wall s", "CPU s", "interval", "unknowns")]
+    for row in made:
+        if row["status"] == "ok":
+            numbers = spread(*(_float(row[name]) for name in ("conductivity", "lower", "upper")))
+            costs = [_short(row[name]) for name in ("wall_s", "cpu_s", "interval_cpu_s")]
+            lines.append((row["method"], *numbers, *costs, row["unknowns"]))
+    for bound in bounds:
+        low, high = f"{bound.lower:.6g}", f"{bound.upper:.6g}"
+        lines.append((bound.name, "", low, high, "", "", "", f"bounds of {bound.holds}"))
+    told = [f"{row['method']} {row['status']}: {row['note']}" for row in made if row["status"] != "ok"]
+    told += [f"{row['method']}: {row['note']}" for row in made if row["status"] == "ok" and row["note"]]
+    return "\n".join([aligned(lines), "", *told, "Costs include loading and compiling; `interval` in CPU-s."])
+
+
+def picture(scene, made, bounds, path: Path) -> Path:
+    """Draw the rows and a slice beside them; where it is.
+
+    Parameters
+    ----------
+    scene : Scene
+    made : list of dict
+    bounds : list of Bound
+    path : Path
+        Of the rows.
+    """
+    from demheat import pictures
+
+    good = [row for row in made if row["status"] == "ok" and row["conductivity"]]
+    entries = [(row["method"], *(_float(row[name]) for name in ("conductivity", "lower", "upper"))) for row in good]
+    figure = pictures.of_comparison(scene, entries, bounds, _slice(path, text_of_scene(scene)))
+    drawn = path.with_suffix(".png")
+    with replaced(drawn) as part:
+        figure.savefig(part, dpi=120)
+    return drawn
+
+
+def _keep_slice(field, path, text, *, again):
+    """Temperatures over the middle plane, for the picture; a witness goes before others."""
+    from demheat.pictures import across_of
+
+    if again or _slice(path, text) is None:
+        axis = across_of(field.scene)
+        temperature = on_plane(field, axis=axis, at=field.scene.size[axis] / 2, n=PIXELS).temperature
+        with replaced(path.with_suffix(".slice.npz")) as part:
+            np.savez(part, temperature=temperature, scene=text)
+
+
+def _slice(path, text):
+    """What is kept of this very scene, or None."""
+    try:
+        with np.load(path.with_suffix(".slice.npz")) as kept:
+            return kept["temperature"] if str(kept["scene"]) == text else None
+    except (OSError, ValueError, KeyError):
+        return None
+
+
+def _float(text):
+    return float(text or "nan")
+
+
+def _short(text):
+    return f"{float(text):.2g}" if text else ""

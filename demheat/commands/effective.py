@@ -1,0 +1,41 @@
+"""`demheat effective`: the conductivity tensor of a body, by the method that gets to an accuracy at least cost."""
+
+from __future__ import annotations
+
+from demheat.cheapest import effective
+from demheat.commands.words import decimals, names, scene_line
+
+
+def run(file, options) -> int:
+    """Solve and print; the exit status.
+
+    Parameters
+    ----------
+    file : SceneFile
+    options : Namespace
+        Of `demheat.commands.options`.
+    """
+    accuracy = wanted_accuracy(file, options)
+    found = effective(file.scene, accuracy=accuracy, method=names(options.methods))
+    print(f"{file.path}: {scene_line(file.scene)}\n")
+    widths = found.upper - found.lower
+    for row, width in zip(found.tensor, widths, strict=True):
+        digits = decimals(float(widths.max()))
+        print("  ".join(f"{k:.{digits}f} +- {w / 2:.1g}" for k, w in zip(row, width, strict=True)), " W/(m K)")
+    knobs = " ".join(f"{name}={value:.4g}" for name, value in found.knobs.items())
+    print(f"\nby {found.method} {knobs}, accuracy {found.accuracy:.2g} ({found.how})")
+    print(f"cost {found.cost['wall_s']:.2g} s, {found.cost['cpu_s']:.2g} CPU-s")
+    for line in (*found.saved, *found.passed):
+        print(line)
+    return 0
+
+
+def wanted_accuracy(file, options) -> float:
+    """Accuracy of the command line, else of the file, else a thousandth.
+
+    Parameters
+    ----------
+    file : SceneFile
+    options : Namespace
+    """
+    return next(each for each in (options.accuracy, file.accuracy, 1e-3) if each is not None)

@@ -1,0 +1,62 @@
+"""`demheat solve`: one method or some on a scene, each with its conductivity, interval and cost."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from demheat.commands.answers import answered
+from demheat.commands.knobs import asked
+from demheat.commands.words import costs, interval, names, scene_line
+from demheat.files.whole import replaced
+
+
+def run(file, options) -> int:
+    """Solve and print; the exit status.
+
+    Parameters
+    ----------
+    file : SceneFile
+    options : Namespace
+        Of `demheat.commands.options`.
+    """
+    wanted = asked(file, names(options.methods), options.knob, default=("dem",))
+    if options.write and len(wanted) > 1:
+        raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
+    folder = Path(options.out) if options.out else None
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
+    print(f"{file.path}: {scene_line(file.scene)}")
+    worst = 0
+    for each in wanted:
+        found = answered(file.scene, each, interval=not options.no_interval)
+        worst = max(worst, _shown(each, found))
+        if folder and found.field is not None:
+            _stored(folder, each.method.name, found.field)
+        if options.write and found.field is not None:
+            found.field.write(options.write)
+            print(f"  written       {options.write}", flush=True)
+    return worst
+
+
+def _shown(each, found):
+    """Print an answer; the exit status that it asks for."""
+    for note in found.notes:
+        print(f"demheat: {each.method.name}: {note}", file=sys.stderr)
+    if found.status != "ok":
+        return 2 if found.status == "invalid" else 1
+    print(f"\n{each.title}")
+    print(f"  conductivity  {interval(found)}")
+    for name, heat in (found.field.wall_heat if found.field else {}).items():
+        print(f"  heat at {name}    {heat:.6g} W into the body")
+    print(f"  cost          {costs(found)}", flush=True)
+    return 0
+
+
+def _stored(folder, name, field):
+    path = folder / f"{name}.npz"
+    field.write(path)
+    print(f"  written       {path}")
+    with replaced(path.with_suffix(".png")) as part:
+        field.plot().savefig(part, dpi=120)
+    print(f"  picture       {path.with_suffix('.png')}", flush=True)

@@ -1,0 +1,76 @@
+"""Scenes and answers in words, for terminals and pictures."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+LENGTHS = ((1.0, "m"), (1e-3, "mm"), (1e-6, "um"), (1e-9, "nm"))
+
+
+def names(words) -> list[str] | None:
+    """Names of methods from options, which may hold several with commas; None if there is none."""
+    return [name.strip() for word in words for name in word.split(",")] if words else None
+
+
+def scene_line(scene) -> str:
+    """A scene in one line."""
+    factor, unit = next((each for each in LENGTHS if max(scene.size) >= each[0]), LENGTHS[-1])
+    sides = " x ".join(f"{side / factor:.6g}" for side in scene.size)
+    kinds = Counter(shape.kind for shape in scene.inclusions)
+    inside = ", ".join(f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in kinds.items()) or "no inclusions"
+    spread = sorted(set(scene.conductivities.tolist()))
+    k = f"{spread[0]:.4g}" + (f" to {spread[-1]:.4g}" if len(spread) > 1 else "")
+    load = "periodic cell" if scene.periodic else "walls " + (", ".join(scene.walls) or "insulated")
+    return f"{scene.domain} of {sides} {unit}, {inside}, {k} W/(m K), {load}"
+
+
+def interval(found) -> str:
+    """Conductivity of an answer with its interval, with as many digits as that tells."""
+    if math.isnan(found.conductivity):
+        return "none, as the load is not one pair of walls with two temperatures"
+    if not found.upper >= found.lower:
+        return f"{found.conductivity:.6g} W/(m K)"
+    k, low, high = spread(found.conductivity, found.lower, found.upper)
+    return f"{k} W/(m K), expected from {low} to {high} ({found.how})"
+
+
+def decimals(width: float) -> int:
+    """Decimals that show two digits of a width."""
+    return 6 if width <= 0 else min(max(1 - math.floor(math.log10(width)), 0), 12)
+
+
+def costs(found) -> str:
+    """What an answer cost."""
+    cost = found.cost
+    words = [f"{cost['wall_s']:.2g} s", f"{cost['cpu_s']:.2g} CPU-s"]
+    if cost.get("interval_cpu_s") is not None:
+        words.append(f"{cost['interval_cpu_s']:.2g} CPU-s for the interval")
+    if cost.get("unknowns"):
+        words.append(f"{cost['unknowns']} unknowns")
+    return ", ".join(words)
+
+
+def spread(conductivity: float, lower: float, upper: float) -> tuple[str, str, str]:
+    """A conductivity and the ends of its interval with as many digits as that tells; empty where there is none.
+
+    Parameters
+    ----------
+    conductivity, lower, upper : float
+    """
+    if math.isnan(conductivity):
+        return "", "", ""
+    if not upper >= lower:
+        return f"{conductivity:.6g}", "", ""
+    digits = decimals(upper - lower)
+    return tuple(f"{value:.{digits}f}" for value in (conductivity, lower, upper))
+
+
+def aligned(lines) -> str:
+    """Rows of words as columns: the first to the left, numbers to the right."""
+    widths = [max(map(len, column)) for column in zip(*(line[:-1] for line in lines), strict=True)]
+    rows = []
+    for first, *middle, last in lines:
+        cells = [first.ljust(widths[0]), *(word.rjust(width) for word, width in zip(middle, widths[1:], strict=True))]
+        rows.append("  ".join([*cells, last]).rstrip())
+    return "\n".join(rows)

@@ -1,0 +1,208 @@
+"""A scene from the tables of a file: keys are the arguments of `Scene`, `Material`, `Sphere`, ... and their units.
+
+A new shape or source adds a line to its table here.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from demheat.files.source import Source, nearest, shown
+from demheat.files.spheres import spheres_of
+from demheat.files.table import Table
+from demheat.files.units import (
+    CONDUCTIVITY,
+    DENSITY,
+    FLUX,
+    GRADIENT,
+    HEAT_CAPACITY,
+    LENGTH,
+    PLAIN,
+    POWER_DENSITY,
+    TEMPERATURE,
+    VELOCITY,
+)
+from demheat.scene import ROUND_AXES, WALLS, Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
+
+AXES = ("x", "y", "z")
+MATERIAL = {"conductivity": CONDUCTIVITY, "density": DENSITY, "heat_capacity": HEAT_CAPACITY}
+# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags.
+SHAPES = {
+    "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1)}),
+    "layer": (Layer, {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1)}),
+}
+SOURCES = {
+    "uniform": (UniformSource, {"power_density": (POWER_DENSITY, 1)}),
+    "moving-cylinder": (
+        MovingCylinder,
+        {
+            "axis": "axis",
+            "diameter": (LENGTH, 1),
+            "power_density": (POWER_DENSITY, 1),
+            "start": (LENGTH, 2),
+            "velocity": (VELOCITY, 2),
+            "clip": "flag",
+        },
+    ),
+}
+# Keys of a file.
+KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fromkeys(
+    ("matrix", "materials", "inclusions", "walls", "sources", "domain", "solve", "accuracy"), PLAIN
+)
+# What may be left out.
+OPTIONAL = ("velocity", "clip")
+NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
+
+
+class Placed(NamedTuple):
+    """An inclusion and where it stands, for messages: "scene.toml:12: inclusions[0]"."""
+
+    shape: object
+    place: str
+
+
+def scene_of(source: Source, table: Table) -> Scene:
+    """The scene of a file.
+
+    Parameters
+    ----------
+    source : Source
+    table : Table
+        The whole file.
+
+    Returns
+    -------
+    Scene
+
+    Raises
+    ------
+    ValueError
+        With file, line and key.
+    """
+    table.only(KEYS)
+    materials = _materials(table)
+    size = table.vector("size", LENGTH, ...)
+    if len(size) != 3 or not min(size) > 0:
+        key = table.keys["size"]
+        raise table.error(key, f" = {shown(table.values[key])}: all three lengths must be > 0 m")
+    matrix = _material(table, "matrix", materials)
+    placed = _inclusions(table, materials, size)
+    walls, gradient = _walls(table), table.vector("gradient", GRADIENT)
+    initial = table.number("initial", TEMPERATURE)
+    sources = [_parts(each, "kind", SOURCES, {}) for each in table.tables("sources")]
+    domain = table.text("domain", "box", among=tuple(ROUND_AXES))
+    load = {"walls": walls, "gradient": gradient, "initial": initial, "sources": sources, "domain": domain}
+    try:
+        return Scene(size, matrix, [each.shape for each in placed], **load)
+    except ValueError as error:
+        raise _placed_error(table, placed, error) from None
+
+
+def _placed_error(table, placed, error):
+    """The error of a scene as one of the file: of an inclusion, by where that stands, or of a key."""
+    found = NUMBERED.match(str(error))
+    if not found:
+        return table.blamed(error)
+    first, *others = (placed[int(number)].place for number in found.groups() if number)
+    told = str(error)[found.end() :].lstrip(": ")
+    if others:
+        told = f"{found[0].removeprefix('Scene.')} {told} (the other stands in {others[0]})"
+    return ValueError(f"{first}: {told}")
+
+
+def _materials(table):
+    """Materials by their names."""
+    known = table.table("materials", {})
+    return {name: _made_material(known.table(name)) for name in known.values}
+
+
+def _made_material(table):
+    table.only(MATERIAL)
+    needed = {"conductivity": ...}
+    numbers = {name: table.number(name, quantity, needed.get(name)) for name, quantity in MATERIAL.items()}
+    return table.made(Material, **numbers)
+
+
+def _material(table, key, known, default=...):
+    """A material by its name in the file, or a table of its own."""
+    found = table.needed(key) if default is ... else table.key(key)
+    if found is None:
+        return default
+    value = table.values[found]
+    if isinstance(value, dict):
+        return _made_material(table.table(key))
+    if not isinstance(value, str) or value not in known:
+        named = ", ".join(map(repr, known)) or "none yet"
+        near = nearest(value, known) if isinstance(value, str) else ""
+        raise table.error(key, f" = {shown(value)}: must be the name of one of [materials], {named}{near}")
+    return known[value]
+
+
+def _inclusions(table, materials, size):
+    placed = []
+    for each in table.tables("inclusions"):
+        place = each.error(None, "").args[0]
+        if "file" in each.values:
+            default = _material(each, "material", materials, None)
+            spheres = spheres_of(each, materials, default, size)
+            placed += [Placed(sphere, f"{place}, {where}") for sphere, where in spheres]
+        else:
+            placed.append(Placed(_parts(each, "shape", SHAPES, materials), place))
+    return placed
+
+
+def _parts(table, key, kinds, materials):
+    """A shape or a source of a table: its kind, then what that is made of."""
+    kind, fields = kinds[table.text(key, ..., among=tuple(kinds))]
+    names = {name: PLAIN if isinstance(what, str) else what[0] for name, what in fields.items()}
+    table.only({key: PLAIN, **names} | ({"material": PLAIN} if kinds is SHAPES else {}))
+    values = {}
+    for name, what in fields.items():
+        default = None if name in OPTIONAL else ...
+        if what == "axis":
+            values[name] = _axis(table, name)
+        elif what == "flag":
+            values[name] = table.value(name, bool, "true or false", default)
+        else:
+            quantity, length = what
+            values[name] = (table.number if length == 1 else table.vector)(name, quantity, default)
+    if kinds is SHAPES:
+        values["material"] = _material(table, "material", materials)
+    return table.made(kind, **values)
+
+
+def _axis(table, name):
+    """An axis by its letter or number."""
+    value = table.values[table.needed(name)]
+    if value in AXES:
+        return AXES.index(value)
+    if isinstance(value, bool) or value not in (0, 1, 2) or not isinstance(value, int):
+        raise table.error(name, f' = {shown(value)}: must be "x", "y" or "z"')
+    return value
+
+
+def _walls(table):
+    """Loads of walls by their names: temperatures, or tables with a flux."""
+    walls = table.table("walls")
+    if walls is None:
+        return None
+    names, found = (*WALLS, "round"), {}
+    walls.only(dict.fromkeys(names, TEMPERATURE))
+    for name in names:
+        value = walls.values.get(name)
+        if isinstance(value, dict):
+            own = walls.table(name)
+            own.only({"flux": FLUX})
+            found[name] = _flux(own, own.number("flux", FLUX, ...))
+        else:
+            found[name] = walls.number(name, TEMPERATURE)
+    return {name: load for name, load in found.items() if load is not None}
+
+
+def _flux(table, value):
+    try:
+        return Flux(value)
+    except ValueError as error:
+        key = table.keys["flux"]
+        raise table.error(key, f" = {shown(table.values[key])}: {str(error).partition(': ')[2]}") from None

@@ -1,0 +1,184 @@
+"""A TOML file as it is read: its values, the line of each key, and errors that name file, line and key."""
+
+from __future__ import annotations
+
+import difflib
+import re
+import stat
+from pathlib import Path
+from typing import NamedTuple
+
+from demheat.files.lines import lines_of
+
+try:
+    import tomllib
+except ModuleNotFoundError:  # Python 3.10
+    import tomli as tomllib
+
+# A text of so many bytes has some hundred thousand spheres, which are better off in a table of their own.
+LONGEST = 2**24
+SHOWN = 60
+# Letters at least of a word within another.
+PART = 4
+POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)")
+# As "x+ = 5".
+UNQUOTED = re.compile(r"\s*\w+\+")
+
+
+class Source(NamedTuple):
+    """A TOML file.
+
+    Attributes
+    ----------
+    path : Path
+    values : dict
+    lines : dict
+        See `demheat.files.lines.lines_of`.
+    scales : dict
+        Scales of temperatures found so far, and the first path that has each.
+    """
+
+    path: Path
+    values: dict
+    lines: dict
+    scales: dict
+
+    def line(self, path: tuple) -> int:
+        """Number of the line of a key, or of what holds it."""
+        while path and path not in self.lines:
+            path = path[:-1]
+        return self.lines.get(path, 1)
+
+    def error(self, path: tuple, what: str) -> ValueError:
+        """The error to raise about a key.
+
+        Parameters
+        ----------
+        path : tuple of str and int
+        what : str
+            What is wrong with it, and what would be valid.
+        """
+        return ValueError(f"{self.path}:{self.line(path)}: {spelled(path)}{what}")
+
+
+def read_source(path) -> Source:
+    """Read a TOML file.
+
+    Parameters
+    ----------
+    path : path
+
+    Raises
+    ------
+    ValueError
+        If there is none, or it is no TOML; with the line where that is known.
+    """
+    path = checked_path(path)
+    text = text_of(path, LONGEST)
+    try:
+        values = tomllib.loads(text)
+    except tomllib.TOMLDecodeError as error:
+        found = POSITION.fullmatch(str(error))
+        lines = text.count("\n") + (not text.endswith("\n"))
+        told, line = (found[1], found[2] or lines) if found else (str(error), 1)
+        hint = "; a key with a plus needs quotes" if UNQUOTED.match(text.splitlines()[int(line) - 1]) else ""
+        raise ValueError(f"{path}:{line}: no TOML: {told[0].lower()}{told[1:]}{hint}") from None
+    except (RecursionError, ValueError) as error:
+        # Numbers of too many digits, and brackets within brackets without end.
+        raise ValueError(f"{path}: no TOML that can be read: {shown(str(error))}") from None
+    return Source(path, values, lines_of(text), {})
+
+
+def checked_path(path) -> Path:
+    """A name as the path of a file, or a ValueError."""
+    try:
+        path = Path(path)
+    except TypeError:
+        raise ValueError(f"path = {path!r}: must be the name of a file, or its path") from None
+    if "\0" in str(path):
+        raise ValueError(f"path = {str(path)!r}: must be the name of a file; none has a zero byte")
+    return path
+
+
+def text_of(path: Path, longest: int) -> str:
+    """Text of a regular file in UTF-8, a byte order mark taken off.
+
+    Parameters
+    ----------
+    path : Path
+    longest : int
+        Bytes.
+
+    Raises
+    ------
+    ValueError
+        If it is anything else, or longer.
+    """
+    try:
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            raise ValueError(f"{path}: must be a regular file, no folder, device or pipe")
+        if status.st_size > longest:
+            raise ValueError(
+                f"{path}: has {status.st_size} bytes, at most {longest} are read; must be shorter, with spheres in a "
+                "file of their own (file = ...)"
+            )
+        data = path.read_bytes()
+    except OSError as error:
+        told = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
+        raise ValueError(f"{path}: cannot be read: {told}{_near_file(path)}") from None
+    if b"\0" in data:
+        line = data[: data.index(b"\0")].count(b"\n") + 1
+        raise ValueError(f"{path}:{line}: zero bytes, as in a binary file or UTF-16; must be text in UTF-8")
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = data[: error.start].count(b"\n") + 1
+        raise ValueError(f"{path}:{line}: byte {data[error.start]:#04x} is no UTF-8; must be text in UTF-8") from None
+
+
+def spelled(path: tuple) -> str:
+    """A path as people write it: inclusions[2].radius.
+
+    Parameters
+    ----------
+    path : tuple of str and int
+    """
+    words = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
+    return words.removeprefix(".")
+
+
+def shown(value) -> str:
+    """A value for a message, cut if it is long; flags as TOML has them.
+
+    Parameters
+    ----------
+    value : object
+    """
+    text = str(value).lower() if isinstance(value, bool) else repr(value)
+    return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
+
+
+def nearest(word: str, words) -> str:
+    """A suggestion for a word that is not known; empty if none is near.
+
+    Parameters
+    ----------
+    word : str
+    words : iterable of str
+    """
+    lower = {each.lower(): each for each in words}
+    word = word.lower()
+    found = difflib.get_close_matches(word, lower, n=1)
+    # "points" for "points_per_axis".
+    found = found or [each for each in lower if min(len(word), len(each)) >= PART and (word in each or each in word)]
+    return f"; did you mean {lower[found[0]]!r}?" if found else ""
+
+
+def _near_file(path):
+    """Files beside it with a name like it."""
+    try:
+        names = [each.name for each in path.parent.iterdir()]
+    except OSError:
+        return ""
+    return nearest(path.name, names) if path.name else ""

@@ -1,0 +1,123 @@
+"""Scenes written as TOML: what is read back is the same scene to the last bit."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import fields
+
+from demheat.files.scene_table import AXES, SHAPES, SOURCES
+from demheat.files.source import checked_path
+from demheat.files.whole import replaced
+from demheat.scene import Flux, Scene, check_scene
+
+BARE = re.compile(r"[A-Za-z0-9_-]+")
+
+
+def write(scene: Scene, path) -> None:
+    """Write a scene as a TOML file, in SI; an interrupted write leaves no file, and an old one as it was.
+
+    Parameters
+    ----------
+    scene : Scene
+        Without functions of time or place, which a file cannot hold.
+    path : path
+
+    Raises
+    ------
+    ValueError
+        If the scene holds what a file cannot.
+    """
+    path = checked_path(path)
+    text = text_of_scene(scene)
+    with replaced(path) as part:
+        part.write_text(text, encoding="utf-8", newline="\n")
+
+
+def text_of_scene(scene: Scene) -> str:
+    """Text of the file of a scene.
+
+    Raises
+    ------
+    ValueError
+        As `write`.
+    """
+    check_scene(scene)
+    names = _names(scene)
+    blocks = [_head(scene, names)]
+    blocks += [_block(f"[materials.{name}]", _plain(material)) for material, name in names.items()]
+    blocks += [_block("[[inclusions]]", _inclusion(k, shape, names)) for k, shape in enumerate(scene.inclusions)]
+    if scene.walls:
+        loads = {name: _load(name, load) for name, load in scene.walls.items()}
+        blocks.append(_block("[walls]", loads))
+    blocks += [_block("[[sources]]", _source(each)) for each in scene.sources]
+    return "\n".join(blocks)
+
+
+def _names(scene):
+    """Names of the materials, the matrix first."""
+    names = {}
+    for material in scene.materials:
+        names.setdefault(material, f"material-{len(names)}" if names else "matrix")
+    return names
+
+
+def _head(scene, names):
+    values = {"size": scene.size, "matrix": names[scene.matrix]}
+    if scene.domain != "box":
+        values["domain"] = scene.domain
+    if scene.gradient is not None:
+        values["gradient"] = scene.gradient
+    if callable(scene.initial):
+        raise ValueError("Scene.initial: a file cannot hold a function; must be a number or None")
+    if scene.initial is not None:
+        values["initial"] = float(scene.initial)
+    return _block("", values)
+
+
+def _plain(part, **changed):
+    """Fields of a material, shape or source that are not None."""
+    values = {field.name: changed.get(field.name, getattr(part, field.name)) for field in fields(part)}
+    return {name: value for name, value in values.items() if value is not None}
+
+
+def _inclusion(number, shape, names):
+    kind = next((name for name, (known, _) in SHAPES.items() if type(shape) is known), None)
+    if kind is None:
+        raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {', '.join(SHAPES)} in a file")
+    return {"shape": kind, **_plain(shape, material=names[shape.material], **_axis(shape))}
+
+
+def _source(source):
+    kind = next(name for name, (known, _) in SOURCES.items() if type(source) is known)
+    return {"kind": kind, **_plain(source, **_axis(source))}
+
+
+def _axis(part):
+    return {"axis": AXES[part.axis]} if hasattr(part, "axis") else {}
+
+
+def _load(name, load):
+    value = load.value if isinstance(load, Flux) else load
+    if callable(value):
+        raise ValueError(f"Scene.walls[{name!r}]: a file cannot hold a function of time; must be a number or a Flux")
+    return {"flux": float(value)} if isinstance(load, Flux) else float(value)
+
+
+def _block(header, values):
+    lines = [f"{name if BARE.fullmatch(name) else _text(name)} = {_value(value)}" for name, value in values.items()]
+    return "".join(f"{line}\n" for line in ([header] if header else []) + lines)
+
+
+def _value(value):
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{name} = {_value(part)}" for name, part in value.items()) + "}"
+    if isinstance(value, tuple):
+        return "[" + ", ".join(map(_value, value)) + "]"
+    # The shortest text that reads back to the same bits.
+    return _text(value) if isinstance(value, str) else repr(float(value))
+
+
+def _text(word):
+    return '"' + word.replace("\\", "\\\\").replace('"', '\\"') + '"'
