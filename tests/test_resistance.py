@@ -1,7 +1,8 @@
 """Interfaces with a resistance: every method knows what they do, or refuses them in one line."""
 
 import math
-from functools import cache
+from dataclasses import replace
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -51,7 +52,7 @@ def small(name, make, *arguments, **load):
 
 @pytest.mark.parametrize("name", METHODS)
 def test_the_array_is_known_or_refused(name):
-    scene = array(0.5)
+    scene = sheets(walls=WALLS) if "spheres" in METHODS[name].refuses else array(0.5)
     if name not in KNOWN:
         with pytest.raises(NotImplementedError, match=r"Scene.inclusions\[0\].resistance = ") as error:
             answered(METHODS[name], scene)
@@ -87,7 +88,7 @@ def test_what_cannot_says_so(what):
     assert "\n" not in str(error.value)
 
 
-@pytest.mark.parametrize("evolve", [fem.evolve, series.evolve])
+@pytest.mark.parametrize("evolve", [partial(fem.evolve, elements="hexahedra"), series.evolve])
 def test_transients_that_cannot_say_so(evolve):
     metal = Material(1.0, 1.0, 1.0)
     sheet = Layer(0, 0.2, 0.4, metal, resistance=1e-3)
@@ -126,6 +127,47 @@ def test_other_arrays_are_those_of_multipoles_and_limits(contrast):
     # A finite conductor instead of a perfect one: 1e-9 of it is missing.
     expected = lattice.conductivity("sc", contrast, FRACTION, resistance=0.7, order=11)
     assert_allclose(found, expected, rtol=1e-8)
+
+
+def test_forms_that_know_no_resistance_are_not_taken():
+    # Of the matrix's own conductivity, and yet no homogeneous box.
+    same = exact.solve(array(0.7, contrast=1.0))
+    expected = lattice.conductivity("sc", 1.0, FRACTION, resistance=0.7)
+    assert_allclose(same.conductivity / MATRIX, expected, rtol=1e-9)  # digits of the array
+    assert same.stats["form"] == "sc array" and expected < 0.95
+    coated = gallery.coated_sphere()
+    outer, inner = coated.inclusions
+    assert exact.solve(coated).stats["form"] == "neutral coated spheres"
+    pair = gallery.body_centred(10.0, fraction=0.2)
+    one, other = pair.inclusions
+    for scene, inclusions in (
+        (coated, (outer, replace(inner, resistance=1e-6))),
+        (pair, (one, replace(other, resistance=1e-6))),
+    ):
+        with pytest.raises(NotImplementedError, match="no closed form"):
+            exact.solve(replace(scene, inclusions=inclusions))
+
+
+def test_mirror_images_have_the_same_surfaces():
+    """Spheres that mirror each other but for their resistance are not periodic as they stand."""
+    found = []
+    for shift in (0.0, 1e-9):
+        one = Sphere((0.27 + shift, 0.5, 0.5), 0.2, Material(20.0), resistance=1.0)
+        other = Sphere((0.73, 0.5, 0.5), 0.2, Material(20.0))
+        field = multipole.solve(
+            Scene((1.0, 1.0, 1.0), Material(1.0), [one, other], walls={"x-": 0.0, "x+": 1.0}), order=5
+        )
+        found.append((field.conductivity, field.temperature_at([0.5, 0.5, 0.5])[0]))
+    # A billionth of the box moves it by about as much.
+    assert_allclose(found[0], found[1], rtol=1e-7)
+    assert abs(found[0][1] - 0.5) > 1e-2
+
+
+def test_the_power_of_elements_counts_what_surfaces_take():
+    """By the power answers at extreme contrasts are checked for rounding."""
+    field = fem.solve(array(0.5, contrast=3e6), size=0.25)
+    expected = lattice.conductivity("sc", 3e6, FRACTION, resistance=0.5) * MATRIX
+    assert_allclose(field.conductivity, expected, rtol=allowed("fem"))
 
 
 @pytest.mark.parametrize("name", ["dem", "fem", "multipole"])
@@ -215,14 +257,15 @@ def test_nested_surfaces_and_walls_that_cut_them():
     assert_allclose(answered(METHODS["dem"], made[1]).conductivity, found[0], rtol=allowed("dem") + allowed("fem"))
 
 
-def test_a_sphere_behind_a_resistance_warms_at_its_own_pace():
+@pytest.mark.parametrize(("evolve", "knobs"), [(demheat.evolve, {"particles": 1000}), (fem.evolve, {"size": 0.3})])
+def test_a_sphere_behind_a_resistance_warms_at_its_own_pace(evolve, knobs):
     """So much that it has one temperature: then it tends to that of the walls within capacity a R/3."""
     metal, radius, resistance = Material(1.0, 1.0, 1.0), 0.3, 100.0
     inner = Sphere((0.5, 0.5, 0.5), radius, metal, resistance=resistance)
     walls = dict.fromkeys(("x-", "x+", "y-", "y+", "z-", "z+"), 1.0)
     scene = Scene((1.0, 1.0, 1.0), metal, [inner], walls=walls, initial=0.0)
     pace = radius * resistance / 3
-    for field in demheat.evolve(scene, [0.5 * pace, pace], particles=1000):
+    for field in evolve(scene, [0.5 * pace, pace], **knobs):
         # Besides the surface heat meets the sphere, about radius/5, and the matrix, at most the radius: .4 %.
         assert_allclose(field.temperature_at([0.5, 0.5, 0.5]), 1 - math.exp(-field.time / pace), rtol=6e-3)
 

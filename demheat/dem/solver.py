@@ -77,7 +77,7 @@ def solve(
         If neither `solve` nor the law knows a keyword.
     NotImplementedError
         For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for replicas between
-        walls with such a law.
+        walls with such a law; for surfaces with a resistance, unless facets lie on them.
     RuntimeError
         If the solver does not converge.
 
