@@ -23,15 +23,16 @@ def between(scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
     callable (here, there) -> (m,) float array, m2 K/W; or None
         Of two (m,) int arrays of phases; None where no surface has a resistance.
     """
-    own, parents = scene.resistances, scene.parents()
+    own = scene.resistances
     if not own.any():
         return None
+    parents = scene.parents()
 
     def resistance(here, there):
-        pairs, place = np.unique(np.stack([here, there]), axis=1, return_inverse=True)
+        pairs, place = np.unique(np.asarray(here, np.int64) * len(own) + there, return_inverse=True)
         # Surfaces around both are not crossed.
-        crossed = [_around(a, parents) ^ _around(b, parents) for a, b in pairs.T.tolist()]
-        return np.array([own[list(each)].sum() for each in crossed])[place.ravel()]
+        crossed = [_around(a, parents) ^ _around(b, parents) for a, b in (divmod(p, len(own)) for p in pairs.tolist())]
+        return np.array([own[list(each)].sum() for each in crossed])[place]
 
     return resistance
 
