@@ -98,7 +98,7 @@ def test_transients_that_cannot_say_so(evolve):
 
 
 def test_beside_pores_elements_refuse_it():
-    pore = Sphere((0.5, 0.5, 0.1), 0.05, Material(0.0))
+    pore = Sphere((0.1, 0.1, 0.1), 0.05, Material(0.0))
     scene = Scene((1.0, 1.0, 1.0), Material(MATRIX), [*array(0.5).inclusions, pore], walls=WALLS)
     with pytest.raises(NotImplementedError, match="beside interfaces with a resistance"):
         fem.solve(scene)
@@ -257,17 +257,23 @@ def test_nested_surfaces_and_walls_that_cut_them():
     assert_allclose(answered(METHODS["dem"], made[1]).conductivity, found[0], rtol=allowed("dem") + allowed("fem"))
 
 
-@pytest.mark.parametrize(("evolve", "knobs"), [(demheat.evolve, {"particles": 1000}), (fem.evolve, {"size": 0.3})])
-def test_a_sphere_behind_a_resistance_warms_at_its_own_pace(evolve, knobs):
+SLOW = {"dem": (demheat.evolve, {"particles": 1000}, 1e-2), "fem": (fem.evolve, {"size": 0.3, "accuracy": 2e-4}, 2e-3)}
+
+
+@pytest.mark.parametrize("name", SLOW)
+def test_a_sphere_behind_a_resistance_warms_at_its_own_pace(name):
     """So much that it has one temperature: then it tends to that of the walls within capacity a R/3."""
-    metal, radius, resistance = Material(1.0, 1.0, 1.0), 0.3, 100.0
+    metal, radius, resistance = Material(1.0, 1.0, 1.0), 0.3, 1000.0
     inner = Sphere((0.5, 0.5, 0.5), radius, metal, resistance=resistance)
     walls = dict.fromkeys(("x-", "x+", "y-", "y+", "z-", "z+"), 1.0)
     scene = Scene((1.0, 1.0, 1.0), metal, [inner], walls=walls, initial=0.0)
     pace = radius * resistance / 3
-    for field in evolve(scene, [0.5 * pace, pace], **knobs):
-        # Besides the surface heat meets the sphere, about radius/5, and the matrix, at most the radius: .4 %.
-        assert_allclose(field.temperature_at([0.5, 0.5, 0.5]), 1 - math.exp(-field.time / pace), rtol=6e-3)
+    evolve, knobs, rtol = SLOW[name]
+    (field,) = evolve(scene, [0.5 * pace], **knobs)
+    # Besides the surface heat meets the sphere, radius/5, and the matrix, at most the radius: .04 %; the matrix itself
+    # takes some .03 of 50 seconds to warm up: .06 %; surface over volume of coarse elements .1 %, of the polyhedron
+    # that has the sphere's volume, with so few facets, .7 %.
+    assert_allclose(field.temperature_at([0.5, 0.5, 0.5]), 1 - math.exp(-field.time / pace), rtol=rtol)
 
 
 def test_estimates_hold():
