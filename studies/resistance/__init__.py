@@ -11,22 +11,19 @@ there.
 
 from studies.harness import methods
 from studies.harness.pick import pick, present
+from studies.resistance.cases import (
+    ARRAY,
+    FRACTION,
+    FRACTIONS,
+    GAP,
+    KNOWING,
+    LENGTHS,
+    NEUTRAL,
+    REALISATIONS,
+    SILICA,
+    USUAL,
+)
 
-CONTRAST, FRACTION = 10.0, 0.2
-LENGTHS = (0.0, 0.05, 0.2, 0.5, 0.9, 2.0, 10.0)
-KNOWING = ("dem", "fem")
-ARRAY = {"dem": (3_000, 30_000, 100_000), "fem": (1 / 8, 1 / 16, 1 / 24)}
-# Spheres of the neutral dispersions, and what is spent on them.
-NEUTRAL = {
-    8: {"dem": (10_000,), "fem": (1 / 8,), "multipole": (None,)},
-    83: {"dem": (100_000,), "fem": (1 / 24,), "multipole": (None,)},
-}
-FRACTIONS = (0.1, 0.2, 0.3, 0.4, 0.5)
-SILICA = (0.0, 0.02, 0.05, 0.1, 0.2, 0.5)
-REALISATIONS = (0, 1, 2)
-# What the papers' models are above experiment; a usual order of resistances between solids, m2 K/W.
-GAP, USUAL = 0.07, 1e-8
-WITNESS = {"method": "multipole"}
 # A hundredth of the gap's least share: nothing is seen of it.
 ENOUGH = 1e-4
 PAPER = {}

@@ -10,6 +10,7 @@ from demheat import Sphere, gallery, referee
 from references import exact
 from studies.common import silica_epoxy
 from studies.harness import methods
+from studies.resistance.cases import CONTRAST, FRACTION
 
 # Seed of the points at which the matrix's temperature is looked at, and their number.
 SEED, POINTS = 7, 4000
@@ -39,8 +40,6 @@ def array(kapitza, *, method, **knobs):
     method, **knobs
         As those of `methods.solved`.
     """
-    from studies.resistance import CONTRAST, FRACTION
-
     scene = resisting(gallery.sphere_in_cube(CONTRAST, fraction=FRACTION), kapitza)
     return methods.solve_row(scene, exact.solve(scene).conductivity / methods.MATRIX, method=method, **knobs)
 
@@ -54,8 +53,6 @@ def neutral(spheres, *, method, **knobs):
     method, **knobs
         As those of `methods.solved`.
     """
-    from studies.resistance import FRACTION
-
     made = gallery.random_dispersion(spheres, fraction=FRACTION)
     contrast = made.inclusions[0].material.conductivity / made.matrix.conductivity
     scene = resisting(made, (contrast - 1) / contrast)

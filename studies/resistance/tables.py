@@ -7,7 +7,7 @@ import pandas as pd
 from studies.harness import methods
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
-from studies.resistance import FRACTIONS, GAP, KNOWING, NEUTRAL
+from studies.resistance.cases import FRACTIONS, GAP, KNOWING, NEUTRAL
 from studies.resistance.means import curve, explaining, foreseen, radius_of
 
 

@@ -5,8 +5,7 @@ import pandas as pd
 from numpy.testing import assert_allclose
 
 from demheat import gallery
-from studies import resistance
-from studies.resistance import means, rows
+from studies.resistance import cases, means, rows
 
 
 def known(fraction, lengths):
@@ -16,8 +15,8 @@ def known(fraction, lengths):
 
 
 def test_the_length_that_a_fall_asks_for():
-    found = known(0.2, resistance.SILICA)
-    for fall in (0.03, resistance.GAP, 0.15):
+    found = known(0.2, cases.SILICA)
+    for fall in (0.03, cases.GAP, 0.15):
         # A fall of that formula is c l / (1 + d l): its inverse is a line in that of the length.
         assert_allclose(means.explaining(found, 0.2, fall), means.foreseen(0.2, fall), rtol=1e-9)
     assert means.explaining(found, 0.2, 0.9) is None and means.explaining(found, 0.3, 0.07) is None
