@@ -9,6 +9,7 @@ its first reason: here is how much l it takes for 7 % less, and what R that is. 
 there.
 """
 
+from demheat import referee
 from studies.harness import methods
 from studies.harness.pick import pick, present
 from studies.resistance.cases import (
@@ -118,9 +119,9 @@ def _gap_claims(rows):
     for fraction in (0.1, 0.2, 0.3):
         found = explaining(rows, fraction, GAP)
         if found is not None:
-            ratio = found / foreseen(fraction, GAP)
-            text = f"silica, f = {fraction}: Kapitza length for {GAP:.0%} less over Hasselman and Johnson's"
-            yield text, abs(ratio - 1), 0.2
+            off = 100 * referee.value_error(foreseen(fraction, GAP), found)
+            text = f"silica, f = {fraction}: error of Hasselman and Johnson's Kapitza length for {GAP:.0%} less, %"
+            yield text, abs(off), 20.0
     lengths = [explaining(rows, fraction, GAP) for fraction in FRACTIONS]
     if None not in lengths:
         text = f"silica: largest radius, m, at which R = {USUAL:g} m2 K/W makes {GAP:.0%} at a fifth or more"

@@ -41,6 +41,8 @@ def _errors(axes, rows):
     """Of the finest rows, and faint those of coarser ones."""
     for name in KNOWING:
         mine = pick(rows, name=name)
+        if not len(mine):
+            continue
         best = finest(mine)
         for label, group in (("", mine.drop(best.index)), (None, best)):
             how = look(name) if label is None else look(name, label="_", alpha=0.35, linestyle="")
@@ -49,7 +51,8 @@ def _errors(axes, rows):
         axes.lines[-1].set_label(f"{methods.found()[name].title}, {methods.resolution(best.iloc[0])}")
     axes.set(xscale="log", yscale="log", xlabel="Kapitza length over radius (leftmost: 0)")
     axes.set(ylabel="|error of the conductivity|, %", title="Sphere in a cube, contrast 10")
-    axes.legend()
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend()
 
 
 def _falls(axes, rows):

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import brentq
 
 from demheat.gallery import EPOXY, SILICA
+from demheat.referee import value_error
 from references.bounds import maxwell
 from studies.harness.pick import pick
 
@@ -43,7 +44,7 @@ def explaining(rows, fraction, fall):
     found = curve(rows, fraction)
     if 0.0 not in found.index or len(found) < 3:
         return None
-    lost = (1 - found / found[0.0]).drop(0.0)
+    lost = -value_error(found, found[0.0]).drop(0.0)
     if not lost.iloc[0] <= fall <= lost.iloc[-1]:
         return None
     # Both ascend with the inverse length.
@@ -60,7 +61,7 @@ def foreseen(fraction, fall):
     """
 
     def lost(length):
-        return 1 - conductivity(fraction, length) / conductivity(fraction, 0.0) - fall
+        return -value_error(conductivity(fraction, length), conductivity(fraction, 0.0)) - fall
 
     return float(brentq(lost, 0.0, 10.0))
 
