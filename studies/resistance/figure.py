@@ -28,8 +28,8 @@ def draw(df):
     _falls(middle, rows)
     _needed(right, rows)
     radius = explaining(rows, FRACTION, GAP)
-    told = "" if radius is None else f": R = {USUAL:g} m$^2$K/W does so on spheres of {_nanometres(radius)}"
-    figure.suptitle(f"Resistance of interfaces lowers the conductivity by {GAP:.0%} only where it is large{told}")
+    told = "" if radius is None else f": R = {USUAL:g} m$^2$K/W makes {GAP:.0%} at {_nanometres(radius)}"
+    figure.suptitle(f"Resistance of interfaces matters where the Kapitza length is a part of the radius{told}")
     return figure
 
 
