@@ -15,6 +15,9 @@ from demheat.build import network_of
 from demheat.laws import Calibrated
 from references import bounds, bracket, exact, fem, fft, multipole, series, zeta
 from references.exact import lattice
+from references.fem.lookup import NodalField
+from references.fem.system import solve_nodes
+from references.mesh import make, split
 
 # Simple cubic array, contrast 10, fraction .2: conductivity over the matrix's, by R times that over the radius.
 WITNESS = {0.05: 1.452510305, 0.2: 1.287801631, 0.5: 1.113182202, 2.0: 0.878144093}
@@ -86,6 +89,9 @@ def test_what_cannot_says_so(what):
     with pytest.raises(NotImplementedError, match=r"Scene.inclusions\[0\].resistance = ") as error:
         REFUSING[what](array(0.5))
     assert "\n" not in str(error.value)
+    # Laws of the DEM say which one can.
+    laws = ("facets anywhere", "arithmetic mean", "contacts", "platonic axes", "network")
+    assert ("only law 'laguerre' with conforming=True" in str(error.value)) == (what in laws)
 
 
 @pytest.mark.parametrize("evolve", [partial(fem.evolve, elements="hexahedra"), series.evolve])
@@ -168,6 +174,11 @@ def test_the_power_of_elements_counts_what_surfaces_take():
     field = fem.solve(array(0.5, contrast=3e6), size=0.25)
     expected = lattice.conductivity("sc", 3e6, FRACTION, resistance=0.5) * MATRIX
     assert_allclose(field.conductivity, expected, rtol=allowed("fem"))
+    # And at the faces of a cell, where the temperature rises by the mean gradient besides.
+    scene = sheets(gradient=(0.0, 3.0, 0.0))
+    parts = split(scene, make(scene, size=0.4, order=1))
+    power = NodalField(scene, parts, solve_nodes(scene, parts, 1e-12).temperature).power()
+    assert_allclose(power, 9 * exact.solve(scene).conductivity, rtol=1e-9)  # the solver's tolerance
 
 
 @pytest.mark.parametrize("name", ["dem", "fem", "multipole"])
