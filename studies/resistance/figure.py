@@ -28,7 +28,11 @@ def draw(df):
     _falls(middle, rows)
     _needed(right, rows)
     radius = explaining(rows, FRACTION, GAP)
-    told = "" if radius is None else f": R = {USUAL:g} m$^2$K/W makes {GAP:.0%} at {_nanometres(radius)}"
+    told = (
+        ""
+        if radius is None
+        else f": R = {USUAL:g} m$^2$K/W makes {GAP:.0%} at f = {FRACTION:g} of {_nanometres(radius)}"
+    )
     figure.suptitle(f"Resistance of interfaces matters where the Kapitza length is a part of the radius{told}")
     return figure
 

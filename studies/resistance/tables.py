@@ -28,7 +28,9 @@ def lines(df):
     for spheres in NEUTRAL:
         for _, row in pick(df, part="neutral", spheres=spheres).iterrows():
             text = f"{spheres} neutral spheres, {LOOK[row['name']][0]}: error of k and of T outside, %"
-            found.append({"what": text, "l = 0.9": f"{row['error_percent']:.2g}, {row['temperature_percent']:.2g}"})
+            found.append(
+                {"what": text, "l = (s - 1)/s": f"{row['error_percent']:.2g}, {row['temperature_percent']:.2g}"}
+            )
     rows = pick(df, part="silica")
     found += [_silica(rows, fraction) for fraction in FRACTIONS if (rows["fraction"] == fraction).any()]
     return pd.DataFrame(found)
