@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.calibration import calibration, calibration_scene, cube_like
-from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.laws import LAWS, ON_FACETS, Calibrated, Laguerre, Platonic
 from demheat.limits import check_memory
 from demheat.network.base import Network
 from demheat.network.calibrated import contact_facets
@@ -20,6 +20,7 @@ from demheat.packing.gate import check_packing
 from demheat.progress import stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.narrows import STRONG, narrows
+from demheat.scene.resistances import between
 from demheat.scene.thickness import coats, extents
 
 # Layers thinner than so many particle diameters are seen by chance where facets do not lie on interfaces. Errors of a
@@ -63,6 +64,8 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
 
     Raises
     ------
+    NotImplementedError
+        If surfaces have a resistance and the law no facets on interfaces.
     ValueError
         If the law is none of these; or does not suit the packing, which may have no bulk, or no particles that touch
         its walls; or the twins in narrow gaps are more than fit into memory.
@@ -105,6 +108,7 @@ def _tessellated(scene, packing, law, seed):
     """The particles that take part, their facets before they are calibrated, and the seconds that took."""
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
+    scene.require(ON_FACETS, resistance=law.resists)
     check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:
@@ -129,7 +133,8 @@ def _connected(scene, law, packing, facets, tessellation_s):
         if not law.conforming:
             _warn_of_thin_phases(scene, phase, 2.0 * float(packing.radii.mean()))
             _warn_of_narrow_gaps(scene, 2.0 * float(packing.radii.mean()))
-        network = connect(packing, facets, phase, scene.conductivities, rule=law.interface, cells=law.cells)
+        how = {"rule": law.interface, "cells": law.cells, "resistance": between(scene)}
+        network = connect(packing, facets, phase, scene.conductivities, **how)
     spent = {"tessellation_s": tessellation_s, "network_s": time.perf_counter() - begun}
     said = {"law": law.name, "calibration": factor, "packing": packing.provenance}
     return network._replace(stats=said | spent)

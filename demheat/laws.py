@@ -19,6 +19,7 @@ WALL_RULES = ("center", "surface")
 # interface than its own beyond 1 / (sqrt(2) 0.8) of its width.
 WIDEST = 0.88
 # Short forms give the choices of all laws: those of the contact laws at these values ask nothing of another law.
+ON_FACETS = "only law 'laguerre' with conforming=True and interface='harmonic' has facets on the interfaces"
 UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": None}
 
 
@@ -57,6 +58,11 @@ class Laguerre:
         chosen("interface", self.interface, RULES)
         finite("gap_spacing", self.gap_spacing, "a number above 0, at most 0.88", lambda v: 0 < v <= WIDEST)
 
+    @property
+    def resists(self) -> bool:
+        """Whether interfaces may have a resistance: facets lie on them, and it is in series there."""
+        return self.conforming and self.interface == "harmonic"
+
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
         """The law from the keywords of `demheat.solve`, where None stands for the default.
@@ -85,8 +91,10 @@ class Laguerre:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
+        scene.require(ON_FACETS, resistance=self.resists)
         if self.conforming and scene.inclusions:
-            scene.require("inclusions there have no conforming packing; pass conforming=False", domain="box")
+            text = "inclusions there have no conforming packing; pass conforming=False"
+            scene.require(text, domain="box", resistance=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -101,6 +109,8 @@ class _Contacts:
 
     cells: ClassVar[bool] = False
     conforming: ClassVar[bool] = False
+    # Facets on interfaces, where a resistance would be.
+    resists: ClassVar[bool] = False
 
     def __post_init__(self):
         chosen("interface", self.interface, RULES)
@@ -144,6 +154,7 @@ class _Contacts:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
+        scene.require(ON_FACETS)
         if self.wall == "surface":
             scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
         else:

@@ -36,6 +36,7 @@ LAYERS = {
         "demheat.scene.functions",
     ),
     "demheat.scene.thickness": (),
+    "demheat.scene.resistances": (),
     "demheat.scene.negligible": ("demheat.scene.inputs", "demheat.scene.shapes", "demheat.scene.scene"),
     "demheat.scene.symmetry": (
         "demheat.scene.inputs",

@@ -164,6 +164,8 @@ def _multipole(loads, accuracy, memory):
 
 
 def _refined(name, loads, accuracy, memory):
+    if any(whole.resistances.any() for whole in loads.wholes.values()):
+        return Way(name, {}, refused="its laws of error know perfect interfaces only")
     (knob, power), part = KNOBS[name], _largest(loads)
     value = needed(name, part, accuracy / INTERVAL, sure=False)
     cost, first = predicted(name, part, value), value

@@ -77,7 +77,7 @@ def solve(
         If neither `solve` nor the law knows a keyword.
     NotImplementedError
         For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for replicas between
-        walls with such a law.
+        walls with such a law; for surfaces with a resistance, unless facets lie on them.
     RuntimeError
         If the solver does not converge.
 
@@ -91,7 +91,7 @@ def solve(
     check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=True)
+    scene.require(steady=True, resistance=True)
     law.check(scene)
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
@@ -230,7 +230,7 @@ def evolve(
     check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=False)
+    scene.require(steady=False, resistance=True)
     law.check(scene)
     wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))

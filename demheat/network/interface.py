@@ -42,8 +42,10 @@ def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
     return np.divide(k_here * k_there, series, out=np.zeros_like(series), where=(least > 0) & (series > 0))
 
 
-def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True) -> Network:
+def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=True, resistance=None) -> Network:
     """Conductances H = k S / d of facets between particles of given phases.
+
+    Where the interface has a resistance R it is in series, 1/H = d/(k S) + R/S: exact where the facet lies on it.
 
     Parameters
     ----------
@@ -55,6 +57,8 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
     rule : {"harmonic", "arithmetic"}
     cells : bool
         Facets bound cells that fill the body.
+    resistance : callable (here, there) -> (k,) float array, m2 K/W, optional
+        Of the interfaces between phases, see `demheat.scene.resistances.between`.
 
     Returns
     -------
@@ -69,7 +73,7 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
         indptr=facets.indptr,
         indices=facets.indices,
         image=facets.image,
-        conductance=_conductances(packing, facets, conductivity, rule),
+        conductance=_resisted(_conductances(packing, facets, conductivity, rule), facets, phase, resistance),
         wall_particle=facets.wall_particle,
         wall_side=facets.wall_side,
         wall_conductance=wall,
@@ -98,6 +102,17 @@ def _conductances(packing, facets, conductivity, rule):
         share = facets.distance[links] / length
         k = link_conductivity(conductivity[row], conductivity[there], share, rule=rule)
         conductance[links] = k * facets.area[links] / length
+    return conductance
+
+
+def _resisted(conductance, facets, phase, resistance):
+    """The conductances with what interfaces resist in series, in place."""
+    if resistance is None:
+        return conductance
+    here, there = np.repeat(phase, np.diff(facets.indptr)), phase[facets.indices]
+    unlike = np.flatnonzero((here != there) & (facets.area > 0))
+    found = conductance[unlike]
+    conductance[unlike] = found / (1.0 + found * resistance(here[unlike], there[unlike]) / facets.area[unlike])
     return conductance
 
 

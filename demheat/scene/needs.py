@@ -51,13 +51,13 @@ def check_transient(scene) -> None:
                 raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
 
 
-def refusals(scene, *, walls, domain, shapes, nested, pores) -> Iterator[str]:
+def refusals(scene, *, walls, domain, shapes, nested, pores, resistance) -> Iterator[str]:
     """What in a Scene a method cannot do, one after the other.
 
     Parameters
     ----------
     scene : Scene
-    walls, domain, shapes, nested, pores
+    walls, domain, shapes, nested, pores, resistance
         As those of `Scene.require`.
     """
     if walls is not None and not scene.periodic and not WALLS[walls](scene):
@@ -76,3 +76,10 @@ def refusals(scene, *, walls, domain, shapes, nested, pores) -> Iterator[str]:
         yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
     if not pores and np.any(scene.conductivities == 0):
         yield "a conductivity is 0"
+    resisting = () if resistance else np.flatnonzero(scene.resistances)
+    if len(resisting):
+        number = int(resisting[0]) - 1
+        yield (
+            f"Scene.inclusions[{number}].resistance = {scene.inclusions[number].resistance:g} m2 K/W, where only "
+            "perfect interfaces, 0, are known"
+        )

@@ -63,8 +63,8 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
     Returns
     -------
     Negligible
-        As many of the smallest spheres as the bound allows: whole ones, in surroundings that conduct, that hold nothing
-        and whose next neighbours are at least a radius away from them.
+        As many of the smallest spheres as the bound allows: whole ones without a resistance on their surface, in
+        surroundings that conduct, that hold nothing and whose next neighbours are at least a radius away from them.
 
     Raises
     ------
@@ -87,12 +87,13 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
 
 
 def _spheres(scene):
-    """Radius and polarisability of each inclusion; NaN for what is no sphere on its own in what conducts."""
+    """Radius and polarisability of each inclusion; NaN for what is no perfect sphere on its own in what conducts."""
     k, parents = scene.conductivities, scene.parents()[1:]
     outer = k[parents]
     with np.errstate(invalid="ignore", divide="ignore"):
         beta = np.where(outer > 0, (k[1:] - outer) / (k[1:] + 2 * outer), np.nan)
-    beta[[not shape.fills_ball for shape in scene.inclusions]] = np.nan
+    # Of spheres with a resistance other degrees may matter more than the first.
+    beta[[not shape.fills_ball or shape.resistance > 0 for shape in scene.inclusions]] = np.nan
     return np.array([shape.ball()[1] for shape in scene.inclusions]).reshape(-1), beta
 
 

@@ -115,6 +115,14 @@ class Scene:
         return np.array([material.conductivity for material in self.materials])
 
     @property
+    def resistances(self) -> np.ndarray:
+        """Resistance of the surface of each phase, (1 + number of inclusions,) float array, m2 K/W; 0 of the matrix.
+
+        Where surfaces lie on each other they are crossed one after the other, see `demheat.scene.resistances`.
+        """
+        return np.array([0.0, *(inclusion.resistance for inclusion in self.inclusions)])
+
+    @property
     def volume(self) -> float:
         """Volume of the body, m3."""
         return domain_volume(self.domain, self.size)
@@ -231,6 +239,7 @@ class Scene:
         shapes: tuple[type[Shape], ...] | None = None,
         nested: bool = True,
         pores: bool = True,
+        resistance: bool = False,
     ) -> None:
         """Raise unless a method can take this scene: the one place where methods refuse scenes.
 
@@ -251,6 +260,8 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
+        resistance : bool
+            Whether surfaces may have a resistance: what does not say so refuses it.
 
         Raises
         ------
@@ -261,8 +272,9 @@ class Scene:
         """
         if steady is not None:
             (check_steady if steady else check_transient)(self)
-        for found in refusals(self, walls=walls, domain=domain, shapes=shapes, nested=nested, pores=pores):
-            raise NotImplementedError(f"{found}: {knows}")
+        can = {"walls": walls, "domain": domain, "shapes": shapes, "nested": nested, "pores": pores}
+        for found in refusals(self, **can, resistance=resistance):
+            raise NotImplementedError(f"{found}: {knows}" if knows else found)
 
 
 def check_scene(scene, name="scene") -> None:

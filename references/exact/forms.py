@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Flux, Layer, Sphere
+from demheat.scene.resistances import between
 from references.exact import lattice, lattice_field
 from references.exact.insulated import sphere_temperature
 
@@ -47,20 +48,20 @@ class Closed(NamedTuple):
 
 
 def laminate(scene):
-    """Homogeneous box or plane layers: harmonic mean across, arithmetic mean along.
+    """Homogeneous box or plane layers: harmonic mean across, interfaces that resist in series; arithmetic mean along.
 
     Where layers of zero conductivity stop the heat, the temperature between them is constant across, see `Field`.
     """
     k = scene.conductivities
     layered = scene.only(Layer)
-    if not layered and not np.all(k == k[0]):
+    if not layered and not (np.all(k == k[0]) and not scene.resistances.any()):
         return None
     normal = scene.inclusions[0].axis if layered and scene.inclusions else 0
     length = scene.size[normal]
-    breaks, pieces = _pieces(scene, normal) if layered else (np.array([0.0, length]), k[:1])
+    breaks, pieces, resist = _pieces(scene, normal) if layered else (np.array([0.0, length]), k[:1], np.zeros(2))
     thickness = np.diff(breaks)
     along = float(thickness @ pieces / length)
-    across = length / float(np.sum(thickness / pieces)) if np.all(pieces > 0) else 0.0
+    across = length / float(np.sum(thickness / pieces) + resist[1:].sum()) if np.all(pieces > 0) else 0.0
     slope = across / pieces if across else np.zeros(len(pieces))
     # Plain homogeneous material also takes an imposed flux along its layers, for it has none.
     means = np.full(3, along if np.all(pieces == pieces[0]) else np.nan)
@@ -70,6 +71,7 @@ def laminate(scene):
         return None
     gradient, level = load
     rise = np.concatenate([[0.0], np.cumsum(slope * thickness)])
+    jumps = across * np.cumsum(resist)[:-1]
     sideways = np.where(np.arange(3) == normal, 0.0, gradient)
 
     flat = None if across else _flat(scene, normal, breaks, pieces > 0, load)
@@ -87,7 +89,10 @@ def laminate(scene):
             )
             here = np.where(np.isnan(flat[after]), flat[before], flat[after])
             return points @ sideways + gradient[normal] * turns * length + here
-        return level + points @ sideways + gradient[normal] * (turns * length + np.interp(x, breaks, rise))
+        total = turns * length + np.interp(x, breaks, rise)
+        if resist.any():
+            total += jumps[np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(pieces) - 1)]
+        return level + points @ sideways + gradient[normal] * total
 
     def flux(points):
         _, x = where(points)
@@ -98,7 +103,8 @@ def laminate(scene):
 
     mean = 0.0 - along * sideways
     mean[normal] = 0.0 - across * gradient[normal]
-    form = "homogeneous" if len(set(pieces.tolist())) == 1 else "laminate"
+    plain = len(set(pieces.tolist())) == 1 and not resist.any()
+    form = "homogeneous" if plain else "laminate"
     return Closed(form, temperature, flux, mean, normal, breaks, {"unknowns": len(pieces), "digits": 15.0})
 
 
@@ -125,9 +131,10 @@ def cubic_array(scene):
     gradient, level = load
     first, k = spheres[0], scene.matrix.conductivity
     center, ki = np.array(first.center), first.material.conductivity
+    resistance = first.resistance * k / first.radius
     contrast = ki / k if k > 0 else math.inf
     fraction = len(spheres) * 4 / 3 * math.pi * (first.radius / edge) ** 3
-    array = _solved(kind, contrast, fraction)
+    array = _solved(kind, contrast, fraction, resistance)
 
     def temperature(points):
         here = lattice_field.temperature(array, (points - center) / edge, gradient * edge)
@@ -252,20 +259,28 @@ def _flat(scene, normal, breaks, conducts, load):
 
 
 def _pieces(scene, normal):
-    """Ends of the layers along their normal and the conductivity between them."""
+    """Ends of the layers along their normal, the conductivity between them, and the resistance at each end.
+
+    That at the face of a periodic cell is at its upper end.
+    """
     ends = {0.0, scene.size[normal]}
     for layer in scene.inclusions:
         ends |= {min(max(x, 0.0), scene.size[normal]) for x in (layer.start, layer.stop)}
     breaks = np.array(sorted(ends))
     points = np.zeros((len(breaks) - 1, 3))
     points[:, normal] = [(a + b) / 2 for a, b in pairwise(breaks)]
-    return breaks, scene.conductivities[scene.phase_at(points)]
+    phase, resistance = scene.phase_at(points), between(scene)
+    resist = np.zeros(len(breaks))
+    if resistance is not None:
+        met = resistance(phase, np.roll(phase, -1))
+        resist[1:] = met if scene.periodic else np.append(met[:-1], 0.0)
+    return breaks, scene.conductivities[phase], resist
 
 
 @lru_cache(maxsize=32)
-def _solved(kind, contrast, fraction):
+def _solved(kind, contrast, fraction, resistance):
     try:
-        return lattice.solve(kind, contrast, fraction)
+        return lattice.solve(kind, contrast, fraction, resistance=resistance)
     except ValueError as error:
         raise NotImplementedError(f"no closed form to six digits: {error}") from error
 
@@ -277,7 +292,9 @@ def _array(scene):
         return None
     first = spheres[0]
     equal = all(
-        abs(s.radius - first.radius) <= SAME * edge and s.material.conductivity == first.material.conductivity
+        abs(s.radius - first.radius) <= SAME * edge
+        and s.material.conductivity == first.material.conductivity
+        and s.resistance == first.resistance
         for s in spheres
     )
     if not equal or np.any(np.abs(np.array(scene.size) - edge) > SAME * edge):
@@ -294,7 +311,7 @@ def _array(scene):
 
 def _coated(scene):
     """Pairs (outer, inner) if all inclusions are neutral coated spheres, else None; `fractions` refuses cut ones."""
-    if not scene.inclusions or not scene.only(Sphere):
+    if not scene.inclusions or not scene.only(Sphere) or scene.resistances.any():
         return None
     centers = np.array([sphere.center for sphere in scene.inclusions])
     apart = centers[:, None] - centers[None]

@@ -3,6 +3,7 @@
 Rayleigh (1892); McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; Sangani and Acrivos, Proc. R. Soc. A 386 (1983)
 263. Outside its sphere the temperature is sum (A_lm R_l^m + B_lm I_l^m), l odd, m = 0, 4, ..., for a mean gradient
 along z. The interface gives B_l = -alpha_l r^(2l+1) A_l with alpha_l = l (s - 1) / (l s + l + 1), s the contrast;
+where it has a resistance R, with R k_m/a = rho of a sphere of radius a, degree l sees s/(1 + s rho l) for s;
 Rayleigh's identity says that A is what the mean gradient and all other spheres make at this one.
 
 Lengths are in units of the cube's edge, conductivities in units of the matrix.
@@ -34,6 +35,8 @@ class SolvedArray(NamedTuple):
     kind : {"sc", "bcc", "fcc"}
     contrast : float
         Conductivity of the spheres over that of the matrix.
+    resistance : float
+        Of their surfaces, times the conductivity of the matrix over the radius.
     radius : float, edges
     conductivity : float
         Of the array over that of the matrix.
@@ -54,6 +57,7 @@ class SolvedArray(NamedTuple):
 
     kind: str
     contrast: float
+    resistance: float
     radius: float
     conductivity: float
     order: int
@@ -94,7 +98,7 @@ def radius(kind, fraction):
     return (3 * fraction / (4 * math.pi * len(SITES[kind]))) ** (1 / 3)
 
 
-def conductivity(kind, contrast, fraction, *, order=None, digits=6) -> float:
+def conductivity(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> float:
     """Effective conductivity of a cubic array over that of its matrix.
 
     Parameters
@@ -104,6 +108,8 @@ def conductivity(kind, contrast, fraction, *, order=None, digits=6) -> float:
         Conductivity of the spheres over that of the matrix, 0 (pores) to infinity (inclusive).
     fraction : float
         Volume fraction of the spheres.
+    resistance : float
+        Of their surfaces, times the conductivity of the matrix over the radius.
     order : int, optional
         Highest degree, odd; by default what convergence takes.
     digits : float, optional
@@ -118,10 +124,10 @@ def conductivity(kind, contrast, fraction, *, order=None, digits=6) -> float:
     ValueError
         As for `solve`.
     """
-    return solve(kind, contrast, fraction, order=order, digits=digits).conductivity
+    return solve(kind, contrast, fraction, resistance=resistance, order=order, digits=digits).conductivity
 
 
-def solve(kind, contrast, fraction, *, order=None, digits=6) -> SolvedArray:
+def solve(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> SolvedArray:
     """Solve a cubic array of spheres under a mean unit gradient.
 
     Parameters
@@ -131,6 +137,8 @@ def solve(kind, contrast, fraction, *, order=None, digits=6) -> SolvedArray:
         Conductivity of the spheres over that of the matrix, 0 (pores) to infinity (inclusive).
     fraction : float
         Volume fraction of the spheres, at most that of touching spheres.
+    resistance : float
+        Of their surfaces, times the conductivity of the matrix over the radius.
     order : int, optional
         Highest degree, odd; by default raised until both the conductivity and the flux have converged.
     digits : float, optional
@@ -146,14 +154,17 @@ def solve(kind, contrast, fraction, *, order=None, digits=6) -> SolvedArray:
         If an argument is out of range, the spheres overlap, or they come so close that `digits` are not reached.
     """
     _check(kind, contrast, fraction, order)
-    found = _solve(kind, float(contrast), fraction, order or FIRST_ORDER)
+    if not 0 <= resistance < math.inf:
+        raise ValueError(f"resistance = {resistance!r}: must be a finite number >= 0")
+    given = kind, float(contrast), fraction, float(resistance)
+    found = _solve(*given, order or FIRST_ORDER)
     while order is None and found.order < HIGHEST_ORDER:
         reached = min(found.digits / ENOUGH[0], found.field_digits / ENOUGH[1])
         if reached >= 1:
             break
         # Digits grow in proportion to the order, as long as the spheres do not touch.
         step = math.ceil(found.order / max(reached, 0.4)) // 2 * 2 + 1
-        found = _solve(kind, float(contrast), fraction, min(max(step, found.order + 4), HIGHEST_ORDER))
+        found = _solve(*given, min(max(step, found.order + 4), HIGHEST_ORDER))
     if found.digits < digits:
         raise ValueError(
             f"fraction = {fraction}, contrast = {contrast}: at order {found.order} the {kind} array gives "
@@ -250,7 +261,7 @@ def _far(solution):
     return table
 
 
-def polarisability(contrast, degree):
+def polarisability(contrast, degree, resistance=0.0):
     """alpha_l of the module docstring.
 
     Parameters
@@ -258,21 +269,25 @@ def polarisability(contrast, degree):
     contrast : float
         Conductivity of the sphere over that of the matrix, infinity included.
     degree : (n,) int array
+    resistance : float
+        Of its surface, times the conductivity of the matrix over the radius.
 
     Returns
     -------
     (n,) float array
     """
     if math.isinf(contrast):
-        return np.ones(len(degree))
-    return degree * (contrast - 1) / (degree * contrast + degree + 1)
+        return (1 - resistance * degree) / (1 + resistance * (degree + 1))
+    # What the surface adds to the resistance of the sphere itself, for each degree.
+    more = contrast * resistance * degree
+    return degree * (contrast - 1 - more) / (degree * contrast + degree + 1 + (degree + 1) * more)
 
 
-def _solve(kind, contrast, fraction, order):
+def _solve(kind, contrast, fraction, resistance, order):
     r = radius(kind, fraction)
     degree, m = unknowns = _unknowns(order)
     sums, scale = lattice_sums(kind, 2 * order).total, r / NEAREST[kind]
-    matrix, alpha = _translation(unknowns, unknowns, sums, scale, scale), polarisability(contrast, degree)
+    matrix, alpha = _translation(unknowns, unknowns, sums, scale, scale), polarisability(contrast, degree, resistance)
     system = np.eye(len(degree)) - alpha[:, None] * matrix
     load = np.where(degree == 1, -alpha * r, 0.0)
     b = np.linalg.solve(system, load)
@@ -289,6 +304,7 @@ def _solve(kind, contrast, fraction, order):
     return SolvedArray(
         kind=kind,
         contrast=contrast,
+        resistance=resistance,
         radius=r,
         conductivity=float(ratio),
         order=order,

@@ -96,11 +96,15 @@ def _evaluate(solution, offsets, *, gradients):
 
 
 def _inside(solution, offsets, gradients):
-    degree, s = np.arange(len(solution.inner)), solution.contrast
-    factor = 1 - polarisability(s, degree)
+    degree, s, rho = np.arange(len(solution.inner)), solution.contrast, solution.resistance
+    factor = 1 - polarisability(s, degree, rho)
+    if rho > 0:
+        # The temperature jumps by what is left of it outside; nothing is left in perfect conductors.
+        factor = factor / (1 + s * rho * degree) if np.isfinite(s) else np.zeros(len(degree))
     if gradients:
-        # s (1 - alpha) = s (2l+1)/(l s + l + 1), finite also for perfectly conducting spheres.
-        factor = (2 * degree + 1) / np.maximum(degree + (degree + 1) / s, 1) if s > 0 else np.zeros(len(degree))
+        # s (2l+1)/(l s + (l + 1)(1 + s rho l)), finite also for perfectly conducting spheres.
+        below = degree + (degree + 1) / s + (degree + 1) * rho * degree if s > 0 else np.inf
+        factor = (2 * degree + 1) / np.maximum(below, 1)
         factor = factor / solution.radius
     table = factor[:, None] * solution.inner
     return _sum(_slopes(table) if gradients else [_doubled(table)], offsets / solution.radius)

@@ -10,6 +10,8 @@ from scipy.spatial import cKDTree
 
 from demheat.field import Samples
 from demheat.scene import Scene
+from demheat.scene.resistances import joined
+from references.fem import interfaces
 from references.fem.elements import at_quadrature, inverse, shapes
 from references.mesh import Mesh
 
@@ -89,10 +91,12 @@ class NodalField:
         return total / self.scene.volume
 
     def power(self):
-        """Conductivity times the square of the gradient, over the volume of the body, W K."""
+        """Conductivity times the square of the gradient over the volume of the body, and what interfaces take, W K."""
         total = 0.0
         for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
             total += float(self.conductivity[ids] @ np.einsum("bq,bqx->b", volumes, gradient**2))
+        if self.mesh.faces is not None:
+            total += interfaces.power(self.mesh, self.temperature, self.scene.gradient or np.zeros(3))
         return total
 
     def spread(self, points, amounts):
@@ -129,11 +133,31 @@ class NodalField:
         """Yield (slice, elements, local coordinates) for one chunk of points after the other."""
         for start in range(0, len(points), CHUNK):
             part = slice(start, start + CHUNK)
-            yield part, *self._locate(points[part])
+            found = self._locate(points[part])
+            yield part, *(found if self.mesh.faces is None else self._on_side(points[part], *found))
 
     @cached_property
     def _centers(self):
         return cKDTree(self.mesh.points[self.mesh.cells[:, :4]].mean(axis=1))
+
+    def _on_side(self, points, ids, X):
+        """The same, but for points whose own side of an interface begins beside their element: the nearest one there.
+
+        Elements miss a curved interface by a little, the temperature jumps there by much more.
+        """
+        sides = joined(self.scene)
+        wanted, own = sides[self.scene.phase_at(points)], sides[self.mesh.phase]
+        off = wanted != own[ids]
+        for side in np.unique(wanted[off]):
+            rows, among = np.flatnonzero(off & (wanted == side)), np.flatnonzero(own == side)
+            if not len(among):
+                continue
+            near = cKDTree(self._centers.data[among]).query(points[rows], min(NEAREST[0], len(among)))[1]
+            near = among[near.reshape(len(rows), -1)]
+            local = np.stack([_local(self.mesh, column, points[rows]) for column in near.T], axis=1)
+            best = np.argmax(np.minimum(local.min(axis=2), 1 - local.sum(axis=2)), axis=1)
+            ids[rows], X[rows] = near[np.arange(len(rows)), best], local[np.arange(len(rows)), best]
+        return ids, X
 
     @cached_property
     def _bounds(self):

@@ -16,7 +16,7 @@ from demheat.tensor import axis_loads
 from references.fem.estimate import estimated
 from references.fem.lookup import NodalField
 from references.fem.system import solve_loads
-from references.mesh import make
+from references.mesh import make, split
 from references.mesh.sizes import checked_size
 
 # Contrast up to which the flux is never off by more than the tolerance shows, and by how much it may be beyond: found
@@ -36,7 +36,8 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Spheres and layers, walls with temperatures and fluxes or a periodic cell; conductivity 0 is a pore.
+        Spheres and layers, whose surfaces may resist, walls with temperatures and fluxes or a periodic cell;
+        conductivity 0 is a pore.
     order : {1, 2}
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
@@ -61,7 +62,7 @@ def solve(
         If an argument is not as described, the load leaves the temperature open, or heat is forced where nothing takes
         it.
     NotImplementedError
-        If surfaces of the scene touch.
+        If surfaces of the scene touch, or resist beside pores.
     RuntimeError
         If meshing fails, the residual stays above the tolerance, or rounding drowns the flux at a contrast that is far
         too high.
@@ -110,7 +111,8 @@ def _solved(scenes, order, size, curved, tolerance):
     """The Field of each of some scenes that differ in their loads only."""
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
-        scene.require(steady=True)
+        text = "beside interfaces with a resistance finite elements take no pores"
+        scene.require(text, steady=True, pores=not scene.resistances.any(), resistance=True)
         if order == 1 and scene.domain == "box":
             _warn_of_gaps(scene, checked_size(scene, size, order))
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
@@ -132,7 +134,7 @@ def _warn_of_gaps(scene, size):
 
 def _answers(scenes, tolerance, **elements):
     """Solve on one mesh; `elements` are knobs of `references.mesh.make`."""
-    mesh = make(scenes[0], **elements)
+    mesh = split(scenes[0], make(scenes[0], **elements))
     # The order of BLAS's sums, and so the last bits, is that of its threads; here more of them gain nothing.
     solved = one_blas_thread()(solve_loads)(scenes, mesh, tolerance)
     kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"

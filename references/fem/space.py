@@ -12,6 +12,7 @@ from scipy.sparse import coo_matrix, csr_matrix
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet
 
+from references.fem import interfaces
 from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
 from references.fem.lookup import LOST, NodalField
 from references.fem.multigrid import prolongation
@@ -96,6 +97,8 @@ def tetrahedra(scene, mesh) -> Space:
     """
     count, dof = len(mesh.points), np.arange(len(mesh.points))
     stiffness, _ = assemble(mesh, scene.conductivities[mesh.phase], dof, np.zeros(count))
+    if mesh.faces is not None:
+        stiffness = (stiffness + interfaces.exchange(mesh, dof)).tocsr()
     mass, volumes = _mass(mesh, capacities(scene)[mesh.phase])
     lost = LOST if scene.domain == "box" else LOST_ON_ROUND if mesh.cells.shape[1] == 10 else LOST_ON_CHORDS
     # Distance of nodes that are neighbours.

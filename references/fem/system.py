@@ -15,7 +15,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from references.fem import islands
+from references.fem import interfaces, islands
 from references.fem.elements import assemble, assemble_loads, wall_weights
 from references.fem.multigrid import solve_free
 from references.mesh import twins
@@ -129,6 +129,9 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     if unit == 0:
         return [_at_rest(scenes[0], mesh, givens[0], found)]
     matrix, loads = assemble_loads(mesh, conductivity / unit, dof, [given.lift for given in givens])
+    if mesh.faces is not None:
+        # The known part does not jump there.
+        matrix = (matrix + interfaces.exchange(mesh, dof) / unit).tocsr()
     system = _Assembled(matrix, dof, unit, pores, found, time.perf_counter() - begin)
     kept = {}
     return [_solved(*each, mesh, system, tolerance, kept) for each in zip(scenes, givens, loads, strict=True)]

@@ -22,7 +22,7 @@ from references.fem.loads import Loads
 from references.fem.sources import check_sources
 from references.fem.space import tetrahedra
 from references.fem.trbdf2 import Clock, Problem, begin
-from references.mesh import make, make_round
+from references.mesh import make, make_round, split
 from references.times import checked_times
 
 # Cube root of the body's volume over the default edge: 2.5e4 unknowns at either order, each solved some hundred times.
@@ -83,12 +83,14 @@ def evolve(
     ValueError
         If an argument is not as described, the scene lacks what a transient needs, or a source leaves the body.
     NotImplementedError
-        For pores, inclusions or moving sources in round bodies, hexahedra where they do not fit, touching surfaces.
+        For pores, inclusions or moving sources in round bodies, hexahedra where they do not fit or surfaces resist,
+        touching surfaces.
     RuntimeError
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
     """
     check_scene(scene)
-    scene.require("heat would not move in pores; transients do without", steady=False, pores=False)
+    text = "heat would not move in pores; transients do without"
+    scene.require(text, steady=False, pores=False, resistance=True)
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -179,7 +181,7 @@ def _space(scene, elements, order, size, coarser):
         bounded = sum(shape.bounded for shape in scene.inclusions)
         size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     if scene.domain == "box":
-        return tetrahedra(scene, make(scene, size=size, order=order, coarser=coarser))
+        return tetrahedra(scene, split(scene, make(scene, size=size, order=order, coarser=coarser)))
     mesh = make_round(scene, size=coarser * size, order=order)
     return tetrahedra(scene, mesh)
 

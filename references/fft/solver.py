@@ -138,7 +138,9 @@ def solve_axes(
         If the load is another.
     """
     knobs = _checked(scheme, rule, precision, tolerance, max_iterations, threads)
-    return tuple(_solved(axis_loads(scene), voxels, knobs))
+    loads = axis_loads(scene)
+    _check_load(scene)
+    return tuple(_solved(loads, voxels, knobs))
 
 
 def _solved(scenes, voxels, knobs):

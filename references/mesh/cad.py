@@ -58,7 +58,9 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """
     check_scene(scene)
     flag("curved", curved)
-    scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
+    text = "sizes of elements are known on spheres and layers in a box"
+    # What surfaces resist does not change where they are.
+    scene.require(text, domain="box", shapes=(Sphere, Layer), resistance=True)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)

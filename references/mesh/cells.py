@@ -35,6 +35,21 @@ class Wall(NamedTuple):
     owners: np.ndarray
 
 
+class Faces(NamedTuple):
+    """Triangles between elements that an interface with a resistance parts, whose nodes stand once on either side.
+
+    Attributes
+    ----------
+    nodes : (t, 2, 3) or (t, 2, 6) int array
+        Of both sides, in the same places: corners, then the middles of the edges 01, 12, 02. On a face of a periodic
+        cell the places of the second are those of the first less the period.
+    resistance : (t,) float array, m2 K/W
+    """
+
+    nodes: np.ndarray
+    resistance: np.ndarray
+
+
 class Mesh(NamedTuple):
     """Tetrahedra of one scene.
 
@@ -53,6 +68,8 @@ class Mesh(NamedTuple):
         Node on a face "+" and its periodic twin on the face "-"; empty in a walled box.
     stats : mapping
         `size` used (m), `attempts`, `straightened` elements, smallest relative `jacobian`, `mesh_s`.
+    faces : Faces, optional
+        Where nodes were doubled, see `references.mesh.sides`.
     """
 
     points: np.ndarray
@@ -63,6 +80,7 @@ class Mesh(NamedTuple):
     walls: dict[str, Wall]
     pairs: np.ndarray
     stats: dict[str, object]
+    faces: Faces | None = None
 
 
 def snap(points, box, periodic):
@@ -128,7 +146,18 @@ def wall(points, cells, box, name):
         Of the face.
     """
     axis = "xyz".index(name[0])
-    on = points[:, axis] == (0.0 if name[1] == "-" else box[axis])
+    return triangles_on(cells, points[:, axis] == (0.0 if name[1] == "-" else box[axis]))
+
+
+def triangles_on(cells, on) -> Wall:
+    """All faces of tetrahedra with three corners among some nodes.
+
+    Parameters
+    ----------
+    cells : (m, 4) or (m, 10) int array
+    on : (n,) bool array
+        Which nodes.
+    """
     triangles, owners = [], []
     for a, b, c in combinations(range(4), 3):
         mine = np.flatnonzero(on[cells[:, a]] & on[cells[:, b]] & on[cells[:, c]])

@@ -62,14 +62,15 @@ def arrange(scene, *, any_matrix=False) -> Arrangement:
         that a wall cuts (but not through the centre), a matrix of no conductivity.
     """
     gradient, level = _load(scene)
-    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False)
+    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, resistance=True)
     k = scene.matrix.conductivity
     if k == 0 and not any_matrix:
         raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")
     centers = np.array([sphere.center for sphere in scene.inclusions]).reshape(-1, 3)
     radii = np.array([sphere.radius for sphere in scene.inclusions]).reshape(-1)
     contrasts = np.array([sphere.material.conductivity for sphere in scene.inclusions]) / (k if k > 0 else 1.0)
-    spheres = unmirrored(centers, radii, contrasts, np.array(scene.size))
+    resistances = scene.resistances[1:] * k / radii
+    spheres = unmirrored(centers, radii, contrasts, np.array(scene.size), resistances)
     if not scene.periodic:
         spheres = _with_images(spheres)
     unit = 2 * float(radii.max()) if len(radii) else max(scene.size) / 2
@@ -150,9 +151,10 @@ def _with_images(spheres):
         # A sphere centred on a mirror is its own image there.
         kept = np.flatnonzero(~np.any(centred & flip, axis=1))
         image = np.where(flip, 2 * size - centers[kept], centers[kept])
-        parts.append((image, spheres.radii[kept], spheres.contrasts[kept], kept, np.tile(flip, (len(kept), 1))))
-    centers, radii, contrasts, original, flips = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return Spheres(centers, radii, contrasts, size * np.where(axes, 2, 1), original, flips)
+        same = (column[kept] for column in (spheres.radii, spheres.contrasts, spheres.resistances))
+        parts.append((image, *same, kept, np.tile(flip, (len(kept), 1))))
+    *columns, original, flips = (np.concatenate(part) for part in zip(*parts, strict=True))
+    return Spheres(*columns, size * np.where(axes, 2, 1), original, flips)
 
 
 def _centred_on_walls(spheres, slack):
@@ -179,6 +181,7 @@ def _symmetric(spheres, axis, slack):
         same = np.abs(mirrored[i] - spheres.centers[near]).max(axis=1, initial=0.0) <= slack
         same &= np.abs(spheres.radii[i] - spheres.radii[near]) <= slack
         same &= spheres.contrasts[i] == spheres.contrasts[near]
+        same &= np.abs(spheres.resistances[i] - spheres.resistances[near]) <= SAME * spheres.resistances[i]
         if not same.any():
             return False
     return True

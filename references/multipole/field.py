@@ -93,11 +93,13 @@ class Evaluator:
 def _regular(spheres, solved):
     """Coefficients inside: c + b = c (2l+1)/(l s + l + 1), without the cancellation of the sum at high contrast.
 
-    Without the value that the mean gradient has at the centre: `Evaluator` adds it.
+    Where the surface has a resistance rho they are (c + b)/(1 + s rho l), see `references.exact.lattice`. Without the
+    value that the mean gradient has at the centre: `Evaluator` adds it.
     """
     n, _ = entries(solved.order)
     root = scales(np.ones(1), solved.order).made
-    factor = (2 * n + 1) / (n * spheres.contrasts[:, None] + n + 1)
+    s, rho = spheres.contrasts[:, None], spheres.resistances[:, None]
+    factor = (2 * n + 1) / (n * s + n + 1 + (n + 1) * n * s * rho)
     return complex_table(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
 
 

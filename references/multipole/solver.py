@@ -43,8 +43,8 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Spheres may differ in radius and conductivity; they may cross the faces of a periodic cell, walls may cut them
-        in halves only.
+        Spheres may differ in radius, conductivity and resistance of the surface; they may cross the faces of a
+        periodic cell, walls may cut them in halves only.
     order : int, optional
         Highest degree of the multipoles. By default it is raised until the conductivity is known to `accuracy`. With
         an order given nothing is refused: `stats["truncation"]` says what error remains.
@@ -76,7 +76,7 @@ def solve(
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     check_scene(scene)
-    scene.require(steady=True)
+    scene.require(steady=True, resistance=True)
     wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
     return _solved(scene, points_per_axis, wanted)
 

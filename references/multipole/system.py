@@ -159,7 +159,8 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
     """
     n, _ = entries(order)
     count, signs = spheres.count, mirror_signs(spheres, gradient, order)
-    alpha = np.stack([polarisability(s, n) for s in spheres.contrasts[:count]])
+    own = zip(spheres.contrasts[:count], spheres.resistances[:count], strict=True)
+    alpha = np.stack([polarisability(s, n, resistance) for s, resistance in own])
     applied = uniform(spheres, gradient, order)[:, :count]
     shape = applied.shape
 

@@ -48,13 +48,14 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
     ValueError
         If there is no sphere or not all spheres are of one material, or the order is too high for memory or precision.
     NotImplementedError
-        For walls, layers, nested spheres.
+        For walls, layers, nested spheres, surfaces with a resistance.
     RuntimeError
         If the order that the gaps and radii ask for is too high.
     """
     check_scene(scene)
     if not scene.periodic:
         raise NotImplementedError("multipole: walls; zeta_2 is that of a periodic cell")
+    scene.require("multipole: zeta_2 is of two phases, without interfaces of their own")
     spheres, _, _, unit = arrange(scene, any_matrix=True)
     if len(set(spheres.contrasts.tolist())) != 1:
         raise ValueError(

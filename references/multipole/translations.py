@@ -32,6 +32,8 @@ class Spheres(NamedTuple):
     radii : (n,) float array, length
     contrasts : (n,) float array
         Conductivity over that of the matrix.
+    resistances : (n,) float array
+        Of their surfaces, times the conductivity of the matrix over the radius.
     size : (3,) float array, length
         Of the cell.
     original : (n,) int array
@@ -43,6 +45,7 @@ class Spheres(NamedTuple):
     centers: np.ndarray
     radii: np.ndarray
     contrasts: np.ndarray
+    resistances: np.ndarray
     size: np.ndarray
     original: np.ndarray
     flips: np.ndarray
@@ -53,7 +56,7 @@ class Spheres(NamedTuple):
         return int(self.original.max(initial=-1)) + 1
 
 
-def unmirrored(centers, radii, contrasts, size) -> Spheres:
+def unmirrored(centers, radii, contrasts, size, resistances=None) -> Spheres:
     """Spheres of a cell without mirror images.
 
     Parameters
@@ -64,12 +67,16 @@ def unmirrored(centers, radii, contrasts, size) -> Spheres:
         Conductivity over that of the matrix.
     size : (3,) float array, length
         Of the cell.
+    resistances : (n,) float array, optional
+        Of their surfaces, times the conductivity of the matrix over the radius; 0 by default.
 
     Returns
     -------
     Spheres
     """
-    return Spheres(centers, radii, contrasts, size, np.arange(len(radii)), np.zeros((len(radii), 3), dtype=bool))
+    resistances = np.zeros(len(radii)) if resistances is None else resistances
+    flips = np.zeros((len(radii), 3), dtype=bool)
+    return Spheres(centers, radii, contrasts, resistances, size, np.arange(len(radii)), flips)
 
 
 class Translation(NamedTuple):

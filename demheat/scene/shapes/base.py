@@ -10,7 +10,8 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene.material import Material
+from demheat.scene.inputs import moderate, number
+from demheat.scene.material import WITHIN, Material
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
@@ -27,7 +28,8 @@ class Shape(ABC):
 
     - the fields `center`, three floats, and `material`; a shape without a centre overrides what uses it: `images`
       and `point_in`;
-    - `distance` and `normal` of (n, 3) points, `bounds`, `volume` and `turned`, as described below.
+    - `distance` and `normal` of (n, 3) points, `bounds`, `volume` and `turned`, as described below;
+    - if heat may meet a resistance on its surface, the field `resistance`, by keyword, see `check_resistance`.
 
     Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
     along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
@@ -42,6 +44,8 @@ class Shape(ABC):
 
     center: tuple[float, float, float]
     material: Material
+    # Of its surface towards whatever it lies in, m2 K/W: what heat that crosses it meets besides both sides.
+    resistance: float = 0.0
     # Whether it is all of the box of its `bounds`.
     fills_bounds = False
     # Whether it is all of its `ball`: balls are looked at all at once.
@@ -196,6 +200,17 @@ class Shape(ABC):
         if not periodic and np.any((low < -slack) | (high > np.array(size) + slack)):
             raise NotImplementedError(f"no closed form for the volume of a {self.kind} at {self.center} cut by a wall")
         return self.volume
+
+
+def check_resistance(shape: Shape) -> None:
+    """Check and cast the resistance of a shape's surface, m2 K/W, or raise ValueError.
+
+    Parameters
+    ----------
+    shape : Shape
+        With a field `resistance`.
+    """
+    number(shape, "resistance", f"a finite number >= 0 m2 K/W{WITHIN}", lambda v: v >= 0 and moderate(v))
 
 
 def nearest(offsets: np.ndarray, period: np.ndarray | None) -> np.ndarray:

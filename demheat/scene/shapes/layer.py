@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from demheat.scene.inputs import number, whole
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import TOUCH, Shape
+from demheat.scene.shapes.base import TOUCH, Shape, check_resistance
 
 
 @dataclass(frozen=True)
@@ -22,12 +22,16 @@ class Layer(Shape):
     axis : {0, 1, 2}
     start, stop : float, m
     material : Material
+    resistance : float, m2 K/W
+        Of its surface towards whatever it lies in: the temperature jumps there by so many times the flux across it.
+        0 is a perfect interface. Both faces have it; one on a wall is none.
     """
 
     axis: int
     start: float
     stop: float
     material: Material
+    resistance: float = field(default=0.0, kw_only=True)
 
     fills_bounds = True
 
@@ -36,6 +40,7 @@ class Layer(Shape):
         number(self, "start", "a finite number of metres")
         number(self, "stop", f"a finite number > start = {self.start}", lambda v: v > self.start)
         check_material("Layer.material", self.material)
+        check_resistance(self)
 
     def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Which points lie inside or on a face; see `Shape.contains`."""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from demheat.scene.inputs import number, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import Shape, nearest
+from demheat.scene.shapes.base import Shape, check_resistance, nearest
 
 
 @dataclass(frozen=True)
@@ -22,11 +22,15 @@ class Sphere(Shape):
     center : (3,) sequence of float, m
     radius : float, m
     material : Material
+    resistance : float, m2 K/W
+        Of its surface towards whatever it lies in: the temperature jumps there by so many times the flux across it.
+        0 is a perfect interface.
     """
 
     center: tuple[float, float, float]
     radius: float
     material: Material
+    resistance: float = field(default=0.0, kw_only=True)
 
     fills_ball = True
 
@@ -34,6 +38,7 @@ class Sphere(Shape):
         object.__setattr__(self, "center", vector("Sphere.center", self.center))
         number(self, "radius", "a finite number > 0 m", lambda v: v > 0)
         check_material("Sphere.material", self.material)
+        check_resistance(self)
 
     def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Which points lie inside or on the surface; see `Shape.contains`."""

@@ -85,8 +85,8 @@ def reduced(scene: Scene) -> Reduced:
     NotImplementedError
         If the scene has sources or a round body.
     """
-    planes = mirrors(scene)
-    scene.require(steady=True)
+    planes = _clear(scene, mirrors(scene))
+    scene.require(steady=True, resistance=True)
     cut = _along(scene, planes) if scene.periodic else _between(scene, planes)
     if not any(cut):
         return Reduced(scene, scene, (1, 1, 1), (0.0, 0.0, 0.0))
@@ -141,6 +141,21 @@ def unfold(part: Reduced, points) -> Unfolded:
         if whole.periodic:
             rise = rise + whole.gradient[axis] * size[axis] * turns[:, axis]
     return Unfolded(inside, sign, rise, signs * sign[:, None])
+
+
+def _clear(scene, planes):
+    """The planes, None for one on which layers with a resistance meet: a wall there would not have it."""
+    found = list(planes)
+    for layer in scene.inclusions:
+        if layer.bounded or not layer.resistance or found[layer.axis] is None:
+            continue
+        length, plane = scene.size[layer.axis], found[layer.axis]
+        # In a periodic cell there is another plane half a period on.
+        step = length / 2 if scene.periodic else length
+        away = [abs((face - plane) - step * round((face - plane) / step)) for face in (layer.start, layer.stop)]
+        if min(away) <= SAME * max(scene.size):
+            found[layer.axis] = None
+    return tuple(found)
 
 
 def _loaded_axis(scene):

@@ -1,8 +1,9 @@
 """Which turns and mirrors take a body to itself: mirror planes at which it can be cut, axes that conduct alike.
 
-The body is the box with its inclusions and their materials, without its load. Coordinates and radii count as the same
-within 1e-12 of the box, the rounding of what users type or work out, and nothing else does: a sphere moved by a
-millionth of the box breaks a symmetry. Symmetries are looked for among the turns and mirrors that take axes to axes.
+The body is the box with its inclusions, their materials and the resistances of their surfaces, without its load.
+Coordinates and radii count as the same within 1e-12 of the box, the rounding of what users type or work out, and
+nothing else does: a sphere moved by a millionth of the box breaks a symmetry. Symmetries are looked for among the turns
+and mirrors that take axes to axes.
 """
 
 from __future__ import annotations
@@ -32,7 +33,7 @@ class _Body(NamedTuple):
     radius : (n,) float array, m
         Of a layer half its thickness.
     material : (n,) int array
-        Equal numbers for equal materials.
+        Equal numbers for equal materials and equal resistances of the surface.
     normal : (n,) int array
         Of a layer; -1 for a sphere.
     size : (3,) float array, m
@@ -121,7 +122,8 @@ def _body(scene):
         radius.append((shape.stop - shape.start) / 2 if layer else shape.radius)
         normal.append(shape.axis if layer else -1)
     numbers = {}
-    material = [numbers.setdefault(shape.material, len(numbers)) for shape in scene.inclusions]
+    kinds = [(shape.material, shape.resistance) for shape in scene.inclusions]
+    material = [numbers.setdefault(kind, len(numbers)) for kind in kinds]
     columns = np.array(radius, float), np.array(material, int), np.array(normal, int)
     return _Body(np.array(center, float).reshape(-1, 3), *columns, np.array(scene.size), scene.periodic)
 

@@ -1,0 +1,64 @@
+"""What passes interfaces with a resistance: the jump of the temperature over it, between the nodes of both sides.
+
+With [T] the jump across the interface its share of the weak form is the integral of [T] [v] / R.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_matrix, csr_matrix
+from skfem.quadrature import get_quadrature
+from skfem.refdom import RefTri
+
+from references.fem.elements import shapes
+
+# Exact for products of two quadratics on plane triangles; on curved ones, whose area is no polynomial, as good as that
+# of the volumes beside them.
+DEGREE = 6
+
+
+def exchange(mesh, dof) -> csr_matrix:
+    """Matrix of the heat that passes from side to side, (n, n) CSR, W/K.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        With `faces`.
+    dof : (n,) int array
+        Row and column of each node.
+    """
+    values, parts = _parts(mesh)
+    products = (values[:, :, None] * values[:, None, :]).reshape(len(values), -1)
+    one = (parts @ products).reshape(len(parts), values.shape[1], -1)
+    blocks = np.block([[one, -one], [-one, one]])
+    rows = dof[mesh.faces.nodes.reshape(len(parts), -1)]
+    i, j = (np.broadcast_to(index, blocks.shape).ravel() for index in (rows[:, :, None], rows[:, None, :]))
+    return coo_matrix((blocks.ravel(), (i, j)), shape=(len(mesh.points),) * 2).tocsr()
+
+
+def power(mesh, temperature, gradient) -> float:
+    """Integral of [T]^2 / R, W K.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        With `faces`.
+    temperature : (n,) float array, K
+        At the nodes.
+    gradient : (3,) float array, K/m
+        Mean one of a periodic cell, across whose faces the temperature rises by it.
+    """
+    values, parts = _parts(mesh)
+    rest = temperature - mesh.points @ np.asarray(gradient)
+    here, there = np.swapaxes(rest[mesh.faces.nodes], 0, 1)
+    return float(np.einsum("tq,tq->", parts, ((here - there) @ values.T) ** 2))
+
+
+def _parts(mesh):
+    """Shape functions at points of triangles, (q, k), and area over resistance there, (t, q) float array, W/K."""
+    here = mesh.faces.nodes[:, 0]
+    X, weights = get_quadrature(RefTri, DEGREE)
+    values, slopes = shapes(here.shape[1], X)
+    tangents = np.einsum("tnx,qnk->tqkx", mesh.points[here], slopes, optimize=True)
+    area = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
+    return values, area / mesh.faces.resistance[:, None]
