@@ -86,7 +86,8 @@ class Laguerre:
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
         if self.conforming and scene.inclusions:
-            scene.require("inclusions there have no conforming packing; pass conforming=False", domain="box")
+            what = "inclusions there have no conforming packing; pass conforming=False"
+            scene.require(what, domain="box", exchange=True)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -145,11 +146,13 @@ class _Contacts:
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
         if self.wall == "surface":
-            scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
+            what = "wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'"
+            scene.require(what, walls="flat", exchange=True)
         else:
             scene.require(
                 f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"
-                " where two held walls meet, one particle would join them; use wall 'surface'",
+                " where two held walls meet, one particle would join them, and no surface is left to exchange heat; use"
+                " wall 'surface'",
                 walls="isothermal ones apart",
             )
 

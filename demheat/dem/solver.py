@@ -12,7 +12,7 @@ from demheat.build import network_of, networks_of
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import check_solver, solve_checked
-from demheat.conduction.transient import check_callables
+from demheat.conduction.transient import check_callables, check_integrator
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import asked
@@ -76,8 +76,8 @@ def solve(
     TypeError
         If neither `solve` nor the law knows a keyword.
     NotImplementedError
-        For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for replicas between
-        walls with such a law.
+        For temperatures on walls that meet, or heat exchanged with surroundings, with wall "center" and a law other
+        than "laguerre"; for replicas between walls with such a law.
     RuntimeError
         If the solver does not converge.
 
@@ -91,7 +91,7 @@ def solve(
     check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=True)
+    scene.require(steady=True, exchange=True)
     law.check(scene)
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
@@ -223,14 +223,15 @@ def evolve(
         If neither `evolve` nor the law knows a keyword.
     NotImplementedError
         For contact laws with wall "surface" where a round wall is loaded or the body a sphere, and for conforming
-        packings of inclusions in round bodies.
+        packings of inclusions in round bodies; for implicit integrators where a wall radiates.
     RuntimeError
         If steps or linear solves do not converge.
     """
     check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=False)
+    scene.require(steady=False, exchange=True)
+    check_integrator(scene, integrator)
     law.check(scene)
     wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))

@@ -1,4 +1,7 @@
-"""What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others."""
+"""What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others.
+
+At walls that exchange heat with surroundings it knows both: the surface's temperature and the heat that comes in there.
+"""
 
 from typing import NamedTuple
 
@@ -24,7 +27,9 @@ class Edges(NamedTuple):
     slopes : (m,) float array, K/m
         Of the whole temperature along the normal, on the cell's side.
     held : (m,) bool array
-        Where the value is what is known; elsewhere, at walls with a flux or none, it is the slope.
+        Where the value is known: not at walls with a flux or none.
+    sloped : (m,) bool array
+        Where the slope is known: at these, and at walls that exchange heat.
     """
 
     start: np.ndarray
@@ -33,6 +38,7 @@ class Edges(NamedTuple):
     values: np.ndarray
     slopes: np.ndarray
     held: np.ndarray
+    sloped: np.ndarray
 
 
 def edges_of(scene, network, solution):
@@ -54,7 +60,7 @@ def edges_of(scene, network, solution):
     """
     parts = _interfaces(scene, network, solution), _walls(scene, network, solution)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
-    owner, _, _, values, slopes, _ = columns
+    owner, _, _, values, slopes, _, _ = columns
     kept = np.isfinite(values) & np.isfinite(slopes)
     order = np.flatnonzero(kept)[np.argsort(owner[kept], kind="stable")]
     count = np.bincount(owner[order], minlength=len(network.volumes))
@@ -77,14 +83,16 @@ def _interfaces(scene, network, solution):
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])
-    return tuple(column[on] for column in (row, place, normal, value, slope, np.ones(len(row), dtype=bool)))
+    known = np.ones(len(row), dtype=bool)
+    return tuple(column[on] for column in (row, place, normal, value, slope, known, ~known))
 
 
 def _walls(scene, network, solution):
     cell, k = network.wall_particle.astype(np.int64), scene.conductivities[network.phase]
-    normal, imposed = wall_normals(network), [SIDES.index(name) for name in scene.wall_temperatures]
+    normal, sides = wall_normals(network), network.wall_side
     place = network.centers[cell] + network.wall_distance[:, None] * normal
-    held = np.isin(network.wall_side, imposed)
+    held = np.isin(sides, [SIDES.index(name) for name in scene.imposed_temperatures])
+    sloped = ~np.isin(sides, [SIDES.index(name) for name in scene.wall_temperatures])
     passing = k[cell] * network.wall_area
     slope = np.divide(solution.wall_heat, passing, out=np.full(len(cell), np.nan), where=passing > 0)
-    return cell, place, normal, solution.wall_temperature, slope, held
+    return cell, place, normal, solution.wall_temperature, slope, held, sloped

@@ -2,10 +2,10 @@
 
 A moving least squares fit (Lancaster and Salkauskas 1981) of the temperatures of a cell, its neighbours and theirs,
 reached over facets within one phase only, so that nothing is fitted across an interface; and of what the network knows
-at the phase's edges: temperatures on interfaces and held walls, slopes at the others. What is fitted is the difference
-from the cell's own linear temperature, whose gradient makes the cell's flux exact for linear fields: where there are
-too few cells for a quadratic, that is what remains. A jump within a cell, as at a wall heated at once, overshoots by a
-quarter of it.
+at the phase's edges: temperatures on interfaces and held walls, slopes at the others, both at walls that exchange heat
+with surroundings. What is fitted is the difference from the cell's own linear temperature, whose gradient makes the
+cell's flux exact for linear fields: where there are too few cells for a quadratic, that is what remains. A jump within
+a cell, as at a wall heated at once, overshoots by a quarter of it.
 """
 
 import numpy as np
@@ -110,12 +110,12 @@ class Reconstruction:
         level, slope = self.temperature[seed][:, None], self.slope[seed]
         edge, offset, away = self._nearest(points, self.edges.places, edges, EDGES)
         weight, scaled = _weight(away / reach), offset / reach[..., None]
-        held, normal = self.edges.held[edge], self.edges.normals[edge]
+        held, sloped, normal = self.edges.held[edge], self.edges.sloped[edge], self.edges.normals[edge]
         values = self.edges.values[edge] - level - _along(slope, offset + from_seed[:, None])
         slopes = reach * (self.edges.slopes[edge] - _along(slope + self.gradient, normal))
         return [
             (_basis(scaled), np.where(held, VALUE * weight, 0.0), values),
-            (_directed(scaled, normal), np.where(held, 0.0, SLOPE * weight), slopes),
+            (_directed(scaled, normal), np.where(sloped, SLOPE * weight, 0.0), slopes),
         ]
 
     def _nearest(self, points, places, chosen, most):

@@ -36,7 +36,8 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Spheres and layers, walls with temperatures and fluxes or a periodic cell; conductivity 0 is a pore.
+        Spheres and layers, walls with temperatures, fluxes, convection and radiation or a periodic cell; conductivity
+        0 is a pore.
     order : {1, 2}
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
@@ -110,7 +111,7 @@ def _solved(scenes, order, size, curved, tolerance):
     """The Field of each of some scenes that differ in their loads only."""
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
-        scene.require(steady=True)
+        scene.require(steady=True, exchange=True)
         if order == 1 and scene.domain == "box":
             _warn_of_gaps(scene, checked_size(scene, size, order))
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
@@ -181,7 +182,7 @@ def _check_rounding(solution, mean_flux, wall_temperature, tolerance):
         return
     if scene.periodic:
         worked = -float(np.array(scene.gradient) @ mean_flux)
-    elif len(scene.walls) == 2 and len({name[0] for name in scene.walls}) == 1:
+    elif len(scene.walls) == 2 and len({name[0] for name in scene.walls}) == 1 and not scene.wall_exchanges:
         one, other = wall_temperature.values()
         worked = abs(float(mean_flux[scene.axis])) * abs(one - other) / scene.size[scene.axis]
     else:

@@ -88,7 +88,7 @@ def evolve(
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
     """
     check_scene(scene)
-    scene.require("heat would not move in pores; transients do without", steady=False, pores=False)
+    scene.require("heat would not move in pores; transients do without", steady=False, pores=False, exchange=True)
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -119,8 +119,9 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
-    blocks = (matrix[free][:, free] for matrix in (space.mass, space.stiffness))
-    inverse = space.separable(free) if space.separable and len(free) else None
+    blocks = (matrix[free][:, free] for matrix in (space.mass, loads.stiffness))
+    # Films make the equations of the axes more than sums of products.
+    inverse = space.separable(free) if space.separable and len(free) and not loads.films.walls else None
     solver = Shifted(*blocks, space.quadratic(free), tolerance, inverse)
     problem = Problem(loads, solver, free)
     ticks, begun = Clock(problem, accuracy, step), clock.perf_counter()
@@ -154,7 +155,7 @@ def _field(scene, problem, state, initial, stats, estimator):
     error = abs(change - sum(heats.values())) / state.turnover if state.turnover else abs(change)
     rates = dict(zip(loads.names, state.rates.tolist(), strict=True))
     walls = dict(loads.at(state.time).wall_temperature)
-    for name in scene.wall_fluxes:
+    for name in (*scene.wall_fluxes, *scene.wall_exchanges):
         weights = space.walls[name].weights
         walls[name] = float(weights @ state.temperature / weights.sum()) + loads.level
     return Field(

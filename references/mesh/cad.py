@@ -58,7 +58,8 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """
     check_scene(scene)
     flag("curved", curved)
-    scene.require("sizes of elements are known on spheres and layers in a box", domain="box", shapes=(Sphere, Layer))
+    what = "sizes of elements are known on spheres and layers in a box"
+    scene.require(what, domain="box", shapes=(Sphere, Layer), exchange=True)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)

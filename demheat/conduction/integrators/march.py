@@ -182,10 +182,10 @@ def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=
     iterator of State
     """
     accuracy, step = float(accuracy), None if step is None else float(step)
-    rates, needed = spectrum_of(system), pace.steps(times[-1])
+    rates, needed = spectrum_of(system.bound or system), pace.steps(times[-1])
     if integrator == "auto":
-        moving, outputs = len(pace.longest) > 0, max(len(times), needed)
-        integrator = choose.chosen(rates, float(times[-1]), accuracy, outputs, moving=moving)
+        among = {"moving": len(pace.longest) > 0, "linear": system.radiation is None}
+        integrator = choose.chosen(rates, float(times[-1]), accuracy, max(len(times), needed), **among)
     method = METHODS[integrator]
     largest = method.largest_step(rates)
     if step is not None and step > largest * (1 + 1e-12):

@@ -149,7 +149,8 @@ def _loaded_axis(scene):
         along = np.flatnonzero(scene.gradient)
         return int(along[0]) if len(along) == 1 else None
     names = sorted(scene.walls)
-    return scene.axis if not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0] else None
+    held = len(scene.wall_temperatures) == len(names)
+    return scene.axis if held and len(names) == 2 and names[0][0] == names[1][0] else None
 
 
 def _along(scene, planes):
