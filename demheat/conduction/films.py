@@ -61,7 +61,16 @@ class Films(NamedTuple):
 
 
 def in_series(one, other):
-    """Conductance of two in series, either may be 0 or infinite; not both are infinite."""
+    """Conductance of two in series; either may be 0, the first infinite.
+
+    Parameters
+    ----------
+    one, other : (w,) float arrays, W/K
+
+    Returns
+    -------
+    (w,) float array, W/K
+    """
     whole = one + other
     part = np.divide(one, whole, out=np.zeros(len(whole)), where=np.isfinite(whole) & (whole > 0))
     return np.where(np.isinf(one), other, part * other)

@@ -5,7 +5,6 @@ from functools import partial
 import numpy as np
 
 from demheat.conduction.films import loaded_areas, radiating_walls, with_convection
-from demheat.conduction.integrators.choose import IMPLICIT
 from demheat.conduction.integrators.march import march
 from demheat.conduction.integrators.pace import pace_of
 from demheat.conduction.integrators.system import semi_discrete
@@ -82,22 +81,6 @@ def changing_loads(scene):
         for name, load in (scene.walls or {}).items()
         if callable(driver(load))
     ]
-
-
-def check_integrator(scene, integrator):
-    """Raise NotImplementedError if an integrator cannot march a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    integrator : str
-        One of `choose.INTEGRATORS`.
-    """
-    if scene.radiates and integrator in IMPLICIT:
-        raise NotImplementedError(
-            f"integrator = {integrator!r} and a wall that radiates: its stages are linear equations, and the fourth "
-            "power is not; use 'rkl2' or 'euler', which ask for the heat at each stage, or 'auto'"
-        )
 
 
 def check_callables(scene):

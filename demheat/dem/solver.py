@@ -9,10 +9,11 @@ from functools import partial
 import numpy as np
 
 from demheat.build import network_of, networks_of
+from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import check_solver, solve_checked
-from demheat.conduction.transient import check_callables, check_integrator
+from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import asked
@@ -231,7 +232,8 @@ def evolve(
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(steady=False, exchange=True)
-    check_integrator(scene, integrator)
+    if scene.radiates:
+        check_linear(integrator)
     law.check(scene)
     wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))

@@ -88,3 +88,18 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False, linear=True):
     for name in () if linear else IMPLICIT:
         del work[name]
     return min(work, key=work.get)
+
+
+def check_linear(integrator):
+    """Raise NotImplementedError if an integrator cannot march what is not linear, as radiation is not.
+
+    Parameters
+    ----------
+    integrator : str
+        One of `INTEGRATORS`.
+    """
+    if integrator in IMPLICIT:
+        raise NotImplementedError(
+            f"integrator = {integrator!r} and a wall that radiates: its stages are linear equations, and the fourth "
+            "power is not; use 'rkl2' or 'euler', which ask for the heat at each stage, or 'auto'"
+        )

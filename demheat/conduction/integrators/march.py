@@ -162,6 +162,8 @@ def integrate(
     ------
     ValueError
         If an argument is not as described, or `step` is above the stable limit of explicit Euler.
+    NotImplementedError
+        If walls radiate and the integrator is implicit.
     RuntimeError
         If steps or linear solves do not converge.
     """
@@ -182,6 +184,8 @@ def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=
     iterator of State
     """
     accuracy, step = float(accuracy), None if step is None else float(step)
+    if system.radiation is not None:
+        choose.check_linear(integrator)
     rates, needed = spectrum_of(system.bound or system), pace.steps(times[-1])
     if integrator == "auto":
         among = {"moving": len(pace.longest) > 0, "linear": system.radiation is None}
