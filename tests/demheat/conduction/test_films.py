@@ -103,6 +103,8 @@ def test_slab_that_radiates(hot, around, solver):
     assert_allclose(field.wall_temperature["x+"], right, rtol=1e-10)
     assert_allclose(field.wall_heat["x+"], 0.98 * STEFAN_BOLTZMANN * (around**4 - right**4) * 0.01, rtol=1e-9)
     assert field.stats["residual"] <= 1e-12 and 1 < field.stats["rounds"] <= 15
+    flux = halo_flux(field, ratio=3.0, walls="mirror", at=[[0.1, 0.05, 0.05], [0.099, 0.01, 0.05]])
+    assert_allclose(flux[:, 0], 555.63 * (hot - right), rtol=1e-6)
 
 
 def test_radiation_alone_balances_a_flux():

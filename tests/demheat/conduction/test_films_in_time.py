@@ -1,6 +1,7 @@
 """Convection and radiation at walls in time: the DEM against series with Biot numbers and lumped bodies."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -9,7 +10,7 @@ from numpy.testing import assert_allclose
 from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, UniformSource, evolve, solve
 from demheat.packing.cache import relaxed
 from demheat.scene import STEFAN_BOLTZMANN
-from references import series
+from references import fem, series
 
 UNIT = Material(1.0, 1.0, 1.0)
 BOX = (1.0, 1.0, 1.0)
@@ -27,18 +28,30 @@ def off(field, right):
     return math.sqrt(volumes @ (temperature - right.temperature_at(points)) ** 2 / volumes.sum())
 
 
-@pytest.mark.parametrize("integrator", ["auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid"])
-@pytest.mark.parametrize("walls", [{"y-": 1.0, "y+": Convection(2.0, 0.0)}, {"y-": Convection(0.7, 1.0)}])
+@pytest.mark.parametrize(
+    ("walls", "integrator"),
+    [
+        *(
+            ({"y-": 1.0, "y+": Convection(2.0, 0.0)}, name)
+            for name in ("euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
+        ),
+        ({"y-": Convection(0.7, 1.0)}, "auto"),
+    ],
+)
 def test_slab_with_convection_against_the_series(walls, integrator):
     scene, times = Scene(BOX, UNIT, walls=walls, initial=0.0), [0.05, 0.3]
     for field, right in zip(
         evolve(scene, times, particles=1000, integrator=integrator), series.evolve(scene, times), strict=True
     ):
-        # Second order in the spacing of .1 against a front of .3 to .5, and an accuracy of 1e-3; found .002 at most.
+        # Second order in the spacing of .1 before a front of .3, and less of it later: h^2 / 8 times a curvature of 5;
+        # and of the heat, of which explicit steps err most at first.
         assert off(field, right) < 0.008
         for name in walls:
             assert_allclose(field.wall_temperature[name], right.wall_temperature[name], atol=0.02)
-            assert_allclose(field.wall_heat[name], right.wall_heat[name], rtol=0.06)
+            largest = max(map(abs, right.wall_heat.values()))
+            assert_allclose(
+                field.wall_heat[name], right.wall_heat[name], atol=(0.1 if field.time < 0.1 else 0.06) * largest
+            )
     assert field.stats["energy_error"] < 1e-10
 
 
@@ -52,11 +65,11 @@ def test_its_error_falls_at_second_order():
 
 def test_surroundings_that_change():
     """A lumped body follows its surroundings' ramp with a lag of its time constant, here 0.5 s."""
-    scene = Scene(BOX, Material(1e4, 1.0, 1.0), walls={"x-": Convection(2.0, lambda t: 3.0 * t)}, initial=0.0)
-    field = last(scene, [1.0], particles=300, accuracy=1e-5)
+    scene = Scene(BOX, Material(1e3, 1.0, 1.0), walls={"x-": Convection(2.0, lambda t: 3.0 * t)}, initial=0.0)
+    field = last(scene, [1.0], particles=100, accuracy=1e-4)
     right = 3.0 * (1.0 - 0.5 + 0.5 * math.exp(-2.0))
-    # The body is as warm as one, but for a Biot number of 2e-4.
-    assert_allclose(field.samples.temperature, right, atol=3e-4 * 3.0)
+    # The body is as warm as one, but for a Biot number of 2e-3.
+    assert_allclose(field.samples.temperature, right, atol=2e-3 * 3.0)
     assert_allclose(field.wall_heat["x-"], 2.0 * (3.0 - field.wall_temperature["x-"]), rtol=1e-12)
 
 
@@ -116,6 +129,30 @@ def test_steps_of_radiation_halve(integrator, counts, order):
     errors = [np.sqrt(np.mean((warmth(integrator, count) - right) ** 2)) for count in counts]
     # Of a span of 900 K; an order less a tenth of it.
     assert errors[2] < 0.1 and all(a / b > 2 ** (0.9 * order) for a, b in zip(errors[:-1], errors[1:], strict=True))
+
+
+def test_radiation_in_time_beside_bricks():
+    (right,) = fem.evolve(GLOWING, [8.0], elements="hexahedra", size=0.1)
+    field = last(GLOWING, [8.0], particles=1000, accuracy=1e-4)
+    points, volumes, temperature, _, _ = field.samples
+    # Both of second order, elements of a tenth: of the span of 900 K; found below.
+    assert math.sqrt(volumes @ (temperature - right.temperature_at(points)) ** 2 / volumes.sum()) < 0.005 * 900.0
+    assert_allclose(field.wall_temperature["x+"], right.wall_temperature["x+"], atol=0.01 * 900.0)
+    assert_allclose(field.wall_heat["x+"], right.wall_heat["x+"], rtol=0.02)
+
+
+def test_explicit_steps_are_those_of_a_held_wall():
+    """However well surroundings radiate, a step that is stable where the wall is held is stable."""
+    packing = relaxed(150, size=BOX, periodic=False, seed=0)
+    held = replace(GLOWING, walls={"x-": 1200.0, "x+": 300.0})
+    limits = [last(scene, [0.1], packing=packing).stats["step_limit"] for scene in (GLOWING, held)]
+    assert limits[0] == limits[1]
+    blazing = replace(GLOWING, matrix=Material(1e-3, 1.0, 1.0), walls={"x+": Radiation(1.0, 3000.0)})
+    field = last(blazing, [2000.0], packing=packing, integrator="euler")
+    # A film of 6 kW/(m2 K) before a poor conductor: it is as warm as its surroundings. Steps at the limit swing by
+    # 500 K at first; that dies out.
+    assert_allclose(field.wall_temperature["x+"], 3000.0, rtol=1e-4)
+    assert np.abs(field.samples.temperature - 3000.0).max() < 250.0
 
 
 def test_radiation_in_time_ends_in_the_steady_state():
