@@ -110,7 +110,8 @@ def claims(df):
 
     Orders expected are two for the DEM, in the spacing, and three for quadratic elements where nothing is singular; in
     the corner of the plate the base's temperature meets a film. What is printed is rounded to 0.005 K. The limit of the
-    order of quadratic elements on the bar was 2.5 before a first run, which found 2.1 to 2.4 on meshes as coarse as the wave.
+    order of quadratic elements on the bar was 2.5 before a first run, which found 2.1 to 2.4 on meshes as coarse as the
+    wave is deep.
     """
     yield from present([*_printed(df), *_radiating(df), *_levels(df), *_orders(df), *_heat(df)])
 
@@ -156,7 +157,14 @@ def _orders(df):
 
 
 def order_of(df, which, name):
-    """Fitted order of the error over the body of a method's rows of a problem; None where they are of one size."""
+    """Fitted order of the error over the body of a method's rows of a problem; None where they are of one size.
+
+    Parameters
+    ----------
+    df : data frame
+    which, name : str
+        Of the problem and of the method.
+    """
     rows = pick(df, problem=which, name=name)
     means = rows.groupby("particles" if name == "dem" else "edge")["rms_percent"].mean()
     if len(means) < 2:
