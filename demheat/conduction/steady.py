@@ -242,7 +242,7 @@ def _system(network, scene, reached, films=None):
     cut_off = np.count_nonzero(heat[~reached])
     if cut_off:
         raise ValueError(
-            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every temperature; "
+            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every wall temperature; "
             "no steady state exists"
         )
     diagonal[~reached] = 0.0

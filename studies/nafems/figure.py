@@ -2,6 +2,7 @@
 
 import numpy as np
 from matplotlib import pyplot
+from matplotlib.ticker import NullFormatter
 
 from studies.harness.figures import BLACK, GREY, look
 from studies.nafems.scenes import ABOVE, HEIGHT, THICK, WIDTH, problem
@@ -24,6 +25,7 @@ def drawn(df):
         for name, rows in df[df["problem"] == which].groupby("name", sort=False):
             _errors(axes, name, rows)
         axes.set(xscale="log", yscale="log", xlabel="unknowns", title=title)
+        axes.xaxis.set_minor_formatter(NullFormatter())
     panels[0].set_ylabel("error, % of the span: over the body (lines), at the point (dots)")
     panels[0].legend()
     _plate(panels[2])
@@ -49,4 +51,4 @@ def _plate(axes):
     axes.clabel(lines, fontsize=8)
     axes.plot(*given.point[:2], "o", color=BLACK, clip_on=False)
     axes.set(aspect="equal", xlabel="x, m", ylabel="y, m", xlim=(0, WIDTH), ylim=(0, HEIGHT))
-    axes.set_title("T4, exact, C; the point asked for")
+    axes.set_title("T4: exact, C")
