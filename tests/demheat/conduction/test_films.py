@@ -9,6 +9,7 @@ from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, refere
 from demheat.conduction.films import Films, in_series, radiating_surface
 from demheat.sampling.halo import halo_flux
 from demheat.scene import STEFAN_BOLTZMANN, Layer
+from references.exact.benchmarks import convecting_plate
 
 ONE = Material(2.0)
 BOX = (1.0, 2.0, 0.5)
@@ -41,6 +42,18 @@ def test_slab_with_convection_is_exact(walls, knobs):
     assert_allclose(field.mean_flux, [0.0, flux, 0.0], atol=1e-8 * scale)
     # Mirrors in the walls continue what is even.
     assert_allclose(halo_flux(field, ratio=3.0, walls="mirror", at=POINTS[:20])[:, 1], flux, rtol=1e-7)
+
+
+def test_points_on_a_wall_that_convects():
+    """NAFEMS T4: a plate with its base at 100 C, films at its top and right edge."""
+    film = Convection(750.0, 0.0)
+    scene = Scene((0.6, 1.0, 0.2), Material(52.0), walls={"y-": 100.0, "x+": film, "y+": film})
+    field = solve(scene, particles=1000)
+    points = np.column_stack([np.full(400, 0.6), np.linspace(0.05, 1.0, 400), np.tile([0.05, 0.1, 0.15, 0.19], 100)])
+    right = 100 * convecting_plate(points[:, 0], points[:, 1], width=0.6, height=1.0, film=750 / 52)
+    # The film's own condition at the wall: found .19 K; with the surface's temperature as what is known .55, with the
+    # slope that its heat makes .31.
+    assert referee.rms(field.temperature_at(points) - right) < 0.25
 
 
 @pytest.mark.parametrize("law", ["calibrated", "platonic"])
@@ -105,6 +118,16 @@ def test_slab_that_radiates(hot, around, solver):
     assert field.stats["residual"] <= 1e-12 and 1 < field.stats["rounds"] <= 15
     flux = halo_flux(field, ratio=3.0, walls="mirror", at=[[0.1, 0.05, 0.05], [0.099, 0.01, 0.05]])
     assert_allclose(flux[:, 0], 555.63 * (hot - right), rtol=1e-6)
+
+
+def test_what_is_asked_is_asked_of_the_fourth_powers():
+    """Linear equations that are solved are not enough: one round of Newton's method is far off here."""
+    scene = Scene((0.1, 0.1, 0.1), Material(0.5), walls={"x-": 1000.0, "x+": Radiation(0.98, 300.0)})
+    field = solve(scene, particles=300, tolerance=1e-3)
+    right = quartic(0.5, 0.1, 1000.0, 0.98, 300.0)
+    # The tolerance, of the heat that passes, which goes with the fourth power.
+    assert_allclose(field.wall_temperature["x+"], right, rtol=1e-3)
+    assert field.stats["rounds"] > 2
 
 
 def test_radiation_alone_balances_a_flux():

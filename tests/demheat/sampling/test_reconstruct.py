@@ -42,7 +42,7 @@ def test_quadratic_temperatures_of_one_phase_are_exact(monkeypatch):
     x = network.centers
     values = np.einsum("ni,ij,nj->n", x, curved, x)
     rough = np.random.default_rng(0).standard_normal((len(x), 3))
-    none = Edges(np.zeros(601, dtype=int), *np.empty((2, 0, 3)), *np.empty((4, 0)))
+    none = Edges(np.zeros(601, dtype=int), *np.empty((2, 0, 3)), *np.empty((3, 0)))
     made = module.Reconstruction(
         network,
         none,
