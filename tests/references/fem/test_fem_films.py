@@ -57,6 +57,17 @@ def test_a_composite_keeps_its_heat():
     assert_allclose(field.wall_heat["x+"], 3.0 * (300.0 - field.wall_temperature["x+"]), rtol=1e-9)
 
 
+def test_the_order_of_the_walls_does_not_matter():
+    """Temperatures count from the first wall's: at an edge a held wall's nodes may be part of a film."""
+    walls = {"x-": 400.0, "y-": Convection(3.0, 20.0), "x+": Flux(5.0)}
+    one, other = (fem.solve(scene(walls=dict(each)), size=COARSE) for each in (walls.items(), reversed(walls.items())))
+    # The tolerance of 1e-9.
+    assert_allclose(one.temperature_at(POINTS), other.temperature_at(POINTS), atol=1e-5)
+    for field in (one, other):
+        assert_allclose(sum(field.wall_heat.values()), 0.0, atol=1e-6 * field.wall_heat["x-"])
+    assert_allclose(one.wall_heat["y-"], other.wall_heat["y-"], rtol=1e-7)
+
+
 def test_the_error_of_such_a_field_and_the_dem_beside_it():
     walls = {"x-": 400.0, "x+": Radiation(0.9, 300.0), "y-": Convection(2.0, 350.0)}
     made = scene(Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0)), walls=walls)
