@@ -23,8 +23,8 @@ GROWTH = (1.25, 4.0)
 SHRINK, SAFETY = 0.2, 0.9
 # The error itself needs two digits only.
 ERROR_TOLERANCE = 1e-2
-# Of Newton's method in a stage, where walls radiate.
-ROUNDS = 20
+# Of Newton's method in a stage, where walls radiate: at most, and until tangents are those of the last temperatures.
+ROUNDS, CHORDS = 40, 3
 # Estimates below this part of the temperature's own size are rounding.
 LEAST_SPAN = 1e-9
 # Give up when steps become shorter than this part of the way, and of the first one tried: ways far beyond the steady
@@ -163,11 +163,13 @@ def _stage(problem, state, time, tau, start, guess):
     y[loads.held] = loading.temperature
     scale, largest = mass @ state.rate, problem.solver.tolerance * (abs(loads.level) + float(np.abs(y).max(initial=0)))
     for rounds in range(ROUNDS + 1):
+        if rounds >= CHORDS:
+            problem.solver.stiffen(_tangent(problem, y))
         given = loading.heat + loads.radiated(y, loading)
         load = given - stiffness @ y - mass @ ((y - start) / tau)
         change = problem.solver.solve(tau, load[free], scale=scale[free], level=y[free])
         y[free] += change
-        # Without radiation once is enough; with it the tangents of the step's start are near.
+        # Without radiation once is enough; with it the tangents of the step's start are mostly near.
         if not loads.films.radiates or np.abs(change).max(initial=0.0) <= largest:
             break
         if rounds == ROUNDS:

@@ -161,6 +161,14 @@ def test_surroundings_that_change():
     assert_allclose(field.temperature_at(POINTS), 3.0 * (0.5 + 0.5 * math.exp(-2.0)), atol=1e-3)
 
 
+def test_a_blaze_in_one_step():
+    """Tangents of the step's start, at 300 K, are a thousandth of those at its end."""
+    made = cube(walls={"x-": Radiation(1.0, 3000.0)}, initial=300.0)
+    field = last(made, [0.05], size=0.25, elements="hexahedra", step=0.05)
+    # A film of 6 kW/(m2 K) before 1 W/(m K): the wall is nearly as warm as what it sees.
+    assert 2900.0 < field.wall_temperature["x-"] < 3000.0 and field.stats["energy_error"] < 1e-8
+
+
 def test_steps_of_radiation_halve():
     made = cube(
         Material(50.0, 1000.0, 1.0),
