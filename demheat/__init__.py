@@ -9,10 +9,11 @@ import warnings
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress
-from demheat.scene import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
+from demheat.scene import Convection, Flux, Layer, Material, MovingCylinder, Radiation, Scene, Sphere, UniformSource
 
 __all__ = [
     "Calibrated",
+    "Convection",
     "Field",
     "Flux",
     "Laguerre",
@@ -20,6 +21,7 @@ __all__ = [
     "Material",
     "MovingCylinder",
     "Platonic",
+    "Radiation",
     "Samples",
     "Scene",
     "Sphere",

@@ -108,7 +108,7 @@ def _tessellated(scene, packing, law, seed):
     """The particles that take part, their facets before they are calibrated, and the seconds that took."""
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
-    scene.require(ON_FACETS, resistance=law.resists)
+    scene.require(ON_FACETS, takes=law.takes)
     check_packing(packing)
     begun = time.perf_counter()
     if law.conforming:

@@ -59,9 +59,10 @@ class Laguerre:
         finite("gap_spacing", self.gap_spacing, "a number above 0, at most 0.88", lambda v: 0 < v <= WIDEST)
 
     @property
-    def resists(self) -> bool:
-        """Whether interfaces may have a resistance: facets lie on them, and it is in series there."""
-        return self.conforming and self.interface == "harmonic"
+    def takes(self) -> tuple[str, ...]:
+        """What few laws know, of `Scene.require`: where facets lie on surfaces these may resist."""
+        on_facets = self.conforming and self.interface == "harmonic"
+        return ("exchange", "resistance") if on_facets else ("exchange",)
 
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
@@ -91,10 +92,10 @@ class Laguerre:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
-        scene.require(ON_FACETS, resistance=self.resists)
+        scene.require(ON_FACETS, takes=self.takes)
         if self.conforming and scene.inclusions:
             text = "inclusions there have no conforming packing; pass conforming=False"
-            scene.require(text, domain="box", resistance=True)
+            scene.require(text, domain="box", takes=("resistance", "exchange"))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,7 +111,7 @@ class _Contacts:
     cells: ClassVar[bool] = False
     conforming: ClassVar[bool] = False
     # Facets on interfaces, where a resistance would be.
-    resists: ClassVar[bool] = False
+    takes: ClassVar[tuple[str, ...]] = ("exchange",)
 
     def __post_init__(self):
         chosen("interface", self.interface, RULES)
@@ -154,13 +155,15 @@ class _Contacts:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
-        scene.require(ON_FACETS)
+        scene.require(ON_FACETS, takes=self.takes)
         if self.wall == "surface":
-            scene.require("wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'", walls="flat")
+            what = "wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'"
+            scene.require(what, walls="flat", takes=("exchange",))
         else:
             scene.require(
                 f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"
-                " where two held walls meet, one particle would join them; use wall 'surface'",
+                " where two held walls meet, one particle would join them, and no surface is left to exchange heat; use"
+                " wall 'surface'",
                 walls="isothermal ones apart",
             )
 

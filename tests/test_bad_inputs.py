@@ -116,6 +116,8 @@ TABLE = [
     (demheat.Sphere, {"center": (0.5,) * 3, "radius": 0.2, "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "material": MATERIAL}),
     (demheat.Layer, {"axis": 0, "start": 0.2, "stop": 0.4, "material": OTHER}, {"axis": (*WHOLE, 3), "start": NUMBER, "stop": POSITIVE, "material": MATERIAL}),
     (demheat.Flux, {}, {"value": NUMBER}),
+    (demheat.Convection, {"coefficient": 1.0, "temperature": 1.0}, {"coefficient": (*POSITIVE, 1e300), "temperature": (*NUMBER, 1e300)}),
+    (demheat.Radiation, {"emissivity": 0.5, "temperature": 1.0}, {"emissivity": (*POSITIVE, 1.01, 1e-300), "temperature": (*PART, 1e300)}),
     (demheat.UniformSource, {}, {"power_density": (*POSITIVE, 1e300)}),
     (demheat.MovingCylinder, MOVING, {"axis": (*WHOLE, 3), "diameter": (*POSITIVE, 1e-300), "power_density": (*POSITIVE, 1e300), "start": PAIR, "velocity": PAIR, "clip": FLAG}),
     (demheat.Scene, CUBE | {"gradient": (1, 0, 0)}, {"size": SIDES, "matrix": MATERIAL, "gradient": (*without(VECTOR, None), (0.0, 0.0, 0.0))}),

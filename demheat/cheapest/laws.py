@@ -1,7 +1,6 @@
 """Laws of error and cost of each method, fitted by the study `speed_error` and kept beside this file in `laws.csv`.
 
-The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width (that of
-inclusions alone where elements are smaller in coats by themselves: in meshes, and between mirrored particles), and
+The relative error of the conductivity is A (h/s)^p g: h the size of an element, s the scene's smallest width, and
 g = strength^a (1 + contrast)^b fraction^c gap^d; of multipoles, whose errors fall by a factor with each degree, (h/s)
 stands for exp(-2 degree acosh(1 + gap/2)), with which the waves between two equal spheres decay. The processor time is
 B unknowns^q (1 + contrast)^r, the unknowns u V/h^3 + v S/h^2 + w n with the box's volume V, the interfaces' surface S
@@ -181,7 +180,7 @@ def _value(law, m, refined):
     """Of the knob, no coarser than the coarsest that was fitted."""
     if law.knob == DEGREE.knob:
         return max(math.ceil(-refined / _decay(m)), int(law.coarsest))
-    h = _width(law.knob, m) * math.exp(refined)
+    h = m.smallest * math.exp(refined)
     if law.knob == SIZE.knob:
         coarsest = law.coarsest * m.edge
         return coarsest if h >= ON_SPHERE * m.narrowest else min(h, coarsest)
@@ -227,7 +226,7 @@ def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
         refined = -_decay(m) * value
     else:
         h = element(knob, m, value)
-        refined = math.log((min(h, ON_SPHERE * m.narrowest) if knob == SIZE.knob else h) / _width(knob, m))
+        refined = math.log((min(h, ON_SPHERE * m.narrowest) if knob == SIZE.knob else h) / m.smallest)
     strength, fraction = (math.log(max(value, LEAST)) for value in (m.strength, m.fraction))
     # Beyond a radius neighbours are far.
     return np.array([1.0, refined, strength, math.log1p(m.contrast), fraction, math.log(min(m.gap, 1.0))])
@@ -286,10 +285,6 @@ def element(knob: str, m: Measures, value: float) -> float:
 
 def _measured(scene):
     return scene if isinstance(scene, Measures) else measures(scene)
-
-
-def _width(knob, m):
-    return m.smallest if knob == VOXELS.knob else m.narrowest
 
 
 def _decay(m):

@@ -30,6 +30,8 @@ ORDERS = {"fem": 2.5, "fft": 1.0, "dem": 1.8}
 SMALLEST, LARGEST, ROUNDS = 0.4, 0.9, 8
 # Processor seconds of the first run at most, and the edges of elements to get there, again and again.
 FIRST, COARSER = 3.0, 1.25
+# Such a step is worth it where it leaves this part of the cost, or less.
+LEAST_SAVED = 0.98
 # What coarser runs for the interval cost, of the solve.
 BESIDES = 1.5
 
@@ -171,7 +173,11 @@ def _refined(name, loads, accuracy, memory):
     cost, first = predicted(name, part, value), value
     # Laws of the error may be far off: begin with what costs little, its interval says how far to go from there.
     while predicted(name, part, first).cpu_s > FIRST:
-        first = _scaled(first, COARSER, power)
+        coarser = _scaled(first, COARSER, power)
+        if predicted(name, part, coarser).cpu_s > LEAST_SAVED * predicted(name, part, first).cpu_s:
+            # What is left is paid for each inclusion, whatever the elements.
+            break
+        first = coarser
     way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads), cost.bytes), memory)
     least = predicted(name, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way

@@ -104,7 +104,7 @@ def _at_walls(network, scene, label, count):
     """Which bodies pass heat, by what their walls impose; the temperature of the wall that a body reaches, else NaN."""
     low, high, fed = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count, bool)
     body = label[network.wall_particle]
-    for name, value in scene.wall_temperatures.items():
+    for name, value in scene.imposed_temperatures.items():
         here = (network.wall_side == SIDES.index(name)) & (network.wall_conductance > 0) & (body >= 0)
         low[body[here]] = np.minimum(low[body[here]], value)
         high[body[here]] = np.maximum(high[body[here]], value)

@@ -9,12 +9,14 @@ from scipy import sparse
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.films import COLDEST, Films, films_of, hottest, radiated
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
 from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
 from demheat.process_state import one_blas_thread
 from demheat.progress import stage
+from demheat.scene import Radiation
 
 SOLVERS = ("auto", "cg", "amg")
 # Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
@@ -23,6 +25,10 @@ SOLVERS = ("auto", "cg", "amg")
 AMG_UNKNOWNS = 50_000
 # Beyond this contrast rounding may keep residuals above a tolerance below that.
 HIGH_CONTRAST, LOOSER = 1e7, 1e-6
+# Radiation is linearised anew so often at most; each set of equations is solved to this part of what the last one left.
+ROUNDS, FURTHER = 40, 1e-3
+# A multigrid serves while films change the diagonal by less than this factor.
+SERVES = 3.0
 
 
 class Solution(NamedTuple):
@@ -40,7 +46,7 @@ class Solution(NamedTuple):
     wall_heat : (w,) float array, W
         Into the body through each wall facet.
     stats : dict
-        unknowns, iterations, residual, solver, islands.
+        unknowns, iterations, residual, solver, islands; with radiation its rounds, as it was linearised so often.
     still : (n,) bool array, optional
         Particles that no heat passes, see `demheat.conduction.islands`; None if all phases conduct.
     """
@@ -60,9 +66,10 @@ class _System(NamedTuple):
     diagonal: np.ndarray
     heat: np.ndarray
     gradient: np.ndarray
-    ties: np.ndarray  # (w,) conductance to held walls, W/K
+    ties: np.ndarray  # (w,) conductance to held walls and surroundings, W/K
     held: np.ndarray  # (w,) their temperature above the level, K
     level: float  # temperatures are solved for relative to it, which spares digits, K
+    films: Films | None = None
 
 
 def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
@@ -93,7 +100,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         If the residual, recomputed after the solve, misses the tolerance.
     """
     check_solver(solver, tolerance)
-    scene.require(steady=True, resistance=True)
+    scene.require(steady=True, takes=("resistance", "exchange"))
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 
@@ -114,11 +121,10 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     bodies = islands.bodies(network, scene)
     network = network if bodies is None else without_links(network, bodies.still)
     reached = _reached(network, scene)
-    system = _system(network, scene, reached)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
-    chosen = by_size if solver == "auto" else solver
-    start, kept = _start(network, scene, reached), {} if kept is None else kept
-    x, iterations, size = _iterate(system, start, chosen, tolerance, max_iterations, kept)
+    chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
+    how = {"solver": chosen, "tolerance": tolerance, "most": max_iterations, "kept": kept}
+    system, x, iterations, size, more = (_radiating if scene.radiates else _linear)(network, scene, reached, how)
     if not size <= tolerance:
         raise RuntimeError(
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
@@ -137,9 +143,43 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
         "residual": float(size),
         "solver": chosen,
         "islands": int((~reached).sum()),
-    }
+    } | more
     still = None if bodies is None else bodies.still
     return Solution(x, system.gradient, *_at_walls(system, scene, x), stats, still)
+
+
+def _linear(network, scene, reached, how):
+    system = _system(network, scene, reached)
+    return system, *_iterate(system, _start(network, scene, reached), **how), {}
+
+
+def _radiating(network, scene, reached, how):
+    """Newton's method: fourth powers by their tangents at the surfaces' last temperatures, each solve from the last."""
+    top = hottest(network, scene)
+    surface, x, aim = np.full(len(network.wall_side), top), _start(network, scene, reached), FURTHER
+    how, rounds, total, size = how | {"kept": {"serves": SERVES}}, 0, 0, math.inf
+    while rounds < ROUNDS and total < how["most"] and not size <= how["tolerance"]:
+        films = films_of(network, scene, np.maximum(surface, COLDEST * top))
+        system = _system(network, scene, reached, films)
+        x, count, _ = _iterate(system, x, **how | {"tolerance": aim, "most": how["most"] - total})
+        surface, size = _radiation_left(system, scene, x)
+        rounds, total = rounds + 1, total + count
+        aim = min(FURTHER, max(FURTHER * size, 0.5 * how["tolerance"]))
+    return system, x, total, size, {"rounds": rounds}
+
+
+def _radiation_left(system, scene, x):
+    """Surfaces as tangents have them, and the residual with the fourth powers themselves, of the heat that passes."""
+    network, films = system.network, system.films
+    inside = system.level + x[network.wall_particle]
+    surface = films.surface(network.wall_conductance, inside)
+    black = [SIDES.index(name) for name in scene.wall_exchanges if isinstance(scene.walls[name], Radiation)]
+    tied = np.isin(network.wall_side, black) & (system.ties > 0)
+    by_tangents = films.conductance[tied] * (films.outside - surface)[tied]
+    missing = radiated(network, scene, surface)[tied] - by_tangents
+    r = _residual(system, x) + np.bincount(network.wall_particle[tied], missing, minlength=len(x))
+    norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
+    return surface, norm / passing if passing > 0 else float(norm > 0)
 
 
 def _advice(scene, tolerance):
@@ -168,10 +208,10 @@ def check_solver(solver, tolerance):
 
 
 def _reached(network, scene):
-    """Particles tied to a wall temperature (walls), or to any other particle (periodic cell)."""
+    """Particles tied to a temperature, a wall's or of surroundings, or in a periodic cell to any other particle."""
     if scene.periodic:
         return _conducted(network) > 0
-    held = [SIDES.index(name) for name in scene.wall_temperatures]
+    held = [SIDES.index(name) for name in scene.imposed_temperatures]
     reached = np.zeros(len(network.volumes), dtype=bool)
     reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
     kernels.spread(links_of(network), reached)
@@ -185,7 +225,7 @@ def _conducted(network):
     return total
 
 
-def _system(network, scene, reached):
+def _system(network, scene, reached, films=None):
     n = len(network.volumes)
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
     diagonal = _conducted(network)
@@ -193,10 +233,10 @@ def _system(network, scene, reached):
         received = np.empty(n)
         kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
         return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
-    held = np.array([scene.wall_temperatures.get(name, np.nan) for name in SIDES])[network.wall_side]
-    ties = np.where(np.isfinite(held), network.wall_conductance, 0.0)
-    level = float(np.mean(list(scene.wall_temperatures.values())))
-    held = np.nan_to_num(held - level)
+    films = films_of(network, scene) if films is None else films
+    ties = films.ties(network.wall_conductance)
+    level = float(np.mean(list(scene.imposed_temperatures.values())))
+    held = np.nan_to_num(films.outside - level)
     heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
     diagonal += np.bincount(network.wall_particle, ties, minlength=n)
     cut_off = np.count_nonzero(heat[~reached])
@@ -206,7 +246,7 @@ def _system(network, scene, reached):
             "no steady state exists"
         )
     diagonal[~reached] = 0.0
-    return _System(network, diagonal, heat, gradient, ties, held, level)
+    return _System(network, diagonal, heat, gradient, ties, held, level, films)
 
 
 def _imposed(network, scene):
@@ -215,8 +255,8 @@ def _imposed(network, scene):
 
 
 def _start(network, scene, reached):
-    """Linear field between two opposite wall temperatures, else zero, relative to the level."""
-    temperatures = {} if scene.periodic else scene.wall_temperatures
+    """Linear field between two opposite temperatures, else zero, relative to the level."""
+    temperatures = {} if scene.periodic else scene.imposed_temperatures
     start = np.zeros(len(reached))
     for axis, letter in enumerate("xyz"):
         if {letter + "-", letter + "+"} == set(temperatures):
@@ -298,7 +338,7 @@ def _multigrid(system, kept):
     """Conjugate gradients by multigrid, which is kept for another load that leads to the very same matrix."""
     links, diagonal = links_of(system.network), system.diagonal
     conductance, same = kept.get("matrix", (None, diagonal))
-    if conductance is not system.network.conductance or not np.array_equal(same, diagonal):
+    if conductance is not system.network.conductance or not _serves(same, diagonal, kept.get("serves", 1.0)):
         with one_blas_thread():
             kept["precondition"] = preconditioner(links, diagonal)
         kept["matrix"] = system.network.conductance, diagonal
@@ -309,6 +349,11 @@ def _multigrid(system, kept):
             return _preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
 
     return solve
+
+
+def _serves(one, other, factor):
+    """Whether two diagonals are within a factor of each other."""
+    return bool(np.all((one <= factor * other) & (other <= factor * one)))
 
 
 def _preconditioned(links, diagonal, precondition, r, x, limit, most, done):
@@ -338,11 +383,10 @@ def _at_walls(system, scene, x):
     """Temperature and entering heat of each wall facet."""
     if scene.periodic:
         return np.empty(0), np.empty(0)
-    network = system.network
-    there, imposed = x[network.wall_particle] - system.level, _imposed(network, scene)
-    conductance = network.wall_conductance
+    network, inside = system.network, x[system.network.wall_particle]
+    imposed, conductance = _imposed(network, scene), network.wall_conductance
     rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
-    is_held = np.array([name in scene.wall_temperatures for name in SIDES])[network.wall_side]
-    temperature = system.level + np.where(is_held, system.held, there + rise)
-    heat = np.where(is_held, system.ties * (system.held - there), imposed)
+    is_held = np.isfinite(system.films.outside)
+    temperature = np.where(is_held, system.films.surface(conductance, inside), inside + rise)
+    heat = np.where(is_held, system.ties * (system.held - (inside - system.level)), imposed)
     return temperature, np.where(np.isnan(heat), 0.0, heat)

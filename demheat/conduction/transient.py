@@ -4,13 +4,15 @@ from functools import partial
 
 import numpy as np
 
+from demheat.conduction.films import loaded_areas, radiating_walls, with_convection
 from demheat.conduction.integrators.march import march
 from demheat.conduction.integrators.pace import pace_of
-from demheat.conduction.integrators.system import loaded_areas, semi_discrete
+from demheat.conduction.integrators.system import semi_discrete
 from demheat.conduction.steady import Solution
 from demheat.network.base import SIDES
-from demheat.scene import Flux
+from demheat.scene import Convection, Flux, Radiation
 from demheat.scene.functions import initial_at, load_at
+from demheat.scene.parts import driver
 
 
 def capacities(network, scene):
@@ -75,9 +77,9 @@ def evolve(network, scene, times, *, power=None, transits=(), held_centers=None,
 def changing_loads(scene):
     """Loads of walls that are functions of time, (time, s) -> float; what is not finite is an error."""
     return [
-        partial(load_at, name, load)
+        partial(load_at, name, load, kelvin=scene.radiates and not isinstance(load, Flux))
         for name, load in (scene.walls or {}).items()
-        if callable(load.value if isinstance(load, Flux) else load)
+        if callable(driver(load))
     ]
 
 
@@ -98,19 +100,27 @@ def _walls(network, scene, system, state):
     temperature, heat = here.copy(), np.zeros(len(here))
     held_centers = np.isin(network.wall_particle, system.held)
     given = _given_on(network, system, state) if held_centers.any() else None
+    tied = with_convection(network, scene).wall_conductance
     for name, load in (scene.walls or {}).items():
         value, at = load_at(name, load, state.time), network.wall_side == SIDES.index(name)
-        conductance = network.wall_conductance[at]
-        if name in scene.wall_temperatures:
-            temperature[at] = value
-            heat[at] = conductance * (value - here[at])
+        if isinstance(load, Flux):
+            heat[at] = value * loaded_areas(network, scene, name)
+        elif not isinstance(load, Radiation):
+            heat[at] = tied[at] * (value - here[at])
             if held_centers.any():
                 held = at & held_centers
                 heat[held] = given[network.wall_particle[held]]
-        else:
-            heat[at] = value * loaded_areas(network, scene, name)
-            temperature[at] += np.divide(heat[at], conductance, out=np.zeros_like(conductance), where=conductance > 0)
+        if not isinstance(load, Flux | Convection | Radiation):
+            temperature[at] = value
+    for wall in radiating_walls(network, scene):
+        heat[wall.facet] = wall.heat(state.temperature, state.time)
+    own, is_open = network.wall_conductance, ~np.isin(network.wall_side, _sides(scene.wall_temperatures))
+    temperature += np.divide(heat, own, out=np.zeros_like(own), where=is_open & (own > 0))
     return temperature, heat
+
+
+def _sides(names):
+    return [SIDES.index(name) for name in names]
 
 
 def _given_on(network, system, state):

@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from demheat.build import network_of, networks_of
+from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import check_solver, solve_checked
@@ -76,8 +77,9 @@ def solve(
     TypeError
         If neither `solve` nor the law knows a keyword.
     NotImplementedError
-        For temperatures on walls that meet, with wall "center" and a law other than "laguerre"; for replicas between
-        walls with such a law; for surfaces with a resistance, unless facets lie on them.
+        For temperatures on walls that meet, or heat exchanged with surroundings, with wall "center" and a law other
+        than "laguerre"; for replicas between walls with such a law; for surfaces with a resistance, unless facets lie
+        on them.
     RuntimeError
         If the solver does not converge.
 
@@ -91,7 +93,7 @@ def solve(
     check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=True, resistance=True)
+    scene.require(steady=True, takes=("resistance", "exchange"))
     law.check(scene)
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
@@ -223,14 +225,16 @@ def evolve(
         If neither `evolve` nor the law knows a keyword.
     NotImplementedError
         For contact laws with wall "surface" where a round wall is loaded or the body a sphere, and for conforming
-        packings of inclusions in round bodies.
+        packings of inclusions in round bodies; for implicit integrators where a wall radiates.
     RuntimeError
         If steps or linear solves do not converge.
     """
     check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=False, resistance=True)
+    scene.require(steady=False, takes=("resistance", "exchange"))
+    if scene.radiates:
+        check_linear(integrator)
     law.check(scene)
     wanted.counts(scene, law)
     check_sources(scene, float(times[-1]))

@@ -82,7 +82,8 @@ def conductivity_error(field: Field, reference: Field | float) -> float:
 def span(scene: Scene, reference: Field | None = None) -> float:
     """Temperature difference that the load imposes, K.
 
-    The largest difference between walls, in time between them and the initial temperature; in a periodic cell that of
+    The largest difference between walls, or the surroundings that they exchange heat with, in time between them and
+    the initial temperature; in a periodic cell that of
     the mean gradient over the box, sum |g_i| L_i.
 
     Parameters
@@ -103,7 +104,7 @@ def span(scene: Scene, reference: Field | None = None) -> float:
     if scene.periodic:
         return float(np.abs(scene.gradient) @ np.array(scene.size))
     time = None if reference is None else reference.time
-    temperatures = list((scene if time is None else scene.at(time)).wall_temperatures.values())
+    temperatures = list((scene if time is None else scene.at(time)).imposed_temperatures.values())
     if time is not None and not callable(scene.initial):
         temperatures.append(float(scene.initial))
     if len(temperatures) < 2 and reference is not None:

@@ -1,10 +1,15 @@
-"""What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others."""
+"""What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others.
+
+At walls that exchange heat with surroundings it knows how both hang together: the slope and the film's share of the
+temperature.
+"""
 
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.network.base import SIDES, branches, radical_distances, row_numbers, wall_normals
+from demheat.scene import STEFAN_BOLTZMANN, Convection
 
 # Facets smaller than this part of their cell's size lie away from the line between the two centres. Facets lie on an
 # interface if the phases change within this part of the cell's width on either side of them.
@@ -23,8 +28,9 @@ class Edges(NamedTuple):
         Temperature, less the linear field of a mean gradient.
     slopes : (m,) float array, K/m
         Of the whole temperature along the normal, on the cell's side.
-    held : (m,) bool array
-        Where the value is what is known; elsewhere, at walls with a flux or none, it is the slope.
+    film : (m,) float array, 1/m
+        What is known is the slope and so many times the value, added: 0 at walls with a flux or none, infinite at
+        interfaces and held walls, where it is the value, between at films, coefficient of exchange over conductivity.
     """
 
     start: np.ndarray
@@ -32,7 +38,7 @@ class Edges(NamedTuple):
     normals: np.ndarray
     values: np.ndarray
     slopes: np.ndarray
-    held: np.ndarray
+    film: np.ndarray
 
 
 def edges_of(scene, network, solution):
@@ -77,14 +83,30 @@ def _interfaces(scene, network, solution):
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])
-    return tuple(column[on] for column in (row, place, normal, value, slope, np.ones(len(row), dtype=bool)))
+    return tuple(column[on] for column in (row, place, normal, value, slope, np.full(len(row), np.inf)))
 
 
 def _walls(scene, network, solution):
     cell, k = network.wall_particle.astype(np.int64), scene.conductivities[network.phase]
-    normal, imposed = wall_normals(network), [SIDES.index(name) for name in scene.wall_temperatures]
+    normal = wall_normals(network)
     place = network.centers[cell] + network.wall_distance[:, None] * normal
-    held = np.isin(network.wall_side, imposed)
     passing = k[cell] * network.wall_area
     slope = np.divide(solution.wall_heat, passing, out=np.full(len(cell), np.nan), where=passing > 0)
-    return cell, place, normal, solution.wall_temperature, slope, held
+    return cell, place, normal, solution.wall_temperature, slope, _film(scene, network, solution, k[cell])
+
+
+def _film(scene, network, solution, k):
+    """Coefficient of exchange over conductivity at each wall facet, infinite where a temperature is held, 1/m."""
+    film = np.zeros(len(k))
+    for name, load in (scene.walls or {}).items():
+        here = network.wall_side == SIDES.index(name)
+        if name in scene.wall_temperatures:
+            film[here] = np.inf
+        elif name in scene.wall_exchanges:
+            by = load.coefficient if isinstance(load, Convection) else _tangent(load, solution.wall_temperature[here])
+            film[here] = np.divide(by, k[here], out=np.zeros(here.sum()), where=k[here] > 0)
+    return film
+
+
+def _tangent(load, surface):
+    return 4.0 * load.emissivity * STEFAN_BOLTZMANN * np.nan_to_num(surface) ** 3

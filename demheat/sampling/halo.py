@@ -11,11 +11,11 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.blocks import blocks
-from demheat.field import Field, check_field
+from demheat.field import Field, Samples, check_field
 from demheat.network.bins_kernels import bin_points
 from demheat.progress import stage
 from demheat.sampling import halo_kernels as kernels
-from demheat.scene import ROUND_AXES
+from demheat.scene import ROUND_AXES, STEFAN_BOLTZMANN, Convection
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import LEAST, MOST, chosen, finite, flag, moderate, reals, vector
 
@@ -107,9 +107,9 @@ def halo_flux(
         Radius of the halo in mean radii of the particles.
     walls : {"clip", "mirror"}
         Halos end at walls; or go on among samples mirrored across flat walls. There the temperature goes on evenly
-        from an insulated wall, so that the flux along the wall is even and that across it odd; at an imposed flux,
-        what exceeds it is odd; at a held temperature what exceeds this is odd, the flux across the wall even and that
-        along it odd.
+        from an insulated wall, so that the flux along the wall is even and that across it odd; at an imposed flux, or
+        one that is exchanged with surroundings, what exceeds it is odd; at a held temperature what exceeds this is odd,
+        the flux across the wall even and that along it odd.
     same_phase : bool
         Only samples of the phase of the point asked for.
     at : (m, 3) float array, m, optional
@@ -136,7 +136,7 @@ def halo_flux(
     if walls == "mirror" and ROUND_AXES[scene.domain]:
         raise NotImplementedError("walls = 'mirror': round walls do not mirror a lattice; use walls = 'clip'")
     at = None if at is None else _checked_at(at, scene)
-    points, volumes, _, phase, flux = field.samples
+    points, volumes, warmth, phase, flux = field.samples
     if at is None:
         at, at_phase = points, phase
     else:
@@ -147,38 +147,55 @@ def halo_flux(
             raise ValueError(
                 f"ratio = {ratio!r}: a radius of {radius:g} m must be <= the box, {scene.size}, for mirrors"
             )
-        points, volumes, phase, flux = _mirrored(scene.at(field.time), radius, points, volumes, phase, flux)
+        now = scene.at(0.0 if field.time is None else field.time)
+        points, volumes, phase, flux = _mirrored(now, radius, Samples(points, volumes, warmth, phase, flux))
         points, at, size = points + radius, at + radius, size + 2 * radius
     phases = (phase, at_phase) if same_phase else None
     where = {"radius": radius, "size": size, "periodic": scene.periodic}
     return halo_average(points, flux, volumes, **where, at=at, phases=phases)
 
 
-def _mirrored(scene, radius, points, volumes, phase, flux):
+def _mirrored(scene, radius, samples):
     """Samples with those within the radius of a wall mirrored across it; edges and corners follow axis by axis."""
     for axis in range(3):
-        parts = [(points, volumes, phase, flux)]
+        parts = [samples]
         for side, wall in (("-", 0.0), ("+", scene.size[axis])):
-            near = np.abs(points[:, axis] - wall) <= radius
-            image = points[near].copy()
+            kept = np.abs(samples.points[:, axis] - wall) <= radius
+            near = Samples(*(column[kept] for column in samples))
+            image = near.points.copy()
             image[:, axis] = 2 * wall - image[:, axis]
-            parts.append((image, volumes[near], phase[near], _reflected(scene, axis, side, flux[near])))
-        points, volumes, phase, flux = (np.concatenate(columns) for columns in zip(*parts, strict=True))
-    return points, volumes, phase, flux
+            parts.append(near._replace(points=image, flux=_reflected(scene, axis, side, near)))
+        samples = Samples(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+    return samples.points, samples.volumes, samples.phase, samples.flux
 
 
-def _reflected(scene, axis, side, flux):
+def _reflected(scene, axis, side, near):
     """Flux behind a wall."""
-    name = "xyz"[axis] + side
+    name, flux = "xyz"[axis] + side, near.flux.copy()
     if name in scene.wall_temperatures:
-        flux = -flux
+        flux *= -1.0
         flux[:, axis] *= -1.0
         return flux
+    entering = scene.wall_fluxes.get(name, 0.0)
+    if name in scene.wall_exchanges:
+        entering = _exchanged(scene, axis, side, near)
     # Into the body at the lower wall is along the axis, at the upper one against it.
-    through = scene.wall_fluxes.get(name, 0.0) * (1.0 if side == "-" else -1.0)
-    flux = flux.copy()
+    through = entering * (1.0 if side == "-" else -1.0)
     flux[:, axis] = 2 * through - flux[:, axis]
     return flux
+
+
+def _exchanged(scene, axis, side, near):
+    """Flux that surroundings let in before each sample, where its own slope takes its temperature to the wall."""
+    load, wall = scene.wall_exchanges["xyz"[axis] + side], 0.0 if side == "-" else scene.size[axis]
+    k = scene.conductivities[near.phase]
+    slope = -np.divide(near.flux[:, axis], k, out=np.zeros(len(k)), where=k > 0)
+    surface = near.temperature + slope * (wall - near.points[:, axis])
+    if isinstance(load, Convection):
+        entering = load.coefficient * (load.temperature - surface)
+    else:
+        entering = load.emissivity * STEFAN_BOLTZMANN * (load.temperature**4 - surface**4)
+    return np.where(k > 0, entering, 0.0)
 
 
 def _dims(n, size, radius):

@@ -2,10 +2,10 @@
 
 A moving least squares fit (Lancaster and Salkauskas 1981) of the temperatures of a cell, its neighbours and theirs,
 reached over facets within one phase only, so that nothing is fitted across an interface; and of what the network knows
-at the phase's edges: temperatures on interfaces and held walls, slopes at the others. What is fitted is the difference
-from the cell's own linear temperature, whose gradient makes the cell's flux exact for linear fields: where there are
-too few cells for a quadratic, that is what remains. A jump within a cell, as at a wall heated at once, overshoots by a
-quarter of it.
+at the phase's edges: temperatures on interfaces and held walls, slopes at the others, at walls that exchange heat with
+surroundings how both hang together. What is fitted is the difference from the cell's own linear temperature, whose
+gradient makes the cell's flux exact for linear fields: where there are too few cells for a quadratic, that is what
+remains. A jump within a cell, as at a wall heated at once, overshoots by a quarter of it.
 """
 
 import numpy as np
@@ -106,17 +106,16 @@ class Reconstruction:
         return found[:, 0], found[:, 1:4] / reach
 
     def _at_edges(self, seed, points, from_seed, edges, reach):
-        """Rows of the fits for what is known at edges: values and slopes, less those of the seed's cell."""
+        """Rows of the fits for what is known at edges, values and slopes, less those of the seed's cell."""
         level, slope = self.temperature[seed][:, None], self.slope[seed]
         edge, offset, away = self._nearest(points, self.edges.places, edges, EDGES)
-        weight, scaled = _weight(away / reach), offset / reach[..., None]
-        held, normal = self.edges.held[edge], self.edges.normals[edge]
+        weight, scaled, normal = _weight(away / reach), offset / reach[..., None], self.edges.normals[edge]
         values = self.edges.values[edge] - level - _along(slope, offset + from_seed[:, None])
         slopes = reach * (self.edges.slopes[edge] - _along(slope + self.gradient, normal))
-        return [
-            (_basis(scaled), np.where(held, VALUE * weight, 0.0), values),
-            (_directed(scaled, normal), np.where(held, 0.0, SLOPE * weight), slopes),
-        ]
+        # Of the value in what is known: 1 where that is held, 0 where the flux is, a film's Biot number says between.
+        share = 1.0 - 1.0 / (1.0 + self.edges.film[edge] * reach)
+        row = share[..., None] * _basis(scaled) + (1.0 - share)[..., None] * _directed(scaled, normal)
+        return [(row, (VALUE * share + SLOPE * (1.0 - share)) * weight, share * values + (1.0 - share) * slopes)]
 
     def _nearest(self, points, places, chosen, most):
         """The nearest of the candidates of each point: numbers, offsets from it and distances, infinite where none."""

@@ -2,17 +2,20 @@
 
 from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.scene.material import Material
-from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
 from demheat.scene.shapes import Layer, Shape, Sphere
 
 __all__ = [
     "ROUND_AXES",
+    "STEFAN_BOLTZMANN",
     "WALLS",
+    "Convection",
     "Flux",
     "Layer",
     "Material",
     "MovingCylinder",
+    "Radiation",
     "Scene",
     "Shape",
     "Sphere",

@@ -10,7 +10,7 @@ from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radi
 from demheat.scene.crossing import touching
 from demheat.scene.frozen import ReadOnly
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, vector
-from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.parts import HOTTEST, Convection, Flux, MovingCylinder, Radiation, UniformSource, driver
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.base import TOUCH
 from demheat.scene.shapes.pairs import check_pairs
@@ -18,6 +18,7 @@ from demheat.scene.shapes.pairs import check_pairs
 # Differences of walls' temperatures over the largest. Where a law holds centres at a wall's temperature, results were
 # found right to 1e-4 at 3e-9 and halved at 3e-12; from 1e-15 on the DEM gave 0.
 RESOLVED = 1e-10
+KELVIN = f"a temperature >= 0 K of at most {HOTTEST:g}"
 
 
 def checked_inclusions(inclusions) -> tuple[Shape, ...]:
@@ -69,10 +70,15 @@ def _check_walls(walls, valid, *, or_none):
     for name, value in walls.items():
         if name not in valid:
             raise ValueError(f"Scene.walls: unknown wall {name!r}; must be one of {', '.join(valid)}")
-        if not isinstance(value, Flux) and not callable(value):
-            numbers = f"a finite temperature of at most {MOST:g}, a function of time or a Flux"
+        if not isinstance(value, Flux | Convection | Radiation) and not callable(value):
+            numbers = f"a finite temperature of at most {MOST:g}, a function of time, Flux, Convection or Radiation"
             finite(f"Scene.walls[{name!r}]", value, numbers, lambda v: abs(v) <= MOST)
-    held = [float(value) for value in walls.values() if not isinstance(value, Flux) and not callable(value)]
+    imposed = {name: driver(value) for name, value in walls.items() if not isinstance(value, Flux)}
+    held = {name: float(value) for name, value in imposed.items() if not callable(value)}
+    if any(isinstance(value, Radiation) for value in walls.values()):
+        for name, value in held.items():
+            finite(f"Scene.walls[{name!r}], with a wall that radiates,", value, KELVIN, _absolute)
+    held = list(held.values())
     span, largest = max(held, default=0.0) - min(held, default=0.0), max(map(abs, held), default=0.0)
     if 0 < span < max(LEAST, RESOLVED * largest):
         raise ValueError(
@@ -81,11 +87,24 @@ def _check_walls(walls, valid, *, or_none):
         )
 
 
-def check_initial(initial) -> None:
-    """Raise ValueError unless an initial temperature is None, a finite number or callable."""
+def check_initial(initial, *, kelvin=False) -> None:
+    """Raise ValueError unless an initial temperature is None, a finite number or callable.
+
+    Parameters
+    ----------
+    initial : float, callable or None
+    kelvin : bool
+        Whether it must be an absolute temperature.
+    """
     if initial is not None and not callable(initial):
         valid = f"a finite temperature of at most {MOST:g}, or a function of points"
         finite("Scene.initial", initial, valid, lambda v: abs(v) <= MOST)
+        if kelvin:
+            finite("Scene.initial, with a wall that radiates,", initial, KELVIN, _absolute)
+
+
+def _absolute(value):
+    return 0 <= value <= HOTTEST
 
 
 def checked_sources(sources) -> tuple[UniformSource | MovingCylinder, ...]:

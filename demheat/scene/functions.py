@@ -5,26 +5,28 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.scene.inputs import MOST, finite
-from demheat.scene.parts import Flux
+from demheat.scene.parts import HOTTEST, Radiation, driver
 
 
-def load_at(name, load, time) -> float:
-    """Value of a wall's load at a time, K or W/m2.
+def load_at(name, load, time, *, kelvin=False) -> float:
+    """Value of a wall's load at a time, K or W/m2; of surroundings their temperature.
 
     Parameters
     ----------
     name : str
         Of the wall.
-    load : float, Flux or callable (time, s) -> float
+    load : float, callable (time, s) -> float, Flux, Convection or Radiation
         Temperature, K, or flux density, W/m2.
     time : float, s
+    kelvin : bool
+        Whether the value is an absolute temperature, as that of `Radiation` always is.
 
     Raises
     ------
     ValueError
         If a function fails, or gives no finite number.
     """
-    value = load.value if isinstance(load, Flux) else load
+    value = driver(load)
     if not callable(value):
         return float(value)
     what = f"Scene.walls[{name!r}] at {time} s"
@@ -32,6 +34,8 @@ def load_at(name, load, time) -> float:
         found = value(time)
     except Exception as error:
         raise ValueError(f"{what}: the function raises {type(error).__name__}: {error}") from error
+    if kelvin or isinstance(load, Radiation):
+        return finite(what, found, f"a finite temperature >= 0 K of at most {HOTTEST:g}", lambda v: 0 <= v <= HOTTEST)
     return finite(what, found, f"a finite number of at most {MOST:g}", lambda v: abs(v) <= MOST)
 
 
@@ -59,8 +63,10 @@ def initial_at(scene, points) -> np.ndarray:
     if values.shape != (len(points),) or values.dtype.kind not in "iuf":
         what = f"shape {values.shape} of {values.dtype}"
         raise ValueError(f"Scene.initial: gives {what} for {len(points)} points; must be real numbers, (n,)")
-    odd = np.flatnonzero(~(np.abs(values) <= MOST))
+    least, most = (0.0, HOTTEST) if scene.radiates else (-MOST, MOST)
+    odd = np.flatnonzero(~((values >= least) & (values <= most)))
     if len(odd):
         what = f"{values[odd[0]]} at {points[odd[0]].tolist()} m"
-        raise ValueError(f"Scene.initial = {what}: must be finite, at most {MOST:g}, at all points of the body")
+        valid = f"from 0 K to {most:g} K where a wall radiates" if scene.radiates else f"finite, at most {MOST:g}"
+        raise ValueError(f"Scene.initial = {what}: must be {valid}, at all points of the body")
     return values.astype(float)

@@ -46,11 +46,11 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
 
 
 def _walls(scene, held):
-    """Walls with a temperature, or those that are insulated, as pairs of an axis and a side."""
+    """Walls with a temperature or surroundings that have one, or the insulated ones: pairs of an axis and a side."""
     if scene.periodic:
         return []
     insulated = [name for name in ("x-", "x+", "y-", "y+", "z-", "z+") if name not in scene.walls]
-    return [("xyz".index(name[0]), name[1]) for name in (scene.wall_temperatures if held else insulated)]
+    return [("xyz".index(name[0]), name[1]) for name in (scene.imposed_temperatures if held else insulated)]
 
 
 def _near_spheres(scene, spheres, reach, walls):

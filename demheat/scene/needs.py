@@ -6,12 +6,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from demheat.scene.parts import Flux
+from demheat.scene.parts import driver
 
 
 def _one_pair(scene):
     names = sorted(scene.walls)
-    return not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0]
+    held = len(scene.wall_temperatures) == len(names)
+    return held and len(names) == 2 and names[0][0] == names[1][0]
 
 
 # Walls that a method can be limited to, for scenes that have walls.
@@ -24,18 +25,21 @@ WALLS = {
 }
 
 
+EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, convection for series of slabs too"
+
+
 def check_steady(scene) -> None:
     """Raise unless a Scene has a steady state under loads that do not depend on time."""
     if scene.sources or scene.domain != "box":
         what = "heat sources" if scene.sources else f"a {scene.domain}"
         raise NotImplementedError(f"{what}: only transients take them; use evolve")
-    loads = {name: load.value if isinstance(load, Flux) else load for name, load in (scene.walls or {}).items()}
-    changing = [name for name, load in loads.items() if callable(load)]
+    changing = [name for name, load in (scene.walls or {}).items() if callable(driver(load))]
     if changing:
         raise ValueError(f"Scene.walls: {changing} depend on time; must be numbers for a steady solution")
-    if not scene.periodic and not scene.wall_temperatures:
+    if not scene.periodic and not scene.imposed_temperatures:
         raise ValueError(
-            f"Scene.walls = {dict(scene.walls)}: a steady solution needs at least one wall with a temperature"
+            f"Scene.walls = {dict(scene.walls)}: a steady solution needs at least one wall with a temperature, its own "
+            "or that of surroundings"
         )
 
 
@@ -51,15 +55,17 @@ def check_transient(scene) -> None:
                 raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
 
 
-def refusals(scene, *, walls, domain, shapes, nested, pores, resistance) -> Iterator[str]:
+def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[str]:
     """What in a Scene a method cannot do, one after the other.
 
     Parameters
     ----------
     scene : Scene
-    walls, domain, shapes, nested, pores, resistance
+    walls, domain, shapes, nested, pores, takes
         As those of `Scene.require`.
     """
+    for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
+        yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
     if walls is not None and not scene.periodic and not WALLS[walls](scene):
         yield f"Scene.walls = {dict(scene.walls)}"
     if domain is not None and scene.domain != domain:
@@ -76,7 +82,7 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, resistance) -> Iter
         yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
     if not pores and np.any(scene.conductivities == 0):
         yield "a conductivity is 0"
-    resisting = () if resistance else np.flatnonzero(scene.resistances)
+    resisting = () if "resistance" in takes else np.flatnonzero(scene.resistances)
     if len(resisting):
         number = int(resisting[0]) - 1
         yield (

@@ -70,8 +70,11 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
     ------
     ValueError
         If the accuracy is no number between 0 and 1.
+    NotImplementedError
+        If walls exchange heat with surroundings.
     """
     check_scene(scene)
+    scene.require("what may be left out is known of the conductivity between temperatures", takes=("resistance",))
     finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
     radii, beta = _spheres(scene)
     # What even in the widest ball alone is too much need not be looked at.

@@ -1,15 +1,19 @@
-"""What acts on a scene: imposed fluxes and heat sources, each checked as it is made."""
+"""What acts on a scene: fluxes, convection and radiation at walls, heat sources; each checked as it is made."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from demheat.scene.inputs import LEAST, MOST, moderate, number, vector, whole
 
 WITHIN = f", from {LEAST:g} to {MOST:g}"
+# Of a black body, W/(m2 K4): exact in the SI of 2019, to the digits printed there.
+STEFAN_BOLTZMANN = 5.670374419e-8
+# Fourth powers are to be held by floating point, with a conductivity or an area beside them.
+HOTTEST = 1e20
 
 
 @dataclass(frozen=True)
@@ -27,6 +31,73 @@ class Flux:
     def __post_init__(self):
         if not callable(self.value):
             number(self, "value", f"a finite number of W/m2 of at most {MOST:g}, or a function of time", moderate)
+
+
+@dataclass(frozen=True)
+class Convection:
+    """Heat exchanged by a wall with a fluid: coefficient times (temperature - that of the wall's surface) comes in.
+
+    Parameters
+    ----------
+    coefficient : float, W/(m2 K)
+        Positive.
+    temperature : float or callable (time, s) -> float, K or degrees Celsius
+        Of the fluid, away from the wall.
+    """
+
+    coefficient: float
+    temperature: float | Callable[[float], float]
+
+    def __post_init__(self):
+        number(self, "coefficient", f"a finite number > 0 W/(m2 K){WITHIN}", _positive)
+        if not callable(self.temperature):
+            valid = f"a finite temperature of at most {MOST:g}, or a function of time"
+            number(self, "temperature", valid, lambda v: abs(v) <= MOST)
+
+
+@dataclass(frozen=True)
+class Radiation:
+    """Heat exchanged by a grey wall with black surroundings: emissivity sigma (T_surroundings^4 - T_wall^4) comes in.
+
+    With one such wall all temperatures of a scene are in kelvin, and none may be below 0.
+
+    Parameters
+    ----------
+    emissivity : float
+        Above 0, at most 1.
+    temperature : float or callable (time, s) -> float, K
+        Of the surroundings.
+    """
+
+    emissivity: float
+    temperature: float | Callable[[float], float]
+
+    def __post_init__(self):
+        number(self, "emissivity", "a number > 0, at most 1", lambda v: 0 < v <= 1 and moderate(v))
+        if not callable(self.temperature):
+            valid = f"a finite temperature >= 0 K of at most {HOTTEST:g}, or a function of time"
+            number(self, "temperature", valid, lambda v: 0 <= v <= HOTTEST)
+
+
+def driver(load):
+    """What drives a wall: its temperature, flux density, or temperature of surroundings; a number or a function."""
+    if isinstance(load, Flux):
+        return load.value
+    return load.temperature if isinstance(load, Convection | Radiation) else load
+
+
+def driven(load, value):
+    """A wall's load with another driver.
+
+    Parameters
+    ----------
+    load : float, callable, Flux, Convection or Radiation
+    value : float
+        A temperature, or a flux density.
+    """
+    if isinstance(load, Flux):
+        return Flux(value)
+    return replace(load, temperature=value) if isinstance(load, Convection | Radiation) else value
 
 
 @dataclass(frozen=True)

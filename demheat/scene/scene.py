@@ -28,9 +28,12 @@ from demheat.scene.html import table_of
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
-from demheat.scene.parts import Flux, MovingCylinder, UniformSource
+from demheat.scene.parts import Convection, Flux, MovingCylinder, Radiation, UniformSource, driven, driver
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.holders import Holders
+
+# Loads of walls that have no temperature of their own.
+OPEN = Flux | Convection | Radiation
 
 
 @dataclass(frozen=True)
@@ -50,9 +53,10 @@ class Scene:
         comes in on the other side; in a walled box the wall cuts it.
     gradient : (3,) sequence of float, K/m, optional
         Mean temperature gradient of the periodic cell.
-    walls : mapping of str to float, callable (time, s) -> float, or Flux, optional
+    walls : mapping of str to float, callable (time, s) -> float, Flux, Convection or Radiation, optional
         Keys "x-", "x+", "y-", "y+", "z-", "z+", and "round" for a round wall; a number is a temperature in the user's
-        scale (K or degrees Celsius), a function one that changes in time, a `Flux` an imposed heat flux density.
+        scale (K or degrees Celsius), a function one that changes in time, a `Flux` an imposed heat flux density,
+        `Convection` and `Radiation` heat exchanged with surroundings; where a wall radiates all is in kelvin.
     initial : float or callable (points) -> temperatures, optional
         Temperature at time 0; a function takes (n, 3) points in metres, a copy, and returns (n,) temperatures.
     sources : sequence of UniformSource or MovingCylinder
@@ -72,7 +76,7 @@ class Scene:
     matrix: Material
     inclusions: tuple[Shape, ...] = ()
     gradient: tuple[float, float, float] | None = None
-    walls: Mapping[str, float | Callable[[float], float] | Flux] | None = None
+    walls: Mapping[str, float | Callable[[float], float] | Flux | Convection | Radiation] | None = None
     initial: float | Callable | None = None
     sources: tuple[UniformSource | MovingCylinder, ...] = ()
     domain: str = "box"
@@ -90,7 +94,7 @@ class Scene:
         for name, value in checked_load(self).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "sources", checked_sources(self.sources))
-        check_initial(self.initial)
+        check_initial(self.initial, kelvin=self.radiates)
         check_geometry(self)
         check_reached(self)
 
@@ -130,12 +134,27 @@ class Scene:
     @property
     def wall_temperatures(self) -> dict[str, float]:
         """The walls held at a temperature; a function where it depends on time (see `at`)."""
-        return {name: _plain(v) for name, v in (self.walls or {}).items() if not isinstance(v, Flux)}
+        return {name: _plain(v) for name, v in (self.walls or {}).items() if not isinstance(v, OPEN)}
 
     @property
     def wall_fluxes(self) -> dict[str, float]:
         """The walls with an imposed flux, W/m2 into the body; a function where it depends on time (see `at`)."""
         return {name: v.value for name, v in (self.walls or {}).items() if isinstance(v, Flux)}
+
+    @property
+    def wall_exchanges(self) -> dict[str, Convection | Radiation]:
+        """The walls that exchange heat with surroundings, whose own temperature is part of the solution."""
+        return {name: v for name, v in (self.walls or {}).items() if isinstance(v, Convection | Radiation)}
+
+    @property
+    def imposed_temperatures(self) -> dict[str, float]:
+        """Temperatures of walls that have one and of the surroundings of others; functions where they change."""
+        return {name: _plain(driver(v)) for name, v in (self.walls or {}).items() if not isinstance(v, Flux)}
+
+    @property
+    def radiates(self) -> bool:
+        """Whether a wall radiates: temperatures are then in kelvin, and the equations are not linear."""
+        return any(isinstance(load, Radiation) for load in (self.walls or {}).values())
 
     @property
     def axis(self) -> int:
@@ -192,12 +211,9 @@ class Scene:
 
     def at(self, time: float) -> Scene:
         """The same scene with the loads of its walls as they are at a time in seconds."""
-        if not any(callable(getattr(v, "value", v)) for v in (self.walls or {}).values()):
+        if not any(callable(driver(load)) for load in (self.walls or {}).values()):
             return self
-        walls = {}
-        for name, load in self.walls.items():
-            value = load_at(name, load, time)
-            walls[name] = Flux(value) if isinstance(load, Flux) else value
+        walls = {name: driven(load, load_at(name, load, time)) for name, load in self.walls.items()}
         return replace(self, walls=walls)
 
     def plot(self, *, pixels: int = 241):
@@ -239,7 +255,7 @@ class Scene:
         shapes: tuple[type[Shape], ...] | None = None,
         nested: bool = True,
         pores: bool = True,
-        resistance: bool = False,
+        takes: tuple[str, ...] = (),
     ) -> None:
         """Raise unless a method can take this scene: the one place where methods refuse scenes.
 
@@ -260,8 +276,9 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
-        resistance : bool
-            Whether surfaces may have a resistance: what does not say so refuses it.
+        takes : tuple of {"resistance", "exchange"}
+            What few methods know and all others refuse: surfaces with a resistance, walls that exchange heat with
+            surroundings.
 
         Raises
         ------
@@ -273,7 +290,7 @@ class Scene:
         if steady is not None:
             (check_steady if steady else check_transient)(self)
         can = {"walls": walls, "domain": domain, "shapes": shapes, "nested": nested, "pores": pores}
-        for found in refusals(self, **can, resistance=resistance):
+        for found in refusals(self, **can, takes=takes):
             raise NotImplementedError(f"{found}: {knows}" if knows else found)
 
 

@@ -15,15 +15,18 @@ import numpy as np
 
 from demheat.error import ROUNDING, known
 from demheat.field import Field, Samples
-from demheat.scene import ROUND_AXES, Flux, Scene, UniformSource, check_scene
+from demheat.scene import ROUND_AXES, Convection, Flux, Radiation, Scene, UniformSource, check_scene
+from demheat.scene.parts import driver
 from references.exact.responses import CROSSOVER, response, sphere_response
+from references.exact.robin import EARLIEST, Face
+from references.exact.robin import slab as exchanging
 from references.midpoints import check_points_per_axis
 from references.times import checked_times
 
 KNOWN = (
     "a homogeneous body at one initial temperature, uniformly heated or not: between two opposite walls with constant "
-    "temperature, constant flux or insulation, the other walls insulated; or a sphere with a constant surface "
-    "temperature"
+    "temperature, constant flux, convection or insulation, the other walls insulated; or a sphere with a constant "
+    "surface temperature"
 )
 
 
@@ -96,7 +99,7 @@ def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -
         If the scene has no series here.
     """
     check_scene(scene)
-    scene.require(steady=False)
+    scene.require(steady=False, takes=("exchange",))
     times = checked_times(times)
     check_points_per_axis(points_per_axis)
     body = _body(scene)
@@ -120,12 +123,15 @@ def _body(scene):
                 f"Scene.sources: {type(source).__name__} has no series here; only UniformSource has"
             )
     for name, load in scene.walls.items():
-        if callable(getattr(load, "value", load)):
+        if callable(driver(load)):
             raise NotImplementedError(f"Scene.walls[{name!r}] depends on time: the series need constants")
+        if isinstance(load, Radiation):
+            raise NotImplementedError(f"Scene.walls[{name!r}] = {load}: no series, fourth powers are not linear")
     capacity = first.density * first.heat_capacity
     power = sum(source.power_density for source in scene.sources)
-    if "round" in scene.walls and (scene.domain != "sphere" or isinstance(scene.walls["round"], Flux)):
-        what = "a flux through" if scene.domain == "sphere" else f"a {scene.domain} loaded at"
+    if "round" in scene.walls and (scene.domain != "sphere" or isinstance(scene.walls["round"], Flux | Convection)):
+        kind = "a flux through" if isinstance(scene.walls["round"], Flux) else "convection at"
+        what = kind if scene.domain == "sphere" else f"a {scene.domain} loaded at"
         raise NotImplementedError(f"{what} a round wall: no series here; it knows {KNOWN}")
     return Body(first.conductivity, first.conductivity / capacity, float(scene.initial), power / capacity)
 
@@ -145,6 +151,8 @@ def _slab(scene, body, time):
 
     def profile(x):
         """Temperature and its derivative along the axis."""
+        if scene.wall_exchanges and time > 0:
+            return _exchanging(scene, body, letter, fourier, x / length)
         value, slope = np.full_like(x, body.initial + body.heating * time), np.zeros_like(x)
         for name, load in scene.walls.items() if time > 0 else ():
             far = "held" if letter + ("+" if name[1] == "-" else "-") in scene.wall_temperatures else "insulated"
@@ -173,6 +181,25 @@ def _slab(scene, body, time):
     names = (letter + "-", letter + "+")
     at_walls, heat = dict(zip(names, ends.tolist(), strict=True)), dict(zip(names, into.tolist(), strict=True))
     return Solved("slab", fourier, mean, at_walls, heat, temperature, flux)
+
+
+def _exchanging(scene, body, letter, fourier, x):
+    """Temperature and slope of a slab with convection at a wall at least."""
+    if fourier < EARLIEST:
+        raise NotImplementedError(
+            f"times: a Fourier number of {fourier:.1e} takes too many modes; {EARLIEST:g} is least"
+        )
+    length = scene.size["xyz".index(letter)]
+    faces = []
+    for side in "-+":
+        load = scene.walls.get(letter + side, Flux(0.0))
+        if isinstance(load, Flux):
+            faces.append(Face(0.0, 0.0, load.value * length / body.conductivity))
+            continue
+        film = load.coefficient * length / body.conductivity if isinstance(load, Convection) else math.inf
+        faces.append(Face(film, driver(load) - body.initial, 0.0))
+    value, slope = exchanging(np.clip(x, 0.0, 1.0), fourier, *faces, body.heating * length**2 / body.diffusivity)
+    return body.initial + value, slope / length
 
 
 def _drives(body, load, length):
@@ -221,6 +248,9 @@ def _field(scene, body, time, solved, n):
     for name, load in scene.walls.items():
         if isinstance(load, Flux):
             heat[name] = float(load.value * scene.volume / scene.size["xyz".index(name[0])])
+        elif isinstance(load, Convection):
+            area = scene.volume / scene.size["xyz".index(name[0])]
+            heat[name] = float(load.coefficient * (load.temperature - solved.wall_temperature[name]) * area)
         elif time == 0 and load != body.initial:
             heat[name] = math.copysign(math.inf, load - body.initial)
     return Field(
@@ -235,7 +265,7 @@ def _field(scene, body, time, solved, n):
         stats={
             "form": solved.form,
             "fourier": solved.fourier,
-            "series": "modes" if solved.fourier >= CROSSOVER else "images",
+            "series": "modes" if scene.wall_exchanges or solved.fourier >= CROSSOVER else "images",
             "truncation": 1e-16,
             "unknowns": 0,
             "iterations": 0,

@@ -44,7 +44,7 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     """
     check_scene(scene)
     check_points_per_axis(points_per_axis)
-    scene.require(steady=True, resistance=True)
+    scene.require(steady=True, takes=("resistance",))
     closed = laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)
     if closed is None:
         load = f"gradient {scene.gradient}" if scene.periodic else f"walls {dict(scene.walls)}"

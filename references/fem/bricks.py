@@ -13,6 +13,7 @@ from scipy.sparse import dia_matrix
 from demheat.field import Samples
 from demheat.scene import WALLS, Layer, Scene
 from demheat.scene.inputs import finite
+from references.fem.films import Surface
 from references.fem.separable import MASS, STIFFNESS, separable
 from references.fem.space import Space, WallNodes, capacities
 
@@ -24,6 +25,8 @@ SAME = 1e-10
 # Points of a moving source per edge.
 RESOLVE = 6
 CORNERS = tuple(product((0, 1), repeat=3))
+# Points of quadrature along an edge of a face.
+FACE = 3
 GAUSS = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
 
 
@@ -138,7 +141,8 @@ def hexahedra(scene, size=None) -> Space:
     NotImplementedError
         If the body is not a box of layers.
     """
-    scene.require("hexahedra follow boxes of layers only; use tetrahedra", domain="box", shapes=(Layer,))
+    what = "hexahedra follow boxes of layers only; use tetrahedra"
+    scene.require(what, domain="box", shapes=(Layer,), takes=("exchange",))
     grid = tuple(_grid(scene, axis, checked_size(scene, size)) for axis in range(3))
     centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
     phase = scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])
@@ -153,7 +157,7 @@ def hexahedra(scene, size=None) -> Space:
         mass=mass,
         stiffness=stiffness,
         volumes=outer(*lumped).ravel(),
-        walls={name: _wall(name, lumped) for name in WALLS},
+        walls={name: _wall(name, grid, lumped) for name in WALLS},
         quadratic=lambda free: None,
         separable=None if scene.inclusions else partial(separable, grid, *(v[0] for v in materials)),
         spread=view(np.zeros(len(points))).spread,
@@ -250,10 +254,25 @@ def _matrices(widths, conductivity, capacity):
     )
 
 
-def _wall(name, lumped):
+def _wall(name, grid, lumped):
     """A face of the box on the nodes."""
     axis, ends = "xyz".index(name[0]), [w.copy() for w in lumped]
     ends[axis] = np.zeros(len(lumped[axis]))
     ends[axis][0 if name[1] == "-" else -1] = 1.0
     weights = outer(*ends).ravel()
-    return WallNodes(np.flatnonzero(weights), weights)
+    return WallNodes(np.flatnonzero(weights), weights, partial(_face, name, grid))
+
+
+def _face(name, grid):
+    """`Surface` of a face: bilinear rectangles, with as many points of Gauss as fourth powers ask for."""
+    axis, shape = "xyz".index(name[0]), [len(x) for x in grid]
+    first, second = (a for a in range(3) if a != axis)
+    numbers = np.take(np.arange(np.prod(shape)).reshape(shape), 0 if name[1] == "-" else -1, axis=axis)
+    nodes = np.stack([numbers[:-1, :-1], numbers[:-1, 1:], numbers[1:, :-1], numbers[1:, 1:]], axis=-1).reshape(-1, 4)
+    places, weights = np.polynomial.legendre.leggauss(FACE)
+    u, v = (part.ravel() for part in np.meshgrid(0.5 + places / 2, 0.5 + places / 2, indexing="ij"))
+    values = np.column_stack([(1 - u) * (1 - v), (1 - u) * v, u * (1 - v), u * v])
+    areas = (
+        np.outer(np.diff(grid[first]), np.diff(grid[second])).reshape(-1, 1) * np.outer(weights, weights).ravel() / 4
+    )
+    return Surface(nodes, values, areas, int(np.prod(shape)))

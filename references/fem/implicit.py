@@ -34,10 +34,14 @@ class Shifted:
     """
 
     def __init__(self, mass, stiffness, quadratic, tolerance, inverse=None):
-        self.inverse = inverse
+        self.inverse, self.plain = inverse, stiffness
         self.mass, self.stiffness, self.quadratic, self.tolerance = mass, stiffness, quadratic, tolerance
         self.tau = self.made_for = None
         self.iterations, self.residual, self.setups = 0, 0.0, 0
+
+    def stiffen(self, more):
+        """Add a matrix to the stiffness as it was made, in place of one that was added before."""
+        self.stiffness, self.tau = (self.plain + more).tocsr(), None
 
     def solve(self, tau, load, *, scale=None, level=None, tolerance=None):
         """Solution for one load.

@@ -175,7 +175,7 @@ def _joined(pieces, boxes, count, jump):
 def _at_walls(scene, mesh, node, solid, count):
     """Which bodies pass heat, by what their walls impose; the temperature of the wall that a body reaches, else NaN."""
     low, high, fed = np.full(count, np.inf), np.full(count, -np.inf), np.zeros(count, bool)
-    for name, value in (scene.wall_temperatures | scene.wall_fluxes).items():
+    for name, value in (scene.imposed_temperatures | scene.wall_fluxes).items():
         triangles, owners = mesh.walls[name]
         body = np.unique(node[triangles[solid[owners]]])
         if name in scene.wall_fluxes:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import UniformSource
+from references.fem.films import Films
 from references.fem.sources import deposit
 
 
@@ -23,12 +24,15 @@ class Loading(NamedTuple):
         Of each of `Loads.names`; 0 for held walls.
     wall_temperature : dict of str to float, K
         Of held walls.
+    outside : dict of str to float, K
+        Of the surroundings of walls that exchange heat.
     """
 
     temperature: np.ndarray
     heat: np.ndarray
     powers: np.ndarray
     wall_temperature: dict[str, float]
+    outside: dict[str, float]
 
 
 class Loads:
@@ -47,6 +51,9 @@ class Loads:
         The loaded walls, then "sources" and "lost".
     held : (k,) int array
         Nodes of walls held at a temperature.
+    stiffness : (n, n) CSR matrix, W/K
+        Of the space, and of the films of walls with convection.
+    films : Films
     """
 
     def __init__(self, scene, space, *, level):
@@ -59,6 +66,9 @@ class Loads:
         self.held = np.flatnonzero(self.count)
         steady = sum(source.power_density for source in scene.sources if isinstance(source, UniformSource))
         self.heating = steady * space.volumes
+        walls = {name: (load, space.walls[name].surface()) for name, load in scene.wall_exchanges.items()}
+        self.films = Films(walls, len(space.points))
+        self.stiffness = (space.stiffness + self.films.stiffness()).tocsr() if walls else space.stiffness
         self.moving = [source for source in scene.sources if not isinstance(source, UniformSource)]
         self._known = {}
 
@@ -82,13 +92,45 @@ class Loads:
             entering = value * self.space.walls[name].weights
             heat += entering
             powers[name] = entering.sum()
+        outside = {name: load.temperature for name, load in now.wall_exchanges.items()}
+        heat += self.films.constant(outside, self.level)
         powers["sources"] = self.heating.sum()
         for source in self.moving:
             made = deposit(self.scene, self.space, source, time)
             heat += made.heat
             powers["sources"] += made.power
             powers["lost"] += made.lost
-        return Loading(temperature[self.held], heat, np.array(list(powers.values())), now.wall_temperatures)
+        return Loading(temperature[self.held], heat, np.array(list(powers.values())), now.wall_temperatures, outside)
+
+    def radiated(self, y, loading):
+        """What walls radiate into each node, (n,) float array, W, or 0.
+
+        Parameters
+        ----------
+        y : (n,) float array, K
+            Temperatures, from the level.
+        loading : Loading
+        """
+        return self.films.radiated(loading.outside, y + self.level) if self.films.radiates else 0.0
+
+    def rates(self, entering, y, loading):
+        """Heat of each of the names, as `shares` has it, and what is exchanged with surroundings.
+
+        Parameters
+        ----------
+        entering, loading
+            As in `shares`.
+        y : (n,) float array, K
+            Temperatures, from the level.
+
+        Returns
+        -------
+        (m,) float array, W
+        """
+        powers = self.shares(entering, loading)
+        for name, heat in self.films.entering(loading.outside, y + self.level).items():
+            powers[self.names.index(name)] = heat
+        return powers
 
     def shares(self, entering, loading):
         """Heat of each of the names: held walls by what their nodes draw in, the rest as loaded.

@@ -36,8 +36,8 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Spheres and layers, whose surfaces may resist, walls with temperatures and fluxes or a periodic cell;
-        conductivity 0 is a pore.
+        Spheres and layers, whose surfaces may resist, walls with temperatures, fluxes, convection and radiation or a
+        periodic cell; conductivity 0 is a pore.
     order : {1, 2}
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
@@ -112,7 +112,7 @@ def _solved(scenes, order, size, curved, tolerance):
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
         text = "beside interfaces with a resistance finite elements take no pores"
-        scene.require(text, steady=True, pores=not scene.resistances.any(), resistance=True)
+        scene.require(text, steady=True, pores=not scene.resistances.any(), takes=("resistance", "exchange"))
         if order == 1 and scene.domain == "box":
             _warn_of_gaps(scene, checked_size(scene, size, order))
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
@@ -184,7 +184,7 @@ def _check_rounding(solution, mean_flux, wall_temperature, tolerance):
         return
     if scene.periodic:
         worked = -float(np.array(scene.gradient) @ mean_flux)
-    elif len(scene.walls) == 2 and len({name[0] for name in scene.walls}) == 1:
+    elif len(scene.walls) == 2 and len({name[0] for name in scene.walls}) == 1 and not scene.wall_exchanges:
         one, other = wall_temperature.values()
         worked = abs(float(mean_flux[scene.axis])) * abs(one - other) / scene.size[scene.axis]
     else:

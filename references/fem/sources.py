@@ -54,7 +54,7 @@ def check_sources(scene, last):
     for number, source in enumerate(scene.sources):
         if not isinstance(source, MovingCylinder):
             continue
-        scene.require("a MovingCylinder heats boxes only here", domain="box", resistance=True)
+        scene.require("a MovingCylinder heats boxes only here", domain="box", takes=("resistance", "exchange"))
         if source.clip:
             continue
         low, high = _room(scene, source)

@@ -14,6 +14,7 @@ from skfem.refdom import RefTet
 
 from references.fem import interfaces
 from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
+from references.fem.films import on_triangles
 from references.fem.lookup import LOST, NodalField
 from references.fem.multigrid import prolongation
 
@@ -34,10 +35,13 @@ class WallNodes(NamedTuple):
         Those on it.
     weights : (n,) float array, m2
         Integrals of all shape functions over it.
+    surface : callable () -> Surface
+        Its elements and their quadrature.
     """
 
     nodes: np.ndarray
     weights: np.ndarray
+    surface: Callable
 
 
 class Space(NamedTuple):
@@ -104,7 +108,10 @@ def tetrahedra(scene, mesh) -> Space:
     # Distance of nodes that are neighbours.
     edge = mesh.stats["size"] / (2 if mesh.cells.shape[1] == 10 else 1)
     view = partial(NodalField, scene, mesh, lost=lost)
-    walls = {name: WallNodes(np.unique(t), wall_weights(mesh, t)) for name, (t, _) in mesh.walls.items()}
+    walls = {
+        name: WallNodes(np.unique(t), wall_weights(mesh, t), partial(on_triangles, mesh, t))
+        for name, (t, _) in mesh.walls.items()
+    }
     return Space(
         points=mesh.points,
         mass=mass,

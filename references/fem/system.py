@@ -17,7 +17,9 @@ from scipy.sparse.csgraph import connected_components
 
 from references.fem import interfaces, islands
 from references.fem.elements import assemble, assemble_loads, wall_weights
+from references.fem.films import Films, on_triangles
 from references.fem.multigrid import solve_free
+from references.fem.radiation import radiating
 from references.mesh import twins
 
 # Relative residual of the temperature in pores, which only elements past an interface show.
@@ -46,7 +48,7 @@ class Solved(NamedTuple):
 
 
 class _Given(NamedTuple):
-    """The known part of the temperature, lift + level; nodes of each isothermal wall; walls per node; flux weights."""
+    """The known part of the temperature, lift + level; nodes of each isothermal wall; walls per node; other walls."""
 
     lift: np.ndarray
     level: float
@@ -56,11 +58,12 @@ class _Given(NamedTuple):
 
 
 class _Assembled(NamedTuple):
-    """What loads on one mesh share: matrix over the unit of conductivity, rows of nodes, elements in pores."""
+    """What loads on one mesh share: matrix over the unit of conductivity, rows of nodes, elements that pass heat."""
 
     matrix: csr_matrix
     dof: np.ndarray
     unit: float
+    passing: np.ndarray
     pores: np.ndarray
     found: islands.Bodies | None
     assembly_s: float
@@ -132,7 +135,7 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     if mesh.faces is not None:
         # The known part does not jump there.
         matrix = (matrix + interfaces.exchange(mesh, dof) / unit).tocsr()
-    system = _Assembled(matrix, dof, unit, pores, found, time.perf_counter() - begin)
+    system = _Assembled(matrix, dof, unit, conductivity > 0, pores, found, time.perf_counter() - begin)
     kept = {}
     return [_solved(*each, mesh, system, tolerance, kept) for each in zip(scenes, givens, loads, strict=True)]
 
@@ -140,19 +143,29 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
 def _solved(scene, given, load, mesh, system, tolerance, kept):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
     begin = time.perf_counter()
-    matrix, dof, unit, pores, found, assembly_s = system
-    bodies = _bodies(matrix, given.shares > 0, pores=found is not None)
+    matrix, dof, unit, passing, pores, found, assembly_s = system
+    films, outside = _films(scene, mesh, passing), scene.imposed_temperatures
+    matrix = (matrix + films.stiffness() / unit).tocsr() if films.walls else matrix
+    tied = films.tangent(np.ones(len(load))).diagonal() + films.stiffness().diagonal() > 0
+    bodies = _bodies(matrix, (given.shares > 0) | tied, pores=found is not None)
     imposed = np.zeros(len(load))
-    for name, weights in given.weights.items():
-        imposed += scene.wall_fluxes[name] / unit * weights
+    for name, value in scene.wall_fluxes.items():
+        imposed += value / unit * given.weights[name]
     _check_loose(mesh, imposed, bodies)
+    if films.walls:
+        # The known part lies on walls that films may meet at an edge.
+        imposed += (films.constant(outside, given.level) - films.stiffness() @ given.lift) / unit
     load += imposed
     fixed = given.shares > 0
     fixed[bodies.pins] = True
-    correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
-    heat = unit * (matrix @ correction - load)
+    if films.radiates:
+        body, known = (scene, films, unit), given.lift + given.level
+        correction, stats = radiating(mesh, matrix, load, fixed, dof, tolerance, known=known, body=body)
+    else:
+        correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
     temperature = given.lift + correction[dof]
     temperature += given.level
+    heat = unit * (matrix @ correction - load) - films.radiated(outside, temperature)
     stats |= {"islands": 0 if found is None else int(np.count_nonzero(~found.passing))}
     if found is not None:
         islands.settle(found, scene, mesh, temperature)
@@ -162,7 +175,16 @@ def _solved(scene, given, load, mesh, system, tolerance, kept):
         stats["residual"] = max(stats["residual"], more["residual"])
     stats |= {"assembly_s": assembly_s, "solve_s": time.perf_counter() - begin}
     shown = temperature if found is None else islands.reached(found, scene, temperature)
-    return Solved(temperature, *_walls(scene, given, shown, heat), stats, found)
+    return Solved(temperature, *_walls(scene, given, shown, heat, films.entering(outside, temperature)), stats, found)
+
+
+def _films(scene, mesh, passing):
+    """Films of walls with surroundings, on what passes heat behind them."""
+    walls = {}
+    for name, load in scene.wall_exchanges.items():
+        triangles, owners = mesh.walls[name]
+        walls[name] = load, on_triangles(mesh, triangles[passing[owners]])
+    return Films(walls, len(mesh.points))
 
 
 def _at_rest(scene, mesh, given, found):
@@ -173,7 +195,8 @@ def _at_rest(scene, mesh, given, found):
     stats = {"unknowns": 0, "iterations": 0, "residual": 0.0, "islands": len(found.passing)}
     stats |= {"assembly_s": 0.0, "solve_s": 0.0}
     shown = islands.reached(found, scene, temperature)
-    return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown))), stats, found)
+    still = dict.fromkeys(scene.wall_exchanges, 0.0)
+    return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown)), still), stats, found)
 
 
 def _given(scene, mesh, solid):
@@ -182,7 +205,7 @@ def _given(scene, mesh, solid):
     if scene.periodic:
         return _Given(mesh.points @ np.array(scene.gradient), 0.0, {}, shares, {})
     # Counted from one of the temperatures, a large common offset costs no digits.
-    level = next(iter(scene.wall_temperatures.values()))
+    level = next(iter(scene.imposed_temperatures.values()))
     nodes = {name: np.unique(mesh.walls[name].triangles) for name in scene.wall_temperatures}
     for name, value in scene.wall_temperatures.items():
         lift[nodes[name]] += value - level
@@ -190,10 +213,10 @@ def _given(scene, mesh, solid):
     # On an edge where two isothermal walls meet, the mean of both.
     lift[shares > 0] /= shares[shares > 0]
     weights = {}
-    for name in scene.wall_fluxes:
+    for name in (*scene.wall_fluxes, *scene.wall_exchanges):
         triangles, owners = mesh.walls[name]
         weights[name] = wall_weights(mesh, triangles[solid[owners]])
-        if not weights[name].any():
+        if name in scene.wall_fluxes and not weights[name].any():
             raise ValueError(f"Scene.walls[{name!r}]: a Flux needs a wall that conducts somewhere")
     return _Given(lift, level, nodes, shares, weights)
 
@@ -228,17 +251,18 @@ def _pore_shift(mesh, pores, temperature, dof, given, found):
     return shift[dof], stats
 
 
-def _walls(scene, given, temperature, heat):
+def _walls(scene, given, temperature, heat, exchanged):
     """Mean temperature of each loaded wall, and the heat that enters there."""
-    mean, entering = scene.wall_temperatures, {}
+    mean, entering = scene.wall_temperatures, dict(exchanged)
     for name, nodes in given.nodes.items():
         entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))
     for name, weights in given.weights.items():
         here = np.flatnonzero(weights)
         known = here[np.isfinite(temperature[here])]
-        if len(known) == len(here):
+        if len(known) == len(here) > 0:
             mean[name] = float(weights @ np.nan_to_num(temperature) / weights.sum())
         else:
             mean[name] = float(weights[known] @ temperature[known] / weights[known].sum()) if len(known) else np.nan
-        entering[name] = float(scene.wall_fluxes[name] * weights.sum())
+        if name in scene.wall_fluxes:
+            entering[name] = float(scene.wall_fluxes[name] * weights.sum())
     return mean, entering

@@ -90,7 +90,7 @@ def evolve(
     """
     check_scene(scene)
     text = "heat would not move in pores; transients do without"
-    scene.require(text, steady=False, pores=False, resistance=True)
+    scene.require(text, steady=False, pores=False, takes=("resistance", "exchange"))
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -121,8 +121,9 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
     level = float(np.mean(initial))
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
-    blocks = (matrix[free][:, free] for matrix in (space.mass, space.stiffness))
-    inverse = space.separable(free) if space.separable and len(free) else None
+    blocks = (matrix[free][:, free] for matrix in (space.mass, loads.stiffness))
+    # Films make the equations of the axes more than sums of products.
+    inverse = space.separable(free) if space.separable and len(free) and not loads.films.walls else None
     solver = Shifted(*blocks, space.quadratic(free), tolerance, inverse)
     problem = Problem(loads, solver, free)
     ticks, begun = Clock(problem, accuracy, step), clock.perf_counter()
@@ -156,7 +157,7 @@ def _field(scene, problem, state, initial, stats, estimator):
     error = abs(change - sum(heats.values())) / state.turnover if state.turnover else abs(change)
     rates = dict(zip(loads.names, state.rates.tolist(), strict=True))
     walls = dict(loads.at(state.time).wall_temperature)
-    for name in scene.wall_fluxes:
+    for name in (*scene.wall_fluxes, *scene.wall_exchanges):
         weights = space.walls[name].weights
         walls[name] = float(weights @ state.temperature / weights.sum()) + loads.level
     return Field(

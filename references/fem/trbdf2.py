@@ -23,6 +23,8 @@ GROWTH = (1.25, 4.0)
 SHRINK, SAFETY = 0.2, 0.9
 # The error itself needs two digits only.
 ERROR_TOLERANCE = 1e-2
+# Of Newton's method in a stage, where walls radiate: at most, and until tangents are those of the last temperatures.
+ROUNDS, CHORDS = 40, 3
 # Estimates below this part of the temperature's own size are rounding.
 LEAST_SPAN = 1e-9
 # Give up when steps become shorter than this part of the way, and of the first one tried: ways far beyond the steady
@@ -103,11 +105,13 @@ def begin(problem, temperature, time, hint) -> State:
     if len(held):
         soon, later = (loads.at(time + part * hint).temperature for part in (1, 2))
         rate[held] = (4 * soon - 3 * loading.temperature - later) / (2 * hint)
-    load = loading.heat - loads.space.stiffness @ y - loads.space.mass @ rate
+    given = loading.heat + loads.radiated(y, loading)
+    load = given - loads.stiffness @ y - loads.space.mass @ rate
     rate[free] = problem.solver.rates(load[free])
-    entering = loads.space.mass @ rate + loads.space.stiffness @ y - loading.heat
+    entering = loads.space.mass @ rate + loads.stiffness @ y - given
     span = np.array([min(temperature.min(), y.min()), max(temperature.max(), y.max())])
-    return State(time, y, rate, entering, loads.shares(entering, loading), heats, float(np.abs(heats[:-1]).sum()), span)
+    rates = loads.rates(entering, y, loading)
+    return State(time, y, rate, entering, rates, heats, float(np.abs(heats[:-1]).sum()), span)
 
 
 def advance(problem, state, step, *, estimate):
@@ -128,6 +132,8 @@ def advance(problem, state, step, *, estimate):
         Estimated error of this step, root mean square over the heat capacity; 0 if not wanted.
     """
     y, tau = state.temperature, DIAGONAL * step
+    if problem.loads.films.radiates:
+        problem.solver.stiffen(_tangent(problem, y))
     half = y + tau * state.rate
     middle = _stage(problem, state, state.time + GAMMA * step, tau, half, half + tau * state.rate)
     start = y + step * WEIGHTS[0] * (state.rate + middle.rate)
@@ -143,18 +149,34 @@ def advance(problem, state, step, *, estimate):
     return new, _error(problem, stages, step) if estimate else 0.0
 
 
+def _tangent(problem, y):
+    """What radiation adds to the stiffness of the free nodes."""
+    tangent = problem.loads.films.tangent(y + problem.loads.level)
+    return tangent[problem.free][:, problem.free]
+
+
 def _stage(problem, state, time, tau, start, guess):
     """Solve M (y - start) / tau + K y = heat at a time."""
     loads, free = problem.loads, problem.free
-    mass, stiffness, loading = loads.space.mass, loads.space.stiffness, loads.at(time)
+    mass, stiffness, loading = loads.space.mass, loads.stiffness, loads.at(time)
     y = guess
     y[loads.held] = loading.temperature
-    load = loading.heat - stiffness @ y - mass @ ((y - start) / tau)
-    scale = mass @ state.rate
-    y[free] += problem.solver.solve(tau, load[free], scale=scale[free], level=y[free])
+    scale, largest = mass @ state.rate, problem.solver.tolerance * (abs(loads.level) + float(np.abs(y).max(initial=0)))
+    for rounds in range(ROUNDS + 1):
+        if rounds >= CHORDS:
+            problem.solver.stiffen(_tangent(problem, y))
+        given = loading.heat + loads.radiated(y, loading)
+        load = given - stiffness @ y - mass @ ((y - start) / tau)
+        change = problem.solver.solve(tau, load[free], scale=scale[free], level=y[free])
+        y[free] += change
+        # Without radiation once is enough; with it the tangents of the step's start are mostly near.
+        if not loads.films.radiates or np.abs(change).max(initial=0.0) <= largest:
+            break
+        if rounds == ROUNDS:
+            raise RuntimeError(f"finite elements: radiation not met in {ROUNDS} rounds at {time:.6g} s")
     rate = (y - start) / tau
-    entering = mass @ rate + stiffness @ y - loading.heat
-    return State(time, y, rate, entering, loads.shares(entering, loading), state.heats, 0.0, state.span)
+    entering = mass @ rate + stiffness @ y - loading.heat - loads.radiated(y, loading)
+    return State(time, y, rate, entering, loads.rates(entering, y, loading), state.heats, 0.0, state.span)
 
 
 def _error(problem, stages, step):

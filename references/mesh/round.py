@@ -44,7 +44,7 @@ def make_round(scene, *, size, order):
         If gmsh or a system library that it needs is missing.
     """
     check_scene(scene)
-    scene.require("only boxes can have them here", shapes=())
+    scene.require("only boxes can have them here", shapes=(), takes=("exchange",))
     size = checked_size(scene, size, order)
 
     def attempt(factor, algorithm, done):

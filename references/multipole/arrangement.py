@@ -62,7 +62,7 @@ def arrange(scene, *, any_matrix=False) -> Arrangement:
         that a wall cuts (but not through the centre), a matrix of no conductivity.
     """
     gradient, level = _load(scene)
-    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, resistance=True)
+    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, takes=("resistance",))
     k = scene.matrix.conductivity
     if k == 0 and not any_matrix:
         raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")

@@ -76,7 +76,7 @@ def solve(
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     check_scene(scene)
-    scene.require(steady=True, resistance=True)
+    scene.require(steady=True, takes=("resistance",))
     wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
     return _solved(scene, points_per_axis, wanted)
 

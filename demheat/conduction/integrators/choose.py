@@ -5,6 +5,8 @@ import math
 from demheat.conduction.integrators import rkl2
 
 INTEGRATORS = ("auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
+# Their stages are sets of linear equations, once set up for many steps: what depends on the state has no place there.
+IMPLICIT = ("tr-bdf2", "tr-bdf2-multigrid")
 # Steps of equal size that a second-order method needs for an error of 1e-3 of the span, and what growing from small
 # first steps costs besides; found on slabs of 3e3 to 1e5 particles.
 STEPS, GRADED = 5.0, 2.0
@@ -60,7 +62,7 @@ def costs(spectrum, interval, accuracy, outputs):
     }
 
 
-def chosen(spectrum, interval, accuracy, outputs, *, moving=False):
+def chosen(spectrum, interval, accuracy, outputs, *, moving=False, linear=True):
     """Name of the cheapest integrator that meets the accuracy.
 
     Explicit Euler takes its stable steps, or those between outputs, whatever the error: they must be enough. It is left
@@ -72,6 +74,8 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False):
         As in `costs`.
     moving : bool
         Whether loads change in time.
+    linear : bool
+        Whether no load depends on the state.
 
     Returns
     -------
@@ -81,4 +85,21 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False):
     work = costs(spectrum, interval, accuracy, outputs)
     if moving or max(interval / spectrum.limit, outputs) < 0.5 / accuracy:
         del work["euler"]
+    for name in () if linear else IMPLICIT:
+        del work[name]
     return min(work, key=work.get)
+
+
+def check_linear(integrator):
+    """Raise NotImplementedError if an integrator cannot march what is not linear, as radiation is not.
+
+    Parameters
+    ----------
+    integrator : str
+        One of `INTEGRATORS`.
+    """
+    if integrator in IMPLICIT:
+        raise NotImplementedError(
+            f"integrator = {integrator!r} and a wall that radiates: its stages are linear equations, and the fourth "
+            "power is not; use 'rkl2' or 'euler', which ask for the heat at each stage, or 'auto'"
+        )

@@ -26,7 +26,7 @@ def stepper(system, spectrum):
     """
 
     def advance(x, time, step, memory, estimate):
-        heat, totals = system.heat_at(time)
+        heat, totals = system.heat(x, time)
         new = np.empty_like(x) if memory is None else memory
         kernels.forward(system.links, system.inverse, heat, step, x, new)
         inflow = step * system.inflow(x, totals)

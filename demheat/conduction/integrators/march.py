@@ -162,6 +162,8 @@ def integrate(
     ------
     ValueError
         If an argument is not as described, or `step` is above the stable limit of explicit Euler.
+    NotImplementedError
+        If walls radiate and the integrator is implicit.
     RuntimeError
         If steps or linear solves do not converge.
     """
@@ -182,10 +184,12 @@ def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=
     iterator of State
     """
     accuracy, step = float(accuracy), None if step is None else float(step)
-    rates, needed = spectrum_of(system), pace.steps(times[-1])
+    if system.radiation is not None:
+        choose.check_linear(integrator)
+    rates, needed = spectrum_of(system.bound or system), pace.steps(times[-1])
     if integrator == "auto":
-        moving, outputs = len(pace.longest) > 0, max(len(times), needed)
-        integrator = choose.chosen(rates, float(times[-1]), accuracy, outputs, moving=moving)
+        among = {"moving": len(pace.longest) > 0, "linear": system.radiation is None}
+        integrator = choose.chosen(rates, float(times[-1]), accuracy, max(len(times), needed), **among)
     method = METHODS[integrator]
     largest = method.largest_step(rates)
     if step is not None and step > largest * (1 + 1e-12):

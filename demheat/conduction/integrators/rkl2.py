@@ -69,7 +69,7 @@ def stepper(system, spectrum):
 
 def _stages(system, x, time, step, s, marks):
     """Last stage, heat that came in, and copies of the marked stages."""
-    heat, totals = system.heat_at(time)
+    heat, totals = system.heat(x, time)
     first, before, last = np.empty_like(x), x.copy(), None
     kernels.rates(system.links, system.inverse, heat, x, first)
     flow = system.inflow(x, totals)
@@ -82,7 +82,7 @@ def _stages(system, x, time, step, s, marks):
         system.hold(last, now)
         if j in marks:
             kept.append(last.copy())
-        heat, totals = system.heat_at(now)
+        heat, totals = system.heat(last, now)
         mu, nu, a, b = _weights(j + 1, s, step)
         came = mu * heat_last + nu * heat_before + a * system.inflow(last, totals) + b * flow
         kernels.stage(system.links, system.inverse, heat, (mu, nu, a, b), x, first, last, before)

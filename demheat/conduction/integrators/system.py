@@ -2,7 +2,8 @@
 
 Every wall with an imposed temperature is a node of its own, behind the particles; so is a particle whose centre the
 papers hold at a wall's temperature. Held nodes have empty rows and no inverse capacity: nothing moves them but the
-load.
+load. Where a wall exchanges heat with a fluid, the node is the fluid, behind a film. What a wall radiates depends on
+the state as no link does: explicit steps ask for it at each of their stages.
 """
 
 from collections.abc import Callable
@@ -11,10 +12,11 @@ from typing import NamedTuple
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.conduction.films import loaded_areas, radiating_walls, with_convection
 from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.network.base import SIDES, row_numbers
 from demheat.network.links_kernels import Links
-from demheat.scene import ROUND_AXES
+from demheat.scene import Radiation
 from demheat.scene.functions import load_at
 
 # Columns of every account of heat: one per side, then the sources.
@@ -37,7 +39,7 @@ class System(NamedTuple):
     diagonal : (N,) float array, W/K
         Sum of each row's conductances.
     held, held_side : (k,) int arrays
-        Nodes with imposed temperatures, and the side that imposes each.
+        Nodes with imposed temperatures, surroundings among them, and the side that imposes each.
     ties : Ties
         The links from free particles to held nodes once more.
     held_at : callable (time, s) -> (k,) float array, K
@@ -45,6 +47,10 @@ class System(NamedTuple):
         Imposed fluxes and sources: into each node, and their totals by side, sources last.
     level : float
     particles : int
+    radiation : callable (state, (N,) float array, K; time, s) -> as `heat_at`, optional
+        What walls that radiate let in.
+    bound : System, optional
+        One whose rates none of this one's exceeds, with links only: where walls radiate they are held there.
     """
 
     links: Links
@@ -58,6 +64,26 @@ class System(NamedTuple):
     heat_at: Callable
     level: float
     particles: int
+    radiation: Callable | None = None
+    bound: "System | None" = None
+
+    def heat(self, x, time):
+        """Heat flow into each node that no link brings, of a state at a time: of `heat_at`, and what walls radiate.
+
+        Parameters
+        ----------
+        x : (N,) float array, K
+        time : float, s
+
+        Returns
+        -------
+        (N,) and (8,) float arrays, W
+        """
+        heat, totals = self.heat_at(time)
+        if self.radiation is None:
+            return heat, totals
+        more, by_side = self.radiation(x, time)
+        return heat + more, totals + by_side
 
     def hold(self, x, time):
         """Set held nodes to their temperatures at a time.
@@ -117,17 +143,20 @@ def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, le
     if not np.all(np.isfinite(capacity) & (capacity > 0)):
         raise ValueError(f"capacity: {np.sum(~(capacity > 0))} of {n} are not > 0; all must be finite and > 0 J/K")
     held, sides = _held(network, scene, held_centers, n)
-    links = _links(network, scene, np.isin(np.arange(n), held), n)
+    network = with_convection(network, scene)
+    walls = radiating_walls(network, scene)
+    tied = [name for name in scene.imposed_temperatures if not isinstance(scene.walls[name], Radiation)]
+    links = _links(network, tied, np.isin(np.arange(n), held), n)
     capacity = np.concatenate([capacity, np.zeros(len(SIDES))])
     capacity[held] = 0.0
     inverse = np.divide(1.0, capacity, out=np.zeros_like(capacity), where=capacity > 0)
     side_of = np.full(n + len(SIDES), -1)
     side_of[held] = sides
-    return System(
+    system = System(
         links=links,
         capacity=capacity,
         inverse=inverse,
-        diagonal=np.bincount(row_numbers(links.indptr), links.conductance, minlength=len(capacity)),
+        diagonal=_diagonal(links, capacity),
         held=held,
         held_side=sides,
         ties=_ties(links, side_of),
@@ -136,6 +165,30 @@ def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, le
         level=level,
         particles=n,
     )
+    if not walls:
+        return system
+    # A film conducts no better than none: the rates of held walls are never exceeded.
+    links = _links(network, list(scene.imposed_temperatures), np.isin(np.arange(n), held), n)
+    bound = system._replace(links=links, diagonal=_diagonal(links, capacity), ties=_ties(links, side_of))
+    return system._replace(radiation=_radiation(walls, system), bound=bound)
+
+
+def _diagonal(links, capacity):
+    return np.bincount(row_numbers(links.indptr), links.conductance, minlength=len(capacity))
+
+
+def _radiation(walls, system):
+    """Function of state and time that gives what walls radiate into each node, and the totals by side."""
+
+    def at(x, time):
+        heat, totals, temperature = np.zeros(len(x)), np.zeros(ACCOUNTS), x[: system.particles] + system.level
+        for wall in walls:
+            entering = wall.heat(temperature, time)
+            heat += np.bincount(wall.particle, entering, minlength=len(x))
+            totals[wall.side] += entering.sum()
+        return heat, totals
+
+    return at
 
 
 def initial_state(system, temperature, time):
@@ -161,7 +214,7 @@ def initial_state(system, temperature, time):
 
 def _held(network, scene, held_centers, n):
     """Held nodes and their sides."""
-    imposed = [SIDES.index(name) for name in scene.wall_temperatures]
+    imposed = [SIDES.index(name) for name in scene.imposed_temperatures]
     nodes, sides = [n + np.array(imposed, dtype=np.int64)], [np.array(imposed, dtype=np.int64)]
     if held_centers is not None:
         here = held_centers[network.wall_particle] & np.isin(network.wall_side, imposed)
@@ -170,9 +223,9 @@ def _held(network, scene, held_centers, n):
     return np.concatenate(nodes), np.concatenate(sides)
 
 
-def _links(network, scene, empty, n):
-    """Links of the network with links to the wall nodes at their ends, rows of held particles emptied."""
-    imposed = np.isin(network.wall_side, [SIDES.index(name) for name in scene.wall_temperatures])
+def _links(network, names, empty, n):
+    """Links of the network with links to the nodes of some walls at their ends, rows of held particles emptied."""
+    imposed = np.isin(network.wall_side, [SIDES.index(name) for name in names])
     tied = imposed & ~empty[network.wall_particle] & (network.wall_conductance > 0)
     order = np.flatnonzero(tied)[np.argsort(network.wall_particle[tied], kind="stable")]
     particle = network.wall_particle[order]
@@ -193,7 +246,7 @@ def _ties(links, side_of):
 
 
 def _held_at(scene, sides, level):
-    loads = {SIDES.index(name): (name, load) for name, load in scene.wall_temperatures.items()}
+    loads = {SIDES.index(name): (name, load) for name, load in scene.imposed_temperatures.items()}
     place = np.searchsorted(sorted(loads), sides)
     changing = any(callable(load) for _, load in loads.values())
 
@@ -219,31 +272,6 @@ def _heat_at(network, scene, free, power):
         fixed = _heat(fluxes, None, free, n, 0.0)
         return lambda time: fixed
     return lambda time: _heat(fluxes, power, free, n, time)
-
-
-def loaded_areas(network, scene, name):
-    """Areas of a wall's facets, summing to the body's own surface there.
-
-    Planes that stand for a round wall enclose the exact volume with a few parts in 10^4 more of area: a flux density
-    would bring in so much more heat.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    name : str
-        Of the wall.
-
-    Returns
-    -------
-    (facets of the wall,) float array, m2
-    """
-    areas = network.wall_area[network.wall_side == SIDES.index(name)]
-    if name != "round":
-        return areas
-    across = ROUND_AXES[scene.domain]
-    # Round area times radius over the number of round axes is the volume.
-    return areas * (len(across) * scene.volume / (scene.size[across[0]] / 2) / areas.sum())
 
 
 def _heat(fluxes, power, free, n, time):

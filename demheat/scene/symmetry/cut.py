@@ -86,7 +86,7 @@ def reduced(scene: Scene) -> Reduced:
         If the scene has sources or a round body.
     """
     planes = _clear(scene, mirrors(scene))
-    scene.require(steady=True, resistance=True)
+    scene.require(steady=True, takes=("resistance",))
     cut = _along(scene, planes) if scene.periodic else _between(scene, planes)
     if not any(cut):
         return Reduced(scene, scene, (1, 1, 1), (0.0, 0.0, 0.0))
@@ -164,7 +164,8 @@ def _loaded_axis(scene):
         along = np.flatnonzero(scene.gradient)
         return int(along[0]) if len(along) == 1 else None
     names = sorted(scene.walls)
-    return scene.axis if not scene.wall_fluxes and len(names) == 2 and names[0][0] == names[1][0] else None
+    held = len(scene.wall_temperatures) == len(names)
+    return scene.axis if held and len(names) == 2 and names[0][0] == names[1][0] else None
 
 
 def _along(scene, planes):

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import singledispatch
 from typing import NamedTuple
 
 import numpy as np
 
-from demheat.scene import Layer, Shape
+from demheat.scene import Layer, Shape, Sphere
 from references.bracket.voxels.voxel_kernels import Cells
 
 # Parts of a voxel's edge.
@@ -134,22 +135,28 @@ def _meeting(image, low, high):
 
 def _paint(image, boxes, conductivity, least, greatest, grain):
     """Paint a shape over what boxes conduct at least and at most, in place."""
-    some, all_ = (_in_layer if isinstance(image, Layer) else _in_sphere)(image, boxes, grain)
+    some, all_ = _held(image, boxes, grain)
     np.copyto(least, np.minimum(least, conductivity), where=some)
     np.copyto(greatest, np.maximum(greatest, conductivity), where=some)
     np.copyto(least, conductivity, where=all_)
     np.copyto(greatest, conductivity, where=all_)
 
 
-def _in_layer(layer, boxes, grain):
-    """Whether some, and whether all of each box lies in a layer, but for what has no volume."""
+@singledispatch
+def _held(image: Shape, boxes, grain):
+    """Whether some of each box may lie, and whether all of it surely lies, in a shape, but for what has no volume."""
+    raise NotImplementedError(f"bounds on voxels are known of spheres and layers, not of a {image.kind}")
+
+
+@_held.register
+def _(layer: Layer, boxes, grain):
     low, high = boxes.low[layer.axis], boxes.high[layer.axis]
     some = (high > layer.start + grain) & (low < layer.stop - grain)
     return some, (low >= layer.start - grain) & (high <= layer.stop + grain)
 
 
-def _in_sphere(sphere, boxes, grain):
-    """Whether some, and whether all of each box may lie, and surely lies in a sphere."""
+@_held.register
+def _(sphere: Sphere, boxes, grain):
     near = far = 0.0
     for low, high, middle in zip(boxes.low, boxes.high, sphere.center, strict=True):
         near = near + np.maximum(0.0, np.maximum(low - middle, middle - high)) ** 2
@@ -199,12 +206,15 @@ def mirrored(images: Sequence[tuple[int, Shape]], size, doubled: Sequence[bool])
     return sorted(found, key=lambda pair: pair[0])
 
 
-def _mirror(shape, axis, twice) -> Iterator[Shape]:
-    if isinstance(shape, Layer):
-        # Across another axis a layer goes on.
-        if shape.axis == axis:
-            yield replace(shape, start=twice - shape.stop, stop=twice - shape.start)
-        return
+@singledispatch
+def _mirror(shape: Shape, axis, twice) -> Iterator[Shape]:
     center = list(shape.center)
     center[axis] = twice - center[axis]
     yield replace(shape, center=tuple(center))
+
+
+@_mirror.register
+def _(shape: Layer, axis, twice):
+    # Across another axis a layer goes on.
+    if shape.axis == axis:
+        yield replace(shape, start=twice - shape.stop, stop=twice - shape.start)

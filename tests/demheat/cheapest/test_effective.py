@@ -12,6 +12,7 @@ from demheat.cheapest import ways
 from demheat.cheapest.loads import loads_of
 from demheat.tensor import conductivity_tensor
 from references import exact, multipole
+from studies.common.drawn import scene_of
 
 # Not the function of the same name.
 CHOSEN = import_module("demheat.cheapest.effective")
@@ -120,6 +121,12 @@ def test_recommendations_say_why():
     # What is expected not to fit is in doubt, what cannot even begin is none.
     assert "dem: in doubt, expected to need" in recommend(ASKEW, 1e-8, memory=1e9).why
     assert recommend(ASKEW, 1e-3, memory=1.0).method == ""
+
+
+def test_what_costs_by_the_inclusion_is_not_made_coarser_without_end():
+    """Linear and quadratic meshes pay for each sphere, whatever the edges: once a step coarser overflowed."""
+    found = {way.method: way for way in recommend(scene_of("polydisperse", 2005), 1e-3).ways}
+    assert found["fem"].cpu_s > ways.FIRST and 0 < found["fem"].knobs["size"] < 1.0
 
 
 def test_equal_walls_are_refused_before_any_method_is_tried():

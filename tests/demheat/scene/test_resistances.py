@@ -73,7 +73,7 @@ def test_what_does_not_say_that_it_can_refuses_it():
         scene.require("it knows better")
     with pytest.raises(NotImplementedError, match=what + "$"):
         scene.require(steady=True)
-    scene.require("it can", resistance=True)
+    scene.require("it can", takes=("resistance",))
     cell(ball(0.3, 0.5, 0.5)).require("nothing resists")
 
 

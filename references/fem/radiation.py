@@ -1,0 +1,87 @@
+"""Steady radiation: Newton's method on the nodes, each round from the last one's temperatures."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from demheat.scene import STEFAN_BOLTZMANN, Radiation
+from references.fem.multigrid import solve_free
+
+# Rounds at most, and what each round's linear equations leave of the residual.
+ROUNDS, FURTHER = 40, 1e-3
+
+
+def hottest(scene, films) -> float:
+    """A temperature that no radiating wall exceeds, K: all imposed fluxes left by radiation alone.
+
+    Parameters
+    ----------
+    scene : Scene
+    films : Films
+    """
+    size = np.array(scene.size)
+    across = {name: float(np.prod(np.delete(size, "xyz".index(name[0])))) for name in scene.walls}
+    entering = sum(max(value, 0.0) * across[name] for name, value in scene.wall_fluxes.items())
+    black = [(load, float(s.areas.sum())) for load, s in films.walls.values() if isinstance(load, Radiation)]
+    leaving = sum(load.emissivity * STEFAN_BOLTZMANN * area for load, area in black)
+    around = max(load.temperature for load, _ in black)
+    alone = (around**4 + entering / leaving) ** 0.25 if leaving > 0 else 0.0
+    return max(alone, *scene.imposed_temperatures.values())
+
+
+def radiating(mesh, matrix, load, fixed, dof, tolerance, *, known, body):
+    """Correction to a known temperature at which conduction and radiation balance, at the free nodes.
+
+    Parameters
+    ----------
+    mesh, matrix, load, fixed, dof, tolerance
+        As those of `references.fem.multigrid.solve_free`, without radiation.
+    known : (n,) float array, K
+        The temperature that is corrected.
+    body : (Scene, Films, float)
+        The scene, its films and the unit of conductivity that matrix and load are over, W/(m K).
+
+    Returns
+    -------
+    (n,) float array, K
+    dict
+        `unknowns`, `iterations`, `residual` of the equations with the fourth powers themselves, and `rounds`.
+
+    Raises
+    ------
+    RuntimeError
+        If the residual stays above the tolerance.
+    """
+    scene, films, unit = body
+    outside, free = scene.imposed_temperatures, ~fixed & (matrix.diagonal() > 0)
+    correction = np.where(free, hottest(scene, films) - known, 0.0)
+    kept, iterations, largest, size, stats = {}, 0, 0.0, np.inf, {"unknowns": int(free.sum())}
+    for rounds in range(ROUNDS + 1):
+        temperature = known + correction
+        b = load + films.radiated(outside, temperature) / unit
+        whole = (matrix + films.tangent(temperature) / unit).tocsr()
+        left, root = (b - matrix @ correction)[free], np.sqrt(whole.diagonal()[free])
+        size = float(np.linalg.norm(left / root))
+        largest = max(largest, size, float(np.linalg.norm(b[free] / root)))
+        if size <= tolerance * largest or rounds == ROUNDS:
+            break
+        change, found = solve_free(
+            mesh, whole, b - matrix @ correction, fixed, dof, FURTHER, kept=_renewed(kept, whole)
+        )
+        correction += change
+        iterations += found["iterations"]
+    residual = size / largest if largest > 0 else 0.0
+    if not residual <= tolerance:
+        raise RuntimeError(
+            f"finite elements: residual {residual:.2e} > tolerance {tolerance:.2e} after {ROUNDS} rounds of Newton's "
+            "method for radiation"
+        )
+    return correction, stats | {"iterations": iterations, "residual": residual, "rounds": rounds}
+
+
+def _renewed(kept, matrix):
+    """What a solver keeps, with the equations of another matrix: scale and multigrid still serve."""
+    if kept:
+        _, scale, precondition = kept["equations"]
+        kept["equations"] = (scale @ matrix[kept["free"]][:, kept["free"]] @ scale).tocsr(), scale, precondition
+    return kept
