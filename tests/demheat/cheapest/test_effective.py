@@ -98,7 +98,7 @@ def test_a_way_that_turns_out_dear_gives_way(monkeypatch):
 
 
 def test_a_way_that_stays_cheapest_is_gone_on_with(monkeypatch):
-    dear = ways.Way("fem", {"size": CUBE.size[0] / 10}, cpu_s=1e9, bytes=1e6)
+    dear = ways.Way("fem", {"size": CUBE.size[0] / 24}, cpu_s=1e9, bytes=1e6)
     begin_with(monkeypatch, ways.Way("fft", {"voxels": 8}, cpu_s=0.01, bytes=1e6), dear)
     found = effective(CUBE, accuracy=3e-3)
     assert found.method == "fft" and found.cost["rounds"] > 1
