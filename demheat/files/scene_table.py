@@ -12,6 +12,7 @@ from demheat.files.source import Source, nearest, shown
 from demheat.files.spheres import spheres_of
 from demheat.files.table import Table
 from demheat.files.units import (
+    COEFFICIENT,
     CONDUCTIVITY,
     DENSITY,
     FLUX,
@@ -20,17 +21,33 @@ from demheat.files.units import (
     LENGTH,
     PLAIN,
     POWER_DENSITY,
+    RESISTANCE,
     TEMPERATURE,
     VELOCITY,
 )
-from demheat.scene import ROUND_AXES, WALLS, Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
+from demheat.scene import (
+    ROUND_AXES,
+    WALLS,
+    Convection,
+    Flux,
+    Layer,
+    Material,
+    MovingCylinder,
+    Radiation,
+    Scene,
+    Sphere,
+    UniformSource,
+)
 
 AXES = ("x", "y", "z")
 MATERIAL = {"conductivity": CONDUCTIVITY, "density": DENSITY, "heat_capacity": HEAT_CAPACITY}
 # What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags.
 SHAPES = {
-    "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1)}),
-    "layer": (Layer, {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1)}),
+    "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
+    "layer": (
+        Layer,
+        {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
+    ),
 }
 SOURCES = {
     "uniform": (UniformSource, {"power_density": (POWER_DENSITY, 1)}),
@@ -46,12 +63,18 @@ SOURCES = {
         },
     ),
 }
+# Loads of walls that are no temperatures: known by the first of their keys.
+LOADS = {
+    "flux": (Flux, {"flux": FLUX}),
+    "coefficient": (Convection, {"coefficient": COEFFICIENT, "temperature": TEMPERATURE}),
+    "emissivity": (Radiation, {"emissivity": PLAIN, "temperature": TEMPERATURE}),
+}
 # Keys of a file.
 KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fromkeys(
     ("matrix", "materials", "inclusions", "walls", "sources", "domain", "solve", "accuracy"), PLAIN
 )
 # What may be left out.
-OPTIONAL = ("velocity", "clip")
+OPTIONAL = ("velocity", "clip", "resistance")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
 
@@ -183,21 +206,38 @@ def _axis(table, name):
 
 
 def _walls(table):
-    """Loads of walls by their names: temperatures, or tables with a flux."""
+    """Loads of walls by their names: temperatures, or tables of what else a wall may have."""
     walls = table.table("walls")
     if walls is None:
         return None
     names, found = (*WALLS, "round"), {}
     walls.only(dict.fromkeys(names, TEMPERATURE))
     for name in names:
-        value = walls.values.get(name)
-        if isinstance(value, dict):
-            own = walls.table(name)
-            own.only({"flux": FLUX})
-            found[name] = _flux(own, own.number("flux", FLUX, ...))
-        else:
-            found[name] = walls.number(name, TEMPERATURE)
+        own = isinstance(walls.values.get(name), dict)
+        found[name] = _load(walls.table(name)) if own else walls.number(name, TEMPERATURE)
     return {name: load for name, load in found.items() if load is not None}
+
+
+def _load(table):
+    table.only({name: quantity for _, keys in LOADS.values() for name, quantity in keys.items()})
+    first = next((name for name, (_, keys) in LOADS.items() if table.key(name, keys[name])), None)
+    if first is None:
+        raise table.error(None, f": must have one of {', '.join(LOADS)}")
+    kind, keys = LOADS[first]
+    table.only(keys)
+    values = {name: table.number(name, quantity, ...) for name, quantity in keys.items()}
+    if kind is Flux:
+        return _flux(table, values["flux"])
+    if kind is Radiation:
+        _check_kelvin(table)
+    return table.made(kind, **values)
+
+
+def _check_kelvin(table):
+    """Raise ValueError where a wall radiates and temperatures are in degrees Celsius: fourth powers need kelvin."""
+    if "degC" in table.source.scales:
+        line = table.source.line(table.source.scales["degC"])
+        raise table.error("emissivity", f": with it all temperatures are in kelvin, and that in line {line} in degC")
 
 
 def _flux(table, value):

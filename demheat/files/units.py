@@ -55,6 +55,8 @@ HEAT_CAPACITY = Quantity("J/(kg K)", {"J_kgK": "J/(kg K)", "kJ_kgK": "kJ/(kg K)"
 GRADIENT = Quantity("K/m", {"K_m": "K/m", "K_cm": "K/cm", "K_mm": "K/mm"})
 FLUX = Quantity("W/m2", {"W_m2": "W/m2", "kW_m2": "kW/m2"})
 POWER_DENSITY = Quantity("W/m3", {"W_m3": "W/m3", "kW_m3": "kW/m3"})
+RESISTANCE = Quantity("m2 K/W", {"m2K_W": "m2 K/W", "mm2K_W": "mm2 K/W"})
+COEFFICIENT = Quantity("W/(m2 K)", {"W_m2K": "W/(m2 K)", "kW_m2K": "kW/(m2 K)"})
 VELOCITY = Quantity("m/s", {"m_s": "m/s", "mm_s": "mm/s"})
 
 

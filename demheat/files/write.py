@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from dataclasses import fields
 
-from demheat.files.scene_table import AXES, SHAPES, SOURCES
+from demheat.files.scene_table import AXES, LOADS, SHAPES, SOURCES
 from demheat.files.source import checked_path
 from demheat.files.whole import replaced
-from demheat.scene import Flux, Scene, check_scene
+from demheat.scene import Scene, check_scene
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 
@@ -84,7 +84,8 @@ def _inclusion(number, shape, names):
     kind = next((name for name, (known, _) in SHAPES.items() if type(shape) is known), None)
     if kind is None:
         raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {', '.join(SHAPES)} in a file")
-    return {"shape": kind, **_plain(shape, material=names[shape.material], **_axis(shape))}
+    resistance = shape.resistance or None
+    return {"shape": kind, **_plain(shape, material=names[shape.material], resistance=resistance, **_axis(shape))}
 
 
 def _source(source):
@@ -97,10 +98,11 @@ def _axis(part):
 
 
 def _load(name, load):
-    value = load.value if isinstance(load, Flux) else load
-    if callable(value):
+    kind = next((each for each in LOADS if type(load) is LOADS[each][0]), None)
+    values = {"flux": load.value} if kind == "flux" else _plain(load) if kind else {"": load}
+    if any(map(callable, values.values())):
         raise ValueError(f"Scene.walls[{name!r}]: a file cannot hold a function of time; must be a number or a Flux")
-    return {"flux": float(value)} if isinstance(load, Flux) else float(value)
+    return {key: float(value) for key, value in values.items()} if kind else float(load)
 
 
 def _block(header, values):

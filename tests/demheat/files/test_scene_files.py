@@ -3,7 +3,19 @@
 import numpy as np
 import pytest
 
-from demheat import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource, files, gallery
+from demheat import (
+    Convection,
+    Flux,
+    Layer,
+    Material,
+    MovingCylinder,
+    Radiation,
+    Scene,
+    Sphere,
+    UniformSource,
+    files,
+    gallery,
+)
 from demheat.packing import io, make_packing
 
 RESIN = Material(0.2, 1200.0, 1000.0)
@@ -56,19 +68,43 @@ def test_every_key_is_read(tmp_path):
     assert files.read(written(tmp_path, EVERYTHING)) == Scene((0.1, 0.2, 0.3), RESIN, inclusions, **load)
 
 
+def test_resistances_and_walls_that_exchange_heat_have_units(tmp_path):
+    text = EVERYTHING.partition("[[inclusions]]")[0].replace("initial_C = 20", "")
+    text += """
+[[inclusions]]
+shape = "sphere"
+center = [0.05, 0.1, 0.1]
+radius = 0.01
+material = "steel"
+resistance_mm2K_W = 3
+[walls]
+"x-" = {coefficient = "2 kW/(m2 K)", temperature_K = 400}
+"x+" = {emissivity = 0.5, temperature_K = 300}
+"""
+    found = files.read(written(tmp_path, text))
+    assert found.inclusions[0].resistance == 3e-6
+    assert dict(found.walls) == {"x-": Convection(2000.0, 400.0), "x+": Radiation(0.5, 300.0)}
+
+
 def drawn(seed):
     """A scene of random floats; every kind of load and part that a file can hold occurs."""
     rng = np.random.default_rng(seed)
     k = iter(np.exp(rng.normal(size=20)).tolist())
-    spheres = [Sphere(0.1 + 0.8 * rng.random(3), 0.02 * rng.random(), Material(next(k))) for _ in range(seed % 3)]
-    layer = [Layer(seed % 3, *np.sort(rng.random(2)).tolist(), Material(next(k), next(k), next(k)))] * (seed % 2)
+    resists = {"resistance": rng.random()} if seed % 5 else {}
+    spheres = [
+        Sphere(0.1 + 0.8 * rng.random(3), 0.02 * rng.random(), Material(next(k)), **resists) for _ in range(seed % 3)
+    ]
+    planes = np.sort(rng.random(2)).tolist()
+    layer = [Layer(seed % 3, *planes, Material(next(k), next(k), next(k)), **resists)] * (seed % 2)
     loads = [
         {"gradient": rng.normal(size=3)},
         {"walls": {"z-": rng.normal(), "round": Flux(rng.normal())}, "domain": "cylinder-z"},
         {"walls": {"y-": rng.normal(), "y+": Flux(rng.normal())}, "initial": rng.normal()},
+        {"walls": {"x-": Convection(next(k), rng.normal()), "x+": rng.normal()}},
+        {"walls": {"x-": Radiation(rng.random(), 300 * rng.random()), "z+": Convection(next(k), next(k))}},
         {"initial": 1.0, "sources": [UniformSource(next(k)), MovingCylinder(1, next(k), next(k), rng.random(2))]},
     ]
-    return Scene((1.0, 1.0, 1.0), Material(next(k)), layer or spheres, **loads[seed % 4])
+    return Scene((1.0, 1.0, 1.0), Material(next(k)), layer or spheres, **loads[seed % 6])
 
 
 @pytest.mark.parametrize("seed", range(24))
