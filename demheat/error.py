@@ -68,6 +68,10 @@ class Refinement(NamedTuple):
         Of the temperature's root mean square.
     also : float
         What the change by another refinement is raised by, of what coarser runs do not show.
+    coats : float
+        What all is raised by where inclusions lie in others, whose interval is then at least as wide, relatively, as
+        the temperature is expected to be off: errors of coat and core may cancel in the conductivity, wholly so in
+        neutral spheres, and what is left between runs is chance. 0: nothing of that.
     """
 
     ratio: float
@@ -77,6 +81,7 @@ class Refinement(NamedTuple):
     temperature_order: float
     temperature_safety: float
     also: float = 0.0
+    coats: float = 0.0
 
 
 def known(field, relative, how, *, temperature=math.nan) -> Estimate:
@@ -162,6 +167,8 @@ def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None,
     warmth = partial(_level_free, points=points)
     kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)
     kelvin += (residual + steps) * _span(field, warmth(field))
+    if rule.coats and np.any(field.scene.parents()):
+        half = rule.coats * max(half, abs(k) * kelvin / _drop(field, warmth(field)))
     return Estimate(how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(_conductivity, fields)))
 
 
@@ -233,6 +240,13 @@ def _span(field, warmth):
     """Between the coldest and the warmest point or wall."""
     every = np.append(warmth[np.isfinite(warmth)], [v for v in field.wall_temperature.values() if np.isfinite(v)])
     return float(np.ptp(every)) if len(every) else 0.0
+
+
+def _drop(field, warmth):
+    """That the load imposes, or what it makes; infinite where all is of one temperature."""
+    scene = field.scene
+    across = float(np.abs(scene.gradient) @ np.array(scene.size)) if scene.periodic else _span(field, warmth)
+    return across or math.inf
 
 
 def _spread(one, other):

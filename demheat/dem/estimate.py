@@ -14,7 +14,7 @@ from demheat.laws import Calibrated, Laguerre, Platonic
 CLOSER = 0.7
 # A run has a quarter of the particles of the one before.
 RATIO = 4 ** (1 / 3)
-CONFORMING = Refinement(RATIO, 2, 2.0, 1.0, 2.0, 1.0, also=1 / (1 - CLOSER))
+CONFORMING = Refinement(RATIO, 2, 2.0, 1.0, 2.0, 1.0, also=1 / (1 - CLOSER), coats=1.5)
 PLAIN = Refinement(RATIO, 2, 1.0, 1.0, 1.0, 1.0)
 
 

@@ -83,8 +83,7 @@ def span(scene: Scene, reference: Field | None = None) -> float:
     """Temperature difference that the load imposes, K.
 
     The largest difference between walls, or the surroundings that they exchange heat with, in time between them and
-    the initial temperature; in a periodic cell that of
-    the mean gradient over the box, sum |g_i| L_i.
+    the initial temperature; in a periodic cell that of the mean gradient over the box, sum |g_i| L_i.
 
     Parameters
     ----------

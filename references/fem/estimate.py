@@ -6,7 +6,7 @@ from demheat.error import Refinement, by_refinement
 RATIO = 1.4
 # Of quadratic elements on curved surfaces, the same on straight ones, linear ones and bricks.
 RULES = {
-    "curved": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2),
+    "curved": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2, coats=1.0),
     "straight": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2),
     "linear": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2),
 }

@@ -62,6 +62,25 @@ def test_intervals_are_what_is_missing_times_a_safety():
     assert 0.02 + 0.11 * 0.98 < left.temperature < 0.02 + 0.11 * 1.001 * span
 
 
+def test_coats_are_at_least_as_uncertain_as_their_temperature():
+    """Errors of coat and core may cancel in the conductivity: that of the temperature does not."""
+    k, core = Material(2.0), Sphere((0.5,) * 3, 0.1, Material(3.0))
+    walls = {"walls": {"x-": 0.0, "x+": 1.0}}
+    rule = RULE._replace(coats=1.5)
+
+    def half(inclusions, off):
+        scene = Scene((1.0,) * 3, Material(1.0), inclusions, **walls)
+        estimate = by_refinement(made(0, scene=scene, off=off), lambda n: made(n, scene=scene, off=off), rule, how="")
+        return estimate.upper - made(0, off=off).conductivity, estimate.temperature
+
+    coated = [Sphere((0.5,) * 3, 0.2, k), core]
+    plain, warmth = half([core], 1.0)
+    assert half(coated, 1.0)[0] == pytest.approx(1.5 * plain, rel=1e-9)
+    # Nothing changes in the conductivity of 5: the temperature's error, of a drop of a degree or so, counts.
+    assert half([core], 0.0)[0] < 1e-9
+    assert 1.5 * 5 * warmth * 0.98 < half(coated, 0.0)[0] < 1.5 * 5 * warmth * 1.001
+
+
 def test_the_level_of_a_periodic_cell_is_no_error():
     scene = Scene((1.0,) * 3, Material(1.0), gradient=(1.0, 0.0, 0.0))
     estimate = by_refinement(made(0, scene=scene), lambda level: made(level, scene=scene), RULE, how="coarser")
