@@ -12,8 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from demheat import declared
 from studies.__main__ import main
-from studies.harness import methods, provenance, runner, store
+from studies.harness import provenance, runner, store
 
 
 def test_warm_up_comes_first_and_in_the_same_process(tiny, tmp_path):
@@ -70,7 +71,7 @@ def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
     monkeypatch.setattr(provenance, "PACKAGES", (home.name,))
-    monkeypatch.setattr(methods, "HOMES", (home.name,))
+    monkeypatch.setattr(declared, "HOMES", (home.name,))
     monkeypatch.setattr(runner, "triad_gbs", lambda: 12.5)
     solve, helper = "def solve(x):\n    return square(x)\n", "def square(x):\n    return x * x\n"
 
