@@ -19,12 +19,16 @@ class Bound(NamedTuple):
 
 
 def bounds_of(scene) -> list[Bound]:
-    """Bounds of a scene; empty where its volume fractions are not known in closed form.
+    """Bounds of a scene; empty where its volume fractions are not known in closed form, or its surfaces resist.
+
+    A resistance takes the conductivity below all of them: Reuss's sum of resistances does not know it.
 
     Parameters
     ----------
     scene : Scene
     """
+    if scene.resistances.any():
+        return []
     formulas = import_module("references.bounds")
     try:
         fractions = import_module("references.exact.solver").fractions(scene)

@@ -8,6 +8,7 @@ from pathlib import Path
 from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
+from demheat.files.fields import check_target
 from demheat.files.whole import replaced
 
 
@@ -23,6 +24,8 @@ def run(file, options) -> int:
     wanted = asked(file, names(options.methods), options.knob, default=("dem",))
     if options.write and len(wanted) > 1:
         raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
+    if options.write:
+        check_target(options.write)
     folder = Path(options.out) if options.out else None
     if folder:
         folder.mkdir(parents=True, exist_ok=True)

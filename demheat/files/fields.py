@@ -16,6 +16,7 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -52,11 +53,9 @@ def write(field: Field, path, *, cells: int = 64) -> None:
         If the field has no mesh for a .vtu.
     """
     check_field(field)
-    path = checked_path(path)
+    path = check_target(path)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
-    make = WRITERS.get(path.suffix.lower())
-    if make is None:
-        raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")
+    make = WRITERS[path.suffix.lower()]
     if make is _mesh and getattr(field, "elements", None) is None:
         raise NotImplementedError(
             f"path = {str(path)!r}: this field has no mesh; only finite elements do. Use .vti for a grid, or .vtp for "
@@ -64,6 +63,21 @@ def write(field: Field, path, *, cells: int = 64) -> None:
         )
     with replaced(path) as part, part.open("xb") as stream:
         make(field, stream, cells)
+
+
+def check_target(path) -> Path:
+    """The path of a file that a field can be written to, or a ValueError, before anything is solved.
+
+    Parameters
+    ----------
+    path : path
+    """
+    path = checked_path(path)
+    if path.suffix.lower() not in WRITERS:
+        raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")
+    if not path.parent.is_dir():
+        raise ValueError(f"path = {str(path)!r}: there is no folder {str(path.parent)!r}")
+    return path
 
 
 def _points(field, stream, cells):

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from demheat.scene.inputs import LEAST, MOST, moderate, number
 
-WITHIN = f", unless it is 0 from {LEAST:g} to {MOST:g}"
+WITHIN = f", of {LEAST:g} to {MOST:g} where it is not 0"
 
 
 @dataclass(frozen=True)

@@ -25,7 +25,7 @@ WALLS = {
 }
 
 
-EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, convection for series of slabs too"
+EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, in time also for series of slabs"
 
 
 def check_steady(scene) -> None:

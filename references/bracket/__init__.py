@@ -5,11 +5,15 @@ Thomson's the energy of any balanced flux bounds it from below. Both are worked 
 are pushed to that side of the true ones which keeps the bound.
 """
 
-__all__ = ["Bracket", "Tensor", "solve", "solve_tensor"]  # noqa: F822, found by `__getattr__`
+from importlib import import_module
+
+__all__ = ["Bracket", "Tensor", "solve", "solve_tensor", "voxels"]  # noqa: F822, found by `__getattr__`
 
 
 def __getattr__(name):
     # What is heavy loads with the first call.
+    if name == "voxels":
+        return import_module("references.bracket.voxels")
     if name in __all__:
         from references.bracket import solver, tensor
 

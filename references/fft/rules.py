@@ -30,6 +30,9 @@ MISSED = {
 # Voxels along a side below which gaps of up to two voxels are said, at contrasts from this on: at 7 voxels they were
 # found to cost a sixth of the conductivity, at two a half.
 FEW, WEAK = 10, 2.0
+# So many times worse than the best conductor a coat thinner than a voxel leaks: a layer of no conductivity around a
+# ball that nearly reaches through it let a twentieth to a tenth of the matrix's pass where nothing should.
+LEAKING = 100.0
 # Elsewhere gaps of so many voxels are said: of 1.04 voxels, at contrast 100, cost 23 %, of 1.4 13 %.
 NEAR = 1.4
 # Voxels along a side below which links are not for round bodies: of 128 spheres (radii .23 to .48 of the cell,
@@ -91,9 +94,12 @@ def warn_of_thin(scene, rule, shape) -> None:
     voxel, left = float(spacing.max()), coats(scene)
     thin = np.flatnonzero(left < voxel)
     if len(thin):
+        k = scene.conductivities
+        leaks = np.any(LEAKING * k[thin + 1] <= k.max())
+        what = "heat leaks through and the conductivity may be off many times" if leaks else "errors may be percents"
         warnings.warn(
             f"inclusions {_listed(thin)} are coats thinner than a voxel of "
-            f"{voxel:.3g} m, down to {left[thin].min():.3g} m: errors may be percents; use more voxels",
+            f"{voxel:.3g} m, down to {left[thin].min():.3g} m: {what}; use more voxels",
             stacklevel=4,
         )
     # Laminates are exact for layers of any thickness that they see.

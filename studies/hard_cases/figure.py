@@ -9,13 +9,15 @@ from studies.harness.figures import GREEN, GREY, ORANGE, RED
 
 COLOURS = {"verified": GREEN, "refused": GREY, "warned": ORANGE, "wrong": RED}
 WORDS = {
-    "verified": "right",
+    "verified": "within what is allowed",
     "refused": "refused, with its reason",
     "warned": "off, and says so",
     "wrong": "silently wrong",
 }
 # Below this an error is drawn as this, in units of what is allowed.
 FLOOR = 1e-4
+# And above this as this: of a conductivity that should be nearly none an error has no size.
+CEILING = 1e6
 
 
 def draw(df):
@@ -35,7 +37,7 @@ def draw(df):
     _bars(axes[1], each, "family", "hardness")
     _errors(axes[2], each)
     right, wrong = (int((each["outcome"] == name).sum()) for name in ("verified", "wrong"))
-    words = f"{len(each)} hard cases: {right} right, {wrong} silently wrong"
+    words = f"{len(each)} hard cases: {right} within what is allowed (mostly 5 to 20 %), {wrong} silently wrong"
     figure.suptitle(words, x=0.01, ha="left")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
@@ -58,10 +60,11 @@ def _errors(axes, each):
     names = list(dict.fromkeys(answers["name"]))[::-1]
     for place, name in enumerate(names):
         rows = answers[answers["name"] == name]
-        size = np.maximum((rows["error"].abs() / rows["allowed"]).to_numpy(), FLOOR)
+        size = np.clip((rows["error"].abs() / rows["allowed"]).to_numpy(), FLOOR, CEILING)
         spread = place + 0.6 * (np.arange(len(rows)) % 9 - 4) / 9
         axes.scatter(size, spread, s=9, c=[COLOURS[outcome] for outcome in rows["outcome"]], linewidths=0)
     axes.axvline(1.0, color="black", linewidth=1)
-    axes.set(xscale="log", yticks=range(len(names)), title="each answer", xlabel="|error| over what is allowed")
+    axes.set(xscale="log", yticks=range(len(names)), title="each answer")
+    axes.set_xlabel("|error| over what is allowed, cut at 1e-4 and 1e6")
     axes.set_yticklabels(names)
     axes.grid(False, axis="y")

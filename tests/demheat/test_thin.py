@@ -143,8 +143,13 @@ def test_layers_that_a_laminate_does_not_see():
 @pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 def test_coats_thinner_than_a_voxel():
     """A coat that nothing outside notices was 2 % off."""
-    with pytest.warns(UserWarning, match=r"inclusions \[0\] are coats thinner than a voxel of 0.125 m, down to 0.1 m"):
+    words = r"inclusions \[0\] are coats thinner than a voxel of 0.125 m, down to 0.1 m: errors may be percents"
+    with pytest.warns(UserWarning, match=words):
         fft.solve(cell(ball(0.4), ball(0.3)), voxels=8)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         fft.solve(cell(ball(0.4), ball(0.3)), voxels=12)
+    # Of no conductivity it should stop all that would pass the ball in it.
+    stopped = Layer(0, 0.2, 0.8, demheat.Material(0.0))
+    with pytest.warns(UserWarning, match="heat leaks through and the conductivity may be off many times"):
+        fft.solve(cell(stopped, ball(0.29)), voxels=8)

@@ -9,6 +9,7 @@ import signal
 import subprocess
 import sys
 import warnings
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -16,6 +17,7 @@ import pytest
 import demheat
 from demheat import files, gallery
 from demheat.commands import answers, compare, main, options
+from demheat.commands.bounds import bounds_of
 from demheat.commands.knobs import asked
 from demheat.declared import found
 
@@ -346,3 +348,16 @@ def test_a_killed_comparison_goes_on(scene, tmp_path):
         before = now
     subprocess.run(words, cwd=ROOT, check=True, capture_output=True)
     assert list(rows(path)) == names and before.items() <= rows(path).items()
+
+
+def test_no_bounds_of_surfaces_that_resist():
+    """A resistance takes the conductivity below the sum of resistances that Reuss knows."""
+    plain = gallery.sphere_in_cube(5.0)
+    assert len(bounds_of(plain)) == 2
+    assert bounds_of(replace(plain, inclusions=[replace(plain.inclusions[0], resistance=1e-3)])) == []
+
+
+def test_where_a_field_goes_is_looked_at_before_it_is_solved(capsys, laminate, tmp_path):
+    for target, words in (("field.xyz", "suffix must be one of"), ("none/field.vti", "there is no folder")):
+        status, out, err = run(capsys, "solve", laminate, "--method", "exact", "--write", tmp_path / target)
+        assert status == 2 and words in err and "conductivity" not in out
