@@ -119,6 +119,8 @@ def scene_of(source: Source, table: Table) -> Scene:
     try:
         return Scene(size, matrix, [each.shape for each in placed], **load)
     except ValueError as error:
+        if walls is not None and gradient is not None:
+            raise table.error(table.keys["gradient"], f": {error}") from None
         raise _placed_error(table, placed, error) from None
 
 

@@ -48,13 +48,19 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
         raise table.error("radius_factor", f" = {shown(shrunk)}: must be a number > 0, at most 1")
     step = table.value("step", int, "an integer")
     factor = factor_of(unit, LENGTH)[0]
-    if path.suffix.lower() in TABLES:
-        if step is not None:
-            raise table.error("step", f" = {step}: a table has one set of spheres; must be left out")
-        rows = _rows(path, factor)
-    else:
-        rows = _packed(table, path, factor, step, size)
+    tabular = path.suffix.lower() in TABLES
+    if tabular and step is not None:
+        raise table.error("step", f" = {step}: a table has one set of spheres; must be left out")
+    _check_there(table, path)
+    rows = _rows(path, factor) if tabular else _packed(table, path, factor, step, size)
     return _made(table, rows, materials, default, offset, shrunk)
+
+
+def _check_there(table, path):
+    if not path.exists():
+        beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
+        told = f" = {shown(table.values['file'])}: there is no such file{nearest(path.name, beside)}"
+        raise table.error("file", told)
 
 
 def _made(table, rows, materials, default, offset, shrunk):

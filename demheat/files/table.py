@@ -207,7 +207,7 @@ class Table:
         found = SAID.fullmatch(str(error))
         key = self.keys.get(found["field"]) if found else None
         if key is None:
-            return self.error(None, f": {error}")
+            return self.error(None, f": {error}" if self.path else str(error))
         part = (found["part"] or "").strip("[]'\"")
         value = self.values[key]
         if part and isinstance(value, dict) and part in value:

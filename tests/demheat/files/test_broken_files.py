@@ -226,7 +226,7 @@ def test_a_broken_table_is_one_line(tmp_path, table, line, words):
 
 # Entries of spheres from files.
 ENTRIES = [
-    ("", 8, r"beads.csv: cannot be read: there is no such file; did you mean 'beeds.csv'"),
+    ("", 8, r"scene.toml:8: inclusions\[0\].file = 'beads.csv': there is no such file; did you mean 'beeds.csv'"),
     ('\nunit = "inch"', 9, r"unit = 'inch': must be one of 'm', 'cm'"),
     ("\nunits = 1", 9, r"units: no such key here; did you mean 'unit'"),
     ("\nradius_factor = 2", 9, r"radius_factor = 2: must be a number > 0, at most 1"),
