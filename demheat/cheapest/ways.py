@@ -197,14 +197,15 @@ def _all(cost, loads):
     return BESIDES * len(loads.parts) * cost.cpu_s
 
 
-def knobs_of(way: Way) -> str:
-    """Knobs of a way in words; empty without one.
+def knobs_of(way) -> str:
+    """Knobs of a way, or of what was found by one, in words; empty without one.
 
     Parameters
     ----------
-    way : Way
+    way : Way or Effective
     """
-    return ", ".join(f"{name} = {value:.3g}" for name, value in way.knobs.items())
+    told = {name: value if isinstance(value, int) else f"{value:.3g}" for name, value in way.knobs.items()}
+    return ", ".join(f"{name} = {value}" for name, value in told.items())
 
 
 def _within(way, memory):
@@ -218,10 +219,10 @@ def _gib(number):
 
 
 def one_line(error: Exception) -> str:
-    """Message of an error without its line breaks.
+    """Message of an error or a warning without its line breaks, or its kind where it says nothing.
 
     Parameters
     ----------
     error : Exception
     """
-    return " ".join(str(error).split())
+    return " ".join(str(error).split()) or type(error).__name__

@@ -8,6 +8,7 @@ import time
 import warnings
 from typing import NamedTuple
 
+from demheat.cheapest.ways import one_line
 from demheat.commands.knobs import Asked
 from demheat.declared import load
 from demheat.field import Field
@@ -66,11 +67,6 @@ def answered(scene, asked: Asked, *, interval: bool = True) -> Answer:
             found = Answer("failed", notes=(f"{type(error).__name__}: {one_line(error)}",))
     told = dict.fromkeys(one_line(each.message) for each in caught if issubclass(each.category, UserWarning))
     return found._replace(notes=(*found.notes, *(f"warning: {each}" for each in told)))
-
-
-def one_line(error) -> str:
-    """Message of an error or warning without its line breaks, or its kind where it says nothing."""
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 def _run(scene, method, knobs, interval):

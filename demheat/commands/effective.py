@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from demheat.cheapest import effective
+from demheat.cheapest.ways import knobs_of
 from demheat.commands.words import decimals, names, scene_line
 
 
@@ -22,8 +23,8 @@ def run(file, options) -> int:
     for row, width in zip(found.tensor, widths, strict=True):
         digits = decimals(float(widths.max()))
         print("  ".join(f"{k:.{digits}f} +- {w / 2:.1g}" for k, w in zip(row, width, strict=True)), " W/(m K)")
-    knobs = " ".join(f"{name}={value:.4g}" for name, value in found.knobs.items())
-    print(f"\nby {found.method} {knobs}, accuracy {found.accuracy:.2g} ({found.how})")
+    by = ", ".join(filter(None, (found.method, knobs_of(found), f"accuracy {found.accuracy:.2g}")))
+    print(f"\nby {by} ({found.how})")
     print(f"cost {found.cost['wall_s']:.2g} s, {found.cost['cpu_s']:.2g} CPU-s")
     for line in (*found.saved, *found.passed):
         print(line)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from demheat.files.lines import lines_of
+from demheat.packing.io.source import checked_path
 
 try:
     import tomllib
@@ -87,17 +88,6 @@ def read_source(path) -> Source:
         # Numbers of too many digits, and brackets within brackets without end.
         raise ValueError(f"{path}: no TOML that can be read: {shown(str(error))}") from None
     return Source(path, values, lines_of(text), {})
-
-
-def checked_path(path) -> Path:
-    """A name as the path of a file, or a ValueError."""
-    try:
-        path = Path(path)
-    except TypeError:
-        raise ValueError(f"path = {path!r}: must be the name of a file, or its path") from None
-    if "\0" in str(path):
-        raise ValueError(f"path = {str(path)!r}: must be the name of a file; none has a zero byte")
-    return path
 
 
 def text_of(path: Path, longest: int) -> str:

@@ -6,9 +6,10 @@ import csv
 import io
 from fractions import Fraction
 
-from demheat.files.source import checked_path, nearest, shown, text_of
+from demheat.files.source import nearest, shown, text_of
 from demheat.files.units import LENGTH, PLAIN, factor_of, scaled
 from demheat.limits import free_memory
+from demheat.packing.io.source import checked_path
 from demheat.scene import Sphere
 
 TABLES = (".csv", ".tsv", ".txt")

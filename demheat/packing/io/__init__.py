@@ -25,12 +25,12 @@ import os
 import zlib
 from collections.abc import Sequence
 from numbers import Integral
-from pathlib import Path
 
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
+from demheat.packing.io.source import checked_path
 from demheat.packing.io.text import Lines, broken
 from demheat.scene.bodies import check_name
 
@@ -147,12 +147,7 @@ def read(
 
 def _format(path, format):
     """Path, name of the format, and whether the text is packed."""
-    try:
-        path = Path(path)
-    except TypeError:
-        raise ValueError(f"path = {path!r}: must be the name of a file, or its path") from None
-    if "\0" in str(path):
-        raise ValueError(f"path = {str(path)!r}: must be the name of a file; none has a zero byte")
+    path = checked_path(path)
     packed = path.suffix.lower() == ".gz"
     suffix = (path.with_suffix("") if packed else path).suffix.lower()
     name = format

@@ -8,7 +8,7 @@ sides with trigonometric polynomials; those are spread over the whole cell and r
 these are exact voxel by voxel and fall wherever voxels do.
 """
 
-__all__ = ["bounds", "bounds_tensor", "lower_bound", "solve", "solve_tensor", "upper_bound"]  # noqa: F822, found by `__getattr__`
+__all__ = ["bounds", "bounds_tensor", "solve", "solve_tensor", "upper_bound"]  # noqa: F822, found by `__getattr__`
 
 
 def __getattr__(name):

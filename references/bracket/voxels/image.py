@@ -104,28 +104,6 @@ def upper_bound(
     return _upper(conducting(values), load, effort)[0]
 
 
-def lower_bound(
-    conductivity: np.ndarray,
-    spacing: Sequence[float] = (1.0, 1.0, 1.0),
-    *,
-    gradient: Sequence[float] = (1.0, 0.0, 0.0),
-    refine: int = 1,
-    tolerance: float = 1e-6,
-    threads: int | None = 2,
-) -> float:
-    """The lower of the two `bounds`, W/(m K).
-
-    Parameters
-    ----------
-    conductivity, spacing, gradient, refine, tolerance, threads
-        As those of `bounds`.
-    """
-    values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["lower"])
-    effort = checked_effort(tolerance, threads)
-    check_pores(values)
-    return _lower(resisting(values), load, effort)[0]
-
-
 class Load(NamedTuple):
     """Units that make the longest side and the greatest conductivity about 1, and the load.
 
