@@ -15,7 +15,7 @@ CLOSER = 0.7
 # A run has a quarter of the particles of the one before.
 RATIO = 4 ** (1 / 3)
 CONFORMING = Refinement(RATIO, 2, 2.0, 1.0, 2.0, 1.0, also=1 / (1 - CLOSER), coats=1.5)
-PLAIN = Refinement(RATIO, 2, 1.0, 1.0, 1.0, 1.0)
+PLAIN = Refinement(RATIO, 2, 1.0, 1.3, 1.0, 1.0)
 
 
 def estimator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, answer: Callable, *, steps: float = 0.0):

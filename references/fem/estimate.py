@@ -7,8 +7,8 @@ RATIO = 1.4
 # Of quadratic elements on curved surfaces, the same on straight ones, linear ones and bricks.
 RULES = {
     "curved": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2, coats=1.0),
-    "straight": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2),
-    "linear": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2),
+    "straight": Refinement(RATIO, 2, 2.0, 2.5, 2.0, 1.2),
+    "linear": Refinement(RATIO, 2, 2.0, 4.5, 2.0, 2.0),
 }
 
 
