@@ -17,8 +17,8 @@ from demheat.commands.bounds import bounds_of
 from demheat.commands.knobs import Asked, asked
 from demheat.commands.words import aligned, names, scene_line, spread
 from demheat.declared import found
-from demheat.files.whole import replaced
 from demheat.files.write import text_of_scene
+from demheat.paths import replaced
 from demheat.slices import on_plane
 
 OUT = "demheat-out"

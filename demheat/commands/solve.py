@@ -9,7 +9,7 @@ from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
 from demheat.files.fields import check_target
-from demheat.files.whole import replaced
+from demheat.paths import replaced
 
 
 def run(file, options) -> int:

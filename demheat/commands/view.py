@@ -9,7 +9,7 @@ from demheat.commands.answers import answered
 from demheat.commands.compare import OUT
 from demheat.commands.knobs import asked
 from demheat.commands.words import names
-from demheat.files.whole import replaced
+from demheat.paths import replaced
 
 
 def run(file, options) -> int:

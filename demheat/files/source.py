@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from demheat.files.lines import lines_of
-from demheat.packing.io.source import checked_path
+from demheat.paths import checked_path
 
 try:
     import tomllib

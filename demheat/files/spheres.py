@@ -9,7 +9,7 @@ from fractions import Fraction
 from demheat.files.source import nearest, shown, text_of
 from demheat.files.units import LENGTH, PLAIN, factor_of, scaled
 from demheat.limits import free_memory
-from demheat.packing.io.source import checked_path
+from demheat.paths import checked_path
 from demheat.scene import Sphere
 
 TABLES = (".csv", ".tsv", ".txt")

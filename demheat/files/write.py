@@ -6,8 +6,7 @@ import re
 from dataclasses import fields
 
 from demheat.files.scene_table import AXES, LOADS, SHAPES, SOURCES
-from demheat.files.whole import replaced
-from demheat.packing.io.source import checked_path
+from demheat.paths import checked_path, replaced
 from demheat.scene import Scene, check_scene
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")

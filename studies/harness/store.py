@@ -8,6 +8,8 @@ import tempfile
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from demheat import paths
+
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "peak_mib", "base_mib", "peak_by")
 TAIL = (
@@ -126,19 +128,11 @@ def write_rows(path, rows):
 
 @contextmanager
 def replaced(path):
-    """Path of a temporary file that takes the place of `path` at the end, unless an exception comes first."""
+    """As `demheat.paths.replaced`, in a folder that is made if it is not there."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
-    # The suffix stays last: drawing libraries tell the format by it.
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.stem}.", suffix=path.suffix)
-    os.close(handle)
-    temporary = Path(name)
-    try:
+    with paths.replaced(path) as temporary:
         yield temporary
-        temporary.chmod(0o644)
-        temporary.replace(path)
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def printed(study):

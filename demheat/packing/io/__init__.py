@@ -30,8 +30,8 @@ from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import to_packing
-from demheat.packing.io.source import checked_path
 from demheat.packing.io.text import Lines, broken
+from demheat.paths import checked_path, replaced
 from demheat.scene.bodies import check_name
 
 __all__ = ["read", "write"]
@@ -76,18 +76,13 @@ def write(packing: Packing, path, *, format: str | None = None, network=None, te
     if name != "vtp" and not (network is None and temperature is None):
         raise ValueError(f"network, temperature: the format {name} has no place for them; must be None, or use vtp")
     drawn = links.drawn(packing, network, temperature)
-    part = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        with open(part, "xb") as stream:
-            if name == "vtp":
-                vtp.write(packing, stream, drawn)
-            elif name == "npz":
-                arrays.write(packing, stream)
-            else:
-                _write_text(TEXTS[name], packing, stream, packed)
-        os.replace(part, path)
-    finally:
-        part.unlink(missing_ok=True)
+    with replaced(path) as part, open(part, "xb") as stream:
+        if name == "vtp":
+            vtp.write(packing, stream, drawn)
+        elif name == "npz":
+            arrays.write(packing, stream)
+        else:
+            _write_text(TEXTS[name], packing, stream, packed)
 
 
 def read(

@@ -15,17 +15,6 @@ from demheat.limits import GIB, free_memory
 MOST_EXPANSION, ALWAYS = 100, 2**26
 
 
-def checked_path(path) -> Path:
-    """A name as the path of a file, or a ValueError."""
-    try:
-        path = Path(path)
-    except TypeError:
-        raise ValueError(f"path = {path!r}: must be the name of a file, or its path") from None
-    if "\0" in str(path):
-        raise ValueError(f"path = {str(path)!r}: must be the name of a file; none has a zero byte")
-    return path
-
-
 def length_of(path) -> int:
     """Length of a regular file in bytes.
 
