@@ -58,8 +58,8 @@ class Dependence:
         factors = 1.0 + coefficient * (ends - reference)
         if not np.all(factors > 0):
             raise ValueError(
-                f"coefficient = {coefficient!r} about {reference!r}: makes factors {factors.tolist()} at {ends.tolist()}"
-                "; must leave both above 0"
+                f"coefficient = {coefficient!r} about {reference!r}: makes factors {factors.tolist()} at "
+                f"{ends.tolist()}; must leave both above 0"
             )
         return cls(tuple(zip(ends.tolist(), factors.tolist(), strict=True)))
 

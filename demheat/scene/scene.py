@@ -101,8 +101,8 @@ class Scene:
         if self.periodic and self.varies:
             which = next(n for n, material in enumerate(self.materials) if material.dependence is not None)
             raise ValueError(
-                f"Material.dependence in phase {which} with Scene.gradient: must be None, as temperatures of a periodic "
-                "cell have no level; give Scene.walls instead"
+                f"Material.dependence in phase {which} with Scene.gradient: must be None, as temperatures of a "
+                "periodic cell have no level; give Scene.walls instead"
             )
 
     @property

@@ -8,9 +8,11 @@ from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals
 
 # Relative to the largest entry: rounding of a tensor that a user has turned; the least of the smallest conductivity.
 SAME, FLATTEST = 1e-12, 1e-10
+# Rounding of a rotation matrix that is typed with ten digits.
+ORTHOGONAL = 1e-9
 VALID = (
-    f"a finite number >= 0 W/(m K), of {LEAST:g} to {MOST:g} where it is not 0, or a symmetric positive definite (3, 3) "
-    f"tensor of such, the least over {FLATTEST:g} of the largest in any direction"
+    f"a finite number >= 0 W/(m K), of {LEAST:g} to {MOST:g} where it is not 0, or a symmetric positive definite "
+    f"(3, 3) tensor of such, least over {FLATTEST:g} of the largest in any direction"
 )
 
 
@@ -90,11 +92,8 @@ def rotation_matrix(rotation) -> np.ndarray:
         x, y, z = found / angle if angle else np.zeros(3)
         cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
         return np.eye(3) + np.sin(angle) * cross + 2 * np.sin(angle / 2) ** 2 * (cross @ cross)
-    if (
-        found.shape != (3, 3)
-        or not np.allclose(found @ found.T, np.eye(3), rtol=0, atol=1e-9)
-        or np.linalg.det(found) < 0
-    ):
+    square = found.shape == (3, 3) and np.all(np.isfinite(found))
+    if not square or np.abs(found @ found.T - np.eye(3)).max() > ORTHOGONAL or np.linalg.det(found) < 0:
         raise ValueError(f"rotation = {rotation!r}: must be {valid}")
     return found
 

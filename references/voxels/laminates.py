@@ -1,8 +1,8 @@
 """Voxels of phases whose conductivity is a tensor: laminates of tensors, and every such voxel with its own.
 
 In a laminate with the normal n the gradient along the layers and the flux n.q across them are the same in all. With
-the means <.> over the layers, and t = K n / (n.K n), K = <K - t (n.K n) t> + <t> <t> / <1 / (n.K n)> (Milton, The Theory
-of Composites, 2002, section 9.5). On a curved or a second interface it is the mean of the laminates along the
+the means <.> over the layers, and t = K n / (n.K n), K = <K - t (n.K n) t> + <t> <t> / <1 / (n.K n)> (Milton, The
+Theory of Composites, 2002, chapter 9). On a curved or a second interface it is the mean of the laminates along the
 principal directions of n n over the surface inside the voxel, by their shares: of phases that conduct alike all round
 that is the formula of `references.voxels.paint`.
 """
