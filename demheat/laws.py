@@ -60,9 +60,9 @@ class Laguerre:
 
     @property
     def takes(self) -> tuple[str, ...]:
-        """What few laws know, of `Scene.require`: where facets lie on surfaces these may resist."""
+        """What few laws know, of `Scene.require`: facets on surfaces may resist, and have temperatures of their own."""
         on_facets = self.conforming and self.interface == "harmonic"
-        return ("exchange", "resistance") if on_facets else ("exchange",)
+        return ("exchange", "resistance", "dependence") if on_facets else ("exchange",)
 
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
@@ -95,7 +95,7 @@ class Laguerre:
         scene.require(ON_FACETS, takes=self.takes)
         if self.conforming and scene.inclusions:
             text = "inclusions there have no conforming packing; pass conforming=False"
-            scene.require(text, domain="box", takes=("resistance", "exchange"))
+            scene.require(text, domain="box", takes=self.takes)
 
 
 @dataclass(frozen=True, kw_only=True)

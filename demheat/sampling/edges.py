@@ -80,19 +80,33 @@ def _interfaces(scene, network, solution):
     rise = solution.temperature[other] - solution.temperature[row] + step @ solution.mean_gradient
     slope = network.conductance[here] * rise / (k[row] * network.area[here])
     value = solution.temperature[row] + away * (slope - normal @ solution.mean_gradient)
+    if scene.varies:
+        value, slope = _met(scene, network.phase[row], solution.temperature[row], away * slope, slope)
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])
     return tuple(column[on] for column in (row, place, normal, value, slope, np.full(len(row), np.inf)))
 
 
+def _met(scene, phase, temperature, rise, slope):
+    """Temperature of facets and slope there, of what conducts otherwise at other temperatures.
+
+    `rise` and `slope` are those at factor 1: on the way to the facet the first is that of Kirchhoff's transform.
+    """
+    depends = scene.dependences
+    value = depends.inverse(phase, depends.integral(phase, temperature) + rise)
+    return value, slope / depends.factor(phase, value)
+
+
 def _walls(scene, network, solution):
-    cell, k = network.wall_particle.astype(np.int64), scene.conductivities[network.phase]
-    normal = wall_normals(network)
+    cell = network.wall_particle.astype(np.int64)
+    k, normal = scene.conductivities[network.phase[cell]], wall_normals(network)
+    if scene.varies:
+        k = k * scene.dependences.factor(network.phase[cell], solution.wall_temperature)
     place = network.centers[cell] + network.wall_distance[:, None] * normal
-    passing = k[cell] * network.wall_area
+    passing = k * network.wall_area
     slope = np.divide(solution.wall_heat, passing, out=np.full(len(cell), np.nan), where=passing > 0)
-    return cell, place, normal, solution.wall_temperature, slope, _film(scene, network, solution, k[cell])
+    return cell, place, normal, solution.wall_temperature, slope, _film(scene, network, solution, k)
 
 
 def _film(scene, network, solution, k):

@@ -112,7 +112,7 @@ class _Locator:
 def _samplers(scene, network, solution):
     """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
     fluxes = cache(lambda: cell_fluxes(network, solution))
-    slopes = cache(lambda: _slopes(scene, network, fluxes()))
+    slopes = cache(lambda: _slopes(_conducting(scene, network, solution), fluxes()))
 
     def samples():
         return Samples(network.centers, network.volumes, _temperatures(network, solution), network.phase, fluxes())
@@ -125,7 +125,7 @@ def _samplers(scene, network, solution):
         edges = cache(lambda: edges_of(scene, network, solution))
         parts = solution.temperature, solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
-        return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
+        return samples, lambda points: smooth().temperature_at(points), lambda points: _flux_at(scene, smooth(), points)
     # In a steady state nobody asks for points in pores.
     solid = None if solution.still is None else scene.conductivities[network.phase] > 0
     locate = cache(lambda: _Locator(network, solid))
@@ -141,9 +141,23 @@ def _samplers(scene, network, solution):
     return samples, temperature_at, flux_at
 
 
-def _slopes(scene, network, fluxes):
+def _conducting(scene, network, solution):
+    """Conductivity of each cell, at its temperature if it depends on that, (n,) float array, W/(m K)."""
+    k = scene.conductivities[network.phase]
+    return k * scene.dependences.factor(network.phase, solution.temperature) if scene.varies else k
+
+
+def _flux_at(scene, smooth, points):
+    """Flux density at points; slopes times conductivities there, at their temperatures."""
+    flux = smooth.flux_at(points)
+    if not scene.varies:
+        return flux
+    return flux * scene.dependences.factor(scene.phase_at(points), smooth.temperature_at(points))[:, None]
+
+
+def _slopes(conductivity, fluxes):
     """Gradient of each cell from its flux, zero in insulators, (n, 3) float array, K/m."""
-    k = scene.conductivities[network.phase][:, None]
+    k = conductivity[:, None]
     return -np.divide(fluxes, k, out=np.zeros_like(fluxes), where=k > 0)
 
 

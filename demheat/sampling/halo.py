@@ -189,6 +189,7 @@ def _exchanged(scene, axis, side, near):
     """Flux that surroundings let in before each sample, where its own slope takes its temperature to the wall."""
     load, wall = scene.wall_exchanges["xyz"[axis] + side], 0.0 if side == "-" else scene.size[axis]
     k = scene.conductivities[near.phase]
+    k = k * scene.dependences.factor(near.phase, near.temperature) if scene.varies else k
     slope = -np.divide(near.flux[:, axis], k, out=np.zeros(len(k)), where=k > 0)
     surface = near.temperature + slope * (wall - near.points[:, axis])
     if isinstance(load, Convection):
