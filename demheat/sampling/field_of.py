@@ -1,13 +1,13 @@
 """The Field of a solved network: mean flux, and temperature and flux wherever they are asked for."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Field, Samples
 from demheat.network.base import SIDES, image_shifts, row_numbers, without_links
-from demheat.sampling.edges import edges_of
+from demheat.sampling.edges import edges_of, transformed
 from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
 
@@ -112,7 +112,7 @@ class _Locator:
 def _samplers(scene, network, solution):
     """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
     fluxes = cache(lambda: cell_fluxes(network, solution))
-    slopes = cache(lambda: _slopes(_conducting(scene, network, solution), fluxes()))
+    slopes = cache(lambda: _slopes(scene, network, fluxes()))
 
     def samples():
         return Samples(network.centers, network.volumes, _temperatures(network, solution), network.phase, fluxes())
@@ -123,9 +123,9 @@ def _samplers(scene, network, solution):
             conducting[solution.still] = 0.0
         how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivity": conducting}
         edges = cache(lambda: edges_of(scene, network, solution))
-        parts = solution.temperature, solution.mean_gradient
+        parts = transformed(scene, network.phase, solution.temperature), solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
-        return samples, lambda points: smooth().temperature_at(points), lambda points: _flux_at(scene, smooth(), points)
+        return samples, partial(_temperature_at, scene, smooth), lambda points: smooth().flux_at(points)
     # In a steady state nobody asks for points in pores.
     solid = None if solution.still is None else scene.conductivities[network.phase] > 0
     locate = cache(lambda: _Locator(network, solid))
@@ -141,23 +141,15 @@ def _samplers(scene, network, solution):
     return samples, temperature_at, flux_at
 
 
-def _conducting(scene, network, solution):
-    """Conductivity of each cell, at its temperature if it depends on that, (n,) float array, W/(m K)."""
-    k = scene.conductivities[network.phase]
-    return k * scene.dependences.factor(network.phase, solution.temperature) if scene.varies else k
+def _temperature_at(scene, smooth, points):
+    """Temperature at points, of what `transformed` made of it."""
+    found = smooth().temperature_at(points)
+    return scene.dependences.inverse(scene.phase_at(points), found) if scene.varies else found
 
 
-def _flux_at(scene, smooth, points):
-    """Flux density at points; slopes times conductivities there, at their temperatures."""
-    flux = smooth.flux_at(points)
-    if not scene.varies:
-        return flux
-    return flux * scene.dependences.factor(scene.phase_at(points), smooth.temperature_at(points))[:, None]
-
-
-def _slopes(conductivity, fluxes):
+def _slopes(scene, network, fluxes):
     """Gradient of each cell from its flux, zero in insulators, (n, 3) float array, K/m."""
-    k = conductivity[:, None]
+    k = scene.conductivities[network.phase][:, None]
     return -np.divide(fluxes, k, out=np.zeros_like(fluxes), where=k > 0)
 
 
