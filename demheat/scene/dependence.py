@@ -103,7 +103,7 @@ class Dependence:
         # Piece by piece: a difference of two integrals would lose digits where the two are near to each other.
         up, down = np.minimum(first + 1, len(t) - 1), np.maximum(last, 0)
         parts = (t[up] - low) * (ends[0] + f[up]) + (high - t[down]) * (ends[1] + f[down])
-        total = parts / 2 + whole[down] - whole[up]
+        total = parts / 2 + (whole[down] - whole[up])
         span = np.where(first == last, 1.0, high - low)
         return np.where(first == last, (ends[0] + ends[1]) / 2, total / span)
 

@@ -32,7 +32,7 @@ def checked_conductivity(name: str, value) -> float | tuple[tuple[float, float, 
     """
     if not isinstance(value, list | tuple) and not (isinstance(value, np.ndarray) and value.ndim):
         return finite(name, value, VALID, lambda v: v >= 0 and moderate(v))
-    tensor = reals(name, value, VALID)
+    tensor = _reals(name, value, VALID)
     good = tensor.shape == (3, 3) and np.all(np.isfinite(tensor))
     largest = float(np.abs(tensor).max()) if good else 0.0
     if not good or not moderate(largest) or np.abs(tensor - tensor.T).max() > SAME * largest:
@@ -86,7 +86,7 @@ def rotation_matrix(rotation) -> np.ndarray:
     (3, 3) float array
     """
     valid = "a rotation vector of three finite numbers, radians, or a (3, 3) rotation matrix"
-    found = reals("rotation", rotation, valid)
+    found = _reals("rotation", rotation, valid)
     if found.shape == (3,) and np.all(np.isfinite(found)):
         angle = float(np.sqrt(found @ found))
         x, y, z = found / angle if angle else np.zeros(3)
@@ -94,8 +94,16 @@ def rotation_matrix(rotation) -> np.ndarray:
         return np.eye(3) + np.sin(angle) * cross + 2 * np.sin(angle / 2) ** 2 * (cross @ cross)
     square = found.shape == (3, 3) and np.all(np.isfinite(found))
     if not square or np.abs(found @ found.T - np.eye(3)).max() > ORTHOGONAL or np.linalg.det(found) < 0:
-        raise ValueError(f"rotation = {rotation!r}: must be {valid}")
+        raise ValueError(f"rotation = {_shown(rotation)}: must be {valid}")
     return found
+
+
+def _reals(name, value, valid):
+    """`reals`, with what is shown of an array in one line."""
+    try:
+        return reals(name, value, valid)
+    except ValueError:
+        raise ValueError(f"{name} = {_shown(value)}: must be {valid}") from None
 
 
 def _shown(value):
