@@ -85,6 +85,9 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     """
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
         yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
+    for name in MATERIALS:
+        if name not in takes:
+            yield from MATERIALS[name](scene)
     if walls is not None and not scene.periodic and not WALLS[walls](scene):
         yield f"Scene.walls = {dict(scene.walls)}"
     if domain is not None and scene.domain != domain:
@@ -99,9 +102,6 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     if np.any(parents):
         number = int(np.flatnonzero(parents)[0])
         yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
-    for name in ("anisotropy", "dependence"):
-        if name not in takes:
-            yield from MATERIALS[name](scene)
     if not pores and np.any(scene.mean_conductivities == 0):
         yield "a conductivity is 0"
     resisting = () if "resistance" in takes else np.flatnonzero(scene.resistances)
