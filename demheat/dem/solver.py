@@ -19,15 +19,12 @@ from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import asked
 from demheat.field import Field
-from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads
 from demheat.warm import Helper, cells, parts_of
-
-# Where a conductivity is a tensor, heat crosses a facet by temperatures beside the link, too.
-TWO_POINTS = "two particles tell the flux through their facet only where its normal is a principal axis of the tensor"
 
 
 def solve(
