@@ -18,7 +18,7 @@ from studies.harness.pick import finest, pick, present
 PAPER = {}
 ONE, OTHER = orthotropic(1.0, 4.0, 9.0, rotation=(0.3, -0.5, 0.8)), orthotropic(3.0, 1.0, 0.2, rotation=(1.0, 0.0, 2.0))
 BODIES = ("homogeneous", "layers", "sphere")
-EDGES, VOXELS = (1 / 3, 1 / 6, 1 / 12), (16, 32, 64)
+EDGES, VOXELS = (1 / 6, 1 / 10, 1 / 16), (16, 32, 64)
 KNOBS = {
     "fem": {"method": "fem", "order": 2},
     "fem-p1": {"method": "fem", "order": 1},
