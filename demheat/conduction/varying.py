@@ -13,8 +13,6 @@ from demheat.network.base import branches, link_distances, row_numbers
 
 # Rounds at most, and what each round's linear equations leave of the residual that it begins with.
 ROUNDS, FURTHER = 60, 1e-2
-# Times that facets take the temperature between their sides in each round.
-FACETS = 2
 # Of a link's resistance: less beside that of its two sides is rounding, more is a surface that resists.
 ROUNDING = 1e-9
 
@@ -32,19 +30,22 @@ class Conductances:
     def __init__(self, network, scene):
         self.network, self.depends = network, scene.dependences
         self.open = np.flatnonzero(network.conductance > 0)
-        self.row = row_numbers(network.indptr)[self.open]
-        self.other = network.indices[self.open].astype(np.int64)
-        k, area = scene.conductivities[network.phase], network.area[self.open]
+        row, other = row_numbers(network.indptr)[self.open], network.indices[self.open].astype(np.int64)
+        # Each link stands in both of its rows: once is enough.
+        pair = np.minimum(row, other) * len(network.centers) + np.maximum(row, other)
+        _, once, self.pair = np.unique(pair, return_index=True, return_inverse=True)
+        self.row, self.other, link = row[once], other[once], self.open[once]
+        k, area = scene.conductivities[network.phase], network.area[link]
         links = network.indptr, network.indices, network.image
-        step = branches(network.centers, network.size, *links)[self.open]
+        step = branches(network.centers, network.size, *links)[link]
         length = np.sqrt(np.einsum("ij,ij->i", step, step))
-        share = np.clip(link_distances(network)[self.open] / length, 0.0, 1.0)
+        share = np.clip(link_distances(network)[link] / length, 0.0, 1.0)
         self.here, self.there = share * length / (k[self.row] * area), (1 - share) * length / (k[self.other] * area)
         # What else the network has in series: surfaces that resist.
-        whole = 1.0 / network.conductance[self.open]
+        whole = 1.0 / network.conductance[link]
         surface = whole - self.here - self.there
         self.surface = np.where(surface > ROUNDING * whole, surface, 0.0)
-        self.factors = np.ones(len(self.open)), np.ones(len(self.open))
+        self.factors = np.ones(len(link)), np.ones(len(link))
 
     def at(self, temperature, walls):
         """The network at temperatures.
@@ -61,10 +62,9 @@ class Conductances:
         Network
         """
         network, phase = self.network, self.network.phase
-        for _ in range(FACETS):
-            self._meet(temperature)
+        self._meet(temperature)
         conductance = np.zeros(len(network.conductance))
-        conductance[self.open] = 1.0 / self._resistance()
+        conductance[self.open] = (1.0 / self._resistance())[self.pair]
         particle = network.wall_particle
         factor = self.depends.mean(phase[particle], temperature[particle], walls)
         return network._replace(conductance=conductance, wall_conductance=factor * network.wall_conductance)
@@ -74,7 +74,7 @@ class Conductances:
         return self.here / here + self.there / there + self.surface
 
     def _meet(self, temperature):
-        """Factors of either side, between its particle and the facet."""
+        """Factors of either side, between its particle and the facet: the latter's temperature by those before."""
         phase, one, other = self.network.phase, temperature[self.row], temperature[self.other]
         heat = (other - one) / self._resistance()
         near, far = one + heat * self.here / self.factors[0], other - heat * self.there / self.factors[1]

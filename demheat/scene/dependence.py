@@ -159,6 +159,8 @@ class Dependences:
         return self._of("mean", phase, one, other, otherwise=np.ones_like)
 
     def _of(self, name, phase, *values, otherwise=np.copy):
+        if len(self.kinds) == 1 and not self.kind.any():
+            return getattr(self.kinds[0], name)(*values)
         kind, *values = np.broadcast_arrays(self.kind[phase], *np.asarray(values, dtype=float))
         found = otherwise(values[0])
         for number, own in enumerate(self.kinds):
