@@ -9,11 +9,24 @@ import warnings
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress
-from demheat.scene import Convection, Flux, Layer, Material, MovingCylinder, Radiation, Scene, Sphere, UniformSource
+from demheat.scene import (
+    Convection,
+    Dependence,
+    Flux,
+    Layer,
+    Material,
+    MovingCylinder,
+    Radiation,
+    Scene,
+    Sphere,
+    UniformSource,
+    orthotropic,
+)
 
 __all__ = [
     "Calibrated",
     "Convection",
+    "Dependence",
     "Field",
     "Flux",
     "Laguerre",
@@ -29,6 +42,7 @@ __all__ = [
     "effective",
     "evolve",
     "on_progress",
+    "orthotropic",
     "recommend",
     "solve",
 ]

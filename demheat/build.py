@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.calibration import calibration, calibration_scene, cube_like
-from demheat.laws import LAWS, ON_FACETS, Calibrated, Laguerre, Platonic
+from demheat.laws import LAWS, ON_FACETS, Calibrated, Laguerre, Platonic, check_numbers
 from demheat.limits import check_memory
 from demheat.network.base import Network
 from demheat.network.calibrated import contact_facets
@@ -108,6 +108,7 @@ def _tessellated(scene, packing, law, seed):
     """The particles that take part, their facets before they are calibrated, and the seconds that took."""
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
+    check_numbers(scene)
     scene.require(ON_FACETS, takes=law.takes)
     check_packing(packing)
     begun = time.perf_counter()

@@ -123,7 +123,7 @@ class Field:
     @property
     def _has_pores(self):
         """Whether there are places without a temperature: in time pores have one."""
-        return self.time is None and self.scene.conductivities.min() == 0
+        return self.time is None and self.scene.mean_conductivities.min() == 0
 
     @cached_property
     def samples(self) -> Samples:
@@ -131,7 +131,7 @@ class Field:
         own = Samples(*map(read_only, self.sampler()))
         if not self._has_pores:
             return own
-        solid = self.scene.conductivities[own.phase] > 0
+        solid = self.scene.mean_conductivities[own.phase] > 0
         return own._replace(temperature=read_only(np.where(solid, own.temperature, np.nan)))
 
     @cached_property
@@ -329,7 +329,7 @@ def _outside_pores(evaluate, scene, in_pores):
     """The same function of points, with one value in all pores."""
 
     def at(points):
-        solid = scene.conductivities[scene.phase_at(points)] > 0
+        solid = scene.mean_conductivities[scene.phase_at(points)] > 0
         found = evaluate(points[solid])
         values = np.full((len(points), *found.shape[1:]), in_pores)
         values[solid] = found

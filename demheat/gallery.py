@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -319,7 +320,8 @@ def scaled(material: Material, contrast: float) -> Material:
     """
     check_material("material", material)
     finite("contrast", contrast, "a finite number >= 0", lambda v: v >= 0)
-    return Material(material.conductivity * contrast, material.density, material.heat_capacity)
+    k = material.conductivity if material.isotropic else material.tensor
+    return replace(material, conductivity=k * contrast)
 
 
 def loaded(

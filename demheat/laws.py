@@ -20,6 +20,8 @@ WALL_RULES = ("center", "surface")
 WIDEST = 0.88
 # Short forms give the choices of all laws: those of the contact laws at these values ask nothing of another law.
 ON_FACETS = "only law 'laguerre' with conforming=True and interface='harmonic' has facets on the interfaces"
+# Where a conductivity is a tensor, heat crosses a facet by temperatures beside the link, too.
+TWO_POINTS = "two particles tell the flux through their facet only where its normal is a principal axis of the tensor"
 UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": None}
 
 
@@ -60,9 +62,9 @@ class Laguerre:
 
     @property
     def takes(self) -> tuple[str, ...]:
-        """What few laws know, of `Scene.require`: where facets lie on surfaces these may resist."""
+        """What few laws know, of `Scene.require`: facets on surfaces may resist, and have temperatures of their own."""
         on_facets = self.conforming and self.interface == "harmonic"
-        return ("exchange", "resistance") if on_facets else ("exchange",)
+        return ("exchange", "resistance", "dependence") if on_facets else ("exchange",)
 
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
@@ -92,10 +94,11 @@ class Laguerre:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
+        check_numbers(scene)
         scene.require(ON_FACETS, takes=self.takes)
         if self.conforming and scene.inclusions:
             text = "inclusions there have no conforming packing; pass conforming=False"
-            scene.require(text, domain="box", takes=("resistance", "exchange"))
+            scene.require(text, domain="box", takes=self.takes)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -155,6 +158,7 @@ class _Contacts:
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
+        check_numbers(scene)
         scene.require(ON_FACETS, takes=self.takes)
         if self.wall == "surface":
             what = "wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'"
@@ -246,6 +250,11 @@ class Platonic(_Contacts):
     # too much each, were found to cancel in the diffusivity (see `studies.table1_platonic`), which the paper's tests
     # measure.
     usual: ClassVar[float] = 7.2
+
+
+def check_numbers(scene: Scene) -> None:
+    """Raise NotImplementedError if a conductivity is a tensor: no law of two points can do with one."""
+    scene.require(TWO_POINTS, takes=("resistance", "exchange", "dependence"))
 
 
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}

@@ -38,13 +38,13 @@ def of_scene(scene, *, pixels: int = PIXELS):
     check_scene(scene)
     whole("pixels", pixels, "an integer >= 1", lambda v: v >= 1)
     figure, panels = _figure(3)
-    others = sorted(set(scene.conductivities[1:].tolist()) - {scene.matrix.conductivity})
-    kinds = np.array([scene.matrix.conductivity, *others])
+    matrix, *others = scene.mean_conductivities.tolist()
+    kinds = np.array([matrix, *sorted(set(others) - {matrix})])
     named = len(kinds) <= len(COLOURS)
     look = _named(len(kinds)) if named else {"cmap": "viridis", "vmin": kinds.min(), "vmax": kinds.max()}
     for across, panel in enumerate(panels):
         points, mask = plane(scene, axis=across, at=scene.size[across] / 2, n=pixels)
-        k = scene.conductivities[scene.phase_at(points)]
+        k = scene.mean_conductivities[scene.phase_at(points)]
         image = _shown(panel, scene, across, filled(mask, _place(kinds, k) if named else k), look)
         panel.set_title(f"{AXES[across]} = {_length(scene, scene.size[across] / 2)}")
     bar = figure.colorbar(image, ax=panels, shrink=0.8, label="conductivity, W/(m K)")

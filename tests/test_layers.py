@@ -10,7 +10,9 @@ LAYERS = {
     "demheat.scene.frozen": (),
     "demheat.scene.bodies": (),
     "demheat.scene.crossing": ("demheat.scene.bodies",),
-    "demheat.scene.material": ("demheat.scene.inputs",),
+    "demheat.scene.dependence": ("demheat.scene.inputs",),
+    "demheat.scene.tensors": ("demheat.scene.inputs",),
+    "demheat.scene.material": ("demheat.scene.inputs", "demheat.scene.dependence", "demheat.scene.tensors"),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
@@ -28,6 +30,7 @@ LAYERS = {
         "demheat.scene.html",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
+        "demheat.scene.dependence",
         "demheat.scene.material",
         "demheat.scene.parts",
         "demheat.scene.shapes",

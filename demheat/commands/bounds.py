@@ -21,13 +21,14 @@ class Bound(NamedTuple):
 def bounds_of(scene) -> list[Bound]:
     """Bounds of a scene; empty where its volume fractions are not known in closed form, or its surfaces resist.
 
-    A resistance takes the conductivity below all of them: Reuss's sum of resistances does not know it.
+    A resistance takes the conductivity below all of them: Reuss's sum of resistances does not know it. Nor are they
+    known here of tensors and of what depends on temperature.
 
     Parameters
     ----------
     scene : Scene
     """
-    if scene.resistances.any():
+    if scene.resistances.any() or scene.anisotropic or scene.varies:
         return []
     formulas = import_module("references.bounds")
     try:

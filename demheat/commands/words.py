@@ -19,7 +19,7 @@ def scene_line(scene) -> str:
     sides = " x ".join(f"{side / factor:.6g}" for side in scene.size)
     kinds = Counter(shape.kind for shape in scene.inclusions)
     inside = ", ".join(f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in kinds.items()) or "no inclusions"
-    spread = sorted(set(scene.conductivities.tolist()))
+    spread = sorted(set(scene.mean_conductivities.tolist()))
     k = f"{spread[0]:.4g}" + (f" to {spread[-1]:.4g}" if len(spread) > 1 else "")
     load = "periodic cell" if scene.periodic else "walls " + (", ".join(scene.walls) or "insulated")
     return f"{scene.domain} of {sides} {unit}, {inside}, {k} W/(m K), {load}"

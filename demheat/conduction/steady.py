@@ -12,6 +12,7 @@ from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.films import COLDEST, Films, films_of, hottest, radiated
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
+from demheat.conduction.preconditioned import preconditioned
 from demheat.network.base import SIDES, Network, without_links
 from demheat.network.links_kernels import links_of, places_of
 from demheat.process_state import one_blas_thread
@@ -104,7 +105,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 
-def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None):
+def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None, start=None):
     """The same as `solve_steady` of arguments that were checked before.
 
     Parameters
@@ -113,6 +114,8 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
         As in `solve_steady`.
     kept : dict, optional
         Where multigrid keeps what it sets up, for the next load on the same network.
+    start : (n,) float array, K, optional
+        Temperatures to begin with, between walls.
 
     Returns
     -------
@@ -124,7 +127,9 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
     how = {"solver": chosen, "tolerance": tolerance, "most": max_iterations, "kept": kept}
-    system, x, iterations, size, more = (_radiating if scene.radiates else _linear)(network, scene, reached, how)
+    first = _start(network, scene, reached) if start is None else np.where(reached, start - _level(scene), 0.0)
+    solve = _radiating if scene.radiates else _linear
+    system, x, iterations, size, more = solve(network, scene, reached, first, how)
     if not size <= tolerance:
         raise RuntimeError(
             f"solve_steady ({chosen}): relative residual {size:.2e} after {iterations} iterations, "
@@ -148,15 +153,47 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     return Solution(x, system.gradient, *_at_walls(system, scene, x), stats, still)
 
 
-def _linear(network, scene, reached, how):
+def imbalance(network, scene, solution) -> float:
+    """Residual heat of the particles at given temperatures, over the heat that passes through them, as norms.
+
+    Parameters
+    ----------
+    network : Network
+        Between walls; not that of the solution, or nothing is new.
+    scene : Scene
+    solution : Solution
+    """
+    network = network if solution.still is None else without_links(network, solution.still)
+    reached = _reached(network, scene)
+    x = np.where(reached, np.nan_to_num(solution.temperature) - _level(scene), 0.0)
+    if scene.radiates:
+        surface = np.maximum(np.nan_to_num(solution.wall_temperature), COLDEST * hottest(network, scene))
+        system = _system(network, scene, reached, films_of(network, scene, surface))
+        return _radiation_left(system, scene, x)[1]
+    return _relative(_system(network, scene, reached), x)[0]
+
+
+def _relative(system, x):
+    """Norm of the residual over that of the heat that passes, the residual, and the latter norm."""
+    r = _residual(system, x)
+    norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
+    return norm / passing if passing > 0 else float(norm > 0), r, passing if passing > 0 else norm
+
+
+def _level(scene):
+    """What temperatures are counted from between walls."""
+    return float(np.mean(list(scene.imposed_temperatures.values())))
+
+
+def _linear(network, scene, reached, first, how):
     system = _system(network, scene, reached)
-    return system, *_iterate(system, _start(network, scene, reached), **how), {}
+    return system, *_iterate(system, first, **how), {}
 
 
-def _radiating(network, scene, reached, how):
+def _radiating(network, scene, reached, first, how):
     """Newton's method: fourth powers by their tangents at the surfaces' last temperatures, each solve from the last."""
     top = hottest(network, scene)
-    surface, x, aim = np.full(len(network.wall_side), top), _start(network, scene, reached), FURTHER
+    surface, x, aim = np.full(len(network.wall_side), top), first, FURTHER
     how, rounds, total, size = how | {"kept": {"serves": SERVES}}, 0, 0, math.inf
     while rounds < ROUNDS and total < how["most"] and not size <= how["tolerance"]:
         films = films_of(network, scene, np.maximum(surface, COLDEST * top))
@@ -235,7 +272,7 @@ def _system(network, scene, reached, films=None):
         return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
     films = films_of(network, scene) if films is None else films
     ties = films.ties(network.wall_conductance)
-    level = float(np.mean(list(scene.imposed_temperatures.values())))
+    level = _level(scene)
     held = np.nan_to_num(films.outside - level)
     heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
     diagonal += np.bincount(network.wall_particle, ties, minlength=n)
@@ -270,13 +307,11 @@ def _iterate(system, x, solver, tolerance, most, kept):
     """Solve in rounds: the heat that passes, which sets the limit, is known only once the solution nearly is."""
     total, solve = 0, None
     for _ in range(10):
-        r = _residual(system, x)
-        norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
-        size = norm / passing if passing > 0 else float(norm > 0)
+        size, r, unit = _relative(system, x)
         if size <= tolerance or total >= most:
             break
         solve = solve or (_multigrid(system, kept) if solver == "amg" else _jacobi(system))
-        done, x = solve(r, x, 0.9 * tolerance * (passing if passing > 0 else norm), most - total)
+        done, x = solve(r, x, 0.9 * tolerance * unit, most - total)
         total += done
     return x, total, size
 
@@ -307,11 +342,6 @@ def _jacobi(system):
             return jacobi(links, system.diagonal, r, x, limit, most), x
 
     return solve
-
-
-def _share(norm, first, limit):
-    """How much of the way from the first norm of the residual to its limit is done, in digits."""
-    return float(min(1.0, np.log(max(first / norm, 1.0)) / np.log(first / limit))) if first > limit > 0 else 0.0
 
 
 def matrix(network, diagonal):
@@ -346,7 +376,7 @@ def _multigrid(system, kept):
 
     def solve(r, x, limit, most):
         with one_blas_thread(), stage("equations") as done:
-            return _preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
+            return preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
 
     return solve
 
@@ -354,29 +384,6 @@ def _multigrid(system, kept):
 def _serves(one, other, factor):
     """Whether two diagonals are within a factor of each other."""
     return bool(np.all((one <= factor * other) & (other <= factor * one)))
-
-
-def _preconditioned(links, diagonal, precondition, r, x, limit, most, done):
-    """Conjugate gradients that add to x until |r| <= limit; returns the iterations done.
-
-    Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
-    precision, is symmetric to its rounding only.
-    """
-    z, q = np.empty_like(r), np.empty_like(r)
-    norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0
-    alpha = 0.0
-    first = norm
-    for iteration in range(most):
-        if norm <= limit:
-            return iteration
-        done(_share(norm, first, limit))
-        precondition(r, norm, z)
-        beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
-        rz = kernels.dot(r, z)
-        kernels.direct(beta, z, p)
-        alpha = rz / kernels.apply(links, diagonal, p, q)
-        norm = np.sqrt(kernels.advance(alpha, p, q, x, r))
-    return most
 
 
 def _at_walls(system, scene, x):

@@ -15,10 +15,11 @@ from demheat.conduction.sources import check_sources, lost_power, source_power, 
 from demheat.conduction.steady import check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
+from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import asked
 from demheat.field import Field
-from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
@@ -93,7 +94,7 @@ def solve(
     check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=True, takes=("resistance", "exchange"))
+    scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence"))
     law.check(scene)
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
@@ -152,7 +153,10 @@ def _answers(scenes, law, wanted, **knobs):
     fields, kept = [], {}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
-        solution = solve_checked(network, scene, kept=kept, **knobs)
+        if scene.varies:
+            network, solution = solve_varying(network, scene, **knobs)
+        else:
+            solution = solve_checked(network, scene, kept=kept, **knobs)
         took = spent | {"solve_s": time.perf_counter() - connected}
         estimator = estimator_of(law, wanted, partial(_answer, scene, **knobs))
         with stage("field"):

@@ -8,16 +8,14 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from demheat.files.materials import made_material
 from demheat.files.source import Source, nearest, shown
 from demheat.files.spheres import spheres_of
 from demheat.files.table import Table
 from demheat.files.units import (
     COEFFICIENT,
-    CONDUCTIVITY,
-    DENSITY,
     FLUX,
     GRADIENT,
-    HEAT_CAPACITY,
     LENGTH,
     PLAIN,
     POWER_DENSITY,
@@ -31,7 +29,6 @@ from demheat.scene import (
     Convection,
     Flux,
     Layer,
-    Material,
     MovingCylinder,
     Radiation,
     Scene,
@@ -40,7 +37,6 @@ from demheat.scene import (
 )
 
 AXES = ("x", "y", "z")
-MATERIAL = {"conductivity": CONDUCTIVITY, "density": DENSITY, "heat_capacity": HEAT_CAPACITY}
 # What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags.
 SHAPES = {
     "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
@@ -139,14 +135,7 @@ def _placed_error(table, placed, error):
 def _materials(table):
     """Materials by their names."""
     known = table.table("materials", {})
-    return {name: _made_material(known.table(name)) for name in known.values}
-
-
-def _made_material(table):
-    table.only(MATERIAL)
-    needed = {"conductivity": ...}
-    numbers = {name: table.number(name, quantity, needed.get(name)) for name, quantity in MATERIAL.items()}
-    return table.made(Material, **numbers)
+    return {name: made_material(known.table(name)) for name in known.values}
 
 
 def _material(table, key, known, default=...):
@@ -156,7 +145,7 @@ def _material(table, key, known, default=...):
         return default
     value = table.values[found]
     if isinstance(value, dict):
-        return _made_material(table.table(key))
+        return made_material(table.table(key))
     if not isinstance(value, str) or value not in known:
         named = ", ".join(map(repr, known)) or "none yet"
         near = nearest(value, known) if isinstance(value, str) else ""

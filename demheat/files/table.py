@@ -92,6 +92,31 @@ class Table:
             raise self.error(key, f" = {shown(value)}: must be an array of numbers, such as [1, 2, 3]")
         return tuple(self._converted((key, k), part, name, quantity) for k, part in enumerate(value))
 
+    def rows(self, name: str, quantities: tuple, what: str) -> tuple | None:
+        """Rows of numbers in SI as a tuple of tuples, None if there are none.
+
+        Parameters
+        ----------
+        name : str
+        quantities : tuple of Quantity
+            Of the columns; units at the end of the key are those of the first.
+        what : str
+            For the message: what the rows must be.
+        """
+        key = self.key(name, quantities[0])
+        if key is None:
+            return None
+        value, found = self.values[key], []
+        if not isinstance(value, list):
+            raise self.error(key, f" = {shown(value)}: must be {what}")
+        for i, row in enumerate(value):
+            if not isinstance(row, list) or len(row) != len(quantities):
+                raise self.error((key, i), f" = {shown(row)}: must be {what}")
+            named = [name if quantity == quantities[0] else key for quantity in quantities]
+            cells = enumerate(zip(row, named, quantities, strict=True))
+            found.append(tuple(self._converted((key, i, j), *cell) for j, cell in cells))
+        return tuple(found)
+
     def text(self, name: str, default=None, *, among=None) -> str | None:
         """A text.
 

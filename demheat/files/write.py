@@ -43,7 +43,7 @@ def text_of_scene(scene: Scene) -> str:
     check_scene(scene)
     names = _names(scene)
     blocks = [_head(scene, names)]
-    blocks += [_block(f"[materials.{name}]", _plain(material)) for material, name in names.items()]
+    blocks += [_block(f"[materials.{name}]", _material(material)) for material, name in names.items()]
     blocks += [_block("[[inclusions]]", _inclusion(k, shape, names)) for k, shape in enumerate(scene.inclusions)]
     if scene.walls:
         loads = {name: _load(name, load) for name, load in scene.walls.items()}
@@ -77,6 +77,10 @@ def _plain(part, **changed):
     """Fields of a material, shape or source that are not None."""
     values = {field.name: changed.get(field.name, getattr(part, field.name)) for field in fields(part)}
     return {name: value for name, value in values.items() if value is not None}
+
+
+def _material(material):
+    return _plain(material, dependence=material.dependence and material.dependence.points)
 
 
 def _inclusion(number, shape, names):

@@ -1,7 +1,8 @@
 """What a network knows at the edges of its phases: temperatures on interfaces and held walls, slopes at others.
 
 At walls that exchange heat with surroundings it knows how both hang together: the slope and the film's share of the
-temperature.
+temperature. Where conductivities depend on temperature all are those of Kirchhoff's transform: its slope times the
+conductivity at factor 1 is the flux.
 """
 
 from typing import NamedTuple
@@ -67,6 +68,22 @@ def edges_of(scene, network, solution):
     return Edges(np.concatenate([[0], np.cumsum(count)]), *(column[order] for column in columns[1:]))
 
 
+def transformed(scene, phase, temperature):
+    """Kirchhoff's transform of temperatures in phases, or themselves where no conductivity depends on them.
+
+    Parameters
+    ----------
+    scene : Scene
+    phase : (n,) int array
+    temperature : (n,) float array, K
+
+    Returns
+    -------
+    (n,) float array, K
+    """
+    return scene.dependences.integral(phase, temperature) if scene.varies else temperature
+
+
 def _interfaces(scene, network, solution):
     row, k = row_numbers(network.indptr), scene.conductivities[network.phase]
     other = network.indices
@@ -79,7 +96,8 @@ def _interfaces(scene, network, solution):
     away = radical_distances(np.einsum("ij,ij->i", step, step), weight[row], weight[other])
     rise = solution.temperature[other] - solution.temperature[row] + step @ solution.mean_gradient
     slope = network.conductance[here] * rise / (k[row] * network.area[here])
-    value = solution.temperature[row] + away * (slope - normal @ solution.mean_gradient)
+    level = transformed(scene, network.phase, solution.temperature)
+    value = level[row] + away * (slope - normal @ solution.mean_gradient)
     place = network.centers[row] + away[:, None] * normal
     step = NEAR * np.cbrt(network.volumes[row])[:, None] * normal
     on = (scene.phase_at(place - step) == network.phase[row]) & (scene.phase_at(place + step) == network.phase[other])
@@ -92,7 +110,11 @@ def _walls(scene, network, solution):
     place = network.centers[cell] + network.wall_distance[:, None] * normal
     passing = k[cell] * network.wall_area
     slope = np.divide(solution.wall_heat, passing, out=np.full(len(cell), np.nan), where=passing > 0)
-    return cell, place, normal, solution.wall_temperature, slope, _film(scene, network, solution, k[cell])
+    value, film = solution.wall_temperature, k[cell]
+    if scene.varies:
+        film = film * scene.dependences.factor(network.phase[cell], value)
+        value = transformed(scene, network.phase[cell], value)
+    return cell, place, normal, value, slope, _film(scene, network, solution, film)
 
 
 def _film(scene, network, solution, k):

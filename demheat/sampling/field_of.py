@@ -1,13 +1,13 @@
 """The Field of a solved network: mean flux, and temperature and flux wherever they are asked for."""
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.field import Field, Samples
 from demheat.network.base import SIDES, image_shifts, row_numbers, without_links
-from demheat.sampling.edges import edges_of
+from demheat.sampling.edges import edges_of, transformed
 from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
 
@@ -123,9 +123,9 @@ def _samplers(scene, network, solution):
             conducting[solution.still] = 0.0
         how = {"periodic": network.periodic, "phase_at": scene.phase_at, "conductivity": conducting}
         edges = cache(lambda: edges_of(scene, network, solution))
-        parts = solution.temperature, solution.mean_gradient
+        parts = transformed(scene, network.phase, solution.temperature), solution.mean_gradient
         smooth = cache(lambda: Reconstruction(network, edges(), *parts, slopes(), **how))
-        return samples, lambda points: smooth().temperature_at(points), lambda points: smooth().flux_at(points)
+        return samples, partial(_temperature_at, scene, smooth), lambda points: smooth().flux_at(points)
     # In a steady state nobody asks for points in pores.
     solid = None if solution.still is None else scene.conductivities[network.phase] > 0
     locate = cache(lambda: _Locator(network, solid))
@@ -139,6 +139,12 @@ def _samplers(scene, network, solution):
         return fluxes()[locate()(points)[0]]
 
     return samples, temperature_at, flux_at
+
+
+def _temperature_at(scene, smooth, points):
+    """Temperature at points, of what `transformed` made of it."""
+    found = smooth().temperature_at(points)
+    return scene.dependences.inverse(scene.phase_at(points), found) if scene.varies else found
 
 
 def _slopes(scene, network, fluxes):

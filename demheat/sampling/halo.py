@@ -190,7 +190,13 @@ def _exchanged(scene, axis, side, near):
     load, wall = scene.wall_exchanges["xyz"[axis] + side], 0.0 if side == "-" else scene.size[axis]
     k = scene.conductivities[near.phase]
     slope = -np.divide(near.flux[:, axis], k, out=np.zeros(len(k)), where=k > 0)
-    surface = near.temperature + slope * (wall - near.points[:, axis])
+    rise = slope * (wall - near.points[:, axis])
+    if scene.varies:
+        # On the way to the wall Kirchhoff's transform is what is linear.
+        own = scene.dependences
+        surface = own.inverse(near.phase, own.integral(near.phase, near.temperature) + rise)
+    else:
+        surface = near.temperature + rise
     if isinstance(load, Convection):
         entering = load.coefficient * (load.temperature - surface)
     else:

@@ -1,16 +1,19 @@
 """What is computed: a scene, its shapes and materials, its loads and sources; NumPy is all that it needs."""
 
 from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
+from demheat.scene.dependence import Dependence
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
 from demheat.scene.shapes import Layer, Shape, Sphere
+from demheat.scene.tensors import orthotropic
 
 __all__ = [
     "ROUND_AXES",
     "STEFAN_BOLTZMANN",
     "WALLS",
     "Convection",
+    "Dependence",
     "Flux",
     "Layer",
     "Material",
@@ -22,5 +25,6 @@ __all__ = [
     "UniformSource",
     "check_scene",
     "domain_volume",
+    "orthotropic",
     "wall_names",
 ]

@@ -33,7 +33,7 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
     (number of inclusions,) bool array
     """
     found, parents = np.zeros(len(scene.inclusions), bool), scene.parents()[1:]
-    k, around = scene.conductivities[1:], scene.conductivities[parents]
+    k, around = scene.mean_conductivities[1:], scene.mean_conductivities[parents]
     for alike, good in (((k >= strong * around) & (k > 0), True), ((strong * k <= around) & (around > 0), False)):
         for parent in np.unique(parents[alike]):
             ids = np.flatnonzero(alike & (parents == parent))

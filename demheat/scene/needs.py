@@ -28,6 +28,25 @@ WALLS = {
 EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, in time also for series of slabs"
 
 
+def _tensors(scene):
+    if scene.anisotropic:
+        number = next(n for n, material in enumerate(scene.materials) if not material.isotropic)
+        yield f"Material.conductivity in phase {number} is a tensor, for finite elements and voxels"
+
+
+def _dependences(scene):
+    if scene.varies:
+        number = next(n for n, material in enumerate(scene.materials) if material.dependence is not None)
+        yield (
+            f"Material.dependence in phase {number}, a conductivity that follows the temperature, is for steady states "
+            "of the DEM and finite elements"
+        )
+
+
+# What few methods take of materials.
+MATERIALS = {"anisotropy": _tensors, "dependence": _dependences}
+
+
 def check_steady(scene) -> None:
     """Raise unless a Scene has a steady state under loads that do not depend on time."""
     if scene.sources or scene.domain != "box":
@@ -66,6 +85,9 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     """
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
         yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
+    for name in MATERIALS:
+        if name not in takes:
+            yield from MATERIALS[name](scene)
     if walls is not None and not scene.periodic and not WALLS[walls](scene):
         yield f"Scene.walls = {dict(scene.walls)}"
     if domain is not None and scene.domain != domain:
@@ -80,7 +102,7 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     if np.any(parents):
         number = int(np.flatnonzero(parents)[0])
         yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
-    if not pores and np.any(scene.conductivities == 0):
+    if not pores and np.any(scene.mean_conductivities == 0):
         yield "a conductivity is 0"
     resisting = () if "resistance" in takes else np.flatnonzero(scene.resistances)
     if len(resisting):

@@ -23,6 +23,7 @@ from demheat.scene.checks import (
     checked_load,
     checked_sources,
 )
+from demheat.scene.dependence import Dependences
 from demheat.scene.functions import load_at
 from demheat.scene.html import table_of
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
@@ -97,6 +98,12 @@ class Scene:
         check_initial(self.initial, kelvin=self.radiates)
         check_geometry(self)
         check_reached(self)
+        if self.periodic and self.varies:
+            which = next(n for n, material in enumerate(self.materials) if material.dependence is not None)
+            raise ValueError(
+                f"Material.dependence in phase {which} with Scene.gradient: must be None, as temperatures of a "
+                "periodic cell have no level; give Scene.walls instead"
+            )
 
     @property
     def periodic(self) -> bool:
@@ -115,8 +122,45 @@ class Scene:
 
     @property
     def conductivities(self) -> np.ndarray:
-        """Conductivity of each phase, (1 + number of inclusions,) float array, W/(m K)."""
+        """Conductivity of each phase, (1 + number of inclusions,) float array, W/(m K); of none that is a tensor.
+
+        Raises
+        ------
+        NotImplementedError
+            If one differs with direction, see `tensors`.
+        """
+        if self.anisotropic:
+            which = next(n for n, material in enumerate(self.materials) if not material.isotropic)
+            raise NotImplementedError(f"Material.conductivity in phase {which} is a tensor: see Scene.tensors")
         return np.array([material.conductivity for material in self.materials])
+
+    @property
+    def tensors(self) -> np.ndarray:
+        """Conductivity tensor of each phase, (1 + number of inclusions, 3, 3) float array, W/(m K)."""
+        return np.array([material.tensor for material in self.materials])
+
+    @property
+    def mean_conductivities(self) -> np.ndarray:
+        """Mean of each phase's conductivity over all directions, (1 + number of inclusions,) float array, W/(m K).
+
+        For what asks how much a phase conducts, not which way: where it is not 0, what stands out, in which units.
+        """
+        return np.array([material.mean_conductivity for material in self.materials])
+
+    @cached_property
+    def anisotropic(self) -> bool:
+        """Whether the conductivity of a phase differs with direction."""
+        return not all(material.isotropic for material in self.materials)
+
+    @cached_property
+    def varies(self) -> bool:
+        """Whether the conductivity of a phase depends on temperature: the equations are then not linear."""
+        return any(material.dependence is not None for material in self.materials)
+
+    @property
+    def dependences(self) -> Dependences:
+        """How the conductivity of each phase depends on temperature."""
+        return Dependences([material.dependence for material in self.materials])
 
     @property
     def resistances(self) -> np.ndarray:
@@ -234,14 +278,15 @@ class Scene:
     def _told(self):
         """What is most asked of a scene, in words."""
         kinds = Counter(shape.kind for shape in self.inclusions)
-        k = sorted(set(self.conductivities.tolist()))
+        k = sorted(set(self.mean_conductivities.tolist()))
         load = (
             {"gradient": f"{self.gradient} K/m, a periodic cell"} if self.periodic else {"walls": _listed(self.walls)}
         )
         return {
             "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
             "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
-            "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)",
+            "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)"
+            + (", means over directions" if self.anisotropic else ""),
             **load,
         }
 
@@ -276,9 +321,9 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
-        takes : tuple of {"resistance", "exchange"}
+        takes : tuple of {"resistance", "exchange", "anisotropy", "dependence"}
             What few methods know and all others refuse: surfaces with a resistance, walls that exchange heat with
-            surroundings.
+            surroundings, conductivities that are tensors, or that depend on temperature.
 
         Raises
         ------

@@ -58,13 +58,15 @@ def laminate(scene):
         return None
     normal = scene.inclusions[0].axis if layered and scene.inclusions else 0
     length = scene.size[normal]
-    breaks, pieces, resist = _pieces(scene, normal) if layered else (np.array([0.0, length]), k[:1], np.zeros(2))
-    thickness = np.diff(breaks)
-    along = float(thickness @ pieces / length)
-    across = length / float(np.sum(thickness / pieces) + resist[1:].sum()) if np.all(pieces > 0) else 0.0
-    slope = across / pieces if across else np.zeros(len(pieces))
+    breaks, phase, resist = (
+        pieces(scene, normal) if layered else (np.array([0.0, length]), np.zeros(1, int), np.zeros(2))
+    )
+    k, thickness = k[phase], np.diff(breaks)
+    along = float(thickness @ k / length)
+    across = length / float(np.sum(thickness / k) + resist[1:].sum()) if np.all(k > 0) else 0.0
+    slope = across / k if across else np.zeros(len(k))
     # Plain homogeneous material also takes an imposed flux along its layers, for it has none.
-    means = np.full(3, along if np.all(pieces == pieces[0]) else np.nan)
+    means = np.full(3, along if np.all(k == k[0]) else np.nan)
     means[normal] = across
     load = mean_load(scene, means)
     if load is None:
@@ -74,7 +76,7 @@ def laminate(scene):
     jumps = across * np.cumsum(resist)[:-1]
     sideways = np.where(np.arange(3) == normal, 0.0, gradient)
 
-    flat = None if across else _flat(scene, normal, breaks, pieces > 0, load)
+    flat = None if across else _flat(scene, normal, breaks, k > 0, load)
 
     def where(points):
         turns = np.floor(points[:, normal] / length) if scene.periodic else 0.0
@@ -84,28 +86,26 @@ def laminate(scene):
         turns, x = where(points)
         if flat is not None:
             # Points on an interface belong to either side.
-            before, after = (
-                np.clip(np.searchsorted(breaks, x, side) - 1, 0, len(pieces) - 1) for side in ("left", "right")
-            )
+            before, after = (np.clip(np.searchsorted(breaks, x, side) - 1, 0, len(k) - 1) for side in ("left", "right"))
             here = np.where(np.isnan(flat[after]), flat[before], flat[after])
             return points @ sideways + gradient[normal] * turns * length + here
         total = turns * length + np.interp(x, breaks, rise)
         if resist.any():
-            total += jumps[np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(pieces) - 1)]
+            total += jumps[np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(k) - 1)]
         return level + points @ sideways + gradient[normal] * total
 
     def flux(points):
         _, x = where(points)
-        piece = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(pieces) - 1)
-        result = 0.0 - pieces[piece][:, None] * sideways
+        piece = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(k) - 1)
+        result = 0.0 - k[piece][:, None] * sideways
         result[:, normal] = 0.0 - across * gradient[normal]
         return result
 
     mean = 0.0 - along * sideways
     mean[normal] = 0.0 - across * gradient[normal]
-    plain = len(set(pieces.tolist())) == 1 and not resist.any()
+    plain = len(set(k.tolist())) == 1 and not resist.any()
     form = "homogeneous" if plain else "laminate"
-    return Closed(form, temperature, flux, mean, normal, breaks, {"unknowns": len(pieces), "digits": 15.0})
+    return Closed(form, temperature, flux, mean, normal, breaks, {"unknowns": len(k), "digits": 15.0})
 
 
 def insulated(scene):
@@ -258,10 +258,20 @@ def _flat(scene, normal, breaks, conducts, load):
     return flat
 
 
-def _pieces(scene, normal):
-    """Ends of the layers along their normal, the conductivity between them, and the resistance at each end.
+def pieces(scene, normal):
+    """Ends of the layers along their normal, the phase between them, and the resistance at each end.
 
     That at the face of a periodic cell is at its upper end.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of layers.
+    normal : {0, 1, 2}
+
+    Returns
+    -------
+    (m,) float array, m; (m - 1,) int array; (m,) float array, m2 K/W
     """
     ends = {0.0, scene.size[normal]}
     for layer in scene.inclusions:
@@ -274,7 +284,7 @@ def _pieces(scene, normal):
     if resistance is not None:
         met = resistance(phase, np.roll(phase, -1))
         resist[1:] = met if scene.periodic else np.append(met[:-1], 0.0)
-    return breaks, scene.conductivities[phase], resist
+    return breaks, phase, resist
 
 
 @lru_cache(maxsize=32)

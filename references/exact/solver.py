@@ -9,12 +9,15 @@ from demheat.field import Field, Samples
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
+from references.exact.kirchhoff import layers, transformed
+from references.exact.layers import tensor_laminate
 from references.midpoints import check_points_per_axis, midpoints
 
 KNOWN = (
     "a homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic cell "
     "of equal spheres, spheres apart in a matrix of no conductivity, and neutral coated spheres, each under a mean "
-    "gradient or one pair of opposite walls (with an imposed flux only where the flux is uniform)"
+    "gradient or one pair of opposite walls (with an imposed flux only where the flux is uniform); layers of tensors, "
+    "between walls where these bend no flux; layers across that follow the temperature, or all that do so alike"
 )
 
 
@@ -25,7 +28,8 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     ----------
     scene : Scene
         Homogeneous, laminate, cubic array of spheres, spheres in a matrix of no conductivity or neutral coated
-        spheres; see `forms`.
+        spheres; see `forms`. Layers of tensors, see `layers`; with conductivities that depend on temperature layers
+        across, and all else in which they do so alike, see `kirchhoff`.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
 
@@ -44,8 +48,8 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     """
     check_scene(scene)
     check_points_per_axis(points_per_axis)
-    scene.require(steady=True, takes=("resistance",))
-    closed = laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)
+    scene.require(steady=True, takes=("resistance", "anisotropy", "dependence"))
+    closed = (layers(scene) or transformed(scene, _linear)) if scene.varies else _linear(scene)
     if closed is None:
         load = f"gradient {scene.gradient}" if scene.periodic else f"walls {dict(scene.walls)}"
         raise NotImplementedError(
@@ -69,6 +73,13 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
         stats={"form": closed.form, "iterations": 0, "residual": 0.0, **closed.stats},
         estimator=_digits,
     )
+
+
+def _linear(scene):
+    """The closed form of a scene whose conductivities do not depend on temperature."""
+    if scene.anisotropic:
+        return tensor_laminate(scene)
+    return laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)
 
 
 def solve_axes(scene: Scene, *, points_per_axis: int = 24) -> tuple[Field, Field, Field]:

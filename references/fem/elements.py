@@ -48,7 +48,7 @@ def inverse(J):
     return rows / det[..., None, None], det
 
 
-def blocks(mesh, degree=5):
+def blocks(mesh, degree=5, straight=None):
     """Split a mesh into blocks of elements, each with its quadrature.
 
     It is exact for straight elements. Curved ones get the degree asked for: 5 (14 points, some on edges) or 7 (24, all
@@ -59,6 +59,8 @@ def blocks(mesh, degree=5):
     mesh : Mesh
     degree : {5, 7}
         Of the quadrature on curved elements.
+    straight : tuple of (3, q) and (q,) float arrays, optional
+        Local points and weights on straight ones, instead.
 
     Yields
     ------
@@ -67,10 +69,10 @@ def blocks(mesh, degree=5):
     tuple of (3, q) and (q,) float arrays
         Local points and weights.
     """
-    straight = 0 if mesh.cells.shape[1] == 4 else 2
-    for ids, exact in ((np.flatnonzero(~mesh.curved), straight), (np.flatnonzero(mesh.curved), degree)):
+    rules = straight or get_quadrature(RefTet, 0 if mesh.cells.shape[1] == 4 else 2), get_quadrature(RefTet, degree)
+    for ids, rule in zip((np.flatnonzero(~mesh.curved), np.flatnonzero(mesh.curved)), rules, strict=True):
         for start in range(0, len(ids), BLOCK):
-            yield ids[start : start + BLOCK], get_quadrature(RefTet, exact)
+            yield ids[start : start + BLOCK], rule
 
 
 def gradients(mesh, ids, rule):
@@ -125,7 +127,7 @@ def assemble(mesh, conductivity, dof, lift):
     return matrix, load
 
 
-def assemble_loads(mesh, conductivity, dof, lifts):
+def assemble_loads(mesh, conductivity, dof, lifts, medium=None):
     """The same for several known parts, with one matrix.
 
     Parameters
@@ -133,6 +135,8 @@ def assemble_loads(mesh, conductivity, dof, lifts):
     mesh, conductivity, dof
         As those of `assemble`.
     lifts : sequence of (n,) float arrays, K
+    medium : references.fem.medium.Medium, optional
+        Of what conducts otherwise along its axes, or at other temperatures.
 
     Returns
     -------
@@ -141,13 +145,13 @@ def assemble_loads(mesh, conductivity, dof, lifts):
     """
     count, parts, loads, seen = len(mesh.points), [], np.zeros((len(lifts), len(mesh.points))), 0
     with stage("assembly") as done:
-        for ids, rule in blocks(mesh):
+        for ids, rule in blocks(mesh, straight=medium and medium.straight):
             seen += len(ids)
             done(seen / len(mesh.cells))
             ids = ids[conductivity[ids] > 0]
             if not len(ids):
                 continue
-            matrices = _matrices(mesh, ids, rule, conductivity[ids])
+            matrices = _matrices(mesh, ids, rule, conductivity[ids], medium)
             rows = dof[mesh.cells[ids]]
             for load, lift in zip(loads, lifts, strict=True):
                 heat = np.einsum("bij,bj->bi", matrices, lift[mesh.cells[ids]])
@@ -159,9 +163,11 @@ def assemble_loads(mesh, conductivity, dof, lifts):
     return parts[0], list(loads)
 
 
-def _matrices(mesh, ids, rule, conductivity):
+def _matrices(mesh, ids, rule, conductivity, medium):
     """Stiffness matrices of one block of elements."""
     slopes, weights = gradients(mesh, ids, rule)
+    if medium is not None:
+        slopes = medium.bent(ids, rule[0], slopes)
     slopes *= np.sqrt(weights * conductivity[:, None])[..., None, None]
     slopes = np.swapaxes(slopes, 1, 2).reshape(len(ids), mesh.cells.shape[1], -1)
     return slopes @ np.swapaxes(slopes, 1, 2)
@@ -187,7 +193,7 @@ def wall_weights(mesh, triangles):
     return np.bincount(triangles.ravel(), (area @ values).ravel(), len(mesh.points))
 
 
-def at_quadrature(mesh, temperature, degree=5):
+def at_quadrature(mesh, temperature, degree=5, straight=None):
     """Solution at the quadrature points of one block after the other.
 
     Parameters
@@ -195,15 +201,15 @@ def at_quadrature(mesh, temperature, degree=5):
     mesh : Mesh
     temperature : (n,) float array, K
         At the nodes.
-    degree : {5, 7}
-        Of the quadrature on curved elements.
+    degree, straight
+        As those of `blocks`.
 
     Yields
     ------
     ids, points, weights, temperature, gradient
         (b,) int; (b, q, 3) m; (b, q) m3; (b, q) K; (b, q, 3) K/m.
     """
-    for ids, (X, weights) in blocks(mesh, degree):
+    for ids, (X, weights) in blocks(mesh, degree, straight):
         slopes, weights = gradients(mesh, ids, (X, weights))
         values, _ = shapes(mesh.cells.shape[1], X)
         nodal = temperature[mesh.cells[ids]]

@@ -55,7 +55,7 @@ def find(scene, mesh) -> Bodies:
     -------
     Bodies
     """
-    solid = scene.conductivities[mesh.phase] > 0
+    solid = scene.mean_conductivities[mesh.phase] > 0
     piece, count = _pieces(mesh, solid)
     jump = np.array(scene.gradient) * scene.size if scene.periodic else np.zeros(3)
     body, shift, climbs = _joined(*_seams(scene, mesh, piece), count, jump)

@@ -13,6 +13,7 @@ from demheat.scene import Scene
 from demheat.scene.resistances import joined
 from references.fem import interfaces
 from references.fem.elements import at_quadrature, inverse, shapes
+from references.fem.medium import Medium
 from references.mesh import Mesh
 
 # Local coordinates this little outside count as inside: rounding of points on a face.
@@ -41,15 +42,21 @@ class NodalField:
 
     @cached_property
     def conductivity(self):
-        """Of each element, 0 where no heat passes, (m,) float array, W/(m K)."""
-        conductivity = self.scene.conductivities[self.mesh.phase]
+        """Mean over directions of each element, 0 where no heat passes, (m,) float array, W/(m K)."""
+        conductivity = self.scene.mean_conductivities[self.mesh.phase]
         return conductivity if self.still is None else np.where(self.still, 0.0, conductivity)
+
+    @cached_property
+    def medium(self):
+        """What makes the flux of gradients, beside the mean conductivity."""
+        return Medium(self.scene, self.mesh, self.temperature)
 
     def samples(self):
         """`Samples` at quadrature points inside all elements."""
         rows = []
         for ids, points, volumes, temperature, gradient in at_quadrature(self.mesh, self.temperature, degree=7):
             phase = np.repeat(self.mesh.phase[ids], volumes.shape[1])
+            gradient = self.medium.conducted(ids, temperature, gradient)
             flux = -np.repeat(self.conductivity[ids], volumes.shape[1])[:, None] * gradient.reshape(-1, 3)
             temperature = temperature.reshape(volumes.shape)
             if self.open is not None:
@@ -77,27 +84,34 @@ class NodalField:
         flux = np.empty((len(points), 3))
         for part, ids, X in self._located(self._inside(points)):
             cells = self.mesh.cells[ids]
-            _, slopes = shapes(cells.shape[1], X.T)
+            values, slopes = shapes(cells.shape[1], X.T)
             back, _ = inverse(np.einsum("pnx,pnk->pxk", self.mesh.points[cells], slopes))
             gradient = np.einsum("pnk,pkx,pn->px", slopes, back, self.temperature[cells], optimize=True)
+            temperature = np.einsum("pn,pn->p", values, self.temperature[cells])
+            gradient = self.medium.conducted(ids, temperature, gradient)
             flux[part] = -self.conductivity[ids, None] * gradient
         return flux
 
     def mean_flux(self):
         """Flux density averaged over the volume of the body, (3,) float array, W/m2."""
         total = np.zeros(3)
-        for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
+        for ids, _, volumes, temperature, gradient in self._at_quadrature():
+            gradient = self.medium.conducted(ids, temperature, gradient)
             total -= self.conductivity[ids] @ np.einsum("bq,bqx->bx", volumes, gradient)
         return total / self.scene.volume
 
     def power(self):
-        """Conductivity times the square of the gradient over the volume of the body, and what interfaces take, W K."""
+        """Minus flux times gradient over the volume of the body, and what interfaces take, W K."""
         total = 0.0
-        for ids, _, volumes, _, gradient in at_quadrature(self.mesh, self.temperature):
-            total += float(self.conductivity[ids] @ np.einsum("bq,bqx->b", volumes, gradient**2))
+        for ids, _, volumes, temperature, gradient in self._at_quadrature():
+            square = gradient * self.medium.conducted(ids, temperature, gradient)
+            total += float(self.conductivity[ids] @ np.einsum("bq,bqx->b", volumes, square))
         if self.mesh.faces is not None:
             total += interfaces.power(self.mesh, self.temperature, self.scene.gradient or np.zeros(3))
         return total
+
+    def _at_quadrature(self):
+        return at_quadrature(self.mesh, self.temperature, straight=self.medium.straight)
 
     def spread(self, points, amounts):
         """Share amounts at points among the nodes by their shape functions.

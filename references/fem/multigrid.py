@@ -70,6 +70,21 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance, *, kept=None):
     return solution, stats
 
 
+def renewed(kept, matrix):
+    """What `solve_free` keeps, with the equations of another matrix: scale and multigrid still serve.
+
+    Parameters
+    ----------
+    kept : dict
+        Changed in place, and returned.
+    matrix : (n, n) CSR matrix, W/K
+    """
+    if kept:
+        _, scale, precondition = kept["equations"]
+        kept["equations"] = (scale @ matrix[kept["free"]][:, kept["free"]] @ scale).tocsr(), scale, precondition
+    return kept
+
+
 def _equations(mesh, matrix, free, dof):
     """The free nodes' equations scaled to a unit diagonal, their scale, and one cycle of multigrid."""
     root = np.sqrt(matrix.diagonal()[free])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from demheat.scene import STEFAN_BOLTZMANN, Radiation
-from references.fem.multigrid import solve_free
+from references.fem.multigrid import renewed, solve_free
 
 # Rounds at most, and what each round's linear equations leave of the residual.
 ROUNDS, FURTHER = 40, 1e-3
@@ -65,9 +65,7 @@ def radiating(mesh, matrix, load, fixed, dof, tolerance, *, known, body):
         largest = max(largest, size, float(np.linalg.norm(b[free] / root)))
         if size <= tolerance * largest or rounds == ROUNDS:
             break
-        change, found = solve_free(
-            mesh, whole, b - matrix @ correction, fixed, dof, FURTHER, kept=_renewed(kept, whole)
-        )
+        change, found = solve_free(mesh, whole, b - matrix @ correction, fixed, dof, FURTHER, kept=renewed(kept, whole))
         correction += change
         iterations += found["iterations"]
     residual = size / largest if largest > 0 else 0.0
@@ -77,11 +75,3 @@ def radiating(mesh, matrix, load, fixed, dof, tolerance, *, known, body):
             "method for radiation"
         )
     return correction, stats | {"iterations": iterations, "residual": residual, "rounds": rounds}
-
-
-def _renewed(kept, matrix):
-    """What a solver keeps, with the equations of another matrix: scale and multigrid still serve."""
-    if kept:
-        _, scale, precondition = kept["equations"]
-        kept["equations"] = (scale @ matrix[kept["free"]][:, kept["free"]] @ scale).tocsr(), scale, precondition
-    return kept

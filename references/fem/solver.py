@@ -112,7 +112,10 @@ def _solved(scenes, order, size, curved, tolerance):
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
         text = "beside interfaces with a resistance finite elements take no pores"
-        scene.require(text, steady=True, pores=not scene.resistances.any(), takes=("resistance", "exchange"))
+        takes = ("resistance", "exchange", "anisotropy", "dependence")
+        scene.require(text, steady=True, pores=not scene.resistances.any(), takes=takes)
+        if scene.radiates:
+            scene.require("finite elements iterate for it or for walls that radiate", takes=takes[:3])
         if order == 1 and scene.domain == "box":
             _warn_of_gaps(scene, checked_size(scene, size, order))
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
@@ -120,7 +123,7 @@ def _solved(scenes, order, size, curved, tolerance):
 
 def _warn_of_gaps(scene, size):
     """Linear elements are stiff, a straight drop of temperature each: a gap needs some across."""
-    k, parents = scene.conductivities, scene.parents()[1:]
+    k, parents = scene.mean_conductivities, scene.parents()[1:]
     near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (k[0] > 0) & (parents == 0)
     # Layers have no end; larger spheres have elements of their own size all round.
     near = [n for n in np.flatnonzero(near).tolist() if FINE * size > scene.inclusions[n].ball()[1]]
@@ -179,7 +182,8 @@ def _check_rounding(solution, mean_flux, wall_temperature, tolerance):
     that hardly differ; where that is rounding, or what the tolerance leaves, it is any number.
     """
     scene = solution.scene
-    conducting = scene.conductivities[scene.conductivities > 0]
+    k = scene.mean_conductivities
+    conducting = k[k > 0]
     if not len(conducting) or conducting.max() <= ROUNDED * conducting.min():
         return
     if scene.periodic:

@@ -18,8 +18,10 @@ from scipy.sparse.csgraph import connected_components
 from references.fem import interfaces, islands
 from references.fem.elements import assemble, assemble_loads, wall_weights
 from references.fem.films import Films, on_triangles
+from references.fem.medium import Medium
 from references.fem.multigrid import solve_free
 from references.fem.radiation import radiating
+from references.fem.varying import converged, improved
 from references.mesh import twins
 
 # Relative residual of the temperature in pores, which only elements past an interface show.
@@ -101,6 +103,16 @@ def solve_nodes(scene, mesh, tolerance) -> Solved:
     return solve_loads([scene], mesh, tolerance)[0]
 
 
+def _solve_varying(scene, mesh, tolerance):
+    """The same where conductivities depend on temperature."""
+    kept = {}
+
+    def solve(temperature, tolerance):
+        return _solve_linear([scene], mesh, tolerance, kept, temperature)[0]
+
+    return converged(solve, tolerance)
+
+
 def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     """Nodal temperatures of one body under several loads: one matrix, and one multigrid where all hold the same nodes.
 
@@ -118,10 +130,17 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     list of Solved
         Seconds of the assembly are those of all loads.
     """
-    if len(scenes) > 1 and not scenes[0].conductivities.all():
+    if scenes[0].varies:
+        return [_solve_varying(scene, mesh, tolerance) for scene in scenes]
+    if len(scenes) > 1 and not scenes[0].mean_conductivities.all():
         return [solve_nodes(scene, mesh, tolerance) for scene in scenes]
+    return _solve_linear(scenes, mesh, tolerance, {})
+
+
+def _solve_linear(scenes, mesh, tolerance, kept, start=None):
+    """Of each load; `start` has the temperatures at which all conducts, and from which the solution is improved."""
     begin = time.perf_counter()
-    conductivity = scenes[0].conductivities[mesh.phase]
+    conductivity = scenes[0].mean_conductivities[mesh.phase]
     givens = [_given(scene, mesh, conductivity > 0) for scene in scenes]
     dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
@@ -131,16 +150,22 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     unit = conductivity.max()
     if unit == 0:
         return [_at_rest(scenes[0], mesh, givens[0], found)]
-    matrix, loads = assemble_loads(mesh, conductivity / unit, dof, [given.lift for given in givens])
+    lifts = [given.lift for given in givens]
+    matrix, loads = assemble_loads(mesh, conductivity / unit, dof, lifts, _medium(scenes[0], mesh, start))
     if mesh.faces is not None:
         # The known part does not jump there.
         matrix = (matrix + interfaces.exchange(mesh, dof) / unit).tocsr()
     system = _Assembled(matrix, dof, unit, conductivity > 0, pores, found, time.perf_counter() - begin)
-    kept = {}
-    return [_solved(*each, mesh, system, tolerance, kept) for each in zip(scenes, givens, loads, strict=True)]
+    each = zip(scenes, givens, loads, strict=True)
+    return [_solved(*one, mesh, system, tolerance, kept, start) for one in each]
 
 
-def _solved(scene, given, load, mesh, system, tolerance, kept):
+def _medium(scene, mesh, temperature):
+    """What the mean conductivity of elements does not say, if there is such."""
+    return Medium(scene, mesh, temperature) if scene.anisotropic or temperature is not None else None
+
+
+def _solved(scene, given, load, mesh, system, tolerance, kept, start):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
     begin = time.perf_counter()
     matrix, dof, unit, passing, pores, found, assembly_s = system
@@ -161,6 +186,9 @@ def _solved(scene, given, load, mesh, system, tolerance, kept):
     if films.radiates:
         body, known = (scene, films, unit), given.lift + given.level
         correction, stats = radiating(mesh, matrix, load, fixed, dof, tolerance, known=known, body=body)
+    elif start is not None:
+        before = start - given.level - given.lift
+        correction, stats = improved(mesh, matrix, load, fixed, dof, tolerance, start=before, kept=kept)
     else:
         correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
     temperature = given.lift + correction[dof]

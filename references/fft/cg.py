@@ -29,6 +29,7 @@ from references.fft.problem import Clock, Problem, SolvedGrid, converged, total
 from references.fft.sweeps import Transform
 from references.fft.transforms import fourier, trigonometric
 from references.threads import Team
+from references.voxels.laminates import with_own
 from references.voxels.paint import medium
 
 # cos^2 of a Nyquist frequency is rounding of zero; the smallest that is not zero is about 1 / (number of voxels)^2.
@@ -111,6 +112,7 @@ def _system(problem):
         material = Links(*(np.ascontiguousarray(link, dtype) for link in links))
     else:
         conduct, inverse = conduct_voxels, 0.25 / voxels.spacing
+        voxels = voxels if voxels.tensors is None else with_own(voxels)
         material = medium(voxels, voxels.conductivity, voxels.tensor, dtype)
     nodes = (nx - 1, ny + 1, nz + 1) if problem.walls and not links else (nx, ny, nz)
     transform = _transform(problem, nodes)

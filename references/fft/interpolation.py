@@ -10,6 +10,7 @@ import numpy as np
 from demheat.field import Samples
 from demheat.scene import Scene
 from references.voxels.bodies import Bodies
+from references.voxels.laminates import unpacked
 from references.voxels.paint import Voxels, centers
 
 # Flux and slope jump at an interface: a voxel of another phase, and a cut one, counts only where nothing is better.
@@ -83,9 +84,7 @@ def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
         value += weight * sign * np.where(joined, grid.temperature[tuple(index)], 0.0)
         weights += weight
         for axis in range(3):
-            rise = np.where(
-                known, -grid.flux[(axis, *index)] / np.where(known, conductivity, 1.0) - grid.slope[axis], 0
-            )
+            rise = np.where(known, _slope(grid, index, axis, np.where(known, conductivity, 1.0)) - grid.slope[axis], 0)
             rise *= _sign(axis, mirrored)
             value += 0.5 * weight * rise * away[axis]
             slope[axis] += weight * rise
@@ -154,6 +153,18 @@ def _neighbours(grid, points):
             away.append((part[:, axis] - side) * spacing[axis])
             weight = weight * (part[:, axis] if side else 1.0 - part[:, axis])
         yield index, weight, away, mirrored
+
+
+def _slope(grid, index, axis, conductivity):
+    """A component of the temperature's gradient in voxels, by their flux."""
+    if grid.voxels.tensors is None:
+        return -grid.flux[(axis, *index)] / conductivity
+    # Pores, which nobody asks for, have no inverse.
+    tensors = unpacked(grid.voxels.tensors)
+    solid = tensors.any(axis=(1, 2))
+    tensors[solid] = np.linalg.inv(tensors[solid])
+    row = tensors[grid.voxels.phase[tuple(index)], axis]
+    return -np.einsum("pi,ip->p", row, grid.flux[(slice(None), *index)])
 
 
 def _sign(component, mirrored):

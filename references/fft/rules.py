@@ -59,6 +59,8 @@ def automatic(scheme, scene, shape) -> str:
         return "plain"
     if scheme == "eyre-milton":
         return "laminate"
+    if scene.anisotropic:
+        return "laminate"
     conductivity = scene.conductivities
     rounded = np.array([True] + [shape.bounded for shape in scene.inclusions])
     inner, outer = conductivity[rounded][1:], conductivity[scene.parents()][rounded][1:]
@@ -94,7 +96,7 @@ def warn_of_thin(scene, rule, shape) -> None:
     voxel, left = float(spacing.max()), coats(scene)
     thin = np.flatnonzero(left < voxel)
     if len(thin):
-        k = scene.conductivities
+        k = scene.mean_conductivities
         leaks = np.any(LEAKING * k[thin + 1] <= k.max())
         what = "heat leaks through and the conductivity may be off many times" if leaks else "errors may be percents"
         warnings.warn(
@@ -105,7 +107,8 @@ def warn_of_thin(scene, rule, shape) -> None:
     # Laminates are exact for layers of any thickness that they see.
     small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
     small |= narrower(scene, FULL * spacing)
-    small &= scene.conductivities[1:] != scene.conductivities[scene.parents()[1:]]
+    k = scene.tensors if scene.anisotropic else scene.conductivities[:, None, None]
+    small &= np.any(k[1:] != k[scene.parents()[1:]], axis=(1, 2))
     if small.any():
         warnings.warn(
             f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "

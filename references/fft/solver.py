@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache, partial
 from typing import NamedTuple
 
@@ -14,6 +13,7 @@ from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
+from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
 from references.fft.estimate import estimated
@@ -33,6 +33,8 @@ PRECISIONS = {"float64": np.float64, "float32": np.float32}
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
 # Least bytes that a voxel takes, in double precision.
 BYTES = {"cg": 30, "eyre-milton": 48}
+# The same of a voxel's own tensor, in a scene that has one: six numbers and its place, twice while they are sorted.
+OWN = 70
 # Knobs that a field's `stats` leaves out.
 UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
@@ -146,14 +148,16 @@ def solve_axes(
 def _solved(scenes, voxels, knobs):
     """The Field of each of some scenes that differ in their loads only."""
     grid, orders = grid_shape(scenes[0], voxels), [_order(scene) for scene in scenes]
-    boxes = [_turned(scene, order) for scene, order in zip(scenes, orders, strict=True)]
+    boxes = [turned_scene(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
     if knobs.rule == "auto":
         knobs = knobs._replace(rule=automatic(knobs.scheme, scenes[0], grid))
+    _check_tensors(scenes[0], knobs.scheme, knobs.rule)
     for box, shape in zip(boxes, shapes, strict=True):
         _check_grid(box, knobs.rule, shape)
     # What each solution keeps, on top of the first.
     bytes_each = BYTES[knobs.scheme] + 8 * (len(scenes) - 1) * {"cg": 1, "eyre-milton": 3}[knobs.scheme]
+    bytes_each += OWN if scenes[0].anisotropic else 0
     needed = bytes_each * math.prod(grid) * np.dtype(PRECISIONS[knobs.precision]).itemsize / 8
     check_memory("voxels", voxels, needed, power=3)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
@@ -174,7 +178,7 @@ def _loaded(scene, box, order, painted, knobs, kept):
     slope, level = _linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
     units = _units(grid)
-    if scene.conductivities.min() == 0:
+    if scene.mean_conductivities.min() == 0:
         grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
         if not grid.bodies.passing.any():
             return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs)
@@ -235,18 +239,27 @@ def _check_load(scene):
         "homogeneous problem is inverted by sines and cosines here",
         steady=True,
         walls="one isothermal pair",
+        takes=("anisotropy",),
     )
 
 
 def _check_grid(box, rule, shape):
     if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
-    linked = rule == "links" and box.conductivities.min() > 0
+    linked = rule == "links" and box.mean_conductivities.min() > 0
     if linked and min(shape) < LEAST_LINKED and any(each.bounded for each in box.inclusions):
         raise ValueError(
             f"voxels: {min(shape)} along a side are too few for rule 'links' with round inclusions, which may pass "
             f"Voigt's and Reuss's bounds; must be >= {LEAST_LINKED}, or take rule 'laminate'"
         )
+
+
+def _check_tensors(box, scheme, rule):
+    """Conductivities that are tensors are for the scalar scheme on voxels."""
+    if scheme == "eyre-milton":
+        box.require("Eyre and Milton's reference is as good in all directions; use scheme 'cg'")
+    if rule == "links":
+        box.require("links along the axes see only its diagonal; use rule 'laminate'")
 
 
 def _check_scheme(box, scheme, rule):
@@ -264,21 +277,6 @@ def _check_scheme(box, scheme, rule):
 def _order(scene):
     """Axes of the scene that are axes 0, 1, 2 of the grid: between walls the load's first."""
     return (0, 1, 2) if scene.periodic else (scene.axis, *(a for a in range(3) if a != scene.axis))
-
-
-def _turned(scene, order):
-    """The same scene with its axes in another order."""
-    if order == (0, 1, 2):
-        return scene
-    place = {axis: new for new, axis in enumerate(order)}
-
-    def turned(vector):
-        return tuple(vector[a] for a in order)
-
-    inclusions = [shape.turned(order) for shape in scene.inclusions]
-    walls = scene.walls and {"xyz"[place["xyz".index(name[0])]] + name[1]: v for name, v in scene.walls.items()}
-    gradient = scene.gradient and turned(scene.gradient)
-    return replace(scene, size=turned(scene.size), inclusions=inclusions, walls=walls, gradient=gradient)
 
 
 def _linear_part(box):
@@ -318,6 +316,7 @@ def _scaled(voxels, units):
         spacing=voxels.spacing / units.length,
         conductivity=voxels.conductivity / units.conductivity,
         tensor=voxels.tensor / units.conductivity,
+        tensors=None if voxels.tensors is None else voxels.tensors / units.conductivity,
     )
 
 

@@ -59,8 +59,9 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     check_scene(scene)
     flag("curved", curved)
     text = "sizes of elements are known on spheres and layers in a box"
-    # What surfaces resist does not change where they are.
-    scene.require(text, domain="box", shapes=(Sphere, Layer), takes=("resistance", "exchange"))
+    # What surfaces resist and phases conduct does not change where they are.
+    takes = ("resistance", "exchange", "anisotropy", "dependence")
+    scene.require(text, domain="box", shapes=(Sphere, Layer), takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)

@@ -148,7 +148,7 @@ def _join_cut(found, voxels, count, periodic):
 
 def _linked(scene, voxels):
     """The same of links: those that no pore holds up."""
-    conducting = np.where(scene.conductivities > 0, 1.0, 1.0 / POOR)
+    conducting = np.where(scene.mean_conductivities > 0, 1.0, 1.0 / POOR)
     materials = [replace(material, conductivity=k) for material, k in zip(scene.materials, conducting, strict=True)]
     shapes = [replace(shape, material=new) for shape, new in zip(scene.inclusions, materials[1:], strict=True)]
     plain = replace(scene, matrix=materials[0], inclusions=shapes)

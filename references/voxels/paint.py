@@ -18,6 +18,7 @@ import numpy as np
 from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from references.voxels import kernels
+from references.voxels.laminates import cut_tensors, packed
 from references.voxels.spheres import Balls, groups, windows
 
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
@@ -36,13 +37,15 @@ class Voxels(NamedTuple):
     phase : (nx, ny, nz) uint16 array
         Phase number at the centre of each voxel.
     conductivity : (1 + number of inclusions,) float array, W/(m K)
-        Of each phase.
+        Of each phase; of a tensor its mean over directions.
     cut : (m,) int array
         Flat indices of the voxels that have a tensor of their own, ascending.
     tensor : (m, 6) float array, W/(m K)
         Their conductivities, order xx, yy, zz, yz, xz, xy.
     fractions : (1 + number of inclusions,) float array
         Volume fraction of each phase, parts of voxels included.
+    tensors : (1 + number of inclusions, 6) float array, W/(m K), optional
+        Of each phase, where that of one is a tensor; see `references.voxels.laminates`.
     """
 
     spacing: np.ndarray
@@ -51,6 +54,7 @@ class Voxels(NamedTuple):
     cut: np.ndarray
     tensor: np.ndarray
     fractions: np.ndarray
+    tensors: np.ndarray | None = None
 
 
 class Medium(NamedTuple):
@@ -153,17 +157,23 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
     phase = np.zeros(shape, dtype=np.uint16)
     cuts = _paint(scene, phase, spacing, laminate)
-    conductivity = scene.conductivities
+    conductivity = scene.mean_conductivities
+    tensors = packed(scene.tensors) if scene.anisotropic else None
     count = kernels.count(phase.ravel(), len(conductivity))
     if not laminate:
-        return Voxels(spacing, phase, conductivity, np.empty(0, np.int64), np.empty((0, 6)), count / phase.size)
+        uncut = np.empty(0, np.int64), np.empty((0, 6))
+        return Voxels(spacing, phase, conductivity, *uncut, count / phase.size, tensors)
     parent = scene.parents()
     cut, first, rank = np.unique(cuts.index, return_index=True, return_inverse=True)
     part = _phase_parts(len(conductivity), rank, cuts, parent, parent[cuts.phase[first]])
     count = count - np.bincount(phase.ravel()[cut], minlength=len(conductivity))
     fractions = (count + np.bincount(part[1], part[2], minlength=len(conductivity))) / phase.size
     moment = np.stack([np.bincount(rank, column, len(cut)) for column in cuts.moment.T], axis=1)
-    return Voxels(spacing, phase, conductivity, cut, _laminate(part, conductivity, moment), fractions)
+    if scene.anisotropic:
+        own = cut_tensors(part, scene.tensors, moment)
+    else:
+        own = _laminate(part, conductivity, moment)
+    return Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
 
 
 def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
@@ -182,7 +192,9 @@ def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
     ascending = np.argsort(cut)
     columns = [PAIRS.index(tuple(sorted((order[a], order[b])))) for a, b in PAIRS]
     tensor = voxels.tensor[np.ix_(ascending, columns)]
-    return voxels._replace(spacing=voxels.spacing[list(order)], phase=phase, cut=cut[ascending], tensor=tensor)
+    tensors = None if voxels.tensors is None else voxels.tensors[:, columns]
+    turned = {"spacing": voxels.spacing[list(order)], "phase": phase, "cut": cut[ascending], "tensor": tensor}
+    return voxels._replace(**turned, tensors=tensors)
 
 
 def centers(shape, spacing) -> list:

@@ -62,7 +62,8 @@ def mirrors(scene: Scene) -> tuple[float | None, float | None, float | None]:
     Returns
     -------
     (3,) tuple of float, m, or None
-        Where along each axis; None without such a plane, or where an inclusion is neither a sphere nor a layer. Between
+        Where along each axis; None without such a plane, or where an inclusion is neither a sphere nor a layer, or a
+        conductivity a tensor. Between
         walls it is the middle. In a periodic cell there is another one half a period on, and the first of all is given,
         0 where nothing changes along the axis.
     """
@@ -110,7 +111,7 @@ def alike_axes(scene: Scene) -> tuple[int, int, int]:
 
 def _body(scene):
     """The body of a scene, or None if it is unknown what a mirror makes of an inclusion."""
-    if scene.domain != "box" or not scene.only(Sphere, Layer):
+    if scene.domain != "box" or not scene.only(Sphere, Layer) or scene.anisotropic:
         return None
     center, radius, normal = [], [], []
     for shape in scene.inclusions:
