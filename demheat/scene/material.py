@@ -21,6 +21,16 @@ class Material:
         Needed by transients only.
     heat_capacity : float, J/(kg K), optional
         Specific heat, needed by transients only.
+
+    Examples
+    --------
+    >>> from demheat import Material
+    >>> Material(conductivity=205.0, density=2700.0, heat_capacity=900.0)
+    Material(conductivity=205.0, density=2700.0, heat_capacity=900.0)
+    >>> Material(conductivity=-1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: Material.conductivity = -1.0: must be a finite number >= 0 W/(m K), of 1e-50 to 1e+50 where it is not 0
     """
 
     conductivity: float

@@ -1,4 +1,7 @@
-"""Tables of studies inside another Markdown page: what stands between two marks comes from a CSV."""
+"""Tables of studies inside other Markdown pages: what stands between two marks comes from a CSV.
+
+A mark names a study, and a function of it that makes rows to print; without one it is `table`.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from studies.harness import runner
 from studies.harness.store import replaced
 from studies.harness.table import markdown, read_frame
 
-MARKED = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+MARKED = re.compile(r"(<!-- table (\w+)(?: (\w+))? -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 
 def filled(text, folder):
@@ -37,7 +40,8 @@ def filled(text, folder):
         if not path.exists():
             raise ValueError(f"no {path}; run the study first")
         study = runner.load(match[2])
-        return f"{match[1]}\n{markdown(study.table(read_frame(study, path)))}\n\n{match[3]}"
+        made = getattr(study, match[3] or "table")(read_frame(study, path))
+        return f"{match[1]}\n{markdown(made)}\n\n{match[4]}"
 
     return MARKED.sub(table, text)
 
