@@ -2,6 +2,7 @@
 
 import doctest
 import importlib
+import inspect
 import re
 
 import pytest
@@ -9,13 +10,14 @@ from blocks import DOCS
 
 import demheat
 
-ENTRY = re.compile(r"^\.\. (auto\w+):: ([\w.]+)$", re.MULTILINE)
+ENTRY = re.compile(r"^\.\. (auto\w+):: ([\w.]+)$(.*?)(?=^\.\. auto|^```|\Z)", re.MULTILINE | re.DOTALL)
+# Kind of each entry, and what its page says beneath: modules that are long have their examples there.
 ENTRIES = {
-    name: kind
+    name: (kind, beneath)
     for path in sorted((DOCS / "reference").glob("*.md"))
-    for kind, name in ENTRY.findall(path.read_text(encoding="utf-8"))
+    for kind, name, beneath in ENTRY.findall(path.read_text(encoding="utf-8"))
 }
-EXAMPLES = [name for name, kind in ENTRIES.items() if kind != "automodule"]
+EXAMPLES = [name for name, (kind, _) in ENTRIES.items() if kind != "automodule"]
 FLAGS = doctest.ELLIPSIS | doctest.IGNORE_EXCEPTION_DETAIL
 
 
@@ -26,8 +28,8 @@ def _found(name):
 
 
 def _example(name):
-    thing = _found(name)
-    return doctest.DocTestParser().get_doctest(thing.__doc__, {}, name, None, 0)
+    text = f"{inspect.getdoc(_found(name))}\n\n{ENTRIES[name][1]}"
+    return doctest.DocTestParser().get_doctest(text, {}, name, None, 0)
 
 
 def test_what_is_public_is_in_it():
@@ -47,7 +49,6 @@ def test_all_of_a_module_is_in_it(home):
     assert {f"{home}.{name}" for name in public} <= set(ENTRIES)
 
 
-# The gate of coarse voxels, and of few particles beside a thin gap, is not what an example is about.
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_runs(name):
     example = _example(name)
