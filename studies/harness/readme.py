@@ -32,15 +32,17 @@ def filled(text, folder):
     Raises
     ------
     ValueError
-        If a marked study has no rows in the folder.
+        If a marked study has no rows in the folder, or no such function.
     """
 
     def table(match):
         path = Path(folder) / f"{match[2]}.csv"
         if not path.exists():
             raise ValueError(f"no {path}; run the study first")
-        study = runner.load(match[2])
-        made = getattr(study, match[3] or "table")(read_frame(study, path))
+        study, name = runner.load(match[2]), match[3] or "table"
+        if not hasattr(study, name):
+            raise ValueError(f"<!-- table {match[2]} {name} -->: the study has no function {name}")
+        made = getattr(study, name)(read_frame(study, path))
         return f"{match[1]}\n{markdown(made)}\n\n{match[4]}"
 
     return MARKED.sub(table, text)
