@@ -16,7 +16,7 @@ for knobs in ({"size": 0.25}, {"width": 7e-4}):  # a mesh, or as many as it take
     bounds = f"{found.lower:.6f} to {found.upper:.6f} W/(m K)"
     print(f"{bounds}, {100 * found.width:.3f} % wide, {found.stats['elements']} elements")
 
-for name, field in {"FFT": fft.solve(scene, voxels=64), "DEM": solve(scene, particles=8_000)}.items():
+for name, field in {"FFT": fft.solve(scene, voxels=32), "DEM": solve(scene, particles=4_000)}.items():
     inside = found.lower <= field.conductivity <= found.upper
     error = field.error
     print(f"{name} {field.conductivity:.6f}, expects {error.lower:.6f} to {error.upper:.6f}; in the bracket: {inside}")
