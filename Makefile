@@ -5,7 +5,7 @@ PY := .venv/bin/python
 OLD := .venv-oldest
 PIP := install --quiet --disable-pip-version-check
 
-.PHONY: run test test-all test-slow test-twins test-oldest full clean
+.PHONY: run test test-all test-slow test-twins test-oldest full docs clean
 
 run: .venv/ready
 	$(PY) -m studies run fig14_single_inclusion --quick --out $(OUT)
@@ -13,6 +13,11 @@ run: .venv/ready
 full: .venv/ready
 	.venv/bin/pip $(PIP) -e '.[test,peers]'
 	$(PY) -m studies run --out results
+
+# The manual, without a network; `make test` builds it too.
+docs: .venv/ready
+	$(PY) -m sphinx -q -W --keep-going -b html docs $(OUT)/manual
+	@echo $(OUT)/manual/index.html
 
 # Warnings are errors (pyproject.toml).
 test: .venv/ready

@@ -76,6 +76,16 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
         If interfaces are so near to each other or to a wall that particles do not fit between them, or that twins are
         over five times as many as particles; if an inclusion holds no particle, or is thin for particles without twins,
         or a gap between good or bad conductors is.
+
+    Examples
+    --------
+    >>> from demheat import Laguerre, gallery
+    >>> from demheat.build import network_of
+    >>> from demheat.packing.relax import relax
+    >>> scene = gallery.slab(size=(1.0, 1.0, 1.0), periodic=True)
+    >>> network = network_of(scene, relax(500, seed=0), Laguerre())
+    >>> print(f"{network.volumes.sum():.9f}")  # cells fill the box
+    1.000000000
     """
     check_scene(scene)
     return _connected(scene, law, *_tessellated(scene, packing, law, seed))

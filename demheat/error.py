@@ -43,6 +43,14 @@ class Estimate(NamedTuple):
         Root mean square over the body, expected at most; NaN if unknown.
     runs : tuple of float, W/(m K)
         Conductivities on coarser and coarser elements, the field's own first.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import fft
+    >>> error = fft.solve(gallery.sphere_in_cube(5.0), voxels=32).error
+    >>> error.lower < 42.6403 < error.upper, len(error.runs)
+    (True, 3)
     """
 
     how: str

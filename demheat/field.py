@@ -48,6 +48,15 @@ class Samples(NamedTuple):
         Phase number as the method saw it.
     flux : (n, 3) float array, W/m2
         Along Fourier's direction (down the gradient). 0 in pores; of a voxel that an interface cuts the mean over it.
+
+    Examples
+    --------
+    >>> from demheat import gallery, solve
+    >>> own = solve(gallery.sphere_in_cube(5.0), particles=1000).samples
+    >>> print(f"{own.volumes.sum():.6f} m3")  # that of the body
+    0.001000 m3
+    >>> own.points.shape == own.flux.shape
+    True
     """
 
     points: np.ndarray
@@ -89,6 +98,18 @@ class Field:
         See `error`.
     elements : callable () -> ((n, 3) float array, m, (m, 4 or 10) int array), optional
         Nodes and tetrahedra of finite elements, in VTK's order, for `write`.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import fft
+    >>> field = fft.solve(gallery.sphere_in_cube(5.0), voxels=16)
+    >>> print(f"{field.conductivity:.2f} W/(m K) along the load, {field.wall_heat['y+']:.2f} W in by the warm wall")
+    42.67 W/(m K) along the load, 42.67 W in by the warm wall
+    >>> field.temperature_at([[0.05, 0.05, 0.05]]).round(6)
+    array([30.])
+    >>> field.samples.flux.shape
+    (4096, 3)
     """
 
     scene: Scene
@@ -184,7 +205,7 @@ class Field:
     def conductivity(self) -> float:
         """Effective conductivity along the load, W/(m K).
 
-        In a periodic cell -<q>.g/|g|^2; between two opposite walls mean flux times length over the difference of the
+        In a periodic cell -<q>.g/g.g; between two opposite walls mean flux times length over the difference of the
         walls' mean temperatures.
 
         Raises

@@ -80,6 +80,13 @@ def on_progress(hook: Callable[[Report], None] | None):
     ------
     ValueError
         If it is not callable.
+
+    Examples
+    --------
+    >>> import demheat
+    >>> heard = []
+    >>> demheat.on_progress(lambda report: heard.append((report.stage, report.share)))
+    >>> demheat.on_progress(None)
     """
     if hook is not None and not callable(hook):
         raise ValueError(f"hook = {hook!r}: must be a function of one Report, or None")

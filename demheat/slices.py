@@ -91,6 +91,14 @@ def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np
         As those of `plane`.
     flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2, optional
         Instead of the Field's own, for instance a halo's.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from demheat.slices import on_plane
+    >>> from references import exact
+    >>> on_plane(exact.solve(gallery.sphere_in_cube(5.0)), axis=2, at=0.05, n=11).flux.shape
+    (11, 11, 3)
     """
     check_field(field)
     if flux_at is not None and not callable(flux_at):

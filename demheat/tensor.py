@@ -36,6 +36,12 @@ def axis_loads(scene: Scene) -> tuple[Scene, Scene, Scene]:
         If the load does not fix a steady temperature.
     NotImplementedError
         If it is neither a mean gradient nor one pair of isothermal walls.
+
+    Examples
+    --------
+    >>> from demheat import gallery, tensor
+    >>> [scene.gradient for scene in tensor.axis_loads(gallery.simple_cubic())]
+    [(100.0, 0.0, 0.0), (0.0, 100.0, 0.0), (0.0, 0.0, 100.0)]
     """
     check_scene(scene)
     scene.require(
@@ -73,6 +79,13 @@ def conductivity_tensor(fields: Sequence[Field]) -> np.ndarray:
     ------
     ValueError
         If they are not three fields of such loads on one body, or two walls have the same temperature.
+
+    Examples
+    --------
+    >>> from demheat import gallery, tensor
+    >>> from references import fft
+    >>> tensor.conductivity_tensor(fft.solve_axes(gallery.laminate(), voxels=8)).round(6).diagonal()
+    array([99., 55., 99.])
     """
     if not isinstance(fields, Sequence) or len(fields) != 3:
         raise ValueError(f"fields = {fields!r}: must be three, under loads along x, y and z")

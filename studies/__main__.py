@@ -54,7 +54,8 @@ def _parser():
     row.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
     report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
-    report.add_argument("--page", metavar="FILE", type=Path, help="also write the tables marked in this page anew")
+    words = "also write the tables marked in these pages anew"
+    report.add_argument("--page", metavar="FILE", type=Path, nargs="+", default=[], help=words)
     report.set_defaults(action=_report)
     for each in (names, run, render, report):
         where = STORED if each is names and STORED.is_dir() else DEFAULT_OUT
@@ -149,8 +150,8 @@ def _report(arguments):
     target = arguments.out / "README.md"
     with replaced(target) as temporary:
         temporary.write_text("\n".join(pages), encoding="utf-8")
-    if arguments.page:
-        fill(arguments.page, arguments.out)
+    for page in arguments.page:
+        fill(page, arguments.out)
     print(f"{len(pages)} studies in {target}; " + ("a claim FAILED" if status else "every claim holds"))
     return int(status)
 

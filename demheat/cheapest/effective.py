@@ -42,6 +42,13 @@ class Effective:
         What symmetry saved.
     passed : tuple of str
         Methods that were tried before, and why they did not do.
+
+    Examples
+    --------
+    >>> from demheat import effective, gallery
+    >>> found = effective(gallery.sphere_in_cube(5.0))
+    >>> bool((found.lower <= found.tensor).all()), found.accuracy < 1e-3
+    (True, True)
     """
 
     tensor: np.ndarray
@@ -75,6 +82,13 @@ class Recommendation(NamedTuple):
     why : str
         In words, a line for each way.
     ways : tuple of Way
+
+    Examples
+    --------
+    >>> from demheat import gallery, recommend
+    >>> told = recommend(gallery.sphere_in_cube(5.0))
+    >>> told.method, told.why.splitlines()[0]
+    ('exact', '1 of 3 loads: axes alike')
     """
 
     method: str
@@ -117,6 +131,13 @@ def effective(
         If the load is another.
     RuntimeError
         If no method gets there in the memory, with what each lacks.
+
+    Examples
+    --------
+    >>> from demheat import effective, gallery
+    >>> found = effective(gallery.sphere_in_cube(5.0), accuracy=1e-4)
+    >>> found.method, found.tensor.diagonal().round(4)
+    ('exact', array([42.6403, 42.6403, 42.6403]))
     """
     accuracy, memory = _checked(accuracy, memory)
     allowed = _allowed(method)
@@ -165,6 +186,12 @@ def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = No
     Returns
     -------
     Recommendation
+
+    Examples
+    --------
+    >>> from demheat import gallery, recommend
+    >>> recommend(gallery.laminate()).method
+    'exact'
     """
     accuracy, memory = _checked(accuracy, memory)
     loads = loads_of(scene)

@@ -27,6 +27,21 @@ def main(words=None) -> int:
     -------
     int
         Exit status.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from demheat import files, gallery
+    >>> from demheat.commands import main
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     files.write(gallery.laminate(), f"{folder}/scene.toml")
+    ...     main(["solve", f"{folder}/scene.toml", "--method", "exact", "--no-interval"])
+    /...scene.toml: box of 100 x 100 x 100 mm, 2 layers, 33 to 165 W/(m K), walls y-, y+
+    <BLANKLINE>
+    exact
+      conductivity  55 W/(m K)
+    ...
+    0
     """
     for stream in (sys.stdout, sys.stderr):
         # A name may hold a letter that a terminal of another alphabet has not: that must not cost the run.

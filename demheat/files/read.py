@@ -50,6 +50,23 @@ def read(path) -> Scene:
     ------
     ValueError
         One line with file, line and key, what is there and what would be valid.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from demheat import files
+    >>> text = '''size_mm = [1, 1, 1]
+    ... matrix = "epoxy"
+    ... gradient_K_mm = [0, 1, 0]
+    ... [materials.epoxy]
+    ... conductivity = 0.195'''
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "scene.toml")
+    ...     _ = path.write_text(text)
+    ...     scene = files.read(path)
+    >>> scene.size, scene.matrix.conductivity
+    ((0.001, 0.001, 0.001), 0.195)
     """
     return read_file(path).scene
 
@@ -69,6 +86,18 @@ def read_file(path) -> SceneFile:
     ------
     ValueError
         As `read`.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from demheat import files, gallery
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "scene.toml")
+    ...     files.write(gallery.slab(), path)
+    ...     found = files.read_file(path)
+    >>> found.path.name, found.accuracy
+    ('scene.toml', None)
     """
     source = read_source(path)
     table = Table(source, (), source.values)

@@ -25,6 +25,18 @@ def write(scene: Scene, path) -> None:
     ------
     ValueError
         If the scene holds what a file cannot.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from demheat import files, gallery
+    >>> scene = gallery.sphere_in_cube(5.0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     path = Path(folder, "scene.toml")
+    ...     files.write(scene, path)
+    ...     files.read(path) == scene
+    True
     """
     path = checked_path(path)
     text = text_of_scene(scene)

@@ -117,6 +117,13 @@ def dispersion(
         If an argument is not as described, or the spheres with their gaps are too many or too large for the box.
     RuntimeError
         If no room is found for a sphere.
+
+    Examples
+    --------
+    >>> from demheat.packing.dispersion import dispersion
+    >>> centers, radii = dispersion(20, fraction=0.2, seed=0)
+    >>> centers.shape, round(float((4 / 3 * 3.14159265 * radii**3).sum()), 6)
+    ((20, 3), 0.2)
     """
     placing = Placing(**knobs)
     _check(number, fraction, ratio, periodic, folder, placing)
@@ -172,6 +179,14 @@ def dispersion_scene(
     ValueError
         As `dispersion`; if the axis or the temperatures are not as described; and if walls are asked for
         a periodic dispersion, whose spheres cross the faces.
+
+    Examples
+    --------
+    >>> from demheat import Material
+    >>> from demheat.packing.dispersion import dispersion_scene
+    >>> scene = dispersion_scene(20, fraction=0.2, seed=0, matrix=Material(0.195), inclusion=Material(1.5))
+    >>> len(scene.inclusions), scene.gradient
+    (20, (0.0, 10.0, 0.0))
     """
     for name, material in (("matrix", matrix), ("inclusion", inclusion)):
         check_material(name, material)

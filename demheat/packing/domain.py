@@ -72,6 +72,13 @@ def cut(
     ------
     ValueError
         If an argument is not as described, the domain reaches beyond a wall, or no sphere is left.
+
+    Examples
+    --------
+    >>> from demheat.packing.domain import cut
+    >>> from demheat.packing.relax import relax
+    >>> cut(relax(1000, seed=0), "sphere").domain
+    'sphere'
     """
     _check_box_packing(packing)
     check_name("domain", domain)
@@ -116,6 +123,13 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
     ------
     ValueError
         If a number is not an integer >= 1, or an axis with walls is to be repeated.
+
+    Examples
+    --------
+    >>> from demheat.packing.domain import replicate
+    >>> from demheat.packing.relax import relax
+    >>> replicate(relax(200, seed=0), (2, 1, 1)).number
+    400
     """
     check_packing(packing)
     counts = np.array(repeats)

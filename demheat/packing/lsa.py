@@ -181,6 +181,13 @@ def lsa(
     -----
     UserWarning
         If the sphere radii had to be shrunk by more than rounding to leave no overlap.
+
+    Examples
+    --------
+    >>> from demheat.packing.lsa import lsa
+    >>> packing = lsa(200, phi=0.5, seed=0)
+    >>> packing.number, round(packing.phi, 6)
+    (200, 0.5)
     """
     goal = Growth(**knobs)
     _check_seed(seed)

@@ -61,7 +61,7 @@ def contacts(
     margin: float = 4.0,
     additive: bool = False,
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """Contact network: pairs with |x_i - x_j| <= (1 + gap)(r_i + r_j), gap chosen for a mean coordination number.
+    """Contact network: pairs at most (1 + gap)(r_i + r_j) apart, gap chosen for a mean coordination number.
 
     Of a neighbour's periodic images only the nearest counts: boxes should be at least twice as thick as pairs reach.
 
@@ -76,7 +76,7 @@ def contacts(
         Bulk particles are those at least this many mean radii away from every wall, flat or round; 0 counts all
         particles, as the papers do. A periodic packing is bulk throughout.
     additive : bool
-        The gap is a part of the mean diameter, the same length for all pairs: |x_i - x_j| <= r_i + r_j + 2 gap <r>.
+        The gap is a part of the mean diameter, the same length for all pairs: r_i + r_j + 2 gap <r> apart.
 
     Returns
     -------
@@ -90,6 +90,14 @@ def contacts(
     ------
     ValueError
         If an argument is not as described, no particle is bulk, or there are too few particles for that coordination.
+
+    Examples
+    --------
+    >>> from demheat.packing import contacts
+    >>> from demheat.packing.relax import relax
+    >>> indptr, indices, gap = contacts(relax(500, seed=0), coordination=7.5)
+    >>> round(len(indices) / 500, 1)
+    7.5
     """
     check_packing(packing)
     flag("additive", additive)

@@ -113,6 +113,13 @@ def relax(
     ------
     ValueError
         If an argument is not as described, or a sphere is too large for the box.
+
+    Examples
+    --------
+    >>> from demheat.packing.relax import relax
+    >>> packing = relax(500, phi=0.6, seed=0)
+    >>> packing.number, round(packing.phi, 6)
+    (500, 0.6)
     """
     radii = Gaussian() if radii is None else distribution(radii)
     goal = Relaxation(**knobs)

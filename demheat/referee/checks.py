@@ -21,6 +21,12 @@ def heat_balance(field: Field) -> float:
     ------
     ValueError
         In a periodic cell, where heat crosses no wall.
+
+    Examples
+    --------
+    >>> from demheat import gallery, referee, solve
+    >>> abs(referee.heat_balance(solve(gallery.sphere_in_cube(5.0), particles=1000))) < 1e-6
+    True
     """
     check_field(field)
     if field.scene.periodic:

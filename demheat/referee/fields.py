@@ -71,6 +71,14 @@ def conductivity_error(field: Field, reference: Field | float) -> float:
     ------
     ValueError
         Unless the reference's conductivity is finite and positive.
+
+    Examples
+    --------
+    >>> from demheat import gallery, referee
+    >>> from references import exact, fft
+    >>> scene = gallery.sphere_in_cube(5.0)
+    >>> abs(referee.conductivity_error(fft.solve(scene, voxels=32), exact.solve(scene))) < 1e-3
+    True
     """
     if not hasattr(field, "conductivity"):
         raise ValueError(f"field = {field!r}: must be a Field, or have a conductivity")
@@ -139,6 +147,15 @@ def temperature_error(
     Returns
     -------
     Error
+
+    Examples
+    --------
+    >>> from demheat import gallery, referee
+    >>> from references import exact, fft
+    >>> scene = gallery.sphere_in_cube(5.0)
+    >>> points = [[0.05, 0.03, 0.05], [0.02, 0.08, 0.05]]
+    >>> referee.temperature_error(fft.solve(scene, voxels=32), exact.solve(scene), points).max < 5e-3  # of the span
+    True
     """
     check_field(field)
     check_field(reference, "reference")
@@ -184,6 +201,15 @@ def flux_error(
     ------
     ValueError
         If the reference has no mean flux.
+
+    Examples
+    --------
+    >>> from demheat import gallery, referee
+    >>> from references import exact, fft
+    >>> scene = gallery.sphere_in_cube(5.0)
+    >>> error = referee.flux_error(fft.solve(scene, voxels=32), exact.solve(scene), [[0.05, 0.05, 0.05]])
+    >>> error.max < 0.02  # of the mean flux
+    True
     """
     check_field(field)
     check_field(reference, "reference")

@@ -127,6 +127,15 @@ def halo_flux(
         with `walls = "mirror"`.
     NotImplementedError
         For mirrors in round bodies.
+
+    Examples
+    --------
+    >>> from demheat import gallery, solve
+    >>> from demheat.sampling.halo import halo_flux
+    >>> field = solve(gallery.sphere_in_cube(5.0), particles=1000)
+    >>> smooth = halo_flux(field, ratio=2.0)
+    >>> bool(smooth[:, 1].std() < field.samples.flux[:, 1].std())
+    True
     """
     check_field(field)
     scene = field.scene

@@ -29,6 +29,16 @@ class Material:
         Specific heat, needed by transients only.
     dependence : Dependence, or sequence of (temperature, factor), optional
         How the conductivity follows the temperature: by which factor it differs from `conductivity`.
+
+    Examples
+    --------
+    >>> from demheat import Material
+    >>> Material(conductivity=205.0, density=2700.0, heat_capacity=900.0).conductivity
+    205.0
+    >>> Material(conductivity=-1.0)
+    Traceback (most recent call last):
+        ...
+    ValueError: Material.conductivity = -1.0: must be a finite number >= 0 W/(m K)...
     """
 
     conductivity: float | tuple[tuple[float, float, float], ...]

@@ -72,6 +72,14 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
         If the accuracy is no number between 0 and 1.
     NotImplementedError
         If walls exchange heat with surroundings.
+
+    Examples
+    --------
+    >>> from demheat import Material, Scene, Sphere
+    >>> from demheat.scene.negligible import negligible
+    >>> big, speck = (Sphere(c, r, Material(10.0)) for c, r in (((0.3, 0.5, 0.5), 0.2), ((0.9, 0.5, 0.5), 0.005)))
+    >>> negligible(Scene((1.0, 1.0, 1.0), Material(1.0), [big, speck], gradient=(0, 1, 0)), 1e-3).inclusions
+    (1,)
     """
     check_scene(scene)
     scene.require("what may be left out is known of the conductivity between temperatures", takes=("resistance",))

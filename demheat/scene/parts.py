@@ -24,6 +24,13 @@ class Flux:
     ----------
     value : float or callable (time, s) -> float, W/m2
         Positive *into* the body.
+
+    Examples
+    --------
+    >>> from demheat import Flux, Material, Scene
+    >>> heated = Scene((0.1, 0.1, 0.1), Material(33.0), walls={"y-": 25.0, "y+": Flux(3300.0)})
+    >>> heated.wall_fluxes
+    {'y+': 3300.0}
     """
 
     value: float | Callable[[float], float]
@@ -43,6 +50,14 @@ class Convection:
         Positive.
     temperature : float or callable (time, s) -> float, K or degrees Celsius
         Of the fluid, away from the wall.
+
+    Examples
+    --------
+    >>> from demheat import Convection, Material, Scene, solve
+    >>> walls = {"x-": 100.0, "x+": Convection(coefficient=20.0, temperature=0.0)}
+    >>> wall = Scene((0.1, 0.1, 0.1), Material(2.0), walls=walls)
+    >>> print(f"{solve(wall, particles=1000).wall_heat['x-']:.4f} W, by hand {0.1**2 * 100 / (0.1 / 2 + 1 / 20):.4f} W")
+    10.0000 W, by hand 10.0000 W
     """
 
     coefficient: float
@@ -67,6 +82,16 @@ class Radiation:
         Above 0, at most 1.
     temperature : float or callable (time, s) -> float, K
         Of the surroundings.
+
+    Examples
+    --------
+    >>> from demheat import Material, Radiation, Scene, solve
+    >>> walls = {"x-": 1000.0, "x+": Radiation(emissivity=0.9, temperature=300.0)}
+    >>> wall = Scene((0.1, 0.1, 0.1), Material(1.0), walls=walls)
+    >>> hot = solve(wall, particles=1000).wall_temperature["x+"]
+    >>> given, passed = 0.9 * 5.670374e-8 * (hot**4 - 300.0**4), 1.0 * (1000.0 - hot) / 0.1
+    >>> print(f"{given / passed:.4f}")
+    1.0000
     """
 
     emissivity: float
@@ -108,6 +133,15 @@ class UniformSource:
     ----------
     power_density : float, W/m3
         Positive.
+
+    Examples
+    --------
+    >>> from demheat import Material, Scene, UniformSource, evolve
+    >>> brick = Material(1.0, density=2000.0, heat_capacity=1000.0)
+    >>> body = Scene((0.1, 0.1, 0.1), brick, initial=20.0, sources=[UniformSource(power_density=2e6)])
+    >>> (field,) = evolve(body, [3.0], particles=1000)  # nothing leaves: 1 K each second
+    >>> print(f"{field.temperature_at([0.05, 0.05, 0.05])[0]:.3f}")
+    23.000
     """
 
     power_density: float
@@ -134,6 +168,13 @@ class MovingCylinder:
     velocity : (2,) sequence of float, m/s
     clip : bool
         What lies outside of the body is lost. If False, a source that leaves the body is an error.
+
+    Examples
+    --------
+    >>> from demheat import MovingCylinder
+    >>> torch = MovingCylinder(axis=2, diameter=0.008, power_density=1e8, start=(0.02, 0.015), velocity=(0.0033, 0.0))
+    >>> torch.position(2.0).tolist()
+    [0.0266, 0.015]
     """
 
     axis: int

@@ -71,6 +71,18 @@ class Scene:
         If an argument is not as described; the message names it, its value and what would be valid. Lengths,
         conductivities, gradients and fluxes are from 1e-50 to 1e50, or 0 where that makes sense; temperatures of walls
         differ by 1e-10 of the largest, or not at all.
+
+    Examples
+    --------
+    >>> from demheat import Layer, Material, Scene
+    >>> wool = Layer(0, 0.0, 0.1, Material(0.035))
+    >>> wall = Scene((0.2, 1.0, 1.0), Material(0.5), [wool], walls={"x-": 20.0, "x+": -5.0})
+    >>> wall.volume, wall.conductivities.tolist(), wall.axis
+    (0.2, [0.5, 0.035], 0)
+    >>> Scene((0.2, 1.0, 1.0), Material(0.5))
+    Traceback (most recent call last):
+        ...
+    ValueError: Scene.gradient, Scene.walls: neither given; ...
     """
 
     size: tuple[float, float, float]

@@ -34,6 +34,13 @@ def estimate(scene: Scene, *, formula: str = "maxwell") -> float:
         If there is no such formula.
     NotImplementedError
         For other shapes, unlike spheres, and spheres that a wall cuts.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import bounds
+    >>> print(f"{bounds.estimate(gallery.sphere_in_cube(5.0)):.3f}")  # exactly 42.640
+    42.630
     """
     chosen("formula", formula, FORMULAS)
     check_scene(scene)

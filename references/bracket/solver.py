@@ -96,6 +96,14 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
         If meshing fails, or a residual stays above the tolerance.
     ImportError
         If gmsh or a system library that it needs is missing.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import bracket
+    >>> found = bracket.solve(gallery.sphere_in_cube(5.0), size=0.03)
+    >>> found.lower < 42.6403 < found.upper, found.width < 0.02
+    (True, True)
     """
     if width is not None:
         finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)

@@ -80,6 +80,14 @@ def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 
         If surfaces of the scene touch.
     RuntimeError
         If meshing fails, or a residual stays above the tolerance.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import bracket
+    >>> found = bracket.solve_tensor(gallery.laminate(periodic=True), size=0.05)
+    >>> found.middle.diagonal().round(6), found.radius.max() < 1e-6
+    (array([98.999981, 54.999981, 98.999981]), np.False_)
     """
     check(scene, tolerance)
     if not scene.periodic:

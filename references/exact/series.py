@@ -97,6 +97,15 @@ def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -
         If times or the number of points are not as described, or the scene lacks what a transient needs.
     NotImplementedError
         If the scene has no series here.
+
+    Examples
+    --------
+    >>> from demheat import gallery, Scene
+    >>> from references import series
+    >>> slab = Scene((0.1, 0.1, 0.1), gallery.HADDAD, walls={"y-": 25.0, "y+": 35.0}, initial=25.0)
+    >>> (field,) = series.evolve(slab, [0.1])
+    >>> print(f"{field.temperature_at([0.05, 0.075, 0.05])[0]:.4f}")
+    29.1488
     """
     check_scene(scene)
     scene.require(steady=False, takes=("exchange",))

@@ -45,6 +45,16 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
         If the load does not fix a steady temperature, or drives heat through a body of no conductivity.
     NotImplementedError
         If the scene has no closed form here.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import exact
+    >>> field = exact.solve(gallery.sphere_in_cube(5.0))
+    >>> print(f"{field.conductivity:.6f}")
+    42.640335
+    >>> field.flux_at([[0.05, 0.05, 0.05]]).round(2)  # against y, down the gradient
+    array([[    0.  , -7767.43,     0.  ]])
     """
     check_scene(scene)
     check_points_per_axis(points_per_axis)

@@ -87,6 +87,16 @@ def evolve(
         touching surfaces.
     RuntimeError
         If meshing fails, the residual stays above the tolerance, or the step shrinks to nothing.
+
+    Examples
+    --------
+    >>> from demheat import gallery, Material, Scene
+    >>> from references import fem, series
+    >>> scene = Scene((0.1, 0.02, 0.02), gallery.HADDAD, walls={"x-": 25.0, "x+": 35.0}, initial=25.0)
+    >>> (field,), (right,) = fem.evolve(scene, [0.1], elements="hexahedra", size=0.01), series.evolve(scene, [0.1])
+    >>> point = [0.075, 0.01, 0.01]
+    >>> print(f"{field.temperature_at(point)[0]:.2f} {right.temperature_at(point)[0]:.2f}")
+    29.29 29.15
     """
     check_scene(scene)
     text = "heat would not move in pores; transients do without"

@@ -108,6 +108,14 @@ def zeta2(
         If the scene does not have two conductivities, both with some volume, or there are too few voxels.
     NotImplementedError
         For a box with walls.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import zeta
+    >>> found = zeta.zeta2(gallery.sphere_in_cube(5.0, periodic=True), voxels=32)
+    >>> print(f"{found.value:.3f}")  # exactly 0.00200341
+    0.002
     """
     check_scene(scene)
     flag("extrapolate", extrapolate)

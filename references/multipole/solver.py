@@ -73,6 +73,13 @@ def solve(
         For other walls, layers, nested spheres, spheres cut by a wall beside their centre.
     RuntimeError
         If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import multipole
+    >>> print(f"{multipole.solve(gallery.sphere_in_cube(5.0)).conductivity:.3f}")  # exactly 42.640
+    42.640
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     check_scene(scene)

@@ -27,7 +27,7 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
     """Milton's parameter zeta_2 of the spheres of a periodic cell, averaged over the three axes.
 
     With p = -alpha a^3 g the dipoles and T the translation, the conductivity at third order in beta = (s - 1)/(s + 2)
-    is c_3 = (4 pi/V) sum over spheres and lm of 3l/(2l+1) |C_lm|^2, C = T a^3 what unit dipoles make at each other;
+    is c_3 = (4 pi/V) sum over spheres and lm of 3l/(2l+1) abs(C_lm)^2, C = T a^3 what unit dipoles make at each other;
     by Torquato's expansion (Random Heterogeneous Materials, 2002, sec. 20.1) the mean of c_3 over the axes is
     3 phi_2^3 + 6 phi_1 phi_2 zeta_2. The mean of the first two orders over the axes is that of an isotropic medium.
 
@@ -51,6 +51,13 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
         For walls, layers, nested spheres, surfaces with a resistance.
     RuntimeError
         If the order that the gaps and radii ask for is too high.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references import multipole
+    >>> print(f"{multipole.zeta2(gallery.sphere_in_cube(5.0, periodic=True)):.8f}")
+    0.00200341
     """
     check_scene(scene)
     if not scene.periodic:

@@ -1,4 +1,7 @@
-"""Tables of studies inside another Markdown page: what stands between two marks comes from a CSV."""
+"""Tables of studies inside other Markdown pages: what stands between two marks comes from a CSV.
+
+A mark names a study, and a function of it that makes rows to print; without one it is `table`.
+"""
 
 from __future__ import annotations
 
@@ -9,7 +12,7 @@ from studies.harness import runner
 from studies.harness.store import replaced
 from studies.harness.table import markdown, read_frame
 
-MARKED = re.compile(r"(<!-- table (\w+) -->\n).*?(<!-- end of table -->)", re.DOTALL)
+MARKED = re.compile(r"(<!-- table (\w+)(?: (\w+))? -->\n).*?(<!-- end of table -->)", re.DOTALL)
 
 
 def filled(text, folder):
@@ -29,15 +32,18 @@ def filled(text, folder):
     Raises
     ------
     ValueError
-        If a marked study has no rows in the folder.
+        If a marked study has no rows in the folder, or no such function.
     """
 
     def table(match):
         path = Path(folder) / f"{match[2]}.csv"
         if not path.exists():
             raise ValueError(f"no {path}; run the study first")
-        study = runner.load(match[2])
-        return f"{match[1]}\n{markdown(study.table(read_frame(study, path)))}\n\n{match[3]}"
+        study, name = runner.load(match[2]), match[3] or "table"
+        if not hasattr(study, name):
+            raise ValueError(f"<!-- table {match[2]} {name} -->: the study has no function {name}")
+        made = getattr(study, name)(read_frame(study, path))
+        return f"{match[1]}\n{markdown(made)}\n\n{match[4]}"
 
     return MARKED.sub(table, text)
 

@@ -17,7 +17,7 @@ from studies.speed_error.cases import TIMEOUT, all_cases
 CASES = list(all_cases())
 PAPER = {}
 
-__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "claims", "notes", "plot", "run", "table", "warm_up"]
+__all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "by_accuracy", "claims", "notes", "plot", "run", "table", "warm_up"]
 # Methods of a quick run, at their coarsest, on scenes besides the first.
 FEW = {
     "third at 0.01": ("dem", "fem", "fft"),
@@ -90,6 +90,13 @@ def table(df):
     from studies.speed_error.tables import lines
 
     return lines(df)
+
+
+def by_accuracy(df):
+    """The cheapest method for any shape by scene and accuracy, and how many times as much the DEM costs."""
+    from studies.speed_error import tables
+
+    return tables.by_accuracy(df)
 
 
 def notes(df):

@@ -41,6 +41,27 @@ def lines(df):
     )
 
 
+def by_accuracy(df):
+    """One line for each scene, a column for each target: the cheapest method for any shape, and the DEM beside it.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    best = means.winners(means.without_multipoles(df))
+    best = best.assign(cell=[_beside_dem(row) for row in best.itertuples()])
+    wide = best.pivot(index="scene", columns="target", values="cell").reindex(best["scene"].unique())
+    return wide[sorted(wide.columns, reverse=True)].rename(columns=lambda target: f"{target:g} %").reset_index()
+
+
+def _beside_dem(row):
+    """Such as "FEM: 0.23 s (DEM 2.1 times)"."""
+    cheapest = f"{means.label(row.name)}: {row.cpu_s:.2g} s"
+    if row.name == "dem":
+        return cheapest
+    return cheapest + (" (DEM: no)" if row.dem != row.dem else f" (DEM {row.dem:.2g} times)")
+
+
 def _any_shape(df, quantity, targets):
     """The cheapest method that is not of spheres alone, by scene, quantity and target."""
     best = means.winners(means.without_multipoles(df), quantity, targets)

@@ -68,6 +68,18 @@ def write(packing: Packing, path, *, format: str | None = None, network=None, te
     ------
     ValueError
         If an argument is not as described, or the suffix does not tell the format.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from demheat.packing import io
+    >>> from demheat.packing.relax import relax
+    >>> packing = relax(200, seed=0)
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     io.write(packing, f"{folder}/packing.dump")
+    ...     again = io.read(f"{folder}/packing.dump")
+    >>> bool((again.centers == packing.centers).all())
+    True
     """
     path, name, packed = _format(path, format)
     check_packing(packing)
@@ -126,6 +138,27 @@ def read(
     ValueError
         If an argument is not as described, or the file is broken: then its line (text), what was found there and what
         was expected.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from demheat.packing import io
+    >>> table = '''ITEM: TIMESTEP
+    ... 0
+    ... ITEM: NUMBER OF ATOMS
+    ... 2
+    ... ITEM: BOX BOUNDS pp pp pp
+    ... 0 1
+    ... 0 1
+    ... 0 1
+    ... ITEM: ATOMS id x y z radius
+    ... 1 0.2 0.5 0.5 0.1
+    ... 2 0.7 0.5 0.5 0.2'''
+    >>> with tempfile.NamedTemporaryFile("w", suffix=".dump") as file:
+    ...     _ = file.write(table)
+    ...     file.flush()
+    ...     io.read(file.name).radii
+    array([0.1, 0.2])
     """
     path, name, _ = _format(path, format)
     _check_knobs(name, size, periodic, domain, step, order)

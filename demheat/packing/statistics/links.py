@@ -132,6 +132,15 @@ def coordination(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, m
     ------
     ValueError
         If the rows are not as described, margin is negative, or no particle is that deep.
+
+    Examples
+    --------
+    >>> from demheat.packing import contacts, statistics
+    >>> from demheat.packing.relax import relax
+    >>> packing = relax(500, seed=0)
+    >>> indptr, indices, gap = contacts(packing)
+    >>> round(statistics.coordination(packing, indptr, indices).mean, 1)
+    7.5
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
     numbers = np.diff(indptr)[bulk(packing, margin)]
@@ -209,6 +218,15 @@ def fabric(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, margin:
     ------
     ValueError
         If the rows are not as described, two linked centres coincide, margin is negative, or no link is left.
+
+    Examples
+    --------
+    >>> from demheat.packing import contacts, statistics
+    >>> from demheat.packing.relax import relax
+    >>> packing = relax(500, seed=0)
+    >>> indptr, indices, gap = contacts(packing)
+    >>> round(float(statistics.fabric(packing, indptr, indices).tensor.trace()), 9)
+    1.0
     """
     vectors, weights = _links(packing, indptr, indices, margin)
     total = weights.sum()

@@ -25,6 +25,13 @@ class Layer(Shape):
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in: the temperature jumps there by so many times the flux across it.
         0 is a perfect interface. Both faces have it; one on a wall is none.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import Layer, Material
+    >>> Layer(0, 0.015, 0.255, Material(0.5)).contains(np.array([(0.1, 9.0, 9.0), (0.3, 9.0, 9.0)]))
+    array([ True, False])
     """
 
     axis: int

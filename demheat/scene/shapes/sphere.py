@@ -25,6 +25,15 @@ class Sphere(Shape):
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in: the temperature jumps there by so many times the flux across it.
         0 is a perfect interface.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import Material, Sphere
+    >>> bead = Sphere(center=(0.5, 0.5, 0.5), radius=0.2, material=Material(1.05))
+    >>> points = np.array([(0.5, 0.5, 0.6), (0.1, 0.1, 0.1)])
+    >>> bead.contains(points), bead.distance(points).round(6)
+    (array([ True, False]), array([-0.1    ,  0.49282]))
     """
 
     center: tuple[float, float, float]

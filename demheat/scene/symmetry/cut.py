@@ -84,6 +84,13 @@ def reduced(scene: Scene) -> Reduced:
         If the load does not fix a steady temperature.
     NotImplementedError
         If the scene has sources or a round body.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from demheat.scene.symmetry import reduced
+    >>> reduced(gallery.sphere_in_cube(5.0)).factors  # an eighth of it
+    (2, 2, 2)
     """
     planes = _clear(scene, mirrors(scene))
     scene.require(steady=True, takes=("resistance",))
@@ -116,6 +123,14 @@ def unfold(part: Reduced, points) -> Unfolded:
     ------
     ValueError
         If the part is none, or the points are not (n, 3) finite numbers.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from demheat.scene.symmetry import reduced, unfold
+    >>> part = reduced(gallery.sphere_in_cube(5.0))
+    >>> unfold(part, [[0.09, 0.05, 0.05]]).points.round(6)
+    array([[0.01, 0.05, 0.05]])
     """
     if not isinstance(part, Reduced):
         raise ValueError(f"part = {part!r}: must be what `reduced` returns")

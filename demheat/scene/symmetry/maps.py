@@ -66,6 +66,13 @@ def mirrors(scene: Scene) -> tuple[float | None, float | None, float | None]:
         conductivity a tensor. Between
         walls it is the middle. In a periodic cell there is another one half a period on, and the first of all is given,
         0 where nothing changes along the axis.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from demheat.scene.symmetry import mirrors
+    >>> mirrors(gallery.sphere_in_cube(5.0))
+    (0.05, 0.05, 0.05)
     """
     check_scene(scene)
     body = _body(scene)
@@ -91,6 +98,13 @@ def alike_axes(scene: Scene) -> tuple[int, int, int]:
     (3,) tuple of int
         For each axis the first one that is like it: (0, 0, 0) for a sphere in the middle of a cube, (0, 1, 2) where no
         two are alike.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from demheat.scene.symmetry import alike_axes
+    >>> alike_axes(gallery.sphere_in_cube(5.0)), alike_axes(gallery.laminate())
+    ((0, 0, 0), (0, 1, 0))
     """
     check_scene(scene)
     body, like = _body(scene), [0, 1, 2]

@@ -76,6 +76,16 @@ def bounds(
         If an argument is not as described, or the grid does not fit into memory.
     NotImplementedError
         If a conductivity is 0; `upper_bound` takes it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from references.bracket import voxels
+    >>> image = np.ones((4, 4, 4))
+    >>> image[:, 2:] = 5.0  # layers across y
+    >>> found = voxels.bounds(image, gradient=(0.0, 1.0, 0.0))
+    >>> print(f"{found.lower:.5f} {found.upper:.5f}")  # the harmonic mean is 5/3
+    1.66667 1.66667
     """
     values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["lower"])
     effort = checked_effort(tolerance, threads)

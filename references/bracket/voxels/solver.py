@@ -49,6 +49,14 @@ def solve(
         If an argument is not as described, or the grid does not fit into memory.
     NotImplementedError
         If the load is another, a shape, or a conductivity is 0.
+
+    Examples
+    --------
+    >>> from demheat import gallery
+    >>> from references.bracket import voxels
+    >>> found = voxels.solve(gallery.sphere_in_cube(5.0), voxels=16)
+    >>> bool(found.lower < 42.6403 < found.upper)
+    True
     """
     effort = checked_effort(tolerance, threads)
     above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
