@@ -174,6 +174,16 @@ LAYERS = {
         "demheat.declared",
         "demheat.files",
     ),
+    # A model of its own, by the engine's packings and solver: beds of grains out of files.
+    "demheat.grains": (
+        "demheat.scene",
+        "demheat.packing",
+        "demheat.network.base",
+        "demheat.conduction.steady",
+        "demheat.sampling.fluxes",
+        "demheat.files.whole",
+        "demheat.grains",
+    ),
     # The commands of the terminal, on top of all.
     "demheat.commands": (
         "demheat.scene",
