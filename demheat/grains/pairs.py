@@ -280,8 +280,8 @@ def _check_box(packing, longest, reach):
     if small.any():
         axis = int(np.argmax(small))
         raise NotImplementedError(
-            f"packing.size[{axis}] = {packing.size[axis]:.4g} m, periodic: pairs reach {longest:.4g} m, and may meet twice "
-            f"within {longest + reach:.4g} m, where the nearest image alone is known; must be longer, as several periods are"
+            f"packing.size[{axis}] = {packing.size[axis]:.4g} m, periodic: pairs reach {longest:.4g} m and may meet "
+            f"again within {longest + reach:.4g} m, where the nearest image alone is known; must be longer"
         )
 
 
