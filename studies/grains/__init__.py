@@ -1,4 +1,4 @@
-"""Beds of grains: one temperature for each, contacts and gaps as links, beside what the continuum says of the same grains.
+"""Beds of grains as networks, one temperature for each, beside what the continuum says of the same grains.
 
 `array`: simple, body- and face-centred cubic arrays of grains that do not quite touch, in a medium, against Rayleigh's
 exact values. `contact`: a row of grains that share discs, in a vacuum and in a medium, against elements on the cell of
@@ -66,7 +66,7 @@ def warm_up(part, method, **case):
 
 
 def claims(df):
-    """What is missing is a part of the medium's conductivity; contacts are right to some per cent; where neither is good.
+    """What is missing is some of the medium's conductivity; contacts are right to some per cent; where it is poor.
 
     Limits were set after a first look at a few rows, but for those of the beds.
     """

@@ -2,8 +2,8 @@
 
 Grains of radius 1 are cut where they meet, so that they share discs of radius a; beside them is a medium, or nothing,
 out to a cylinder. Planes through middles and contacts are isothermal, the cylinder is insulated. Bilinear elements on a
-grid like that of oblate spheroids around the disc, in whose coordinates the field at its rim is smooth: the surface is a
-line of it, as is the plane through the middle.
+grid like that of oblate spheroids around the disc, in whose coordinates the field at its rim is smooth: the surface is
+a line of it, as is the plane through the middle.
 """
 
 from __future__ import annotations

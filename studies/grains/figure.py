@@ -25,9 +25,7 @@ def draw(df):
     _missing(left, pick(df, part="array"))
     _contacts(middle, pick(df, part="contact"))
     _beside(right, df[df["part"].ne("contact")])
-    figure.suptitle(
-        "A network of grains knows gaps and contacts; what flows elsewhere, some conductivities of the medium, it misses"
-    )
+    figure.suptitle("Networks of grains know gaps and contacts; what flows elsewhere, some k of the medium, they miss")
     return figure
 
 

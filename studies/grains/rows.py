@@ -11,7 +11,7 @@ from demheat.packing import make_packing
 from references import multipole
 from references.exact import lattice
 from studies.grains import cell
-from studies.grains.cases import APART, SPHERES
+from studies.grains.cases import APART, RATIO, SPHERES
 from studies.harness.cost import measured
 
 # Nearest neighbours in edges; sites of a cell.
@@ -59,7 +59,7 @@ def array(kind, gap, contrast):
 
 
 def contact(contact, contrast):
-    """Grains of a simple cubic array that share discs, beside elements on the cell of one; conductances over the radius.
+    """Grains of a cubic array that share discs, beside elements on the cell of one: conductances over the radius.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def bed(fraction, realisation, contrast):
         Seed.
     contrast : float
     """
-    how = {"fraction": fraction, "gap": APART, "seed": realisation, "ratio": 2.0, "edge": 1.0}
+    how = {"fraction": fraction, "gap": APART, "seed": realisation, "ratio": RATIO, "edge": 1.0}
     scene = gallery.dispersion(
         SPHERES, **how, matrix=Material(1.0), inclusion=Material(contrast), axis=2, periodic=True
     )
