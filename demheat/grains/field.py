@@ -13,7 +13,7 @@ from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
 from demheat.packing.io.source import checked_path
-from demheat.scene.frozen import ReadOnly
+from demheat.scene.frozen import ReadOnly, read_only
 from demheat.scene.html import table_of
 
 COLUMNS = ("first", "second", "gap_m", "contact_radius_m", "contact_W_K", "medium_W_K", "heat_W")
@@ -64,6 +64,8 @@ class GrainField:
     stats: Mapping[str, object]
 
     def __post_init__(self):
+        for name in ("temperature", "heat", "heat_from_walls", "mean_flux"):
+            object.__setattr__(self, name, read_only(getattr(self, name)))
         object.__setattr__(self, "stats", ReadOnly(self.stats))
 
     @property
