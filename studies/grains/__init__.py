@@ -45,10 +45,10 @@ CASES = list(_cases())
 def QUICK(case):
     """Two arrays at two gaps, two contacts, one bed."""
     if case["part"] == "array":
-        return case["kind"] != "bcc" and case["gap"] in (0.01, 0.1) and case["contrast"] in CONTRASTS[:3]
+        return case["kind"] != "bcc" and case["gap"] in (0.03, 0.1) and case["contrast"] in CONTRASTS[:3]
     if case["part"] == "contact":
         return case["contact"] in (0.05, 0.1) and case["contrast"] in (None, 100.0, 1000.0)
-    return case["fraction"] == FRACTIONS[1] and case["realisation"] == 0
+    return case["fraction"] == FRACTIONS[1] and case["realisation"] == 0 and case["contrast"] != GOOD
 
 
 def run(part, method, **case):
@@ -94,8 +94,9 @@ def _array_claims(rows):
 
 
 def _contact_claims(rows):
-    bare, small = pick(rows, contrast=None), rows["contact"] <= 0.05
-    yield "contacts in a vacuum, to 0.05 radii: worst error, %", largest(bare[small], "error_percent"), 6.0
+    bare = pick(rows, contrast=None)
+    small = bare[bare["contact"] <= 0.05]
+    yield "contacts in a vacuum, to 0.05 radii: worst error, %", largest(small, "error_percent"), 6.0
     yield "contacts in a vacuum: worst error, %", largest(bare, "error_percent"), 11.0
     yield "contacts, contrast 1000: worst error, %", largest(pick(rows, contrast=1000.0), "error_percent"), 16.0
 
