@@ -86,11 +86,8 @@ def _array_claims(rows):
         spread, span = (float(group[name].max() - group[name].min()) for name in ("missing", "exact_ratio"))
         text = f"{kind}, contrasts from 100, gaps to 0.03: spread of what is missing over that of the conductivity"
         yield text, spread / span if span > 0 else None, 0.15
-    yield (
-        "arrays, contrasts from 100, gaps to 0.03: most that is missing, k of the medium",
-        largest(near, "missing"),
-        3.0,
-    )
+    text = "arrays, contrasts from 100, gaps to 0.03: most that is missing, k of the medium"
+    yield text, largest(near, "missing"), 3.0
 
 
 def _contact_claims(rows):
