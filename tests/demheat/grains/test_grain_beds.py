@@ -98,7 +98,9 @@ def test_walls_are_reciprocal():
         assert there.wall_heat[other] < 0
         assert_allclose(there.wall_heat[other], back.wall_heat[one], rtol=1e-7)
     reverse, first = (grains.solve(bed, K, walls=walls, gap=AIR) for walls in ({"z-": 3.0, "z+": 1.0}, ACROSS))
-    assert_allclose(reverse.temperature + first.temperature, 4.0, rtol=SOLVED)
+    known = np.isfinite(first.temperature)
+    assert known.sum() > 50 and np.array_equal(known, np.isfinite(reverse.temperature))
+    assert_allclose((reverse.temperature + first.temperature)[known], 4.0, rtol=SOLVED)
 
 
 def test_rattlers_have_no_temperature_and_carry_nothing():
