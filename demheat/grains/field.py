@@ -160,6 +160,9 @@ class GrainField:
         if walls is None:
             return
         width = walls.distance - self.packing.radii[walls.grain]
+        if self.load.layer is not None:
+            # Held where they are: no gap.
+            width = np.full(len(width), np.nan)
         columns = width, walls.radius, walls.contact, walls.medium, self.heat_from_walls
         sides = [SIDES[side] for side in walls.side]
         yield from zip(names[walls.grain].tolist(), sides, *(column.tolist() for column in columns), strict=True)

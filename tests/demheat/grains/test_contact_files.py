@@ -103,6 +103,9 @@ def test_pairs_are_written(tmp_path):
     assert_allclose(entered, field.wall_heat["z+"], rtol=1e-12)
     whole = [float(row["contact_W_K"]) + float(row["medium_W_K"]) for row in rows[: len(between)]]
     assert_allclose(whole, field.pairs.conductance, rtol=1e-12)
+    held = grains.solve(random_bed(), 2.0, walls={"z-": 1.0, "z+": 3.0}, gap=Gap(conductivity=0.03), layer=1e-3)
+    held.write(tmp_path / "flows.csv")
+    assert ",z-,nan,0.0," in (tmp_path / "flows.csv").read_text()
     field.write(tmp_path / "flows.npz")
     with np.load(tmp_path / "flows.npz") as arrays:
         assert np.array_equal(arrays["heat"], field.heat) and np.array_equal(arrays["temperature"], field.temperature)
