@@ -132,8 +132,7 @@ def _load(packing, walls, gradient):
     wrong = [name for name in scene.walls if name not in walls_of(packing)]
     if wrong:
         raise ValueError(f"walls = {dict(scene.walls)}: must be among {', '.join(walls_of(packing)) or 'none'}")
-    plain = [name for name, value in scene.walls.items() if not isinstance(value, int | float)]
-    if plain or not scene.walls:
+    if set(scene.wall_temperatures) < set(scene.walls) or any(map(callable, scene.walls.values())):
         raise NotImplementedError(f"walls = {dict(scene.walls)}: grains know walls with constant temperatures only")
     return scene
 

@@ -5,7 +5,7 @@ import pytest
 from beds import NEAREST, RADIUS, SITES, crystal, random_bed
 from numpy.testing import assert_allclose
 
-from demheat import grains
+from demheat import Flux, grains
 from demheat.grains import Contacts, Fixed, Gap, Hertz
 from demheat.packing import make_packing
 
@@ -153,6 +153,10 @@ BED = crystal("sc", (3, 3, 3), periodic=(True, True, False))
         ({"gradient": (0, 0, 1.0)}, ValueError, "must be 0 along z, where the packing has walls"),
         ({"walls": {"x-": 1.0, "x+": 2.0}}, ValueError, "must be among z-, z\\+"),
         ({"walls": {"z-": 1.0, "up": 2.0}}, ValueError, "up"),
+        ({"walls": {"z-": 1.0, "z+": Flux(3.0)}}, NotImplementedError, "walls with constant temperatures only"),
+        ({"walls": {"z-": 1.0, "z+": lambda t: t}}, NotImplementedError, "walls with constant temperatures only"),
+        ({"walls": {}}, ValueError, "must map at least one of"),
+        ({"walls": {"z-": 1.0, "z+": np.nan}}, ValueError, "z\\+"),
         ({"walls": ACROSS}, ValueError, "no grain exchanges heat with it, the nearest surface is"),
         ({"walls": ACROSS, "contact": "hertz"}, ValueError, "contact = 'hertz': must be Overlap"),
         ({"walls": ACROSS, "gap": 0.026}, ValueError, "gap = 0.026: must be a Gap"),
