@@ -181,7 +181,6 @@ LAYERS = {
         "demheat.network.base",
         "demheat.conduction.steady",
         "demheat.sampling.fluxes",
-        "demheat.files.whole",
         "demheat.grains",
     ),
     # The commands of the terminal, on top of all.

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
 
-from demheat.files.whole import replaced
 from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
@@ -142,14 +143,17 @@ class GrainField:
         names = np.arange(self.packing.number) if ids is None else np.asarray(ids)
         if names.shape != (self.packing.number,) or names.dtype.kind not in "iu":
             raise ValueError(f"ids of shape {names.shape}: must be {self.packing.number} whole numbers")
-        with replaced(path) as part:
-            if path.suffix.lower() == ".csv":
-                with part.open("x", encoding="utf-8", newline="\n") as stream:
-                    stream.write(",".join(COLUMNS) + "\n")
-                    stream.writelines(",".join(map(str, row)) + "\n" for row in self._rows(names))
-            else:
-                with part.open("xb") as stream:
+        part = path.with_name(f".{path.name}.{os.getpid()}.part")
+        try:
+            with open(part, "xb") as stream:
+                if path.suffix.lower() == ".npz":
                     np.savez(stream, **self._arrays(names))
+                else:
+                    rows = chain([COLUMNS], self._rows(names))
+                    stream.writelines(f"{','.join(map(str, row))}\n".encode() for row in rows)
+            os.replace(part, path)
+        finally:
+            part.unlink(missing_ok=True)
 
     def _rows(self, names):
         """Rows of the table: of pairs, then of grains at walls."""

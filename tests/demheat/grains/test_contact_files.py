@@ -112,6 +112,21 @@ def test_pairs_are_written(tmp_path):
     assert sorted(each.name for each in tmp_path.iterdir()) == ["flows.csv", "flows.npz"]
 
 
+def test_an_interrupted_write_leaves_the_old_table(tmp_path, monkeypatch):
+    field = grains.solve(crystal("sc"), 2.0, gradient=(0, 0, 1), gap=Gap(conductivity=0.03))
+    (tmp_path / "flows.csv").write_text("old")
+
+    def rows(*_):
+        yield 1, 2
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(grains.GrainField, "_rows", rows)
+    with pytest.raises(KeyboardInterrupt):
+        field.write(tmp_path / "flows.csv")
+    assert [each.name for each in tmp_path.iterdir()] == ["flows.csv"]
+    assert (tmp_path / "flows.csv").read_text() == "old"
+
+
 def test_where_nothing_can_be_written(tmp_path):
     field = grains.solve(crystal("sc"), 2.0, gradient=(0, 0, 1), gap=Gap(conductivity=0.03))
     for path, message in (
