@@ -180,6 +180,15 @@ LAYERS = {
         "demheat.declared",
         "demheat.files",
     ),
+    # A model of its own, by the engine's packings and solver: beds of grains out of files.
+    "demheat.grains": (
+        "demheat.scene",
+        "demheat.packing",
+        "demheat.network.base",
+        "demheat.conduction.steady",
+        "demheat.sampling.fluxes",
+        "demheat.grains",
+    ),
     # The commands of the terminal, on top of all.
     "demheat.commands": (
         "demheat.scene",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import difflib
 import warnings
 from dataclasses import dataclass, fields
 
@@ -21,6 +22,8 @@ from demheat.scene.inputs import flag, whole
 
 # Old keywords of `solve` and `evolve`.
 RENAMED = {"poor": "sparse", "tiles": "replicas"}
+# Keywords of the two besides those of `Particles` and of laws, for suggestions.
+OTHERS = ("law", "solver", "tolerance", "integrator", "accuracy", "step")
 # Packing fraction below which a packing that is given is called loose: crystals of equal spheres begin at .34, diamond.
 LOOSE = 0.3
 # Least bytes that a particle takes, found from 560 to 800 where they are many.
@@ -146,7 +149,17 @@ def _law(law, knobs):
         return law
     if not isinstance(law, str) or law not in LAWS:
         raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}, or a law such as Laguerre()")
-    return LAWS[law].short(**knobs)
+    try:
+        return LAWS[law].short(**knobs)
+    except TypeError as error:
+        raise TypeError(f"{error}{_nearest(knobs, law)}") from None
+
+
+def _nearest(knobs, law):
+    """A suggestion for the first knob that nobody knows; empty if none is near."""
+    known = [*(field.name for kind in (Particles, LAWS[law]) for field in fields(kind)), *OTHERS]
+    near = (difflib.get_close_matches(name, known, n=1) for name in knobs if name not in known)
+    return next((f"; did you mean {found[0]!r}?" for found in near if found), "")
 
 
 def _own(packing):

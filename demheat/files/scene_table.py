@@ -225,10 +225,14 @@ def _load(table):
 
 
 def _check_kelvin(table):
-    """Raise ValueError where a wall radiates and temperatures are in degrees Celsius: fourth powers need kelvin."""
+    """Raise ValueError where a wall radiates and temperatures are not said to be in kelvin: fourth powers need it."""
     if "degC" in table.source.scales:
         line = table.source.line(table.source.scales["degC"])
         raise table.error("emissivity", f": with it all temperatures are in kelvin, and that in line {line} in degC")
+    if "" in table.source.scales:
+        line = table.source.line(table.source.scales[""])
+        told = f'and that in line {line} has no unit; must say so, as temperature_K = 300 or "300 K"'
+        raise table.error("emissivity", f": with it all temperatures are in kelvin, {told}")
 
 
 def _flux(table, value):

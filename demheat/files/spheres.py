@@ -7,14 +7,15 @@ import io
 from fractions import Fraction
 
 from demheat.files.source import nearest, shown, text_of
-from demheat.files.units import LENGTH, PLAIN, factor_of, scaled
+from demheat.files.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
 from demheat.limits import free_memory
 from demheat.paths import checked_path
 from demheat.scene import Sphere
 
 TABLES = (".csv", ".tsv", ".txt")
 COLUMNS = ("x", "y", "z", "radius", "diameter", "material")
-KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step"), PLAIN) | {"offset": LENGTH}
+KEYS = dict.fromkeys(("file", "unit", "material", "radius_factor", "step"), PLAIN)
+KEYS |= {"offset": LENGTH, "resistance": RESISTANCE}
 UNITS = tuple(LENGTH.suffixes)
 # Bytes of memory that a byte of a table takes as rows of text and spheres; what is always read.
 OBJECTS, ALWAYS = 30, 2**24
@@ -31,7 +32,8 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
     Parameters
     ----------
     table : Table
-        With `file`, relative to the TOML file, and, if wanted, `unit`, `offset`, `radius_factor`, `step`.
+        With `file`, relative to the TOML file, and, if wanted, `unit`, `offset`, `radius_factor`, `step`, and the
+        `resistance` of all surfaces.
     materials : mapping of str to Material
     default : Material or None
         Of spheres without a name of their own.
@@ -54,7 +56,27 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
         raise table.error("step", f" = {step}: a table has one set of spheres; must be left out")
     _check_there(table, path)
     rows = _rows(path, factor) if tabular else _packed(table, path, factor, step, size)
+    if tabular and _is_cell(table):
+        rows = _within(rows, offset, size)
     return _made(table, rows, materials, default, offset, shrunk)
+
+
+def _is_cell(table):
+    """Whether the scene of a table is a periodic cell."""
+    return any(key.startswith("gradient") for key in table.source.values)
+
+
+def _within(rows, offset, size):
+    """The same rows; centres outside of a periodic cell, which would come in again elsewhere, are refused."""
+    for place, numbers, name in rows:
+        center = [c + d for c, d in zip(numbers, offset, strict=False)]
+        if any(c < -SAME * side or c > (1 + SAME) * side for c, side in zip(center, size, strict=True)):
+            cell = " x ".join(f"{side:.6g}" for side in size)
+            raise ValueError(
+                f"{place}: x y z = {', '.join(f'{c:.6g}' for c in center)} m: lies outside the periodic cell, 0 to "
+                f"{cell} m; must lie in it, is the unit right?"
+            )
+        yield place, numbers, name
 
 
 def _check_there(table, path):
@@ -66,7 +88,7 @@ def _check_there(table, path):
 
 def _made(table, rows, materials, default, offset, shrunk):
     """Spheres of rows (place, centre and radius in metres, name of the material)."""
-    found = []
+    found, resistance = [], table.number("resistance", RESISTANCE, 0.0)
     for place, numbers, name in rows:
         material = default if name is None else materials.get(name)
         if material is None and name is None:
@@ -75,8 +97,10 @@ def _made(table, rows, materials, default, offset, shrunk):
             raise ValueError(f"{place}: material = {name!r}: must be one of [materials]{nearest(name, materials)}")
         center = tuple(c + d for c, d in zip(numbers, offset, strict=False))
         try:
-            found.append((Sphere(center, numbers[3] * shrunk, material), place))
+            found.append((Sphere(center, numbers[3] * shrunk, material, resistance=resistance), place))
         except ValueError as error:
+            if str(error).startswith("Sphere.resistance"):
+                raise table.blamed(error) from None
             raise ValueError(f"{place}: {str(error).removeprefix('Sphere.')}") from None
     return found
 
@@ -91,8 +115,7 @@ def _packed(table, path, factor, step, size):
         if "box" in packing.provenance:
             # It has none: not that around its spheres, but that of the scene.
             sides = tuple(scaled(side, 1 / factor) for side in size)
-            periodic = any(key.startswith("gradient") for key in table.source.values)
-            packing = read(path, step=step, size=sides, periodic=periodic)
+            packing = read(path, step=step, size=sides, periodic=_is_cell(table))
     except OSError as error:
         raise table.error("file", f"{told}: cannot be read: {error.strerror}") from None
     except ValueError as error:

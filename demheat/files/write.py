@@ -58,7 +58,7 @@ def text_of_scene(scene: Scene) -> str:
     blocks += [_block(f"[materials.{name}]", _material(material)) for material, name in names.items()]
     blocks += [_block("[[inclusions]]", _inclusion(k, shape, names)) for k, shape in enumerate(scene.inclusions)]
     if scene.walls:
-        loads = {name: _load(name, load) for name, load in scene.walls.items()}
+        loads = {name: _load(scene, name, load) for name, load in scene.walls.items()}
         blocks.append(_block("[walls]", loads))
     blocks += [_block("[[sources]]", _source(each)) for each in scene.sources]
     return "\n".join(blocks)
@@ -81,7 +81,7 @@ def _head(scene, names):
     if callable(scene.initial):
         raise ValueError("Scene.initial: a file cannot hold a function; must be a number or None")
     if scene.initial is not None:
-        values["initial"] = float(scene.initial)
+        values["initial"] = _warmth(scene, float(scene.initial))
     return _block("", values)
 
 
@@ -112,12 +112,20 @@ def _axis(part):
     return {"axis": AXES[part.axis]} if hasattr(part, "axis") else {}
 
 
-def _load(name, load):
+def _load(scene, name, load):
     kind = next((each for each in LOADS if type(load) is LOADS[each][0]), None)
     values = {"flux": load.value} if kind == "flux" else _plain(load) if kind else {"": load}
     if any(map(callable, values.values())):
         raise ValueError(f"Scene.walls[{name!r}]: a file cannot hold a function of time; must be a number or a Flux")
-    return {key: float(value) for key, value in values.items()} if kind else float(load)
+    if not kind:
+        return _warmth(scene, float(load))
+    numbers = {key: float(value) for key, value in values.items()}
+    return {key: _warmth(scene, value) if key == "temperature" else value for key, value in numbers.items()}
+
+
+def _warmth(scene, value):
+    """A temperature; where a wall radiates it is one in kelvin, which files are to say."""
+    return f"{value!r} K" if scene.radiates else value
 
 
 def _block(header, values):

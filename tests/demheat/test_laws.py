@@ -142,6 +142,12 @@ def test_what_does_not_go_together(knobs, words):
 def test_a_keyword_that_nobody_knows(law):
     with pytest.raises(TypeError, match=f"partciles: no keyword of solve and evolve, nor of law '{law}'"):
         demheat.solve(BLOCK, law=law, partciles=1000)
+    with pytest.raises(TypeError, match="did you mean 'particles'\\?$"):
+        demheat.solve(BLOCK, law=law, particle=1000)
+    with pytest.raises(TypeError, match="did you mean 'interface'\\?$"):
+        demheat.solve(BLOCK, law=law, interfaces="harmonic")
+    with pytest.raises(TypeError, match="it has [^?]*$"):
+        demheat.solve(BLOCK, law=law, voxels=64)
     with pytest.raises(TypeError, match="unexpected keyword argument 'partciles'"):
         LAWS[law](partciles=1000)
 

@@ -26,15 +26,17 @@ import zlib
 from collections.abc import Sequence
 from numbers import Integral
 
+import numpy as np
+
 from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
-from demheat.packing.io.found import to_packing
+from demheat.packing.io.found import rank_of, to_packing
 from demheat.packing.io.text import Lines, broken
 from demheat.paths import checked_path, replaced
 from demheat.scene.bodies import check_name
 
-__all__ = ["read", "write"]
+__all__ = ["ids", "read", "write"]
 
 TEXTS = {"lammps-data": lammps_data, "lammps-dump": lammps_dump, "yade": yade, "extxyz": extxyz}
 SUFFIXES = {
@@ -171,6 +173,32 @@ def read(
             provenance={"algorithm": "read", "file": path.name, "format": name} | (found.provenance or {})
         )
     return to_packing(found, path, size=size, periodic=periodic, domain=domain, order=order)
+
+
+def ids(path: str | os.PathLike, *, format: str | None = None, step: int | None = None) -> np.ndarray:
+    """Ids of the spheres of a file in the order in which `read` gives them: rising.
+
+    Parameters
+    ----------
+    path : path
+    format, step
+        As those of `read`.
+
+    Returns
+    -------
+    (n,) int array
+
+    Raises
+    ------
+    ValueError
+        As `read`; or if the file has no ids.
+    """
+    path, name, _ = _format(path, format)
+    _check_knobs(name, None, None, None, step, "given")
+    found = _read_text(TEXTS[name], path, step) if name in TEXTS else None
+    if found is None or found.ids is None:
+        raise ValueError(f"path = {str(path)!r}: must be a file whose spheres have ids; those of this one have none")
+    return found.ids[rank_of(found, path)].astype(np.int64)
 
 
 def _format(path, format):

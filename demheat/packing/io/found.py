@@ -67,7 +67,7 @@ def to_packing(found: Found, path, *, size, periodic, domain, order) -> Packing:
     centers = _centers(found, path, origin, sides, flags)
     radii = found.spheres[:, 3]
     if found.ids is not None:
-        rank = _rank(found, path)
+        rank = rank_of(found, path)
         centers, radii = centers[rank], radii[rank]
     provenance = {**(found.provenance or {}), **source}
     shape = domain or found.domain or "box"
@@ -128,8 +128,20 @@ def _centers(found, path, origin, sides, flags):
     return centers
 
 
-def _rank(found, path):
-    """Order of the spheres by their ids, which must be different integers."""
+def rank_of(found, path):
+    """Order of the spheres by their ids, which must be different integers.
+
+    Parameters
+    ----------
+    found : Found
+        With ids.
+    path : path
+        For the messages.
+
+    Returns
+    -------
+    (n,) int array
+    """
     bad = found.ids != np.round(found.ids)
     if bad.any() or not np.all(np.isfinite(found.ids)):
         k = int(np.argmax(bad))

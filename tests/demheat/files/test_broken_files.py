@@ -65,6 +65,8 @@ BROKEN = [
     ('"25 degC"', "{flux = 3, temperature = 3}", 13, r"temperature: no such key here"),
     ('"25 degC"', '{emissivity = 0.5, temperature = "3 degC"}', 13, r"emissivity: with it all temperatures are in kelvin, and that in line 13 in degC"),
     ('"25 degC"', "{emissivity = 1.5, temperature_C = 3}", 13, r"emissivity"),
+    ('"25 degC"', "{emissivity = 0.5, temperature = 300}", 13, r"emissivity: .* in kelvin, and that in line 13 has no unit; must say so"),
+    ('"25 degC"\n"y+" = "35 degC"', '80\n"y+" = {emissivity = 0.5, temperature_K = 300}', 14, r"is in K, and that in line 13 without a unit"),
     ("center_mm = [5, 5, 5]", "center_mm = 5", 9, r"center_mm = 5: must be an array of numbers"),
     ("center_mm = [5, 5, 5]", 'center_mm = [5, 5, "5"]', 9, r"center_mm\[2\] = '5': must be a number"),
     ("center_mm = [5, 5, 5]", "center_mm = [\n5,\n false,\n5]", 11, r"center_mm\[1\] = false: must be a number"),

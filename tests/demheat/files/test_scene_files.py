@@ -178,6 +178,28 @@ def test_tables_of_spheres(tmp_path, header, factor, more):
     np.testing.assert_allclose(found, np.column_stack([CENTERS, RADII, [2.0] * 3]), rtol=1e-15)
 
 
+def test_surfaces_of_spheres_of_a_file_may_resist(tmp_path):
+    (tmp_path / "t.csv").write_text("x,y,z,radius\n.2,.2,.2,.1\n.6,.6,.6,.1\n")
+    for more, expected in (("", 0.0), ('resistance = "3 mm2 K/W"', 3e-6), ("resistance_m2K_W = 0.5", 0.5)):
+        found = files.read(written(tmp_path, ENTRY.format("t.csv", more))).inclusions
+        assert [sphere.resistance for sphere in found] == [expected, expected]
+    with pytest.raises(ValueError, match=r"scene.toml:11: inclusions\[0\].resistance = -1: must be"):
+        files.read(written(tmp_path, ENTRY.format("t.csv", "resistance = -1")))
+
+
+def test_spheres_outside_of_a_periodic_cell_are_refused(tmp_path):
+    """They would come in again where nobody put them, as with the wrong unit."""
+    (tmp_path / "t.csv").write_text("x,y,z,radius\n.2,.2,.2,.1\n.6,1.4,.6,.1\n")
+    with pytest.raises(ValueError, match=r"t.csv:3: x y z = 0.6, 1.4, 0.6 m: lies outside the periodic cell, 0 to 1 x"):
+        files.read(written(tmp_path, ENTRY.format("t.csv", "")))
+    (tmp_path / "t.csv").write_text("x,y,z,radius\n.2,.7,.2,.1\n.6,1.4,.6,.1\n")
+    moved = files.read(written(tmp_path, ENTRY.format("t.csv", "offset = [0, -0.5, 0]")))
+    assert [round(sphere.center[1], 9) for sphere in moved.inclusions] == [0.2, 0.9]
+    # On a face is in.
+    (tmp_path / "t.csv").write_text("x,y,z,radius\n0,.2,1,.1\n")
+    assert len(files.read(written(tmp_path, ENTRY.format("t.csv", ""))).inclusions) == 1
+
+
 def test_materials_of_a_table(tmp_path):
     (tmp_path / "t.csv").write_text("x,y,z,radius,material\n.2,.2,.2,.1,c\n.6,.6,.6,.1,b\n")
     assert [row[4] for row in spheres_of(files.read(written(tmp_path, ENTRY.format("t.csv", ""))))] == [3.0, 2.0]

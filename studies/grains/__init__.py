@@ -1,0 +1,118 @@
+"""Beds of grains as networks, one temperature for each, beside what the continuum says of the same grains.
+
+`array`: simple, body- and face-centred cubic arrays of grains that do not quite touch, in a medium, against Rayleigh's
+exact values. `contact`: a row of grains that share discs, in a vacuum and in a medium, against elements on the cell of
+one grain. `bed`: spheres at random, hundredths of a diameter apart at least, against multipoles. Grains have the radius
+1, the medium the conductivity 1 (in a vacuum the grains). All is by the laws of `demheat.grains`, discs of gaps half a
+radius wide; `wide` is with discs of a whole radius.
+"""
+
+from studies.grains.cases import (
+    CONTACTS,
+    CONTRASTS,
+    FRACTIONS,
+    GAPS,
+    GOOD,
+    KINDS,
+    NARROW,
+    REALISATIONS,
+)
+from studies.harness.pick import largest, pick, present
+
+PAPER = {}
+TIMEOUT = 1800.0
+
+
+def _cases():
+    for kind in KINDS:
+        for gap in GAPS:
+            for contrast in CONTRASTS:
+                yield {"part": "array", "kind": kind, "gap": gap, "contrast": contrast, "method": "grains"}
+    for contact in CONTACTS:
+        # Without a contrast there is no medium.
+        for contrast in (None, *CONTRASTS):
+            yield {"part": "contact", "contact": contact, "contrast": contrast, "method": "grains"}
+    for fraction in FRACTIONS:
+        for realisation in REALISATIONS:
+            for contrast in CONTRASTS[:3]:
+                here = {"part": "bed", "fraction": fraction, "realisation": realisation, "contrast": contrast}
+                yield here | {"method": "grains"}
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Two arrays at two gaps, two contacts, one bed."""
+    if case["part"] == "array":
+        return case["kind"] != "bcc" and case["gap"] in (0.03, 0.1) and case["contrast"] in CONTRASTS[:3]
+    if case["part"] == "contact":
+        return case["contact"] in (0.05, 0.1) and case["contrast"] in (None, 100.0, 1000.0)
+    return case["fraction"] == FRACTIONS[1] and case["realisation"] == 0 and case["contrast"] != GOOD
+
+
+def run(part, method, **case):
+    """Solve grains as a network, and the same as a continuum."""
+    from studies.grains import rows
+
+    return {"array": rows.array, "contact": rows.contact, "bed": rows.bed}[part](**case)
+
+
+def warm_up(part, method, **case):
+    """Load the solvers."""
+    from studies.grains import rows
+
+    rows.contact(0.2, None)
+
+
+def claims(df):
+    """What is missing is some of the medium's conductivity; contacts are right to some per cent; where it is poor.
+
+    Limits were set after a first look at a few rows, but for those of the beds.
+    """
+    arrays = pick(df, part="array")
+    yield from present(_array_claims(arrays[arrays["contrast"] >= GOOD]))
+    poor = arrays[(arrays["contrast"] == CONTRASTS[0]) & (arrays["gap"] >= NARROW)]
+    least = poor["error_percent"].abs().min() if len(poor) else None
+    yield from present([("arrays, contrast 10, gaps of 0.03 and more: least error, %", least, ">= 15")])
+    yield from present(_contact_claims(pick(df, part="contact")))
+    yield from present(_bed_claims(pick(df, part="bed")))
+
+
+def _array_claims(rows):
+    """Near grains that conduct well: the law knows gap and contrast, and not what passes elsewhere."""
+    near = rows[rows["gap"] <= NARROW]
+    for kind, group in near.groupby("kind", sort=False):
+        spread, span = (float(group[name].max() - group[name].min()) for name in ("missing", "exact_ratio"))
+        text = f"{kind}, contrasts from 100, gaps to 0.03: spread of what is missing over that of the conductivity"
+        yield text, spread / span if span > 0 else None, 0.15
+    text = "arrays, contrasts from 100, gaps to 0.03: most that is missing, k of the medium"
+    yield text, largest(near, "missing"), 3.0
+
+
+def _contact_claims(rows):
+    bare = pick(rows, contrast=None)
+    small = bare[bare["contact"] <= 0.05]
+    yield "contacts in a vacuum, to 0.05 radii: worst error, %", largest(small, "error_percent"), 6.0
+    yield "contacts in a vacuum: worst error, %", largest(bare, "error_percent"), 11.0
+    yield "contacts, contrast 1000: worst error, %", largest(pick(rows, contrast=1000.0), "error_percent"), 16.0
+
+
+def _bed_claims(rows):
+    """Nearly touching spheres at random: of the same sign and size as in arrays."""
+    good = rows[rows["contrast"] >= GOOD]
+    yield "beds, contrasts from 100: most that is missing, k of the medium", largest(good, "missing"), 3.0
+
+
+def table(df):
+    """Conductivities over the medium's (of contacts: conductances), errors, and what is missing, in k of the medium."""
+    from studies.grains.tables import lines
+
+    return lines(df)
+
+
+def plot(df):
+    """Errors against the gap; against the radius of contacts; networks beside the continuum."""
+    from studies.grains.figure import draw
+
+    return draw(df)

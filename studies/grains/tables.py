@@ -1,0 +1,37 @@
+"""Lines of the table of grains."""
+
+from __future__ import annotations
+
+import pandas as pd
+
+from studies.harness.pick import pick
+
+
+def lines(df):
+    """One line of each array and gap, of each contact, of each fraction of beds; a column for each contrast.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    found = []
+    for (kind, gap), rows in pick(df, part="array").groupby(["kind", "gap"], sort=False):
+        found.append(_line(f"{kind}, gap {gap:g}", rows))
+    for contact, rows in pick(df, part="contact").groupby("contact", sort=False):
+        found.append(_line(f"contact {contact:g}", rows))
+    for fraction, rows in pick(df, part="bed").groupby("fraction", sort=False):
+        means = rows.groupby("contrast")[["k_ratio", "exact_ratio", "error_percent", "missing"]].mean().reset_index()
+        found.append(_line(f"{rows['realisation'].nunique()} random beds, f = {fraction:g}", means))
+    return pd.DataFrame(found)
+
+
+def _line(text, rows):
+    line = {"grains of radius 1": text}
+    for row in rows.to_dict("records"):
+        bare = row["contrast"] != row["contrast"] or row["contrast"] is None
+        at = "vacuum" if bare else f"contrast {row['contrast']:g}"
+        numbers = f"{row['k_ratio']:.4g}, {row['exact_ratio']:.4g}, {row['error_percent']:+.2g} %"
+        line[f"{at}: network, continuum, error{'' if bare else ', missing'}"] = (
+            numbers if bare else f"{numbers}, {row['missing']:.2f}"
+        )
+    return line
