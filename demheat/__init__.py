@@ -9,12 +9,24 @@ import warnings
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress
-from demheat.scene import Convection, Flux, Layer, Material, MovingCylinder, Radiation, Scene, Sphere, UniformSource
+from demheat.scene import (
+    Convection,
+    Flux,
+    Image,
+    Layer,
+    Material,
+    MovingCylinder,
+    Radiation,
+    Scene,
+    Sphere,
+    UniformSource,
+)
 
 __all__ = [
     "Calibrated",
     "Convection",
     "Field",
+    "Image",
     "Flux",
     "Laguerre",
     "Layer",

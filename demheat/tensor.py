@@ -43,7 +43,7 @@ def axis_loads(scene: Scene) -> tuple[Scene, Scene, Scene]:
         "have a tensor",
         steady=True,
         walls="one isothermal pair",
-        takes=("resistance",),
+        takes=("resistance", "image"),
     )
     if scene.periodic:
         steep = math.hypot(*scene.gradient)

@@ -11,11 +11,13 @@ LAYERS = {
     "demheat.scene.bodies": (),
     "demheat.scene.crossing": ("demheat.scene.bodies",),
     "demheat.scene.material": ("demheat.scene.inputs",),
+    "demheat.scene.image": ("demheat.scene.frozen", "demheat.scene.inputs", "demheat.scene.material"),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
         "demheat.scene.frozen",
         "demheat.scene.crossing",
+        "demheat.scene.image",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.parts",
@@ -26,6 +28,7 @@ LAYERS = {
     "demheat.scene.html": (),
     "demheat.scene.scene": (
         "demheat.scene.html",
+        "demheat.scene.image",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.material",

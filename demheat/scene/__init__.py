@@ -1,6 +1,7 @@
 """What is computed: a scene, its shapes and materials, its loads and sources; NumPy is all that it needs."""
 
 from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
+from demheat.scene.image import Image
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
@@ -12,6 +13,7 @@ __all__ = [
     "WALLS",
     "Convection",
     "Flux",
+    "Image",
     "Layer",
     "Material",
     "MovingCylinder",

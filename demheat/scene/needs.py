@@ -26,6 +26,7 @@ WALLS = {
 
 
 EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, in time also for series of slabs"
+IMAGE = "which FFT, finite elements, the DEM and bounds on voxels take"
 
 
 def check_steady(scene) -> None:
@@ -64,6 +65,8 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     walls, domain, shapes, nested, pores, takes
         As those of `Scene.require`.
     """
+    if scene.image is not None and "image" not in takes:
+        yield f"Scene.image, {IMAGE}"
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
         yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
     if walls is not None and not scene.periodic and not WALLS[walls](scene):

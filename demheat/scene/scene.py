@@ -17,6 +17,7 @@ from demheat.scene.bodies import domain_volume
 from demheat.scene.checks import (
     check_domain,
     check_geometry,
+    check_image,
     check_initial,
     check_reached,
     checked_inclusions,
@@ -25,6 +26,7 @@ from demheat.scene.checks import (
 )
 from demheat.scene.functions import load_at
 from demheat.scene.html import table_of
+from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
@@ -63,6 +65,8 @@ class Scene:
         Heat sources, for transients.
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
         The body inscribed in the box; a cylinder is named by its axis. Round ones are for transients.
+    image : Image, optional
+        Voxels that fill the box, instead of matrix and inclusions: `Scene.of_image` gives size and matrix.
 
     Raises
     ------
@@ -80,6 +84,7 @@ class Scene:
     initial: float | Callable | None = None
     sources: tuple[UniformSource | MovingCylinder, ...] = ()
     domain: str = "box"
+    image: Image | None = None
 
     def __post_init__(self):
         size = vector("Scene.size", self.size)
@@ -91,12 +96,32 @@ class Scene:
         check_material("Scene.matrix", self.matrix)
         object.__setattr__(self, "inclusions", checked_inclusions(self.inclusions))
         check_domain(self)
+        check_image(self)
         for name, value in checked_load(self).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "sources", checked_sources(self.sources))
         check_initial(self.initial, kelvin=self.radiates)
         check_geometry(self)
         check_reached(self)
+
+    @classmethod
+    def of_image(cls, image: Image, **load: object) -> Scene:
+        """The scene of an image.
+
+        Parameters
+        ----------
+        image : Image
+        **load
+            `gradient`, `walls`, `initial` or `sources`, as those of `Scene`.
+
+        Raises
+        ------
+        ValueError
+            As `Scene`.
+        """
+        if not isinstance(image, Image):
+            raise ValueError(f"image = {image!r}: must be an Image")
+        return cls(image.size, image.phases[0], image=image, **load)
 
     @property
     def periodic(self) -> bool:
@@ -110,20 +135,24 @@ class Scene:
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The matrix, then the material of each inclusion: index = phase number."""
+        """The matrix, then the material of each inclusion; of an image those of its labels: index = phase number."""
+        if self.image is not None:
+            return self.image.phases
         return (self.matrix, *(inclusion.material for inclusion in self.inclusions))
 
     @property
     def conductivities(self) -> np.ndarray:
-        """Conductivity of each phase, (1 + number of inclusions,) float array, W/(m K)."""
+        """Conductivity of each phase, (number of materials,) float array, W/(m K)."""
         return np.array([material.conductivity for material in self.materials])
 
     @property
     def resistances(self) -> np.ndarray:
-        """Resistance of the surface of each phase, (1 + number of inclusions,) float array, m2 K/W; 0 of the matrix.
+        """Resistance of the surface of each phase, (number of materials,) float array, m2 K/W; 0 of the matrix.
 
         Where surfaces lie on each other they are crossed one after the other, see `demheat.scene.resistances`.
         """
+        if self.image is not None:
+            return np.zeros(len(self.materials))
         return np.array([0.0, *(inclusion.resistance for inclusion in self.inclusions)])
 
     @property
@@ -181,6 +210,8 @@ class Scene:
     def phase_at(self, points: np.ndarray) -> np.ndarray:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
+        if self.image is not None:
+            return self.image.phase_at(points, periodic=self.periodic)
         phase = np.zeros(len(points), dtype=np.int32)
         if self.inclusions:
             for point, number in self._holders.pairs(points):
@@ -241,6 +272,7 @@ class Scene:
         return {
             "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
             "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
+            **({} if self.image is None else {"image": f"{' x '.join(map(str, self.image.shape))} voxels"}),
             "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)",
             **load,
         }
@@ -276,9 +308,9 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
-        takes : tuple of {"resistance", "exchange"}
+        takes : tuple of {"resistance", "exchange", "image"}
             What few methods know and all others refuse: surfaces with a resistance, walls that exchange heat with
-            surroundings.
+            surroundings, images.
 
         Raises
         ------
