@@ -14,9 +14,11 @@ What is mapped passes slab by slab into the smallest type that holds the labels.
 
 from __future__ import annotations
 
+import logging
 import math
 import warnings
 from collections.abc import Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -110,21 +112,48 @@ def _tiff(path):
         import tifffile
     except ImportError:
         raise ImportError(f"{path}: TIFF needs tifffile; pip install tifffile, or demheat[images]") from None
-    try:
+    with _complaints("tifffile") as complaints, _one_line(path, "TIFF"):
         with tifffile.TiffFile(path) as file:
-            series = file.series
-            if len(series) != 1:
-                raise ValueError(f"{path}: has {len(series)} images of unlike shapes; must be one stack of pages")
-            (stack,) = series
-            pages, rows, columns = _paged(path, stack)
-            if stack.dataoffset is not None:
-                # In one piece, as it is: found before the file is closed, mapped after.
-                where = {"dtype": file.byteorder + stack.dtype.char, "offset": stack.dataoffset}
-            else:
-                return _by_pages(path, stack, (columns, rows, pages)), None
-        return _mapped(path, (columns, rows, pages), **where), None
-    except (tifffile.TiffFileError, IndexError, KeyError, TypeError, RuntimeError) as error:
-        raise ValueError(f"{path}: no TIFF, or a part of one: {_line(error)}") from None
+            if len(file.series) != 1:
+                raise ValueError(f"{path}: has {len(file.series)} images of unlike shapes; must be one stack of pages")
+            (stack,) = file.series
+            shape = _paged(path, stack)[::-1]
+            plain = stack.dataoffset is not None
+            labels = None if plain else _by_pages(path, stack, shape)
+            where = {"dtype": np.dtype(stack.dtype).newbyteorder(file.byteorder), "offset": stack.dataoffset}
+        if complaints:
+            raise ValueError(f"{path}: no TIFF, or a part of one: {complaints[0]}")
+        return (_mapped(path, shape, **where) if plain else labels), None
+
+
+@contextmanager
+def _complaints(library):
+    """What a library logs as an error, and goes on: pages that are not there would be left out."""
+    found = []
+    logger = logging.getLogger(library)
+    handler = logging.Handler(logging.ERROR)
+    handler.emit = lambda record: found.append(_line(record.getMessage()))
+    before = logger.propagate
+    logger.addHandler(handler)
+    logger.propagate = False
+    try:
+        yield found
+    finally:
+        logger.removeHandler(handler)
+        logger.propagate = before
+
+
+@contextmanager
+def _one_line(path, kind):
+    """What libraries and their decoders happen to raise, as one ValueError of the file."""
+    try:
+        yield
+    except OSError:
+        raise
+    except Exception as error:  # noqa: BLE001
+        if isinstance(error, ValueError) and str(error).startswith(str(path)):
+            raise
+        raise ValueError(f"{path}: no {kind}, or a part of one: {_line(error)}") from None
 
 
 def _paged(path, stack):
@@ -227,17 +256,11 @@ def _nrrd(path):
         import nrrd
     except ImportError:
         raise ImportError(f"{path}: NRRD needs pynrrd; pip install pynrrd, or demheat[images]") from None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            header = nrrd.read_header(str(path))
-            sizes = [int(n) for n in header["sizes"]]
-            check_free(path, math.prod(sizes))
-            labels, _ = nrrd.read(str(path))
-    except ValueError:
-        raise
-    except Exception as error:  # noqa: BLE001 - pynrrd raises what its parts happen to raise
-        raise ValueError(f"{path}: no NRRD, or a part of one: {_line(error)}") from None
+    with _one_line(path, "NRRD"), warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        header = nrrd.read_header(str(path))
+        check_free(path, math.prod(int(n) for n in header["sizes"]))
+        labels, _ = nrrd.read(str(path))
     return labels, _spacings(header)
 
 

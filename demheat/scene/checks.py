@@ -50,7 +50,7 @@ def check_image(scene) -> None:
     if image is None:
         return
     if not isinstance(image, Image):
-        raise ValueError(f"Scene.image = {image!r}: must be an Image or None")
+        raise ValueError(f"Scene.image of type {type(image).__name__}: must be an Image or None")
     if scene.inclusions or scene.domain != "box":
         what = "inclusions" if scene.inclusions else f"domain = {scene.domain!r}"
         raise ValueError(f"Scene.{what}: with an image, which is all of a box; must be left out")

@@ -18,6 +18,7 @@ from demheat.scene.material import Material, check_material
 # Phases are numbered in 16 bits, as on the grids of methods; voxels of one slab, which takes 8 bytes for each.
 MOST_LABELS = 2**16
 SLAB = 2**22
+TYPES = (np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.int64)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -50,7 +51,7 @@ class Image:
             raise ValueError(f"Image.voxel = {self.voxel!r}: sides of the image must be from {LEAST:g} to {MOST:g} m")
         found = sorted(set().union(*(_occurring(labels[part]) for part in slabs(labels.shape))))
         object.__setattr__(self, "materials", ReadOnly(_checked_materials(self.materials, found)))
-        kept = np.empty(labels.shape, np.result_type(*map(np.min_scalar_type, (found[0], found[-1]))))
+        kept = np.empty(labels.shape, _smallest(found[0], found[-1]))
         for part in slabs(labels.shape):
             kept[part] = labels[part]
         object.__setattr__(self, "labels", read_only(kept))
@@ -141,6 +142,11 @@ def slabs(shape: Sequence[int]) -> Iterator[slice]:
     """
     thick = max(1, SLAB // max(1, math.prod(shape[1:])))
     return (slice(start, start + thick) for start in range(0, shape[0], thick))
+
+
+def _smallest(low, high):
+    """The smallest type of integers between two."""
+    return next(kind for kind in TYPES if np.iinfo(kind).min <= low and high <= np.iinfo(kind).max)
 
 
 def _checked_labels(labels):

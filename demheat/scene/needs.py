@@ -75,7 +75,7 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
         yield f"a {scene.domain}"
     if shapes == () and scene.inclusions:
         yield f"inclusions in a {scene.domain}"
-    if shapes is not None and not scene.only(*shapes):
+    if shapes is not None and scene.image is None and not scene.only(*shapes):
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
         kind = scene.inclusions[number].kind
         yield f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}, Scene.inclusions[{number}]"

@@ -120,7 +120,7 @@ class Scene:
             As `Scene`.
         """
         if not isinstance(image, Image):
-            raise ValueError(f"image = {image!r}: must be an Image")
+            raise ValueError(f"image of type {type(image).__name__}: must be an Image")
         return cls(image.size, image.phases[0], image=image, **load)
 
     @property
@@ -237,8 +237,8 @@ class Scene:
         return parent
 
     def only(self, *shapes: type[Shape]) -> bool:
-        """Whether all inclusions are of these shapes; True if there is none."""
-        return all(isinstance(shape, shapes) for shape in self.inclusions)
+        """Whether all inclusions are of these shapes; True if there is none, but not of an image."""
+        return self.image is None and all(isinstance(shape, shapes) for shape in self.inclusions)
 
     def at(self, time: float) -> Scene:
         """The same scene with the loads of its walls as they are at a time in seconds."""
