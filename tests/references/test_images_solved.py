@@ -15,7 +15,7 @@ K = {0: Material(1.0), 3: Material(5.0), 7: Material(0.2)}
 VOXEL = (1e-3, 2e-3, 0.5e-3)
 # Tolerances of the solvers, of the flux: 1e-5 of fft in the energy norm, of which the conductivity has the square.
 SOLVED = 1e-9
-METHODS = {
+WAYS = {
     "fft": lambda scene: fft.solve(scene, tolerance=1e-8),
     "links": lambda scene: fft.solve(scene, rule="links", tolerance=1e-8),
     "eyre-milton": lambda scene: fft.solve(scene, scheme="eyre-milton", tolerance=1e-9),
@@ -35,7 +35,7 @@ def walled(labels, axis="y", voxel=VOXEL, materials=K):
     return Scene.of_image(Image(labels, voxel, materials), walls={axis + "-": 20.0, axis + "+": 30.0})
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", WAYS)
 @pytest.mark.parametrize("load", ["gradient", "walls"])
 def test_a_laminate_is_exact(name, load):
     if name == "eyre-milton" and load == "walls":
@@ -45,17 +45,17 @@ def test_a_laminate_is_exact(name, load):
     k = np.array([K[label].conductivity for label in labels[0, :, 0]])
     for axis, expected in ((1, 1 / np.mean(1 / k)), (0, k.mean())):
         scene = periodic(labels, tuple(np.eye(3)[axis])) if load == "gradient" else walled(labels, "xyz"[axis])
-        assert METHODS[name](scene).conductivity == pytest.approx(expected, rel=SOLVED)
+        assert WAYS[name](scene).conductivity == pytest.approx(expected, rel=SOLVED)
 
 
 # Links are differences, no energy of an admissible field: where every voxel is unlike its neighbours they are below.
-@pytest.mark.parametrize("name", [name for name in METHODS if name != "links"])
+@pytest.mark.parametrize("name", [name for name in WAYS if name != "links"])
 @pytest.mark.parametrize("make", [periodic, walled])
 def test_certain_bounds_hold_what_methods_find(name, make):
     """Trilinear elements attain the upper one: it is their energy."""
     labels = drawn()
     bound = bracket.voxels.solve(make(labels), tolerance=1e-8)
-    found = METHODS[name](make(labels)).conductivity
+    found = WAYS[name](make(labels)).conductivity
     own = bound.upper if name == "fem" else found
     assert bound.lower <= found <= bound.upper * (1 + SOLVED)
     assert own == pytest.approx(found, rel=1e-6)  # the bound's own tolerance and what it gives up for rounding
@@ -86,14 +86,14 @@ def test_a_turned_image_has_the_turned_tensor(solve_axes):
     np.testing.assert_allclose(tensors[0], tensors[0].T, atol=1e-8 * tensors[0].max())
 
 
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", WAYS)
 def test_fields_of_an_image(name):
     """Linear in a homogeneous one; samples that integrate to the mean flux, in their own voxels."""
-    plain = METHODS[name](walled(np.zeros((3, 4, 5), int)))
+    plain = WAYS[name](walled(np.zeros((3, 4, 5), int)))
     points = np.random.default_rng(0).random((40, 3)) * plain.scene.size
     np.testing.assert_allclose(plain.temperature_at(points), 20 + 10 * points[:, 1] / plain.scene.size[1], rtol=1e-9)
     np.testing.assert_allclose(plain.flux_at(points), [[0, -10 / plain.scene.size[1], 0]] * 40, atol=1e-4)
-    field = METHODS[name](periodic(drawn()))
+    field = WAYS[name](periodic(drawn()))
     samples = field.samples
     assert samples.volumes.sum() == pytest.approx(field.scene.volume)
     assert np.array_equal(samples.phase, field.scene.phase_at(samples.points))
@@ -155,17 +155,17 @@ def grains():
 
 @pytest.mark.parametrize("name", ["fft", "fem"])
 def test_pores_of_an_image(name):
-    field = METHODS[name](walled(grains(), voxel=1.0, materials=PORES))
+    field = WAYS[name](walled(grains(), voxel=1.0, materials=PORES))
     assert field.conductivity == pytest.approx(2.0 / 24, rel=1e-9)  # the bar alone
     points = np.array([[0.5, 1, 0.5], [2.5, 1.5, 2.5], [4.5, 0.5, 2.5], [3.5, 2.5, 1.5]])
     found = field.temperature_at(points)
     assert found[0] == pytest.approx(22.5) and np.isnan(found[1]) and found[2] == 20.0 and np.isnan(found[3])
     assert np.all(field.flux_at(points)[1:] == 0)
-    cell = METHODS[name](periodic(grains(), voxel=1.0, materials=PORES))
+    cell = WAYS[name](periodic(grains(), voxel=1.0, materials=PORES))
     assert cell.conductivity == pytest.approx(2.0 / 24, rel=1e-9)
     # Each body's temperature less that of the mean gradient has no mean: the grain is at its middle's.
     assert cell.temperature_at(points[1:2])[0] == pytest.approx(2.0)
-    still = METHODS[name](periodic(grains(), (1.0, 0.0, 0.0), voxel=1.0, materials=PORES))
+    still = WAYS[name](periodic(grains(), (1.0, 0.0, 0.0), voxel=1.0, materials=PORES))
     assert still.conductivity == 0.0 and np.all(still.samples.flux == 0)
 
 
