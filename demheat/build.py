@@ -243,7 +243,13 @@ def _few(numbers):
 def _warn_of_lost_phases(scene, phase):
     lost = np.flatnonzero(np.bincount(phase, minlength=len(scene.materials)) == 0)
     # A phase may rightly be absent where later ones cover it: only the matrix can be.
-    if np.any(lost > 0):
+    if scene.image is not None and len(lost):
+        labels = [list(scene.image.materials)[number] for number in lost]
+        warnings.warn(
+            f"no particle lies in labels {_few(np.array(labels))} of the image, which take no part; use more particles",
+            stacklevel=5,
+        )
+    elif np.any(lost > 0):
         warnings.warn(
             f"no particle lies in inclusions {(lost[lost > 0] - 1).tolist()}: they are thinner than a "
             "particle and take no part; use more particles",

@@ -165,10 +165,15 @@ class Field:
         Raises
         ------
         NotImplementedError
-            If the method does not know its error.
+            If the method does not know its error, or the scene is an image.
         RuntimeError
             If no coarser run can be made.
         """
+        if self.scene.image is not None:
+            raise NotImplementedError(
+                "Field.error: an image has no other voxels to compare with; references.bracket.voxels bounds the "
+                "conductivity of its voxels for certain"
+            )
         if self.estimator is None:
             raise NotImplementedError("Field.error: this method does not know its error")
         return self.estimator(self)

@@ -71,7 +71,7 @@ class Laguerre:
     def takes(self) -> tuple[str, ...]:
         """What few laws know, of `Scene.require`: facets on surfaces may resist, and have temperatures of their own."""
         on_facets = self.conforming and self.interface == "harmonic"
-        return ("exchange", "resistance", "dependence") if on_facets else ("exchange",)
+        return ("exchange", "image", "resistance", "dependence") if on_facets else ("exchange", "image")
 
     @classmethod
     def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
@@ -121,7 +121,7 @@ class _Contacts:
     cells: ClassVar[bool] = False
     conforming: ClassVar[bool] = False
     # Facets on interfaces, where a resistance would be.
-    takes: ClassVar[tuple[str, ...]] = ("exchange",)
+    takes: ClassVar[tuple[str, ...]] = ("exchange", "image")
 
     def __post_init__(self):
         chosen("interface", self.interface, RULES)
@@ -169,13 +169,14 @@ class _Contacts:
         scene.require(ON_FACETS, takes=self.takes)
         if self.wall == "surface":
             what = "wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'"
-            scene.require(what, walls="flat", takes=("exchange",))
+            scene.require(what, walls="flat", takes=("exchange", "image"))
         else:
             scene.require(
                 f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"
                 " where two held walls meet, one particle would join them, and no surface is left to exchange heat; use"
                 " wall 'surface'",
                 walls="isothermal ones apart",
+                takes=("image",),
             )
 
 

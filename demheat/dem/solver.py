@@ -103,7 +103,7 @@ def solve(
     check_scene(scene)
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence"))
+    scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image"))
     law.check(scene)
     return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
@@ -262,7 +262,7 @@ def evolve(
     check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
     law, wanted = asked(law, particles, seed, knobs)
-    scene.require(steady=False, takes=("resistance", "exchange"))
+    scene.require(steady=False, takes=("resistance", "exchange", "image"))
     if scene.radiates:
         check_linear(integrator)
     law.check(scene)

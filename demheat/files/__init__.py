@@ -26,9 +26,22 @@ material = "silica"
 
 [solve.fft]  # methods and their knobs, for the commands
 voxels = 64
+
+Instead of size, matrix and inclusions an image may stand, see `demheat.files.images`; its labels name the materials:
+
+[image]
+file = "grains.tif"  # .npy, .tif, .mhd, .nrrd, beside this file
+voxel = "2 um"       # or voxel_um = [2, 2, 4]; MetaImages and NRRDs may tell it themselves
+
+[materials.0]
+conductivity = 0.2
+
+[materials.255]
+conductivity = 1.4
 """
 
+from demheat.files.images import read_image
 from demheat.files.read import SceneFile, read, read_file
 from demheat.files.write import write
 
-__all__ = ["SceneFile", "read", "read_file", "write"]
+__all__ = ["SceneFile", "read", "read_file", "read_image", "write"]

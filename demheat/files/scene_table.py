@@ -6,8 +6,10 @@ A new shape or source adds a line to its table here.
 from __future__ import annotations
 
 import re
+from functools import partial
 from typing import NamedTuple
 
+from demheat.files.images import read_image
 from demheat.files.materials import made_material
 from demheat.files.source import Source, nearest, shown
 from demheat.files.spheres import spheres_of
@@ -23,6 +25,7 @@ from demheat.files.units import (
     TEMPERATURE,
     VELOCITY,
 )
+from demheat.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
     WALLS,
@@ -67,10 +70,13 @@ LOADS = {
 }
 # Keys of a file.
 KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fromkeys(
-    ("matrix", "materials", "inclusions", "walls", "sources", "domain", "solve", "accuracy"), PLAIN
+    ("matrix", "materials", "inclusions", "walls", "sources", "domain", "image", "solve", "accuracy"), PLAIN
 )
+# What an image is itself.
+IMAGED = ("size", "matrix", "inclusions", "domain")
 # What may be left out.
 OPTIONAL = ("velocity", "clip", "resistance")
+LABEL = re.compile(r"-?\d+")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
 
@@ -101,23 +107,64 @@ def scene_of(source: Source, table: Table) -> Scene:
     """
     table.only(KEYS)
     materials = _materials(table)
+    if "image" in table.values:
+        return _imaged(table, materials)
     size = table.vector("size", LENGTH, ...)
     if len(size) != 3 or not min(size) > 0:
         key = table.keys["size"]
         raise table.error(key, f" = {shown(table.values[key])}: all three lengths must be > 0 m")
     matrix = _material(table, "matrix", materials)
     placed = _inclusions(table, materials, size)
+    load = _loaded(table) | {"domain": table.text("domain", "box", among=tuple(ROUND_AXES))}
+    return _made_scene(table, placed, partial(Scene, size, matrix, [each.shape for each in placed], **load))
+
+
+def _loaded(table):
+    """Loads of a scene."""
     walls, gradient = _walls(table), table.vector("gradient", GRADIENT)
     initial = table.number("initial", TEMPERATURE)
     sources = [_parts(each, "kind", SOURCES, {}) for each in table.tables("sources")]
-    domain = table.text("domain", "box", among=tuple(ROUND_AXES))
-    load = {"walls": walls, "gradient": gradient, "initial": initial, "sources": sources, "domain": domain}
+    return {"walls": walls, "gradient": gradient, "initial": initial, "sources": sources}
+
+
+def _made_scene(table, placed, make):
     try:
-        return Scene(size, matrix, [each.shape for each in placed], **load)
+        return make()
     except ValueError as error:
-        if walls is not None and gradient is not None:
+        if "walls" in table.values and table.keys["gradient"] is not None:
             raise table.error(table.keys["gradient"], f": {error}") from None
         raise _placed_error(table, placed, error) from None
+
+
+def _imaged(table, materials):
+    """The scene of an image, whose labels are the names of the materials."""
+    for name in IMAGED:
+        key = table.key(name, KEYS.get(name, PLAIN))
+        if key is not None:
+            raise table.error(key, ": with an image, which has it itself; must be left out")
+    labels = {}
+    for name, material in materials.items():
+        if not LABEL.fullmatch(name):
+            raise table.error(("materials", name), ": must be a label of the image, a whole number")
+        labels[int(name)] = material
+    own = table.table("image")
+    own.only({"file": PLAIN, "voxel": LENGTH})
+    path = checked_path(table.source.path.parent / own.text("file", ...))
+    try:
+        image = read_image(path, materials=labels, voxel=_voxel(own))
+    except (ValueError, ImportError) as error:
+        told = str(error).removeprefix(f"{path}: ").removeprefix("Image.")
+        key = "voxel" if told.startswith("voxel =") else "file"
+        raise type(error)(str(own.error(own.keys[key], f" = {shown(own.values[own.keys[key]])}: {told}"))) from None
+    return _made_scene(table, [], partial(Scene.of_image, image, **_loaded(table)))
+
+
+def _voxel(table):
+    """Edges of a voxel: one length or three, or None."""
+    key = table.key("voxel", LENGTH)
+    if key is None or not isinstance(table.values[key], list):
+        return table.number("voxel", LENGTH)
+    return table.vector("voxel", LENGTH)
 
 
 def _placed_error(table, placed, error):

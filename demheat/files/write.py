@@ -5,6 +5,8 @@ from __future__ import annotations
 import re
 from dataclasses import fields
 
+import numpy as np
+
 from demheat.files.scene_table import AXES, LOADS, SHAPES, SOURCES
 from demheat.paths import checked_path, replaced
 from demheat.scene import Scene, check_scene
@@ -14,6 +16,8 @@ BARE = re.compile(r"[A-Za-z0-9_-]+")
 
 def write(scene: Scene, path) -> None:
     """Write a scene as a TOML file, in SI; an interrupted write leaves no file, and an old one as it was.
+
+    The labels of an image go into a file of the same name that ends in .npy, beside it.
 
     Parameters
     ----------
@@ -39,13 +43,24 @@ def write(scene: Scene, path) -> None:
     True
     """
     path = checked_path(path)
-    text = text_of_scene(scene)
+    check_scene(scene)
+    image = None if scene.image is None else path.with_suffix(".npy")
+    text = text_of_scene(scene, image_file=image and image.name)
+    if image is not None:
+        with replaced(image) as part:
+            np.save(part, scene.image.labels)
     with replaced(path) as part:
         part.write_text(text, encoding="utf-8", newline="\n")
 
 
-def text_of_scene(scene: Scene) -> str:
+def text_of_scene(scene: Scene, *, image_file: str | None = None) -> str:
     """Text of the file of a scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    image_file : str, optional
+        Where the labels of its image are; without it the text has what tells them from others'.
 
     Raises
     ------
@@ -55,13 +70,23 @@ def text_of_scene(scene: Scene) -> str:
     check_scene(scene)
     names = _names(scene)
     blocks = [_head(scene, names)]
-    blocks += [_block(f"[materials.{name}]", _material(material)) for material, name in names.items()]
+    if scene.image is not None:
+        blocks += _image(scene.image, image_file)
+    else:
+        blocks += [_block(f"[materials.{name}]", _material(material)) for material, name in names.items()]
     blocks += [_block("[[inclusions]]", _inclusion(k, shape, names)) for k, shape in enumerate(scene.inclusions)]
     if scene.walls:
         loads = {name: _load(scene, name, load) for name, load in scene.walls.items()}
         blocks.append(_block("[walls]", loads))
     blocks += [_block("[[sources]]", _source(each)) for each in scene.sources]
     return "\n".join(blocks)
+
+
+def _image(image, file):
+    """Blocks of an image and of the materials of its labels."""
+    where = {"digest": image.digest} if file is None else {"file": file}
+    blocks = [_block("[image]", where | {"voxel": image.voxel})]
+    return blocks + [_block(f"[materials.{label}]", _plain(each)) for label, each in image.materials.items()]
 
 
 def _names(scene):
@@ -73,7 +98,7 @@ def _names(scene):
 
 
 def _head(scene, names):
-    values = {"size": scene.size, "matrix": names[scene.matrix]}
+    values = {"size": scene.size, "matrix": names[scene.matrix]} if scene.image is None else {}
     if scene.domain != "box":
         values["domain"] = scene.domain
     if scene.gradient is not None:

@@ -13,7 +13,7 @@ import numpy as np
 from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
-from demheat.packing.io.source import checked_path
+from demheat.paths import checked_path
 from demheat.scene.frozen import ReadOnly, read_only
 from demheat.scene.html import table_of
 

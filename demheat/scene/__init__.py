@@ -2,6 +2,7 @@
 
 from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.scene.dependence import Dependence
+from demheat.scene.image import Image
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
@@ -15,6 +16,7 @@ __all__ = [
     "Convection",
     "Dependence",
     "Flux",
+    "Image",
     "Layer",
     "Material",
     "MovingCylinder",

@@ -9,6 +9,7 @@ import numpy as np
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius, wall_names
 from demheat.scene.crossing import touching
 from demheat.scene.frozen import ReadOnly
+from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, vector
 from demheat.scene.parts import HOTTEST, Convection, Flux, MovingCylinder, Radiation, UniformSource, driver
 from demheat.scene.shapes import Shape
@@ -41,6 +42,23 @@ def check_domain(scene) -> None:
         raise ValueError(f"Scene.size = {scene.size} of a {scene.domain}: sides across its round axes must be equal")
     if across and scene.gradient is not None:
         raise ValueError(f"Scene.gradient with domain = {scene.domain!r}: only a box can be a periodic cell")
+
+
+def check_image(scene) -> None:
+    """Raise ValueError unless the image of a Scene, if it has one, is all of it."""
+    image = scene.image
+    if image is None:
+        return
+    if not isinstance(image, Image):
+        raise ValueError(f"Scene.image of type {type(image).__name__}: must be an Image or None")
+    if scene.inclusions or scene.domain != "box":
+        what = "inclusions" if scene.inclusions else f"domain = {scene.domain!r}"
+        raise ValueError(f"Scene.{what}: with an image, which is all of a box; must be left out")
+    if scene.size != image.size or scene.matrix != image.phases[0]:
+        raise ValueError(
+            f"Scene.size = {scene.size}, Scene.matrix = {scene.matrix}: must be those of the image, {image.size} and "
+            f"{image.phases[0]}; Scene.of_image gives them"
+        )
 
 
 def checked_load(scene) -> dict[str, object]:

@@ -26,6 +26,7 @@ WALLS = {
 
 
 EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, in time also for series of slabs"
+IMAGE = "which FFT, finite elements, the DEM and bounds on voxels take"
 
 
 def _tensors(scene):
@@ -83,6 +84,8 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     walls, domain, shapes, nested, pores, takes
         As those of `Scene.require`.
     """
+    if scene.image is not None and "image" not in takes:
+        yield f"Scene.image, {IMAGE}"
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
         yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
     for name in MATERIALS:
@@ -94,7 +97,7 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
         yield f"a {scene.domain}"
     if shapes == () and scene.inclusions:
         yield f"inclusions in a {scene.domain}"
-    if shapes is not None and not scene.only(*shapes):
+    if shapes is not None and scene.image is None and not scene.only(*shapes):
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
         kind = scene.inclusions[number].kind
         yield f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}, Scene.inclusions[{number}]"

@@ -17,6 +17,7 @@ from demheat.scene.bodies import domain_volume
 from demheat.scene.checks import (
     check_domain,
     check_geometry,
+    check_image,
     check_initial,
     check_reached,
     checked_inclusions,
@@ -26,6 +27,7 @@ from demheat.scene.checks import (
 from demheat.scene.dependence import Dependences
 from demheat.scene.functions import load_at
 from demheat.scene.html import table_of
+from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.needs import check_steady, check_transient, refusals
@@ -64,6 +66,8 @@ class Scene:
         Heat sources, for transients.
     domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
         The body inscribed in the box; a cylinder is named by its axis. Round ones are for transients.
+    image : Image, optional
+        Voxels that fill the box, instead of matrix and inclusions: `Scene.of_image` gives size and matrix.
 
     Raises
     ------
@@ -93,6 +97,7 @@ class Scene:
     initial: float | Callable | None = None
     sources: tuple[UniformSource | MovingCylinder, ...] = ()
     domain: str = "box"
+    image: Image | None = None
 
     def __post_init__(self):
         size = vector("Scene.size", self.size)
@@ -104,6 +109,7 @@ class Scene:
         check_material("Scene.matrix", self.matrix)
         object.__setattr__(self, "inclusions", checked_inclusions(self.inclusions))
         check_domain(self)
+        check_image(self)
         for name, value in checked_load(self).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "sources", checked_sources(self.sources))
@@ -117,6 +123,25 @@ class Scene:
                 "periodic cell have no level; give Scene.walls instead"
             )
 
+    @classmethod
+    def of_image(cls, image: Image, **load: object) -> Scene:
+        """The scene of an image.
+
+        Parameters
+        ----------
+        image : Image
+        **load
+            `gradient`, `walls`, `initial` or `sources`, as those of `Scene`.
+
+        Raises
+        ------
+        ValueError
+            As `Scene`.
+        """
+        if not isinstance(image, Image):
+            raise ValueError(f"image of type {type(image).__name__}: must be an Image")
+        return cls(image.size, image.phases[0], image=image, **load)
+
     @property
     def periodic(self) -> bool:
         """True for a periodic cell under a mean gradient, False for a box with walls."""
@@ -129,12 +154,14 @@ class Scene:
 
     @property
     def materials(self) -> tuple[Material, ...]:
-        """The matrix, then the material of each inclusion: index = phase number."""
+        """The matrix, then the material of each inclusion; of an image those of its labels: index = phase number."""
+        if self.image is not None:
+            return self.image.phases
         return (self.matrix, *(inclusion.material for inclusion in self.inclusions))
 
     @property
     def conductivities(self) -> np.ndarray:
-        """Conductivity of each phase, (1 + number of inclusions,) float array, W/(m K); of none that is a tensor.
+        """Conductivity of each phase, (number of materials,) float array, W/(m K); of none that is a tensor.
 
         Raises
         ------
@@ -176,10 +203,12 @@ class Scene:
 
     @property
     def resistances(self) -> np.ndarray:
-        """Resistance of the surface of each phase, (1 + number of inclusions,) float array, m2 K/W; 0 of the matrix.
+        """Resistance of the surface of each phase, (number of materials,) float array, m2 K/W; 0 of the matrix.
 
         Where surfaces lie on each other they are crossed one after the other, see `demheat.scene.resistances`.
         """
+        if self.image is not None:
+            return np.zeros(len(self.materials))
         return np.array([0.0, *(inclusion.resistance for inclusion in self.inclusions)])
 
     @property
@@ -237,6 +266,8 @@ class Scene:
     def phase_at(self, points: np.ndarray) -> np.ndarray:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
+        if self.image is not None:
+            return self.image.phase_at(points, periodic=self.periodic)
         phase = np.zeros(len(points), dtype=np.int32)
         if self.inclusions:
             for point, number in self._holders.pairs(points):
@@ -262,8 +293,8 @@ class Scene:
         return parent
 
     def only(self, *shapes: type[Shape]) -> bool:
-        """Whether all inclusions are of these shapes; True if there is none."""
-        return all(isinstance(shape, shapes) for shape in self.inclusions)
+        """Whether all inclusions are of these shapes; True if there is none, but not of an image."""
+        return self.image is None and all(isinstance(shape, shapes) for shape in self.inclusions)
 
     def at(self, time: float) -> Scene:
         """The same scene with the loads of its walls as they are at a time in seconds."""
@@ -297,6 +328,7 @@ class Scene:
         return {
             "scene": f"{self.domain} of {' x '.join(f'{side:.6g}' for side in self.size)} m",
             "inclusions": ", ".join(f"{count} {kind}" for kind, count in kinds.items()) or "none",
+            **({} if self.image is None else {"image": f"{' x '.join(map(str, self.image.shape))} voxels"}),
             "conductivities": f"{', '.join(f'{each:.6g}' for each in k[:8])}{', ...' if len(k) > 8 else ''} W/(m K)"
             + (", means over directions" if self.anisotropic else ""),
             **load,
@@ -333,9 +365,9 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
-        takes : tuple of {"resistance", "exchange", "anisotropy", "dependence"}
+        takes : tuple of {"resistance", "exchange", "anisotropy", "dependence", "image"}
             What few methods know and all others refuse: surfaces with a resistance, walls that exchange heat with
-            surroundings, conductivities that are tensors, or that depend on temperature.
+            surroundings, conductivities that are tensors, or that depend on temperature, images.
 
         Raises
         ------

@@ -32,5 +32,9 @@ def turned(scene: Scene, order: Sequence[int]) -> Scene:
     place = {axis: new for new, axis in enumerate(order)}
     walls = scene.walls and {"xyz"[place["xyz".index(name[0])]] + name[1]: v for name, v in scene.walls.items()}
     gradient = scene.gradient and along(scene.gradient)
-    matrix = scene.matrix.turned(order)
-    return replace(scene, size=along(scene.size), matrix=matrix, inclusions=shapes, walls=walls, gradient=gradient)
+    body = {
+        "matrix": scene.matrix.turned(order),
+        "inclusions": shapes,
+        "image": scene.image and scene.image.turned(order),
+    }
+    return replace(scene, size=along(scene.size), walls=walls, gradient=gradient, **body)

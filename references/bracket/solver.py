@@ -114,17 +114,20 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
         return _narrowed(scene, size, width, tolerance, drop, power)
 
 
-def check(scene: Scene, tolerance: float) -> None:
+def check(scene: Scene, tolerance: float, *, takes: tuple[str, ...] = ()) -> None:
     """Refuse what has no bounds here; raises what `solve` does.
 
     Parameters
     ----------
     scene, tolerance
         As those of `solve`.
+    takes : tuple of str
+        See `Scene.require`.
     """
     check_scene(scene)
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
-    scene.require("bounds are known on spheres and layers in a box", steady=True, domain="box", shapes=(Sphere, Layer))
+    text = "bounds are known on spheres and layers in a box"
+    scene.require(text, steady=True, domain="box", shapes=(Sphere, Layer), takes=takes)
 
 
 def _narrowed(scene, size, width, tolerance, drop, power):

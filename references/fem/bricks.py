@@ -8,9 +8,10 @@ from functools import partial
 from itertools import product
 
 import numpy as np
-from scipy.sparse import dia_matrix
+from scipy.sparse import csr_matrix, dia_matrix
 
 from demheat.field import Samples
+from demheat.limits import check_memory
 from demheat.scene import WALLS, Layer, Scene
 from demheat.scene.inputs import finite
 from references.fem.films import Surface
@@ -22,6 +23,8 @@ EDGES = 32
 MOST_CELLS = 2_000_000
 # Coordinates of layers closer than this, of the box, are one plane.
 SAME = 1e-10
+# Least bytes of an image's brick: rows of a matrix and of its multigrid.
+BYTES = 1000
 # Points of a moving source per edge.
 RESOLVE = 6
 CORNERS = tuple(product((0, 1), repeat=3))
@@ -59,7 +62,16 @@ class Bricks:
         """Flux density at (n, 3) points in metres, (n, 3) float array, W/m2; on a face that of one side."""
         nodes, local, widths = self._local(points)
         gradient = np.einsum("cp,cpx->px", self.temperature[nodes], _slopes(local, widths))
-        return -self.scene.conductivities[self.phase[self._bricks(points)], None] * gradient
+        return -self.conductivity_of(self._bricks(points))[:, None] * gradient
+
+    def conductivity_of(self, bricks):
+        """Conductivity of bricks by their indices along each axis, (p,) float array, W/(m K).
+
+        Parameters
+        ----------
+        bricks : three (p,) int arrays
+        """
+        return self.scene.conductivities[self.phase[bricks]]
 
     def spread(self, points, amounts):
         """Share amounts at points among the nodes by their shape functions.
@@ -126,9 +138,9 @@ def hexahedra(scene, size=None) -> Space:
     Parameters
     ----------
     scene : Scene
-        A box, with layers at most: grid planes lie on their surfaces.
+        A box, with layers at most: grid planes lie on their surfaces; or an image, to whose voxels the bricks belong.
     size : float, m, optional
-        Longest edge. Default: the cube root of the volume over 32.
+        Longest edge. Default: the cube root of the volume over 32, or the voxel.
 
     Returns
     -------
@@ -139,27 +151,25 @@ def hexahedra(scene, size=None) -> Space:
     ValueError
         If the size is not as described or asks for more than 2e6 bricks.
     NotImplementedError
-        If the body is not a box of layers.
+        If the body is not a box of layers, nor an image.
     """
     what = "hexahedra follow boxes of layers only; use tetrahedra"
-    scene.require(what, domain="box", shapes=(Layer,), takes=("exchange",))
-    grid = tuple(_grid(scene, axis, checked_size(scene, size)) for axis in range(3))
-    centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
-    phase = scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])
+    scene.require(what, domain="box", shapes=(Layer,), takes=("exchange", "image"))
+    grid, phase = bricks(scene, size)
     widths = [np.diff(x) for x in grid]
     materials = scene.conductivities, capacities(scene)
-    stiffness, mass = _matrices(widths, *(values[phase] for values in materials))
+    conducted, mass = stiffness(widths, materials[0][phase]), _mass(widths, materials[1][phase])
     view = partial(Bricks, scene, grid, phase)
-    lumped = [(np.append(w, 0) + np.append(0, w)) / 2 for w in widths]
-    points = np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
+    lumped = lumps(grid)
+    points = nodes_of(grid)
     return Space(
         points=points,
         mass=mass,
-        stiffness=stiffness,
+        stiffness=conducted,
         volumes=outer(*lumped).ravel(),
-        walls={name: _wall(name, grid, lumped) for name in WALLS},
+        walls={name: wall_nodes(name, grid) for name in WALLS},
         quadratic=lambda free: None,
-        separable=None if scene.inclusions else partial(separable, grid, *(v[0] for v in materials)),
+        separable=None if len(scene.materials) > 1 else partial(separable, grid, *(v[0] for v in materials)),
         spread=view(np.zeros(len(points))).spread,
         planes=lambda axis: grid[axis],
         spacing=min(w.min() for w in widths) / RESOLVE,
@@ -167,6 +177,60 @@ def hexahedra(scene, size=None) -> Space:
         fractions=np.bincount(phase.ravel(), outer(*widths).ravel(), len(scene.materials)) / scene.volume,
         stats={"elements": phase.size, "nodes": len(points), "size": float(max(w.max() for w in widths))},
     )
+
+
+def bricks(scene, size=None):
+    """Nodes along each axis of the bricks of a scene, and their phases.
+
+    Parameters
+    ----------
+    scene : Scene
+        A box of layers, or an image.
+    size : float, m, optional
+        Longest edge, see `hexahedra`.
+
+    Returns
+    -------
+    grid : three float arrays, m
+    phase : (a, b, c) int array
+    """
+    size = checked_size(scene, size)
+    if scene.image is not None:
+        return _of_image(scene.image, size)
+    grid = tuple(_grid(scene, axis, size) for axis in range(3))
+    centers = np.stack(np.meshgrid(*((x[1:] + x[:-1]) / 2 for x in grid), indexing="ij"), axis=-1)
+    return grid, scene.phase_at(centers.reshape(-1, 3)).reshape(centers.shape[:3])
+
+
+def _of_image(image, size):
+    """Equal parts of voxels."""
+    parts = [math.ceil(h / size * (1 - SAME)) for h in image.voxel]
+    counts = [n * m for n, m in zip(image.shape, parts, strict=True)]
+    check_memory("Scene.image, as bricks,", counts, BYTES * math.prod(counts), power=3)
+    phase = image.phase
+    for axis, m in enumerate(parts):
+        phase = np.repeat(phase, m, axis) if m > 1 else phase
+    return tuple(np.linspace(0.0, side, n + 1) for side, n in zip(image.size, counts, strict=True)), phase
+
+
+def nodes_of(grid) -> np.ndarray:
+    """Nodes of a grid, (n, 3) float array, m; the last axis runs fastest.
+
+    Parameters
+    ----------
+    grid : three float arrays, m
+    """
+    return np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def lumps(grid) -> list:
+    """Integrals of the shape functions along each axis of a grid, three float arrays, m.
+
+    Parameters
+    ----------
+    grid : three float arrays, m
+    """
+    return [(np.append(w, 0) + np.append(0, w)) / 2 for w in map(np.diff, grid)]
 
 
 def outer(a, b, c):
@@ -202,7 +266,7 @@ def checked_size(scene, size) -> float:
         If it is not a length or asks for more than 2e6 bricks.
     """
     if size is None:
-        return scene.volume ** (1 / 3) / EDGES
+        return scene.volume ** (1 / 3) / EDGES if scene.image is None else max(scene.image.voxel)
     finite("size", size, "a finite number > 0 m", lambda v: v > 0)
     if math.prod(math.ceil(length / size * (1 - SAME)) for length in scene.size) > MOST_CELLS:
         least = (scene.volume / MOST_CELLS) ** (1 / 3)
@@ -224,40 +288,65 @@ def _grid(scene, axis, size):
     return np.concatenate([*parts, [length]])
 
 
-def _matrices(widths, conductivity, capacity):
-    """Stiffness, W/K, and consistent mass, J/K, of a grid as CSR matrices."""
-    shape = np.array(conductivity.shape) + 1
+def stiffness(widths, conductivity) -> csr_matrix:
+    """Stiffness of the nodes of a grid, W/K.
+
+    Parameters
+    ----------
+    widths : three float arrays, m
+        Of the bricks along each axis.
+    conductivity : (a, b, c) float array, W/(m K)
+    """
+    volume, unit = outer(*widths), [np.ones(len(w)) for w in widths]
+    lengths = [outer(*(widths[i] if i == a else unit[i] for i in range(3))) for a in range(3)]
+
+    def between(p, q):
+        m, k = _of_axes(MASS, p, q), _of_axes(STIFFNESS, p, q)
+        return conductivity * sum(k[a] * m[a - 1] * m[a - 2] * volume / lengths[a] ** 2 for a in range(3))
+
+    return _assembled(conductivity.shape, between)
+
+
+def _mass(widths, capacity):
+    """Consistent mass of the nodes of a grid, J/K."""
+    volume = outer(*widths)
+
+    def between(p, q):
+        m = _of_axes(MASS, p, q)
+        return capacity * volume * m[0] * m[1] * m[2]
+
+    return _assembled(capacity.shape, between)
+
+
+def _of_axes(matrix, p, q):
+    return [matrix[a, b] for a, b in zip(p, q, strict=True)]
+
+
+def _assembled(counts, between):
+    """CSR matrix of the nodes by what stands between two corners of each brick."""
+    shape = np.array(counts) + 1
     strides = np.array([shape[1] * shape[2], shape[2], 1])
-    unit = [np.ones(len(w)) for w in widths]
-    stiffness, mass = {}, {}
+    parts = {}
     for p, q in product(CORNERS, repeat=2):
-        m = [MASS[a, b] for a, b in zip(p, q, strict=True)]
-        k = [STIFFNESS[a, b] for a, b in zip(p, q, strict=True)]
-        volume = outer(*widths)
-        flow = sum(
-            k[a]
-            * m[a - 1]
-            * m[a - 2]
-            * volume
-            / outer(*(w if i == a else u for i, (w, u) in enumerate(zip(widths, unit, strict=True)))) ** 2
-            for a in range(3)
-        )
         offset = int(strides @ (np.array(q) - p))
         # A diagonal matrix of scipy keeps each entry in the place of its column.
-        columns = tuple(slice(c, c + n) for c, n in zip(q, conductivity.shape, strict=True))
-        for parts, block in ((stiffness, conductivity * flow), (mass, capacity * volume * m[0] * m[1] * m[2])):
-            parts.setdefault(offset, np.zeros(shape))[columns] += block
+        columns = tuple(slice(c, c + n) for c, n in zip(q, counts, strict=True))
+        parts.setdefault(offset, np.zeros(shape))[columns] += between(p, q)
     count = int(np.prod(shape))
-    return tuple(
-        dia_matrix((np.array([d.ravel() for d in parts.values()]), list(parts)), shape=(count, count)).tocsr()
-        for parts in (stiffness, mass)
-    )
+    return dia_matrix((np.array([d.ravel() for d in parts.values()]), list(parts)), shape=(count, count)).tocsr()
 
 
-def _wall(name, grid, lumped):
-    """A face of the box on the nodes."""
-    axis, ends = "xyz".index(name[0]), [w.copy() for w in lumped]
-    ends[axis] = np.zeros(len(lumped[axis]))
+def wall_nodes(name, grid) -> WallNodes:
+    """A face of the box on the nodes.
+
+    Parameters
+    ----------
+    name : str
+        Of the wall.
+    grid : three float arrays, m
+    """
+    axis, ends = "xyz".index(name[0]), lumps(grid)
+    ends[axis] = np.zeros(len(grid[axis]))
     ends[axis][0 if name[1] == "-" else -1] = 1.0
     weights = outer(*ends).ravel()
     return WallNodes(np.flatnonzero(weights), weights, partial(_face, name, grid))

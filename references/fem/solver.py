@@ -10,10 +10,11 @@ import numpy as np
 from demheat.field import Field
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
-from demheat.scene.inputs import finite
+from demheat.scene.inputs import finite, whole
 from demheat.scene.narrows import narrows
 from demheat.tensor import axis_loads
 from references.fem.estimate import estimated
+from references.fem.image import solved_image
 from references.fem.lookup import NodalField
 from references.fem.system import solve_loads
 from references.mesh import make, split
@@ -37,7 +38,8 @@ def solve(
     ----------
     scene : Scene
         Spheres and layers, whose surfaces may resist, walls with temperatures, fluxes, convection and radiation or a
-        periodic cell; conductivity 0 is a pore.
+        periodic cell; conductivity 0 is a pore. Or an image, whose voxels are the elements, trilinear hexahedra;
+        `order` and `curved` are of tetrahedra, and `size` below a voxel splits voxels.
     order : {1, 2}
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
@@ -119,12 +121,17 @@ def _solved(scenes, order, size, curved, tolerance):
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
         text = "beside interfaces with a resistance finite elements take no pores"
-        takes = ("resistance", "exchange", "anisotropy", "dependence")
+        takes = ("resistance", "exchange", "anisotropy", "dependence", "image")
         scene.require(text, steady=True, pores=not scene.resistances.any(), takes=takes)
+        if scene.image is not None:
+            scene.require("bricks of an image know one number for each phase", takes=("exchange", "image"))
         if scene.radiates:
-            scene.require("finite elements iterate for it or for walls that radiate", takes=takes[:3])
-        if order == 1 and scene.domain == "box":
+            scene.require("finite elements iterate for it or for walls that radiate", takes=(*takes[:3], "image"))
+        if scene.image is None and order == 1 and scene.domain == "box":
             _warn_of_gaps(scene, checked_size(scene, size, order))
+    if scenes[0].image is not None:
+        whole("order", order, "1 or 2", lambda v: v in (1, 2))
+        return one_blas_thread()(solved_image)(scenes, size, tolerance)
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
 
 

@@ -60,7 +60,7 @@ def evolve(
     size : float, m, optional
         Longest wanted edge. Default: the cube root of the body's volume over 16 (order 2), 30 (order 1), 32 (bricks).
     elements : {"tetrahedra", "hexahedra"}
-        The latter are the bricks of a grid, for boxes with layers at most.
+        The latter are the bricks of a grid, for boxes with layers at most, or the voxels of an image.
     step : float, s, optional
         Longest time step; steps are then equal between two asked times. Default: by the estimated error, which sees
         loads only at the times it tries: a short pulse after long rest needs an asked time at its start.
@@ -100,7 +100,7 @@ def evolve(
     """
     check_scene(scene)
     text = "heat would not move in pores; transients do without"
-    scene.require(text, steady=False, pores=False, takes=("resistance", "exchange"))
+    scene.require(text, steady=False, pores=False, takes=("resistance", "exchange", "image"))
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -186,6 +186,8 @@ def _field(scene, problem, state, initial, stats, estimator):
 
 
 def _space(scene, elements, order, size, coarser):
+    if elements == "hexahedra" and scene.image is not None:
+        return hexahedra(scene, size)
     if elements == "hexahedra":
         return hexahedra(scene, coarser * (scene.volume ** (1 / 3) / BRICKS if size is None else size))
     if size is None:

@@ -45,8 +45,8 @@ def automatic(scheme, scene, shape) -> str:
     """The rule with the smallest measured error for the worst of the scene's interfaces.
 
     Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
-    voxels in a way not known here has the phase of their centres only. A side of fewer than `LEAST_LINKED` voxels has
-    no links.
+    voxels in a way not known here has the phase of their centres only, and an image cuts none. A side of fewer than
+    `LEAST_LINKED` voxels has no links.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def automatic(scheme, scene, shape) -> str:
     shape : (3,) tuple of int
         Voxels along each axis.
     """
-    if not (_registered(paint, scene) and _registered(cut, scene)):
+    if scene.image is not None or not (_registered(paint, scene) and _registered(cut, scene)):
         return "plain"
     if scheme == "eyre-milton":
         return "laminate"

@@ -35,6 +35,8 @@ TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
 BYTES = {"cg": 30, "eyre-milton": 48}
 # The same of a voxel's own tensor, in a scene that has one: six numbers and its place, twice while they are sorted.
 OWN = 70
+# Voxels along the longest side, where an image does not say.
+USUAL = 128
 # Knobs that a field's `stats` leaves out.
 UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
@@ -43,7 +45,7 @@ SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 def solve(
     scene: Scene,
     *,
-    voxels: int | Sequence[int] = 128,
+    voxels: int | Sequence[int] | None = None,
     scheme: str = "cg",
     rule: str = "auto",
     precision: str = "float64",
@@ -59,10 +61,11 @@ def solve(
     Parameters
     ----------
     scene : Scene
-    voxels : int or (3,) sequence of int
-        Voxels along the longest side, the others as nearly cubic as they can be; or along each side.  With laminates
-        the error goes as a h + c h^3 in the voxel's size h where spheres keep apart: a fifth of them by volume,
-        contrast 7.7, 85 voxels across: 0.02 %, and below 0.01 % extrapolated from half of that (`richardson`).
+    voxels : int or (3,) sequence of int, optional
+        Voxels along the longest side, the others as nearly cubic as they can be; or along each side. Default: 128, or
+        the voxels of an image, which are all whole: to it a laminate is plain, and links have halves of both.  With
+        laminates the error goes as a h + c h^3 in the voxel's size h where spheres keep apart: a fifth of them by
+        volume, contrast 7.7, 85 voxels across: 0.02 %, and below 0.01 % extrapolated from half of that (`richardson`).
     scheme : {"cg", "eyre-milton"}
         Conjugate gradients on one temperature per voxel (`cg`), or Eyre and Milton's iteration on the flux and
         the gradient with the continuous Green operator (`eyre_milton`).
@@ -116,7 +119,7 @@ def solve(
 def solve_axes(
     scene: Scene,
     *,
-    voxels: int | Sequence[int] = 128,
+    voxels: int | Sequence[int] | None = None,
     scheme: str = "cg",
     rule: str = "auto",
     precision: str = "float64",
@@ -154,11 +157,13 @@ def solve_axes(
 
 def _solved(scenes, voxels, knobs):
     """The Field of each of some scenes that differ in their loads only."""
-    grid, orders = grid_shape(scenes[0], voxels), [_order(scene) for scene in scenes]
+    grid, orders = grid_shape(scenes[0], voxels, USUAL), [_order(scene) for scene in scenes]
     boxes = [turned_scene(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
     if knobs.rule == "auto":
         knobs = knobs._replace(rule=automatic(knobs.scheme, scenes[0], grid))
+    if scenes[0].image is not None:
+        knobs = _of_image(scenes[0], knobs)
     _check_tensors(scenes[0], knobs.scheme, knobs.rule)
     for box, shape in zip(boxes, shapes, strict=True):
         _check_grid(box, knobs.rule, shape)
@@ -166,7 +171,7 @@ def _solved(scenes, voxels, knobs):
     bytes_each = BYTES[knobs.scheme] + 8 * (len(scenes) - 1) * {"cg": 1, "eyre-milton": 3}[knobs.scheme]
     bytes_each += OWN if scenes[0].anisotropic else 0
     needed = bytes_each * math.prod(grid) * np.dtype(PRECISIONS[knobs.precision]).itemsize / 8
-    check_memory("voxels", voxels, needed, power=3)
+    check_memory("voxels", voxels or grid, needed, power=3)
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
     if scenes[0].inclusions:
@@ -246,8 +251,16 @@ def _check_load(scene):
         "homogeneous problem is inverted by sines and cosines here",
         steady=True,
         walls="one isothermal pair",
-        takes=("anisotropy",),
+        takes=("anisotropy", "image"),
     )
+
+
+def _of_image(scene, knobs):
+    """Knobs of an image, none of whose voxels is cut."""
+    if knobs.rule != "links":
+        return knobs._replace(rule="plain")
+    scene.require("links have a harmonic mean; use rule 'plain'", pores=False, takes=("image",))
+    return knobs
 
 
 def _check_grid(box, rule, shape):
@@ -276,9 +289,10 @@ def _check_scheme(box, scheme, rule):
             "Eyre and Milton's scheme converges like the square root of the contrast, which is infinite; use scheme "
             "'cg'",
             pores=False,
+            takes=("image",),
         )
     if rule == "links":
-        box.require("links have a harmonic mean; use rule 'plain'", pores=False)
+        box.require("links have a harmonic mean; use rule 'plain'", pores=False, takes=("image",))
 
 
 def _order(scene):

@@ -48,7 +48,7 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
     found = []
     with stage("links") as done:
         for axis in range(3):
-            found.append(_resistances(scene, shape, axis, resistivity[0]))
+            found.append(_resistances(scene, shape, axis, resistivity))
             for group in parts:
                 _cut_group(group, found[axis], axis, change, np.array(scene.size) / shape)
                 done(axis / 3)
@@ -57,12 +57,23 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
 
 
 def _resistances(scene, shape, axis, resistivity):
-    """Those of all links along one axis in the matrix alone."""
+    """Those of all links along one axis in the matrix alone, or in an image."""
     counts = np.array(shape)
     counts[axis] += 1
-    resistance = np.full(counts, resistivity)
+    if scene.image is not None:
+        return _halves(resistivity[scene.image.phase], axis)
+    resistance = np.full(counts, resistivity[0])
     # Half links at both ends, where a face of the box cuts them.
     np.moveaxis(resistance, axis, 2)[:, :, [0, -1]] *= 0.5
+    return resistance
+
+
+def _halves(resistivity, axis):
+    """Half links of the voxels on either side, one after the other."""
+    resistance = np.zeros([n + (a == axis) for a, n in enumerate(resistivity.shape)])
+    view, half = np.moveaxis(resistance, axis, 0), 0.5 * np.moveaxis(resistivity, axis, 0)
+    view[:-1] += half
+    view[1:] += half
     return resistance
 
 

@@ -101,21 +101,32 @@ class Cuts(NamedTuple):
     phase: np.ndarray
 
 
-def grid_shape(scene: Scene, voxels) -> tuple[int, int, int]:
+def grid_shape(scene: Scene, voxels, usual: int | None = None) -> tuple[int, int, int]:
     """Voxels along each side.
 
     Parameters
     ----------
     scene : Scene
-    voxels : int or (3,) sequence of int
+    voxels : int, (3,) sequence of int, or None
         An int counts voxels along the longest side; the other sides get the whole number that makes the voxels as
-        nearly cubic as they can be.
+        nearly cubic as they can be. None: the usual number, or an image's own voxels, which it must be content with.
+    usual : int, optional
 
     Raises
     ------
     ValueError
-        If `voxels` is neither, a count is below 1, or the grid has more than 2^31 - 1 voxels.
+        If `voxels` is neither, a count is below 1, the grid has more than 2^31 - 1 voxels, or an image has others.
     """
+    if scene.image is not None:
+        shape = scene.image.shape
+        if voxels is not None and _counted(scene, voxels) != shape:
+            raise ValueError(f"voxels = {voxels!r}: must be those of the image, {shape}, or be left out")
+        voxels = shape
+    return _counted(scene, usual if voxels is None else voxels)
+
+
+def _counted(scene, voxels):
+    """Voxels along each side, as asked for."""
     message = f"voxels = {voxels!r}: must be a whole number >= 1, or three of them"
     try:
         counts = np.array(voxels if np.ndim(voxels) else [voxels])
@@ -141,7 +152,7 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     ----------
     scene : Scene
     shape : (3,) tuple of int
-        Voxels along each side.
+        Voxels along each side; those of the image, if it is one.
     laminate : bool
         Cut voxels get a laminate's tensor; else every voxel belongs wholly to the phase of its centre.
 
@@ -155,10 +166,15 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     spacing = np.array(scene.size) / shape
     if len(scene.inclusions) >= MOST_PHASES:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
+    if scene.image is not None:
+        # All of them whole.
+        phase = np.ascontiguousarray(scene.image.phase, dtype=np.uint16)
+        none = np.empty(0, np.int64), np.empty((0, 6))
+        return Voxels(spacing, phase, scene.mean_conductivities, *none, scene.image.fractions, _tensors(scene))
     phase = np.zeros(shape, dtype=np.uint16)
     cuts = _paint(scene, phase, spacing, laminate)
     conductivity = scene.mean_conductivities
-    tensors = packed(scene.tensors) if scene.anisotropic else None
+    tensors = _tensors(scene)
     count = kernels.count(phase.ravel(), len(conductivity))
     if not laminate:
         uncut = np.empty(0, np.int64), np.empty((0, 6))
@@ -174,6 +190,10 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     else:
         own = _laminate(part, conductivity, moment)
     return Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
+
+
+def _tensors(scene):
+    return packed(scene.tensors) if scene.anisotropic else None
 
 
 def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:

@@ -8,11 +8,11 @@ import os
 import stat
 from pathlib import Path
 
-from demheat.limits import GIB, free_memory
+from demheat.limits import ALWAYS, check_free
 
-# What is packed may expand to so many times its length, and to so many bytes in any case. Rows of a packing shrink to a
+# What is packed may expand to so many times its length, and to `ALWAYS` in any case. Rows of a packing shrink to a
 # third or so, those of a dump with columns of zeros to a tenth; what was made to be large, to a thousandth.
-MOST_EXPANSION, ALWAYS = 100, 2**26
+MOST_EXPANSION = 100
 
 
 def length_of(path) -> int:
@@ -31,23 +31,6 @@ def length_of(path) -> int:
         raise ValueError(f"path = {str(path)!r}: must be a regular file, no folder, device or pipe")
     check_free(path, status.st_size)
     return status.st_size
-
-
-def check_free(path, needed) -> None:
-    """Raise ValueError if what is read takes more memory than is free.
-
-    Parameters
-    ----------
-    path : path
-        For the message.
-    needed : float
-        Bytes.
-    """
-    if needed > ALWAYS and needed > (free := free_memory()):
-        raise ValueError(
-            f"{path}: takes {needed / GIB:.3g} GiB of memory or more, and {free / GIB:.3g} GiB are free; must be a "
-            "smaller file here"
-        )
 
 
 def most_of(length: int) -> int:

@@ -9,8 +9,9 @@ import zlib
 
 import numpy as np
 
+from demheat.limits import ALWAYS, check_free
 from demheat.packing.io.found import Found
-from demheat.packing.io.source import ALWAYS, check_free, length_of, most_of
+from demheat.packing.io.source import length_of, most_of
 from demheat.packing.io.text import broken
 from demheat.scene.bodies import ROUND_AXES
 

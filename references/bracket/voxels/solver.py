@@ -12,14 +12,27 @@ from demheat.progress import stage
 from demheat.scene import Scene
 from demheat.scene.symmetry import mirrors
 from references.bracket.solver import Bracket, check
-from references.bracket.voxels.image import BYTES, Load, bracketed, checked_effort, scaled_load
+from references.bracket.voxels.image import (
+    BYTES,
+    Load,
+    bracketed,
+    checked_effort,
+    conducting,
+    resisting,
+    scaled_load,
+)
 from references.bracket.voxels.painting import GRAIN, mirrored, painted
 from references.bracket.voxels.voxel_kernels import Cells
 from references.voxels.paint import grid_shape
 
+# Voxels along the longest side, where an image does not say.
+USUAL = 64
+PAIR = "bounds on voxels know one pair of isothermal walls"
+PORES = "Fourier modes of a balanced flux fill pores; references.bracket.solve takes them"
+
 
 def solve(
-    scene: Scene, *, voxels: int | Sequence[int] = 64, tolerance: float = 1e-6, threads: int | None = 2
+    scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
 ) -> Bracket:
     """Bound the conductivity of a scene along its load from both sides, on voxels.
 
@@ -29,10 +42,12 @@ def solve(
     Parameters
     ----------
     scene : Scene
-        Spheres and layers, all of some conductivity, in a periodic cell, or between two opposite isothermal walls; a
-        box without mirror planes of its own is doubled by its mirror images, along each axis that lacks one.
-    voxels : int or (3,) sequence of int
-        Along the longest side of the scene, the others as nearly cubic as they can be; or along each side.
+        Spheres and layers, or an image, all of some conductivity, in a periodic cell, or between two opposite
+        isothermal walls; a box without mirror planes of its own is doubled by its mirror images, along each axis that
+        lacks one.
+    voxels : int or (3,) sequence of int, optional
+        Along the longest side of the scene, the others as nearly cubic as they can be; or along each side. Default: 64,
+        or the voxels of an image.
     tolerance : float
         Of the energies at which iterations stop; it costs width, never certainty.
     threads : int or None
@@ -83,14 +98,17 @@ def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Ce
     slack : float
         Part of the bounds by which what counts as rounding may move them.
     """
-    check(scene, tolerance)
-    scene.require("bounds on voxels know one pair of isothermal walls", walls="one isothermal pair")
-    scene.require("Fourier modes of a balanced flux fill pores; references.bracket.solve takes them", pores=False)
-    factors = _factors(scene)
-    shape = tuple(n * factor for n, factor in zip(grid_shape(scene, voxels), factors, strict=True))
-    check_memory("voxels", voxels, bytes_each * math.prod(shape), power=3)
+    check(scene, tolerance, takes=("image",))
+    scene.require(PAIR, walls="one isothermal pair", takes=("image",))
+    scene.require(PORES, pores=False, takes=("image",))
+    factors, own = _factors(scene), grid_shape(scene, voxels, USUAL)
+    shape = tuple(n * factor for n, factor in zip(own, factors, strict=True))
+    check_memory("voxels", voxels or own, bytes_each * math.prod(shape), power=3)
     spacing, conductivity = np.array(scene.size) * factors / shape, scene.conductivities
     load = scaled_load(conductivity, shape, spacing, scene.gradient if scene.periodic else np.eye(3)[scene.axis])
+    if scene.image is not None:
+        values = (conductivity / load.unit)[_mirrored(scene.image.phase, factors)]
+        return conducting(values), resisting(values), load, 0.0
     images = mirrored(scene.images(), scene.size, [factor == 2 for factor in factors])
     with stage("voxels"):
         cells = painted(conductivity / load.unit, images, shape, spacing)
@@ -103,4 +121,14 @@ def _factors(scene):
     """1, or 2 where mirror images are needed to make a periodic cell of the box, along each axis."""
     if scene.periodic:
         return (1, 1, 1)
+    if scene.image is not None:
+        phase = scene.image.phase
+        return tuple(1 if np.array_equal(phase, np.flip(phase, axis)) else 2 for axis in range(3))
     return tuple(2 if plane is None else 1 for plane in mirrors(scene))
+
+
+def _mirrored(phase, factors):
+    """Phases of an image, and of its mirror image beyond it along axes with a factor of 2."""
+    for axis in (axis for axis, factor in enumerate(factors) if factor == 2):
+        phase = np.concatenate([phase, np.flip(phase, axis)], axis)
+    return phase

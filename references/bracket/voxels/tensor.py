@@ -46,7 +46,7 @@ def bounds_tensor(
 
 
 def solve_tensor(
-    scene: Scene, *, voxels: int | Sequence[int] = 64, tolerance: float = 1e-6, threads: int | None = 2
+    scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
 ) -> Tensor:
     """Bound the conductivity tensor of a periodic cell on voxels.
 

@@ -1,0 +1,205 @@
+"""Images as bodies: an array of labels, the edges of a voxel, and a material for each label."""
+
+from __future__ import annotations
+
+import hashlib
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from numbers import Integral
+
+import numpy as np
+
+from demheat.scene.frozen import ReadOnly, read_only
+from demheat.scene.inputs import LEAST, MOST, moderate, vector
+from demheat.scene.material import Material, check_material
+
+# Phases are numbered in 16 bits, as on the grids of methods; voxels of one slab, which takes 8 bytes for each.
+MOST_LABELS = 2**16
+SLAB = 2**22
+TYPES = (np.uint8, np.int8, np.uint16, np.int16, np.uint32, np.int32, np.int64)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Image:
+    """A body of voxels, each wholly of the material of its label: `Scene.of_image(image, gradient=...)`.
+
+    Parameters
+    ----------
+    labels : (nx, ny, nz) array of int or bool
+        Read slab by slab, so it may be mapped from a file; kept in the smallest type of integers that holds it.
+    voxel : (3,) sequence of float, or float, m
+        Edges of a voxel along x, y and z.
+    materials : mapping of int to Material
+        Of every label that there is; others are left out.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described; the message names it, its value and what would be valid.
+    """
+
+    labels: np.ndarray
+    voxel: tuple[float, float, float]
+    materials: Mapping[int, Material]
+
+    def __post_init__(self):
+        labels = _checked_labels(self.labels)
+        object.__setattr__(self, "voxel", _checked_voxel(self.voxel))
+        if not all(map(moderate, self.size)):
+            raise ValueError(f"Image.voxel = {self.voxel!r}: sides of the image must be from {LEAST:g} to {MOST:g} m")
+        found = sorted(set().union(*(_occurring(labels[part]) for part in slabs(labels.shape))))
+        object.__setattr__(self, "materials", ReadOnly(_checked_materials(self.materials, found)))
+        kept = np.empty(labels.shape, _smallest(found[0], found[-1]))
+        for part in slabs(labels.shape):
+            kept[part] = labels[part]
+        object.__setattr__(self, "labels", read_only(kept))
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along each side."""
+        return tuple(map(int, np.shape(self.labels)))
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Sides of the body, m."""
+        return tuple(n * h for n, h in zip(self.shape, self.voxel, strict=True))
+
+    @property
+    def phases(self) -> tuple[Material, ...]:
+        """Materials in ascending order of their labels: index = phase number."""
+        return tuple(self.materials.values())
+
+    @cached_property
+    def phase(self) -> np.ndarray:
+        """Phase number of each voxel, (nx, ny, nz) uint8 or uint16 array that cannot be written to."""
+        known = list(self.materials)
+        if known == list(range(len(known))):
+            return read_only(self.labels)
+        phase = np.empty(self.shape, np.min_scalar_type(len(known) - 1))
+        for part in slabs(self.shape):
+            phase[part] = np.searchsorted(known, self.labels[part])
+        return read_only(phase)
+
+    @cached_property
+    def fractions(self) -> np.ndarray:
+        """Volume fraction of each phase, (number of phases,) float array."""
+        count = sum(np.bincount(self.phase[part].ravel(), minlength=len(self.phases)) for part in slabs(self.shape))
+        return read_only(count / math.prod(self.shape))
+
+    def phase_at(self, points: np.ndarray, *, periodic: bool) -> np.ndarray:
+        """Phase number at points, those of the nearest voxel where they lie beyond the body.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        periodic : bool
+            The image is repeated all round.
+
+        Returns
+        -------
+        (n,) int array
+        """
+        index = np.floor(points / self.voxel)
+        last = np.array(self.shape)
+        index = index % last if periodic else np.clip(index, 0, last - 1)
+        return self.phase[tuple(index.astype(np.int64).T)].astype(np.int32)
+
+    def turned(self, order: Sequence[int]) -> Image:
+        """The same image with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+        voxel = tuple(self.voxel[axis] for axis in order)
+        materials = {label: material.turned(order) for label, material in self.materials.items()}
+        return replace(self, labels=self.labels.transpose(order), voxel=voxel, materials=materials)
+
+    @cached_property
+    def digest(self) -> str:
+        """Text that tells the labels and their shape from others'."""
+        found = hashlib.sha256(repr((self.shape, self.labels.dtype.str)).encode())
+        for part in slabs(self.shape):
+            found.update(np.ascontiguousarray(self.labels[part]).tobytes())
+        return found.hexdigest()
+
+    def __eq__(self, other):
+        if not isinstance(other, Image):
+            return NotImplemented
+        alike = self.voxel == other.voxel and self.materials == other.materials
+        return alike and np.array_equal(self.labels, other.labels)
+
+    def __hash__(self):
+        return hash((self.shape, self.voxel))
+
+    def __repr__(self):
+        sides = " x ".join(map(str, self.shape))
+        return f"Image({sides} voxels of {self.voxel} m, labels {', '.join(map(str, self.materials))})"
+
+
+def slabs(shape: Sequence[int]) -> Iterator[slice]:
+    """Slices along the first axis of an array, of some millions of elements each.
+
+    Parameters
+    ----------
+    shape : (3,) sequence of int
+    """
+    thick = max(1, SLAB // max(1, math.prod(shape[1:])))
+    return (slice(start, start + thick) for start in range(0, shape[0], thick))
+
+
+def _smallest(low, high):
+    """The smallest type of integers between two."""
+    return next(kind for kind in TYPES if np.iinfo(kind).min <= low and high <= np.iinfo(kind).max)
+
+
+def _checked_labels(labels):
+    """An array of labels as it is given, or ValueError."""
+    try:
+        labels = labels if isinstance(labels, np.ndarray) else np.asarray(labels)
+    except ValueError:
+        raise ValueError("Image.labels: rows of unlike lengths; must be an (nx, ny, nz) array") from None
+    if labels.ndim != 3 or not labels.size:
+        raise ValueError(f"Image.labels of shape {labels.shape}: must be (nx, ny, nz), of one voxel or more")
+    if np.ma.is_masked(labels) or labels.dtype.kind not in "iub":
+        kind = "masked" if np.ma.is_masked(labels) else labels.dtype
+        raise ValueError(
+            f"Image.labels of type {kind}: must be whole numbers, one for each material; grey values ask for a "
+            "threshold first, such as labels = array > 0.5"
+        )
+    return labels
+
+
+def _checked_voxel(voxel):
+    given = (voxel,) * 3 if np.ndim(voxel) == 0 else voxel
+    edges = vector("Image.voxel", given)
+    if not min(edges) > 0:
+        raise ValueError(f"Image.voxel = {voxel!r}: all edges must be > 0 m")
+    return edges
+
+
+def _checked_materials(materials, found):
+    """Materials of the labels that there are, in ascending order."""
+    if not isinstance(materials, Mapping):
+        raise ValueError(f"Image.materials = {materials!r}: must map each label to a Material")
+    for label, material in materials.items():
+        if not isinstance(label, Integral):
+            raise ValueError(f"Image.materials: label {label!r} must be a whole number")
+        check_material(f"Image.materials[{label}]", material)
+    if len(found) > MOST_LABELS:
+        raise ValueError(f"Image.labels: {len(found)} different ones; must be at most {MOST_LABELS}")
+    lacking = [label for label in found if label not in materials]
+    if lacking:
+        more = f" and {len(lacking) - 8} more" if len(lacking) > 8 else ""
+        raise ValueError(
+            f"Image.materials: none for labels {', '.join(map(str, lacking[:8]))}{more} of the image; must have one "
+            "for each"
+        )
+    return {label: materials[label] for label in found}
+
+
+def _occurring(slab):
+    """Labels of a slab, a set of int."""
+    slab = slab.astype(np.int64)
+    low = int(slab.min())
+    if int(slab.max()) - low < MOST_LABELS:
+        # Without sorting millions.
+        return set((np.flatnonzero(np.bincount((slab - low).ravel())) + low).tolist())
+    return set(np.unique(slab).tolist())
