@@ -60,9 +60,7 @@ class Contacts(NamedTuple):
         # What presses pushes the first grain away from the second.
         pressing = -np.einsum("ij,ij->i", self.force, branch) / distance
         if len(pressing) and not np.any(pressing > 0):
-            raise ValueError(
-                "Contacts.force: presses no two grains together; must be the force on the first of each pair"
-            )
+            raise ValueError("Contacts.force: presses no two grains together; must be that on the first of each pair")
         radii = packing.radii[self.first], packing.radii[self.second]
         return self._replace(radius=law.pressed(pressing, *radii))
 
