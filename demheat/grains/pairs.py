@@ -48,12 +48,19 @@ class Contacts(NamedTuple):
         packing : Packing
         law : Hertz
             With a modulus.
+
+        Raises
+        ------
+        ValueError
+            If there are no forces, or all of them pull, as those on the other grain do; or the law has no modulus.
         """
         if self.force is None:
             raise ValueError("Contacts.force = None: contact radii by forces need forces, (m, 3) in newtons")
         branch, distance, _ = branches_of(packing, self.first, self.second)
         # What presses pushes the first grain away from the second.
         pressing = -np.einsum("ij,ij->i", self.force, branch) / distance
+        if len(pressing) and not np.any(pressing > 0):
+            raise ValueError("Contacts.force: presses no two grains together; must be that on the first of each pair")
         radii = packing.radii[self.first], packing.radii[self.second]
         return self._replace(radius=law.pressed(pressing, *radii))
 

@@ -138,7 +138,13 @@ def test_contacts_of_a_list():
     push = -force * branch / (2 * RADIUS)
     forced = Contacts(pairs.first, pairs.second, force=push).pressed(bed, Hertz(young=1e9))
     assert_allclose(forced.radius, radius, rtol=1e-9)
-    assert np.all(Contacts(pairs.first, pairs.second, force=-push).pressed(bed, Hertz(young=1e9)).radius == 0)
+    some = np.where(np.arange(len(push))[:, None] < 3, -push, push)
+    pulled = Contacts(pairs.first, pairs.second, force=some).pressed(bed, Hertz(young=1e9))
+    assert np.array_equal(pulled.radius == 0, np.arange(len(push)) < 3)
+    with pytest.raises(ValueError, match="presses no two grains together"):
+        Contacts(pairs.first, pairs.second, force=-push).pressed(bed, Hertz(young=1e9))
+    with pytest.raises(ValueError, match="Contacts.force = None"):
+        swapped.pressed(bed, Hertz(young=1e9))
     assert_allclose(forced.scaled(1e3).radius, 1e3 * radius, rtol=1e-9)
 
 
