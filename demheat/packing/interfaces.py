@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from demheat.packing import solids
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, Scene, Shape, Sphere
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Scene, Shape, Sphere
 from demheat.scene.shapes.base import TOUCH
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
@@ -216,6 +216,12 @@ def _(shape: Cylinder, scene):
 @surfaces.register
 def _(shape: Ellipsoid, scene):
     return [solids.SolidSurface(shape, scene, min(shape.semi_axes), solids.on_smooth, solids.by_volume)]
+
+
+@surfaces.register
+def _(shape: LevelSet, scene):
+    # Its own opposite side is not told: twins that would lie beyond it are none.
+    return [solids.SolidSurface(shape, scene, np.inf, solids.on_smooth, solids.by_volume)]
 
 
 @surfaces.register

@@ -4,7 +4,7 @@ from demheat.scene.bodies import ROUND_AXES, WALLS, domain_volume, wall_names
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
-from demheat.scene.shapes import Box, Cylinder, Ellipsoid, HalfSpace, Layer, Shape, Sphere
+from demheat.scene.shapes import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Shape, Sphere
 
 __all__ = [
     "ROUND_AXES",
@@ -17,6 +17,7 @@ __all__ = [
     "Flux",
     "HalfSpace",
     "Layer",
+    "LevelSet",
     "Material",
     "MovingCylinder",
     "Radiation",

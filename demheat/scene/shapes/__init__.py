@@ -6,6 +6,7 @@ from demheat.scene.shapes.cylinder import Cylinder
 from demheat.scene.shapes.ellipsoid import Ellipsoid
 from demheat.scene.shapes.half_space import HalfSpace
 from demheat.scene.shapes.layer import Layer
+from demheat.scene.shapes.level_set import LevelSet
 from demheat.scene.shapes.sphere import Sphere
 
-__all__ = ["Box", "Cylinder", "Ellipsoid", "HalfSpace", "Layer", "Shape", "Sphere"]
+__all__ = ["Box", "Cylinder", "Ellipsoid", "HalfSpace", "Layer", "LevelSet", "Shape", "Sphere"]

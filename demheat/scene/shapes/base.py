@@ -17,7 +17,7 @@ from demheat.scene.material import WITHIN, Material
 TOUCH = 1e-12
 # What a class derived from a finished shape must leave as it is.
 GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
-GEOMETRY |= {"images", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
+GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
 GEOMETRY |= {"sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
 
 
@@ -173,9 +173,19 @@ class Shape(ABC):
         for shift in product((0, -1, 1), repeat=3):
             sides = zip(shift, low, high, size, strict=True)
             if all(b + s * side > -TOUCH * side and a + s * side < (1 + TOUCH) * side for s, a, b, side in sides):
-                image = replace(self, center=tuple(c + s * side for c, s, side in zip(home, shift, size, strict=True)))
+                place = tuple(c + s * side for c, s, side in zip(home, shift, size, strict=True))
+                image = self.placed(place)
                 found += [image] if image.meets(size) else []
         return found
+
+    def placed(self, center: Sequence[float]) -> Shape:
+        """The same shape with its centre elsewhere.
+
+        Parameters
+        ----------
+        center : (3,) sequence of float, m
+        """
+        return replace(self, center=tuple(center))
 
     def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
         """A point of the box that lies inside, (3,) float array, m.

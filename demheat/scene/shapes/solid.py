@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -57,7 +56,7 @@ class Solid(Shape):
         for shift in product(*((0, -1, 1) if end else (0,) for end in ends)):
             place = home + np.array(shift) * size
             if np.all(place + half > -TOUCH * np.array(size)) and np.all(place - half < (1 + TOUCH) * np.array(size)):
-                image = replace(self, center=tuple(place.tolist()))
+                image = self.placed(place.tolist())
                 found += [image] if image.meets(size) else []
         return found
 
