@@ -28,8 +28,12 @@ from demheat.files.units import (
 from demheat.scene import (
     ROUND_AXES,
     WALLS,
+    Box,
     Convection,
+    Cylinder,
+    Ellipsoid,
     Flux,
+    HalfSpace,
     Layer,
     Material,
     MovingCylinder,
@@ -41,9 +45,31 @@ from demheat.scene import (
 
 AXES = ("x", "y", "z")
 MATERIAL = {"conductivity": CONDUCTIVITY, "density": DENSITY, "heat_capacity": HEAT_CAPACITY}
-# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags.
+# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags, matrices.
 SHAPES = {
     "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
+    "cylinder": (
+        Cylinder,
+        {
+            "center": (LENGTH, 3),
+            "radius": (LENGTH, 1),
+            "axis": (PLAIN, 3),
+            "length": (LENGTH, 1),
+            "resistance": (RESISTANCE, 1),
+        },
+    ),
+    "ellipsoid": (
+        Ellipsoid,
+        {"center": (LENGTH, 3), "semi_axes": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
+    ),
+    "box": (
+        Box,
+        {"center": (LENGTH, 3), "sides": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
+    ),
+    "half-space": (
+        HalfSpace,
+        {"point": (LENGTH, 3), "outward": (PLAIN, 3), "resistance": (RESISTANCE, 1)},
+    ),
     "layer": (
         Layer,
         {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
@@ -74,7 +100,7 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
     ("matrix", "materials", "inclusions", "walls", "sources", "domain", "solve", "accuracy"), PLAIN
 )
 # What may be left out.
-OPTIONAL = ("velocity", "clip", "resistance")
+OPTIONAL = ("velocity", "clip", "resistance", "length", "rotation")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
 
@@ -187,6 +213,8 @@ def _parts(table, key, kinds, materials):
         default = None if name in OPTIONAL else ...
         if what == "axis":
             values[name] = _axis(table, name)
+        elif what == "matrix":
+            values[name] = table.value(name, list, "three rows of three numbers", default)
         elif what == "flag":
             values[name] = table.value(name, bool, "true or false", default)
         else:

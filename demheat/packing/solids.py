@@ -140,7 +140,7 @@ def on_prism(shape, scene, points, normals):
     height = own @ axis
     count = 40 * len(own)
     turn = np.pi * (1 + np.sqrt(5.0)) * np.arange(count)
-    frame = shape._frame().T
+    frame = _across(axis)
     # Between the outermost rows: beyond them no point is nearer than those.
     where = height.min() + (np.arange(count) + 0.5) / count * np.ptp(height)
     out = np.outer(np.cos(turn), frame[0]) + np.outer(np.sin(turn), frame[1])
@@ -275,12 +275,17 @@ def _ordered(samples, areas):
 
 def _frame(axis, rng):
     """Two random directions across an axis, and the axis, as rows."""
-    axis = np.array(axis)
-    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    one /= np.linalg.norm(one)
-    other, angle = np.cross(axis, one), rng.uniform(0, 2 * np.pi)
+    angle = rng.uniform(0, 2 * np.pi)
+    one, other = _across(np.array(axis))
     first = np.cos(angle) * one + np.sin(angle) * other
     return np.stack([first, np.cross(axis, first), axis])
+
+
+def _across(axis):
+    """Two directions across an axis and each other, as rows."""
+    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    one /= np.linalg.norm(one)
+    return np.stack([one, np.cross(axis, one)])
 
 
 def _along(shape, scene):

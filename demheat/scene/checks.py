@@ -157,4 +157,3 @@ def check_reached(scene) -> None:
 def _beyond_round_wall(shape, scene):
     center, radius = shape.ball()
     return bool(from_middle(center, scene.domain, scene.size) >= round_radius(scene.domain, scene.size) + radius)
-

@@ -165,9 +165,7 @@ def _row_parts(shape, rows, nodes, others, way):
     row, piece = np.nonzero((first > 0) & (last > 0) & (first + last < length))
     deep, least = _deepest(lambda x: distance(row, x), nodes[piece], nodes[piece + 1])
     row, piece, deep, least = (column[least < 0] for column in (row, piece, deep, least))
-    ends = [
-        _crossed(lambda x: distance(row, x), nodes[end], deep, gap[row, end], least) for end in (piece, piece + 1)
-    ]
+    ends = [_crossed(lambda x: distance(row, x), nodes[end], deep, gap[row, end], least) for end in (piece, piece + 1)]
     inside[row, piece] = ends[1] - ends[0]
     return inside
 

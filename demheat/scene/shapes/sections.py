@@ -59,10 +59,14 @@ def _part(depth, first, second, third):
             (pair <= depth, (2 * depth - pair) / (2 * third), 1 / third),
         ]
         last = (
-            depth**2 * (3 - 2 * depth)
-            + first**2 * (first - 3 * depth)
-            + second**2 * (second - 3 * depth)
-            + third**2 * (third - 3 * depth)
-        ) / cube, (6 * depth * (1 - depth) - 3 * (first**2 + second**2 + third**2)) / cube
+            (
+                depth**2 * (3 - 2 * depth)
+                + first**2 * (first - 3 * depth)
+                + second**2 * (second - 3 * depth)
+                + third**2 * (third - 3 * depth)
+            )
+            / cube,
+            (6 * depth * (1 - depth) - 3 * (first**2 + second**2 + third**2)) / cube,
+        )
         where = [where for where, _, _ in pieces]
         return (np.select(where, [piece[k] for piece in pieces], last[k - 1]) for k in (1, 2))
