@@ -292,6 +292,7 @@ class Shape(ABC):
         size : (3,) sequence of float, m
         periodic : bool
         """
+        return
 
     def _clipped(self, size):
         """Bounds, of what lies in a box if there is one."""

@@ -104,9 +104,7 @@ class HalfSpace(Solid):
     def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
         """Raise ValueError in a periodic cell; see `Shape.check_fit`."""
         if periodic:
-            raise ValueError(
-                f"{name}: half-space in a periodic cell, which does not repeat it; must be in a box of walls"
-            )
+            raise ValueError(f"{name}: half-space in a periodic cell does not repeat; must be in a box with walls")
 
     def _distance(self, offsets):
         return offsets @ np.array(self.outward)

@@ -162,8 +162,8 @@ class LevelSet(Solid):
             if values.min() <= 0:
                 at = tuple(points[np.argmin(values)].tolist())
                 raise ValueError(
-                    f"LevelSet.function: {values.min():.3g} at {at}, on the limits; must be above 0 there: the set must "
-                    "end within them"
+                    f"LevelSet.function: {values.min():.3g} at {at}, on the limits; must be above 0 there: the set "
+                    "must end within them"
                 )
         if not len(self._inner):
             raise ValueError(
@@ -175,7 +175,7 @@ class LevelSet(Solid):
         values = np.asarray(self.function(points.copy()), dtype=float)
         if values.shape != (len(points),) or not np.all(np.isfinite(values)):
             raise ValueError(
-                f"LevelSet.function: gave values of shape {values.shape} for {len(points)} points, or some that are not "
+                f"LevelSet.function: gave values of shape {values.shape} for {len(points)} points, or some not "
                 "finite; must give one finite number for each point"
             )
         return values
