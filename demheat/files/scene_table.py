@@ -48,6 +48,10 @@ MATERIAL = {"conductivity": CONDUCTIVITY, "density": DENSITY, "heat_capacity": H
 # What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags, matrices.
 SHAPES = {
     "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
+    "layer": (
+        Layer,
+        {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
+    ),
     "cylinder": (
         Cylinder,
         {
@@ -69,10 +73,6 @@ SHAPES = {
     "half-space": (
         HalfSpace,
         {"point": (LENGTH, 3), "outward": (PLAIN, 3), "resistance": (RESISTANCE, 1)},
-    ),
-    "layer": (
-        Layer,
-        {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
     ),
 }
 SOURCES = {

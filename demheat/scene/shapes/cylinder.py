@@ -11,8 +11,11 @@ import numpy as np
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, number, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import TOUCH, check_resistance
-from demheat.scene.shapes.directions import corners, unit
+from demheat.scene.shapes.directions import unit
 from demheat.scene.shapes.solid import Solid
+
+# Of the prism around a cylinder, whose corners lie in what holds it: 0.2 % too wide.
+SIDES = 48
 
 
 @dataclass(frozen=True)
@@ -90,7 +93,11 @@ class Cylinder(Solid):
         if self.length is None:
             half = half if math.isfinite(half) else 1e6 * self.radius
             return np.array(self.center) + np.outer([-half, half], u), self.radius
-        return np.array(self.center) + corners(self._frame() * [self.radius, self.radius, half]), 0.0
+        angle = 2 * np.pi * np.arange(SIDES) / SIDES
+        wide = self.radius / math.cos(math.pi / SIDES)
+        ring = wide * np.stack([np.cos(angle), np.sin(angle)], axis=1) @ self._frame().T[:2]
+        ends = [np.array(self.center) + ring + end * u for end in (-half, half)]
+        return np.concatenate(ends), 0.0
 
     def planes(self) -> None:
         """None: it is round; see `Shape.planes`."""

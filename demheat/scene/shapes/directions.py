@@ -61,7 +61,8 @@ def rotation(name: str, value) -> tuple[tuple[float, ...], ...]:
     good = matrix.shape == (3, 3) and np.all(np.isfinite(matrix))
     off = np.abs(matrix.T @ matrix - np.eye(3)).max() if good else np.inf
     if not off < TYPED or np.linalg.det(matrix) < 0:
-        raise ValueError(f"{name} = {value!r}: must be {valid}")
+        shown = value.tolist() if isinstance(value, np.ndarray) else value
+        raise ValueError(f"{name} = {shown!r}: must be {valid}")
     if off > ROUNDING:
         left, _, right = np.linalg.svd(matrix)
         matrix = left @ right

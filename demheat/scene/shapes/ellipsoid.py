@@ -126,18 +126,21 @@ class Ellipsoid(Solid):
         a = np.array(self.semi_axes) / unit
         own = offsets @ np.array(self.rotation) / unit
         y = np.maximum(np.abs(own), OFF * a)
-        t = np.max(a * y - a * a, axis=1)
-        going = np.arange(len(t))
+        # From the least that t can be: digits remain where the foot is that of a point of a plane of symmetry.
+        more = a * a - a.min() ** 2
+        s = np.max(a * y - more, axis=1)
+        going = np.arange(len(s))
         for _ in range(STEPS):
-            part = a * y[going] / (t[going, None] + a * a)
+            width = s[going, None] + more
+            part = a * y[going] / width
             excess = np.einsum("ij,ij->i", part, part) - 1.0
-            step = 0.5 * excess / np.sum(part * part / (t[going, None] + a * a), axis=1)
-            t[going] += step
-            going = going[step > 4e-16 * np.maximum(np.abs(t[going]), a.min() ** 2)]
+            step = 0.5 * excess / np.sum(part * part / width, axis=1)
+            s[going] += step
+            going = going[step > 4e-16 * s[going]]
             if not len(going):
                 break
-        foot = a * a * y / (t[:, None] + a * a)
-        return np.copysign(foot, own), t, a, unit
+        foot = a * a * y / (s[:, None] + more)
+        return np.copysign(foot, own), s - a.min() ** 2, a, unit
 
     def _distance(self, offsets):
         foot, t, a, unit = self._feet(offsets)
