@@ -99,9 +99,8 @@ def sized(scene, size: float, planes, rules) -> np.ndarray:
     found = [np.zeros((0, 5))]
     for number, shape in enumerate(scene.inclusions):
         if isinstance(shape, KNOWN):
-            found.append(_beside(scene, number, planes, rules))
+            found.append(_beside(scene, number, planes, rules, size))
     rows = np.concatenate(found)
-    rows = rows[rows[:, 4] < size]
     if scene.periodic and len(rows):
         shifts = np.array(list(product((0, -1, 1), repeat=3))) * scene.size
         centers = (rows[:, :3] % scene.size + shifts[:, None]).reshape(-1, 3)
@@ -110,7 +109,7 @@ def sized(scene, size: float, planes, rules) -> np.ndarray:
     return rows[np.linalg.norm(outside, axis=1) < rows[:, 3] + size]
 
 
-def _beside(scene, number, planes, rules):
+def _beside(scene, number, planes, rules, size):
     """Rows of one shape."""
     on, in_gap, far, narrowest = rules
     shape, box = scene.inclusions[number], np.array(scene.size)
@@ -124,41 +123,56 @@ def _beside(scene, number, planes, rules):
     gap = np.full(len(points), np.inf)
     for other_number, other in enumerate(scene.inclusions):
         if not other.flat:
-            gap = np.minimum(gap, _to_other(scene, (number, other_number), points, narrowest))
+            gap = np.minimum(gap, _to_other(scene, (number, other_number), points, narrowest, far * least))
     gap = np.minimum(gap, _to_planes(scene, shape, points, planes, narrowest))
     width = np.sqrt(gap * least)
-    edge = np.minimum(on * least, np.where(gap < far * least, in_gap * width, np.inf))
-    return np.column_stack([points, np.maximum(pitch, np.minimum(width, least)), edge])
+    # Flat faces need no more than a layer does: one element through it.
+    along = min(shape.sides) if isinstance(shape, Box) else on * least
+    edge = np.minimum(along, np.where(gap < far * least, in_gap * width, np.inf))
+    return _thinned(points, edge, size)
 
 
-def _to_other(scene, numbers, points, narrowest):
-    """Distance of points of one surface to another, or to its own images; refused if they touch."""
+def _thinned(points, edge, size):
+    """Of points in each cell about as wide as the edges wanted there one, with the shortest: few, and dense enough."""
+    kept = np.flatnonzero(edge < size)
+    kept = kept[np.argsort(edge[kept], kind="stable")]
+    wide = 2.0 ** np.floor(np.log2(edge[kept]))
+    _, first = np.unique(np.column_stack([np.floor(points[kept] / wide[:, None]), wide]), axis=0, return_index=True)
+    kept = kept[first]
+    return np.column_stack([points[kept], wide[first], edge[kept]])
+
+
+def _to_other(scene, numbers, points, narrowest, reach):
+    """Distance of points of one surface to another, or to its own images; refused if they touch.
+
+    Where nothing is nearer than a reach, none can.
+    """
     shape, other = (scene.inclusions[number] for number in numbers)
-    ends = np.isfinite(shape.bounds()[0])
-    shifts = [np.zeros(3)]
-    if scene.periodic:
-        shifts = [np.array(s) * scene.size for s in product(*((0, -1, 1) if end else (0,) for end in ends))]
+    own = numbers[0] == numbers[1]
+    # In a periodic cell another one is the nearest of its images.
+    period, shifts = (None, _images(scene, shape)) if own else (scene.period, [np.zeros(3)])
     least = np.full(len(points), np.inf)
     for shift in shifts:
-        if shape is other and not np.any(shift):
-            continue
-        # In a periodic cell the other is the nearest of its images about where the first one is.
-        period = scene.period if shape is not other else None
         gap = np.abs(other.distance(points - shift, period=period))
+        least = np.minimum(least, gap)
         x = points[[np.argmin(gap)]]
-        for _ in range(ROUNDS):
+        for _ in range(ROUNDS if gap.min() <= reach else 0):
             there = x - shift
             there = there - other.distance(there, period=period)[:, None] * other.normal(there, period=period) + shift
             x = there - shape.distance(there)[:, None] * shape.normal(there)
-        if np.linalg.norm(x - there) < narrowest * max(scene.size) and _in_box(scene, x):
+        if gap.min() <= reach and np.linalg.norm(x - there) < narrowest * max(scene.size) and _in_box(scene, x):
             raise NotImplementedError(
                 f"a {shape.kind}, Scene.inclusions[{numbers[0]}], and [{numbers[1]}] touch at {x[0]}: the cusp between "
                 "touching surfaces has no valid elements; leave a gap"
             )
-        least = np.minimum(least, gap)
-        if shape is not other:
-            break
     return least
+
+
+def _images(scene, shape):
+    """By what the images of a shape that may be next to it are moved."""
+    ends = np.isfinite(shape.bounds()[0]) & scene.periodic
+    shifts = product(*((0, -1, 1) if end else (0,) for end in ends))
+    return [np.array(shift) * scene.size for shift in shifts if any(shift)]
 
 
 def _to_planes(scene, shape, points, planes, narrowest):
