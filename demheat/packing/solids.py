@@ -230,7 +230,8 @@ def on_smooth(shape, scene, spacing, rng):
         area = np.bincount(nearest, areas, count)
         sums = np.stack([np.bincount(nearest, areas * column, count) for column in samples.T], axis=1)
         points = np.where(area[:, None] > 0, sums / np.maximum(area, 1e-300)[:, None], points)
-        points = points - shape.distance(points)[:, None] * shape.normal(points)
+        distance, normal = shape.surface(points)
+        points = points - distance[:, None] * normal
     return points, shape.normal(points)
 
 

@@ -22,7 +22,7 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 # Steps to the offset of the right volume, and its relative error from which on it is right.
 STEPS, RIGHT = 6, 1e-12
 # Steps to where a link crosses the surface, and to where it is deepest within.
-CROSSING, DEEPEST = 16, 40
+CROSSING, DEEPEST = 16, 24
 # Nodes of links that are looked at together: bounds the scratch memory.
 BLOCK = 2**18
 
@@ -70,7 +70,7 @@ def cut_voxels(shape: Shape, counts, spacing) -> tuple[np.ndarray, np.ndarray, n
     small = spacing / pieces
     steps = (np.stack(np.meshgrid(*[np.arange(pieces)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5) / pieces
     points = ((places[:, None] + steps) * spacing).reshape(-1, 3)
-    height, normal = shape.distance(points), shape.normal(points)
+    height, normal = shape.surface(points)
     volume, offset = _volume(shape, counts, spacing), 0.0
     for _ in range(STEPS):
         part, area = below(normal, height + offset, small)

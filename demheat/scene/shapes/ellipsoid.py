@@ -142,14 +142,17 @@ class Ellipsoid(Solid):
         foot = a * a * y / (s[:, None] + more)
         return np.copysign(foot, own), s - a.min() ** 2, a, unit
 
-    def _distance(self, offsets):
+    def _surface(self, offsets):
         foot, t, a, unit = self._feet(offsets)
-        return unit * t * np.linalg.norm(foot / (a * a), axis=1)
+        normal = foot / (a * a)
+        length = np.linalg.norm(normal, axis=1)
+        return unit * t * length, normal / length[:, None] @ np.array(self.rotation).T
+
+    def _distance(self, offsets):
+        return self._surface(offsets)[0]
 
     def _normal(self, offsets):
-        foot, _, a, _ = self._feet(offsets)
-        normal = foot / (a * a)
-        return normal / np.linalg.norm(normal, axis=1, keepdims=True) @ np.array(self.rotation).T
+        return self._surface(offsets)[1]
 
 
 def lengths(name: str, value) -> tuple[float, float, float]:

@@ -91,7 +91,8 @@ class LevelSet(Solid):
     def _volume_by(self, cells):
         low, high = self.bounds()
         centers, sides = cells_on(self, low, high, float((high - low).max()) / cells)
-        part, _ = below(self.normal(centers), self.distance(centers), sides)
+        distance, normal = self.surface(centers)
+        part, _ = below(normal, distance, sides)
         # Whole cells: all columns of cells less those that are cut.
         counts = np.rint((high - low) / sides).astype(int)
         whole = 0
@@ -228,13 +229,16 @@ class LevelSet(Solid):
             feet[going], normals[going] = nearer[better], _unit(self._gradient(nearer[better]))
         return feet, normals
 
-    def _distance(self, offsets):
-        feet, _ = self._feet(offsets)
+    def _surface(self, offsets):
+        feet, normals = self._feet(offsets)
         away = np.linalg.norm(offsets + self.center - feet, axis=1)
-        return np.where(self._inside(offsets), -away, away)
+        return np.where(self._inside(offsets), -away, away), normals
+
+    def _distance(self, offsets):
+        return self._surface(offsets)[0]
 
     def _normal(self, offsets):
-        return self._feet(offsets)[1]
+        return self._surface(offsets)[1]
 
 
 def _unit(vectors):

@@ -65,7 +65,7 @@ def surface_points(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarr
     centers, sides = cells_on(shape, low, high, pitch)
     found = [(np.empty((0, 3)), np.empty(0))]
     for block in _blocks(centers):
-        distance, normal = shape.distance(block), shape.normal(block)
+        distance, normal = shape.surface(block)
         area = below(normal, distance, sides)[1]
         points = block - distance[:, None] * normal
         found.append((points[area > 0], area[area > 0]))

@@ -30,6 +30,9 @@ class Solid(Shape):
     def _normal(self, offsets: np.ndarray) -> np.ndarray:
         """Gradient of `_distance`, of length 1."""
 
+    def _surface(self, offsets):
+        return self._distance(offsets), self._normal(offsets)
+
     def _inside(self, offsets):
         return self._distance(offsets) <= 0.0
 
@@ -44,6 +47,13 @@ class Solid(Shape):
     def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Outward normal of the nearest image where that is nearest; see `Shape.normal`."""
         return self._normal(self._nearest(points, period)[0])
+
+    def surface(self, points: np.ndarray, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """`distance` and `normal` of points at once; see `Shape.surface`."""
+        if period is None:
+            return self._surface(points - np.array(self.center))
+        offsets, distance = self._nearest(points, period)
+        return distance, self._normal(offsets)
 
     def images(self, size: Sequence[float], *, periodic: bool) -> list[Shape]:
         """The shape as it meets a box; see `Shape.images`. None along an axis along which it has no end."""
