@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
+from functools import partial, singledispatch
 from itertools import product
 
 import numpy as np
@@ -15,8 +15,8 @@ from references.mesh.turns import GENERIC
 KNOWN = (Cylinder, Ellipsoid, Box, HalfSpace)
 # Samples of a surface along its least length, at least, and along the longest edge of the box, at most.
 ALONG, FINEST = 4, 200
-# Projections onto two surfaces in turn, to where they are nearest.
-ROUNDS = 40
+# Steps downhill, to where two surfaces are nearest.
+ROUNDS = 60
 # Cosine from which on a wall faces a surface rather than cuts it.
 FACING = 0.9
 
@@ -153,19 +153,42 @@ def _to_other(scene, numbers, points, narrowest, reach):
     period, shifts = (None, _images(scene, shape)) if own else (scene.period, [np.zeros(3)])
     least = np.full(len(points), np.inf)
     for shift in shifts:
-        gap = np.abs(other.distance(points - shift, period=period))
+        gap = _away(other, shift, period, points)
         least = np.minimum(least, gap)
-        x = points[[np.argmin(gap)]]
-        for _ in range(ROUNDS if gap.min() <= reach else 0):
-            there = x - shift
-            there = there - other.distance(there, period=period)[:, None] * other.normal(there, period=period) + shift
-            x = there - shape.distance(there)[:, None] * shape.normal(there)
-        if gap.min() <= reach and np.linalg.norm(x - there) < narrowest * max(scene.size) and _in_box(scene, x):
+        if gap.min() > reach:
+            continue
+        x, narrow = _narrowest(scene, shape, points[np.argmin(gap)], partial(_away, other, shift, period))
+        if narrow < narrowest * max(scene.size) and _in_box(scene, x):
             raise NotImplementedError(
-                f"a {shape.kind}, Scene.inclusions[{numbers[0]}], and [{numbers[1]}] touch at {x[0]}: the cusp between "
+                f"a {shape.kind}, Scene.inclusions[{numbers[0]}], and [{numbers[1]}] touch at {x}: the cusp between "
                 "touching surfaces has no valid elements; leave a gap"
             )
     return least
+
+
+def _away(shape, shift, period, points):
+    """Distance to the surface of a shape that is moved."""
+    return np.abs(shape.distance(points - shift, period=period))
+
+
+def _narrowest(scene, shape, x, distance):
+    """Where on a surface another one is nearest, by smaller and smaller steps downhill, and how near it is."""
+    step, gap = 0.1 * _least(shape, np.array(scene.size)), distance(x[None])[0]
+    angle = np.pi * np.arange(8) / 4
+    for _ in range(ROUNDS):
+        normal = shape.normal(x[None])[0]
+        one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+        one /= np.linalg.norm(one)
+        around = x + step * (np.outer(np.cos(angle), one) + np.outer(np.sin(angle), np.cross(normal, one)))
+        away, outward = shape.surface(around)
+        around -= away[:, None] * outward
+        gaps = distance(around)
+        best = int(np.argmin(gaps))
+        if gaps[best] < gap:
+            x, gap = around[best], gaps[best]
+        else:
+            step /= 2
+    return x, gap
 
 
 def _images(scene, shape):
@@ -178,20 +201,20 @@ def _images(scene, shape):
 def _to_planes(scene, shape, points, planes, narrowest):
     """Distance of points to planes that face the surface there."""
     normals, least = shape.normal(points), np.full(len(points), np.inf)
+    low, high = shape.bounds()
     for axis in range(3):
-        facing = np.abs(normals[:, axis]) > FACING
+        facing, length = np.abs(normals[:, axis]) > FACING, scene.size[axis]
         for at in planes[axis]:
-            gap = np.where(facing, np.abs(points[:, axis] - at), np.inf)
+            ends = np.array([low[axis], high[axis]]) - at
+            ends -= length * np.round(ends / length) if scene.periodic and np.isfinite(low[axis]) else 0.0
             # Faces may lie in planes.
-            flush = isinstance(shape, Box | HalfSpace)
-            close = gap < narrowest * max(scene.size)
-            if close.any() and not flush:
+            if np.abs(ends).min() < narrowest * max(scene.size) and not isinstance(shape, Box):
                 raise NotImplementedError(
-                    f"a {shape.kind} at {shape.center} touches a plane at {points[np.argmax(close)]}: the cusp between "
+                    f"a {shape.kind} at {shape.center} touches the plane {'xyz'[axis]} = {at:.6g} m: the cusp between "
                     "touching surfaces has no valid elements; leave a gap"
                 )
-            # A face in a plane leaves no gap.
-            least = np.minimum(least, np.where(close, np.inf, gap))
+            gap = np.abs(points[:, axis] - at)
+            least = np.minimum(least, np.where(facing & (gap > narrowest * max(scene.size)), gap, np.inf))
     return least
 
 
