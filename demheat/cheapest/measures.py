@@ -12,6 +12,8 @@ from demheat.scene.thickness import coats, extents
 
 # Gap of a lone sphere, over its diameter, beyond which it makes no difference.
 WIDEST = 10.0
+# Along each axis, by which the volume of a body without an end is found where walls cut it.
+POINTS = 24
 # A pore changes the flux no more than a body so many times less conducting.
 PORE = 1e3
 
@@ -101,6 +103,10 @@ def _volume(scene, shape):
     except NotImplementedError:
         # A wall cuts it: as much of it lies in the box as of the box around it, exactly so through its middle.
         low, high = shape.bounds()
+        if not shape.bounded:
+            ticks = [(np.arange(POINTS) + 0.5) / POINTS * side for side in scene.size]
+            points = np.stack(np.meshgrid(*ticks, indexing="ij"), axis=-1).reshape(-1, 3)
+            return scene.volume * float(np.mean(shape.contains(points, period=scene.period)))
         inside = np.minimum(high, scene.size) - np.maximum(low, 0.0)
         return shape.volume * float(np.prod(inside / (high - low)))
 

@@ -18,7 +18,7 @@ TOUCH = 1e-12
 # What a class derived from a finished shape must leave as it is.
 GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
 GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
-GEOMETRY |= {"surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
+GEOMETRY |= {"width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
 
 
 class Shape(ABC):
@@ -35,8 +35,8 @@ class Shape(ABC):
     Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
     along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
     (`nearest`). What a shape may override, where it has something sharper or faster, is `contains`, `ball`, `meets`,
-    `volume_in`, `fills_bounds` and `fills_ball`, and for pairs `reach`, `hull`, `planes` and `encloses`. One that is
-    not convex says so; one whose distance is not exact overrides `sure_distance`. `Solid` supplies most of that.
+    `volume_in`, `width`, `fills_bounds` and `fills_ball`, and for pairs `reach`, `hull`, `planes` and `encloses`. One
+    that is not convex says so; one whose distance is not exact overrides `sure_distance`. `Solid` supplies most of it.
 
     That is enough for phases, voxels that belong to the phase of their centre, and the DEM without conforming facets.
     What a method must know besides, it asks for by the shape's type, and refuses other shapes: `Scene.require`, and
@@ -129,6 +129,13 @@ class Shape(ABC):
         (n,) bool array
         """
         return self.distance(points, period=period) <= 0.0
+
+    @property
+    def width(self) -> float:
+        """Its least width in any direction, m, or that along the axes where no more is known; infinite without ends."""
+        low, high = self.bounds()
+        ends = np.isfinite(low)
+        return float(np.min(high[ends] - low[ends], initial=np.inf))
 
     @property
     def kind(self) -> str:

@@ -60,6 +60,11 @@ class Box(Solid):
         """Volume, m3."""
         return math.prod(self.sides)
 
+    @property
+    def width(self) -> float:
+        """Its least width, m."""
+        return min(self.sides)
+
     def turned(self, order: Sequence[int]) -> Box:
         """The same box with axes order[0], order[1], order[2] as axes 0, 1, 2."""
         center = tuple(self.center[axis] for axis in order)

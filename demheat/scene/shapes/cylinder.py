@@ -67,6 +67,11 @@ class Cylinder(Solid):
         """Volume, m3; infinite without ends."""
         return math.inf if self.length is None else math.pi * self.radius**2 * self.length
 
+    @property
+    def width(self) -> float:
+        """Its least width, m."""
+        return 2 * self.radius if self.length is None else min(2 * self.radius, self.length)
+
     def turned(self, order: Sequence[int]) -> Cylinder:
         """The same cylinder with axes order[0], order[1], order[2] as axes 0, 1, 2."""
         return replace(self, **{name: tuple(getattr(self, name)[a] for a in order) for name in ("center", "axis")})

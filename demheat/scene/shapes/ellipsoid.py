@@ -59,6 +59,11 @@ class Ellipsoid(Solid):
         """Volume, m3."""
         return 4 / 3 * math.pi * math.prod(self.semi_axes)
 
+    @property
+    def width(self) -> float:
+        """Its least width, m."""
+        return 2 * min(self.semi_axes)
+
     def turned(self, order: Sequence[int]) -> Ellipsoid:
         """The same ellipsoid with axes order[0], order[1], order[2] as axes 0, 1, 2."""
         center = tuple(self.center[axis] for axis in order)

@@ -13,6 +13,7 @@ from demheat import Layer, Scene, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from demheat.scene.shapes.samples import surface_points
 from demheat.scene.shapes.sections import below
+from demheat.scene.thickness import extents, narrower
 
 PERIOD = np.array([1.0, 1.5, 2.0])
 CONVEX = [FIBRE, ROD, EGG, BRICK]
@@ -331,6 +332,19 @@ def test_images_of_a_fibre_lie_across_it_only():
         (2, (0.5, 1.0)),
     ]
     assert scene.phase_at([[0.99, 0.5, 77.0], [0.5, 0.99, -3.0], [0.5, 0.5, 0.5]]).tolist() == [1, 2, 0]
+
+
+def test_thin_ones_are_thin_however_they_lie():
+    """Their bounds are wide: grids and particles must know all the same."""
+    plate = brick(MIDDLE, (0.5, 0.4, 0.02))
+    assert_allclose(
+        extents(cell(plate, walls=True)).tolist()
+        + extents(cell(egg(MIDDLE, (0.4, 0.3, 0.01)))).tolist()
+        + extents(cell(fibre(0.5, 0.5, 0.03, (1, 2, 3)), walls=True)).tolist()
+        + extents(cell(half(MIDDLE, (1, 2, 3)), walls=True)).tolist(),
+        [0.02, 0.02, 0.06, math.inf],
+    )
+    assert narrower(cell(plate), np.full(3, 0.03)).all() and not narrower(cell(plate), np.full(3, 0.01)).any()
 
 
 def test_they_tell_of_themselves():
