@@ -237,3 +237,15 @@ def test_little_spheres_beside_them_may_be_left_out():
     inside = Sphere((0.5, 0.5, 0.5), 0.01, Material(10.0))
     outer = Box((0.5, 0.5, 0.5), (0.9, 0.9, 0.9), Material(2.0))
     assert negligible(Scene((1, 1, 1), MATRIX, [outer, inside], gradient=(1, 0, 0)), 1e-3).inclusions == (1,)
+
+
+@pytest.mark.parametrize("way", WAYS)
+def test_what_reaches_far_beyond_the_walls_costs_no_more(way):
+    """A slab and a rod a thousand times as wide as the box: as a layer, and as a fibre."""
+    run, limit, _ = WAYS[way]
+    walls = {"walls": {"x-": 0.0, "x+": 1.0}}
+    slab = Box((0.45, 0.5, 0.5), (0.4, 1e3, 1e3), Material(10.0))
+    assert_allclose(run(cube(slab, **walls)).conductivity, 1 / (0.4 / 10 + 0.6), rtol=1e-6)
+    rod = Cylinder((0.5, 0.5, 0.5), RADIUS, (0, 0, 1), Material(10.0), length=1e3)
+    if way != "fem":
+        assert abs(run(cube(rod, **walls)).conductivity / rayleigh(FRACTION, 10.0) - 1) < limit

@@ -22,7 +22,9 @@ SQUARE = 0.75**0.25
 # Points round a cylinder, in a pattern on a closed surface, at least.
 FEWEST_ROUND, FEWEST = 8, 12
 # Cells of the sampling along a spacing where points are spread out, and where planes are moved; rounds of the first.
-SPREAD, LIFTED, ROUNDS = 5, 5, 16
+SPREAD, LIFTED, ROUNDS = 5, 4, 16
+# Cells beyond a wall in which points are spread out, too: those beside the wall then lie as elsewhere.
+BEYOND = 10
 
 
 @dataclass(frozen=True)
@@ -110,7 +112,12 @@ def on_cylinder(shape, scene, spacing, rng):
     low, high = _along(shape, scene)
     rows = max(1, round((high - low) / side))
     columns = max(FEWEST_ROUND, round(2 * np.pi * shape.radius / side))
-    height, angle = _grid(low + (np.arange(rows) + 0.5) * (high - low) / rows, 2 * np.pi * np.arange(columns) / columns)
+    heights = low + (np.arange(rows) + 0.5) * (high - low) / rows
+    if not scene.periodic:
+        # Of a rod that reaches far beyond the walls, what is near.
+        middle = 0.5 * np.array(scene.size)
+        heights = heights[np.abs(heights - (middle - shape.center) @ frame[2]) <= np.linalg.norm(middle) + spacing]
+    height, angle = _grid(heights, 2 * np.pi * np.arange(columns) / columns)
     normals = np.outer(np.cos(angle), frame[0]) + np.outer(np.sin(angle), frame[1])
     points = [shape.radius * normals + np.outer(height, frame[2])]
     normals = [normals]
@@ -163,8 +170,13 @@ def on_faces(shape, scene, spacing, rng):
     rng : numpy Generator
         Not used: the pattern fits the faces.
     """
+    turn, middle = np.array(shape.rotation).T, 0.5 * np.array(scene.size)
     counts = np.maximum(1, np.rint(np.array(shape.sides) / (SQUARE * spacing)).astype(int))
     ticks = [((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(counts, shape.sides, strict=True)]
+    if not scene.periodic:
+        # Of faces far beyond the walls, what is near.
+        near = np.linalg.norm(middle) + spacing
+        ticks = [t[np.abs(t - m) <= near] for t, m in zip(ticks, turn @ (middle - shape.center), strict=True)]
     points, normals = [], []
     for axis, sign in product(range(3), (-1.0, 1.0)):
         u, v = (k for k in range(3) if k != axis)
@@ -173,7 +185,6 @@ def on_faces(shape, scene, spacing, rng):
         own[:, u], own[:, v] = first, second
         points.append(own)
         normals.append(np.tile(sign * np.eye(3)[axis], (len(own), 1)))
-    turn = np.array(shape.rotation).T
     return np.array(shape.center) + np.concatenate(points) @ turn, np.concatenate(normals) @ turn
 
 
@@ -220,7 +231,7 @@ def on_smooth(shape, scene, spacing, rng):
     rng : numpy Generator
         Where it begins.
     """
-    samples, areas = _sampled(shape, spacing / SPREAD)
+    samples, areas = _sampled(shape, scene, spacing / SPREAD)
     count = max(FEWEST, int(np.ceil(areas.sum() / (np.sqrt(0.75) * spacing**2))))
     samples, areas = _ordered(samples, areas)
     share = (np.arange(count) + rng.random()) / count
@@ -244,10 +255,8 @@ def by_volume(shape, scene, points, normals):
     scene : Scene
     points, normals : (k, 3) float arrays, m and 1
     """
-    low, high = shape.bounds()
-    area = 2 * np.sum(np.prod(high - low) / (high - low))
-    pitch = np.sqrt(area / len(points)) / LIFTED
-    samples, areas = _sampled(shape, pitch)
+    away, _ = cKDTree(points).query(points, k=2)
+    samples, areas = _sampled(shape, scene, float(np.median(away[:, 1])) / LIFTED)
     if not scene.periodic:
         inside = np.all((samples > 0) & (samples < scene.size), axis=1)
         samples, areas = samples[inside], areas[inside]
@@ -262,8 +271,11 @@ def by_volume(shape, scene, points, normals):
     return points - lift[:, None] * normals
 
 
-def _sampled(shape, pitch):
+def _sampled(shape, scene, pitch):
+    """Points all over a surface, in a box with walls and a little beyond, and their areas."""
     low, high = shape.bounds()
+    if not scene.periodic:
+        low, high = np.maximum(low, -BEYOND * pitch), np.minimum(high, np.array(scene.size) + BEYOND * pitch)
     return surface_points(shape, low - pitch, high + pitch, pitch)
 
 

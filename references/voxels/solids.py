@@ -21,6 +21,8 @@ PIECES = ((200_000, 3), (1_000_000, 2), (math.inf, 1))
 PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 # Steps to the offset of the right volume, and its relative error from which on it is right.
 STEPS, RIGHT = 6, 1e-12
+# Of a shape over the grid, from which on what lies beyond the grid is left out.
+WIDEST = 3.0
 # Steps to where a link crosses the surface, and to where it is deepest within.
 CROSSING, DEEPEST = 16, 24
 # Nodes of links that are looked at together: bounds the scratch memory.
@@ -65,13 +67,16 @@ def cut_voxels(shape: Shape, counts, spacing) -> tuple[np.ndarray, np.ndarray, n
     moment : (m, 6) float array, m2
         Integral of n n over the surface inside, order xx, yy, zz, yz, xz, xy.
     """
-    places, whole = _near(shape, counts, spacing)
+    box, (low, high) = np.array(counts) * spacing, shape.bounds()
+    # Of what reaches far beyond the grid only what is on it is looked at, and its volume is as planes have it.
+    clipped = bool(np.any(np.isfinite(low) & (high - low > WIDEST * box)))
+    places, whole = _near(shape, counts, spacing, clipped)
     pieces = next(number for most, number in PIECES if len(places) <= most)
     small = spacing / pieces
     steps = (np.stack(np.meshgrid(*[np.arange(pieces)] * 3, indexing="ij"), axis=-1).reshape(-1, 3) + 0.5) / pieces
     points = ((places[:, None] + steps) * spacing).reshape(-1, 3)
     height, normal = shape.surface(points)
-    volume, offset = _volume(shape, counts, spacing), 0.0
+    volume, offset = None if clipped else _volume(shape, box), 0.0
     for _ in range(STEPS):
         part, area = below(normal, height + offset, small)
         excess = math.prod(small) * part.sum() + math.prod(spacing) * whole - (volume or 0.0)
@@ -86,9 +91,9 @@ def cut_voxels(shape: Shape, counts, spacing) -> tuple[np.ndarray, np.ndarray, n
     return index[order], fraction[order], moment[on_grid][order]
 
 
-def _near(shape, counts, spacing):
+def _near(shape, counts, spacing, clipped):
     """Voxels that the surface may cut, also beyond the grid, and the number of those that are all inside."""
-    low, high = window(shape, np.array(counts), spacing, clipped=False)
+    low, high = window(shape, np.array(counts), spacing, clipped=clipped)
     half, found, whole = 0.5 * np.linalg.norm(spacing), [np.empty((0, 3), int)], 0
     for x in range(low[0], high[0]):
         grid = np.meshgrid([x], np.arange(low[1], high[1]), np.arange(low[2], high[2]), indexing="ij")
@@ -100,12 +105,11 @@ def _near(shape, counts, spacing):
     return np.concatenate(found), whole
 
 
-def _volume(shape, counts, spacing):
+def _volume(shape, box):
     """Volume of all that was looked at; None if it is unknown."""
     if shape.bounded:
         return shape.volume
     low, high = shape.bounds()
-    box = np.array(counts) * spacing
     try:
         # Where it ends, all of it is looked at.
         return shape.volume_in(np.where(np.isfinite(low), high - low, box), periodic=True)
