@@ -51,7 +51,7 @@ def test_patterns_lie_on_the_surface_and_cover_it(name):
     assert_allclose(inside.sum(), areas.sum() / (math.sqrt(0.75) * SPACING**2), rtol=0.15)  # whole rows and rings
 
 
-@pytest.mark.parametrize("name", ["fibre", "egg", "ring"])
+@pytest.mark.parametrize("name", ["fibre", "egg"])
 def test_planes_keep_the_volume(name):
     """By rays from inside along normals: what planes hold beyond the surface less what they leave, over the area."""
     surface, points, normals = pattern(name)
