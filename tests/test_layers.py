@@ -185,6 +185,7 @@ LAYERS = {
     ),
     # A model of its own, by the engine's packings and solver: beds of grains out of files.
     "demheat.grains": (
+        "demheat.paths",
         "demheat.scene",
         "demheat.packing",
         "demheat.network.base",

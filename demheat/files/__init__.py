@@ -9,7 +9,7 @@ conductivity = "0.2 W/(m K)"
 [materials.silica]
 conductivity = 1.4  # W/(m K), as without a unit all is SI
 
-[[inclusions]]  # painted in order; shape = "layer", axis, start, stop
+[[inclusions]]  # painted in order; shape = "layer", axis, start, stop; "cylinder", "ellipsoid", "box", "half-space"
 shape = "sphere"
 center_mm = [50, 50, 50]
 radius = "30 mm"

@@ -29,8 +29,12 @@ from demheat.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
     WALLS,
+    Box,
     Convection,
+    Cylinder,
+    Ellipsoid,
     Flux,
+    HalfSpace,
     Layer,
     MovingCylinder,
     Radiation,
@@ -40,12 +44,34 @@ from demheat.scene import (
 )
 
 AXES = ("x", "y", "z")
-# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags.
+# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags, matrices.
 SHAPES = {
     "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
     "layer": (
         Layer,
         {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
+    ),
+    "cylinder": (
+        Cylinder,
+        {
+            "center": (LENGTH, 3),
+            "radius": (LENGTH, 1),
+            "axis": (PLAIN, 3),
+            "length": (LENGTH, 1),
+            "resistance": (RESISTANCE, 1),
+        },
+    ),
+    "ellipsoid": (
+        Ellipsoid,
+        {"center": (LENGTH, 3), "semi_axes": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
+    ),
+    "box": (
+        Box,
+        {"center": (LENGTH, 3), "sides": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
+    ),
+    "half-space": (
+        HalfSpace,
+        {"point": (LENGTH, 3), "outward": (PLAIN, 3), "resistance": (RESISTANCE, 1)},
     ),
 }
 SOURCES = {
@@ -75,7 +101,7 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
 # What an image is itself.
 IMAGED = ("size", "matrix", "inclusions", "domain")
 # What may be left out.
-OPTIONAL = ("velocity", "clip", "resistance")
+OPTIONAL = ("velocity", "clip", "resistance", "length", "rotation")
 LABEL = re.compile(r"-?\d+")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
@@ -223,6 +249,8 @@ def _parts(table, key, kinds, materials):
         default = None if name in OPTIONAL else ...
         if what == "axis":
             values[name] = _axis(table, name)
+        elif what == "matrix":
+            values[name] = table.value(name, list, "three rows of three numbers", default)
         elif what == "flag":
             values[name] = table.value(name, bool, "true or false", default)
         else:

@@ -134,7 +134,8 @@ def _source(source):
 
 
 def _axis(part):
-    return {"axis": AXES[part.axis]} if hasattr(part, "axis") else {}
+    """An axis of the box by its letter; directions are numbers."""
+    return {"axis": AXES[part.axis]} if isinstance(getattr(part, "axis", None), int) else {}
 
 
 def _load(scene, name, load):

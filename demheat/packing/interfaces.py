@@ -8,7 +8,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from demheat.scene import Layer, Scene, Shape, Sphere
+from demheat.packing import solids
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Scene, Shape, Sphere
 from demheat.scene.shapes.base import TOUCH
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
@@ -206,16 +207,43 @@ def _(shape: Layer, scene):
     return [PlaneSurface(shape.axis, x % length, scene) for x in faces]
 
 
+@surfaces.register
+def _(shape: Cylinder, scene):
+    depth = shape.radius if shape.length is None else min(shape.radius, 0.5 * shape.length)
+    return [solids.SolidSurface(shape, scene, depth, solids.on_cylinder, solids.on_prism)]
+
+
+@surfaces.register
+def _(shape: Ellipsoid, scene):
+    return [solids.SolidSurface(shape, scene, min(shape.semi_axes), solids.on_smooth, solids.by_volume)]
+
+
+@surfaces.register
+def _(shape: LevelSet, scene):
+    # Its own opposite side is not told: twins that would lie beyond it are none.
+    return [solids.SolidSurface(shape, scene, np.inf, solids.on_smooth, solids.by_volume)]
+
+
+@surfaces.register
+def _(shape: Box, scene):
+    return [solids.SolidSurface(shape, scene, 0.5 * min(shape.sides), solids.on_faces, solids.where_they_are)]
+
+
+@surfaces.register
+def _(shape: HalfSpace, scene):
+    return [solids.SolidSurface(shape, scene, np.inf, solids.on_plane, solids.where_they_are)]
+
+
 def surfaces_of(scene: Scene) -> list:
-    """Every surface of a scene's bounded inclusions and every plane between its layers, once each.
+    """Every surface of a scene's inclusions, and after them every plane between its layers, once each.
 
     Raises
     ------
     NotImplementedError
         If there is an inclusion of unknown shape.
     """
-    found = [surface for shape in scene.inclusions if shape.bounded for surface in surfaces(shape, scene)]
-    planes = [plane for shape in scene.inclusions if not shape.bounded for plane in surfaces(shape, scene)]
+    found = [surface for shape in scene.inclusions if not shape.flat for surface in surfaces(shape, scene)]
+    planes = [plane for shape in scene.inclusions if shape.flat for plane in surfaces(shape, scene)]
     return found + _once(sorted(planes, key=lambda plane: (plane.axis, plane.position)), scene)
 
 

@@ -6,18 +6,23 @@ from demheat.scene.image import Image
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
-from demheat.scene.shapes import Layer, Shape, Sphere
+from demheat.scene.shapes import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Shape, Sphere
 from demheat.scene.tensors import orthotropic
 
 __all__ = [
     "ROUND_AXES",
     "STEFAN_BOLTZMANN",
     "WALLS",
+    "Box",
     "Convection",
+    "Cylinder",
     "Dependence",
+    "Ellipsoid",
     "Flux",
+    "HalfSpace",
     "Image",
     "Layer",
+    "LevelSet",
     "Material",
     "MovingCylinder",
     "Radiation",

@@ -25,7 +25,7 @@ KELVIN = f"a temperature >= 0 K of at most {HOTTEST:g}"
 def checked_inclusions(inclusions) -> tuple[Shape, ...]:
     """A sequence of shapes as a tuple, or a ValueError."""
     if not isinstance(inclusions, Sequence):
-        raise ValueError(f"Scene.inclusions = {inclusions!r}: must be a sequence of Sphere or Layer")
+        raise ValueError(f"Scene.inclusions = {inclusions!r}: must be a sequence of Sphere or Layer, or other Shapes")
     for number, inclusion in enumerate(inclusions):
         if not isinstance(inclusion, Shape):
             raise ValueError(
@@ -136,12 +136,12 @@ def check_geometry(scene) -> None:
     """Raise ValueError unless the inclusions of a Scene fit its box, and are disjoint, touching or nested."""
     size = np.array(scene.size)
     for number, shape in enumerate(scene.inclusions):
-        low, high = shape.bounds()
-        if not shape.bounded:
-            _check_reach(f"Scene.inclusions[{number}]", shape, size)
+        shape.check_fit(f"Scene.inclusions[{number}]", scene.size, periodic=scene.periodic)
+        if shape.flat:
             continue
-        limit = size if scene.periodic else _widest(low, high, size)
-        for axis in np.flatnonzero(high - low > limit * (1 + TOUCH)):
+        low, high = shape.bounds()
+        limit = size if scene.periodic else np.full(3, np.inf) if shape.overhangs else _widest(low, high, size)
+        for axis in np.flatnonzero(np.isfinite(high - low) & (high - low > limit * (1 + TOUCH))):
             raise ValueError(
                 f"Scene.inclusions[{number}]: {shape.kind} of diameter {(high - low)[axis]:.6g} is larger than the "
                 f"box; must be <= {limit[axis]}"
@@ -175,10 +175,3 @@ def check_reached(scene) -> None:
 def _beyond_round_wall(shape, scene):
     center, radius = shape.ball()
     return bool(from_middle(center, scene.domain, scene.size) >= round_radius(scene.domain, scene.size) + radius)
-
-
-def _check_reach(name, shape, size):
-    """Refuse a shape that has no end along some axis and leaves the box along another."""
-    for low, high, length in zip(*shape.bounds(), size, strict=True):
-        if np.isfinite(low) and (low < -TOUCH * length or high > length * (1 + TOUCH)):
-            raise ValueError(f"{name}: {shape.kind} from {low} to {high} must lie in the box, 0 to {length}")

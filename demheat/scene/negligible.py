@@ -138,7 +138,7 @@ def _room(scene, radii, chosen):
     else:
         clear = np.minimum(centers, np.array(scene.size) - centers).min(axis=1)
     for number in np.flatnonzero(~chosen):
-        clear = np.minimum(clear, np.abs(scene.inclusions[number].distance(centers, period=scene.period)))
+        clear = np.minimum(clear, np.abs(scene.inclusions[number].sure_distance(centers, period=scene.period)))
     apart = np.full(len(own), np.inf)
     for rows in np.array_split(np.arange(len(own)), len(own) ** 2 // BLOCK + 1):
         gap = _distances(centers[rows], centers, scene.period) - own[rows, None] - own

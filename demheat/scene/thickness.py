@@ -6,12 +6,14 @@ import numpy as np
 
 
 def extents(scene) -> np.ndarray:
-    """Least length of each inclusion along the axes, (number of inclusions,) float array, m."""
-    return np.array([_least(shape.bounds()) for shape in scene.inclusions])
+    """Least width of each inclusion, (number of inclusions,) float array, m."""
+    return np.array([shape.width for shape in scene.inclusions])
 
 
 def narrower(scene, lengths) -> np.ndarray:
     """Whether each inclusion is narrower along some axis than a length, (number of inclusions,) bool array.
+
+    Or in any direction than the least of the lengths, where it is known to be.
 
     Parameters
     ----------
@@ -19,8 +21,8 @@ def narrower(scene, lengths) -> np.ndarray:
     lengths : (3,) float array, m
         Along each axis.
     """
-    bounds = [shape.bounds() for shape in scene.inclusions]
-    return np.array([bool(np.any(high - low < lengths)) for low, high in bounds], bool)
+    along = np.array([high - low for low, high in (shape.bounds() for shape in scene.inclusions)]).reshape(-1, 3)
+    return np.any(along < lengths, axis=1) | (extents(scene) < np.min(lengths))
 
 
 def coats(scene) -> np.ndarray:
@@ -41,9 +43,3 @@ def coats(scene) -> np.ndarray:
             gaps += np.stack([-turns, turns])
         left[outer] = min(left[outer], gaps.max(initial=-np.inf) if gaps.size else np.inf)
     return left
-
-
-def _least(bounds):
-    low, high = bounds
-    ends = np.isfinite(low)
-    return float(np.min(high[ends] - low[ends], initial=np.inf))

@@ -191,7 +191,7 @@ def _space(scene, elements, order, size, coarser):
     if elements == "hexahedra":
         return hexahedra(scene, coarser * (scene.volume ** (1 / 3) / BRICKS if size is None else size))
     if size is None:
-        bounded = sum(shape.bounded for shape in scene.inclusions)
+        bounded = sum(not shape.flat for shape in scene.inclusions)
         size = scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     if scene.domain == "box":
         return tetrahedra(scene, split(scene, make(scene, size=size, order=order, coarser=coarser)))

@@ -62,7 +62,7 @@ def automatic(scheme, scene, shape) -> str:
     if scene.anisotropic:
         return "laminate"
     conductivity = scene.conductivities
-    rounded = np.array([True] + [shape.bounded for shape in scene.inclusions])
+    rounded = np.array([True] + [not shape.flat for shape in scene.inclusions])
     inner, outer = conductivity[rounded][1:], conductivity[scene.parents()][rounded][1:]
     if not np.any(inner != outer):
         return "laminate"
@@ -105,7 +105,7 @@ def warn_of_thin(scene, rule, shape) -> None:
             stacklevel=4,
         )
     # Laminates are exact for layers of any thickness that they see.
-    small = narrower(scene, spacing) & [rule != "laminate" or each.bounded for each in scene.inclusions]
+    small = narrower(scene, spacing) & [rule != "laminate" or not each.flat for each in scene.inclusions]
     small |= narrower(scene, FULL * spacing)
     k = scene.tensors if scene.anisotropic else scene.conductivities[:, None, None]
     small &= np.any(k[1:] != k[scene.parents()[1:]], axis=(1, 2))
@@ -119,7 +119,7 @@ def warn_of_thin(scene, rule, shape) -> None:
 
 
 def _warn_of_gaps(scene, rule, shape, voxel):
-    rounded = np.array([each.bounded for each in scene.inclusions], bool)
+    rounded = np.array([not each.flat for each in scene.inclusions], bool)
     near = narrows(scene, NEAR * voxel) & (rounded | (rule == "plain"))
     if min(shape) < FEW:
         near |= narrows(scene, 2 * voxel, WEAK) & rounded

@@ -267,7 +267,7 @@ def _check_grid(box, rule, shape):
     if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
     linked = rule == "links" and box.mean_conductivities.min() > 0
-    if linked and min(shape) < LEAST_LINKED and any(each.bounded for each in box.inclusions):
+    if linked and min(shape) < LEAST_LINKED and any(not each.flat for each in box.inclusions):
         raise ValueError(
             f"voxels: {min(shape)} along a side are too few for rule 'links' with round inclusions, which may pass "
             f"Voigt's and Reuss's bounds; must be >= {LEAST_LINKED}, or take rule 'laminate'"

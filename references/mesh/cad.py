@@ -18,8 +18,11 @@ from demheat.scene.inputs import finite, flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
+from references.mesh.solids import KNOWN, add
 from references.mesh.turns import turn
 
+# Unit lengths. OpenCASCADE's bounds of what splines end may be so much too wide (found: 5e-6).
+LOOSE = 1e-5
 # Balls and shells that gmsh's own fields look through for each point; more are looked up in a table.
 MOST_FIELDS = 400
 
@@ -50,7 +53,7 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     ValueError
         If an argument is not as described, or asks for more than 3e7 elements, or more than memory holds.
     NotImplementedError
-        If surfaces of the scene touch, or inclusions are neither spheres nor layers.
+        If surfaces of the scene touch, or inclusions are of a shape that is not known here.
     RuntimeError
         If gmsh fails at four neighbouring sizes.
     ImportError
@@ -58,10 +61,10 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """
     check_scene(scene)
     flag("curved", curved)
-    text = "sizes of elements are known on spheres and layers in a box"
+    text = "sizes of elements are known on spheres and layers in a box, on cylinders, ellipsoids, boxes and half-spaces"
     # What surfaces resist and phases conduct does not change where they are.
     takes = ("resistance", "exchange", "anisotropy", "dependence")
-    scene.require(text, domain="box", shapes=(Sphere, Layer), takes=takes)
+    scene.require(text, domain="box", shapes=(Sphere, Layer, *KNOWN), takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)
@@ -186,7 +189,7 @@ def solid(shape: Shape, occ, box, scale: float) -> int:
     NotImplementedError
         If the shape is not registered.
     """
-    raise NotImplementedError(f"meshes around inclusions of shape {type(shape).__name__}: not known here")
+    return add(shape, occ, box, scale)
 
 
 @solid.register
@@ -223,8 +226,10 @@ def _face_pieces(gmsh, axis, at):
     found = []
     for _, tag in gmsh.model.getEntities(2):
         bounds = np.reshape(gmsh.model.getBoundingBox(2, tag), (2, 3))[:, axis]
-        if np.abs(bounds - at).max() < MATCH:
-            found.append(((*gmsh.model.occ.getCenterOfMass(2, tag), gmsh.model.occ.getMass(2, tag)), tag))
+        if np.abs(bounds - at).max() < LOOSE:
+            middle = gmsh.model.occ.getCenterOfMass(2, tag)
+            if abs(middle[axis] - at) < MATCH:
+                found.append(((*middle, gmsh.model.occ.getMass(2, tag)), tag))
     return found
 
 

@@ -267,6 +267,6 @@ def check(scene, mesh):
             raise RuntimeError(f"phase {number}: {bad[number]:.3g} of its {volume[number]:.3g} m3 are misplaced")
     count = np.bincount(phase, minlength=len(scene.materials))
     for number, inclusion in enumerate(scene.inclusions, start=1):
-        # Other inclusions can fill a layer or the matrix, but never a sphere.
-        if inclusion.bounded and not count[number]:
+        # Other inclusions can fill a layer or the matrix, but never a sphere or another body.
+        if not inclusion.flat and not count[number]:
             raise RuntimeError(f"phase {number}, a {inclusion.kind}, was lost")

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from demheat.limits import free_memory
 from demheat.scene.inputs import finite, whole
+from references.mesh.solids import sized
 
 # How much longer edges may be one metre farther from a feature, in metres.
 GROWTH = 0.3
@@ -83,7 +84,7 @@ def checked_size(scene, size, order):
     """
     whole("order", order, "1 or 2", lambda v: v in (1, 2))
     if size is None:
-        bounded = sum(shape.bounded for shape in scene.inclusions)
+        bounded = sum(not shape.flat for shape in scene.inclusions)
         return scene.volume ** (1 / 3) / max(EDGES[order], EDGES_APART * bounded ** (1 / 3))
     finite("size", size, "a finite number > 0 m", lambda v: v > 0)
     least = (CELLS * math.prod(scene.size) / MOST_CELLS) ** (1 / 3)
@@ -99,7 +100,7 @@ def wanted_sizes(scene, size, *, coarser=1.0):
     Parameters
     ----------
     scene : Scene
-        Of spheres and layers; `references.mesh.make` refuses others.
+        Of shapes that `references.mesh.make` does not refuse.
     size : float, m
         Longest edge.
     coarser : float
@@ -123,6 +124,7 @@ def wanted_sizes(scene, size, *, coarser=1.0):
         [
             np.column_stack([centers, radii, ON_SPHERE * radii]),
             np.column_stack([gaps[:, :3], width, IN_GAP * width]),
+            sized(scene, size / coarser, planes, (ON_SPHERE, IN_GAP, FAR, NARROWEST)),
         ]
     )
     thickness = radii[outer] - radii[inner]
@@ -175,7 +177,7 @@ def check_cost(sizes: Sizes, box, order: int) -> float:
 
 def _spheres(scene, size):
     """Centres and radii of the spheres, and of all images in a periodic cell, less than one size from the box."""
-    spheres = [shape for shape in scene.inclusions if shape.bounded]
+    spheres = [shape for shape in scene.inclusions if shape.fills_ball]
     centers = np.array([s.center for s in spheres]).reshape(-1, 3)
     radii = np.array([s.radius for s in spheres])
     box = np.array(scene.size)
@@ -196,7 +198,7 @@ def _planes(scene):
     """Coordinates of the faces and layer planes along each axis."""
     planes, longest = [], max(scene.size)
     for axis, length in enumerate(scene.size):
-        layers = [shape for shape in scene.inclusions if not shape.bounded and shape.axis == axis]
+        layers = [shape for shape in scene.inclusions if shape.flat and shape.axis == axis]
         for x in layers:
             if x.stop - x.start < NARROWEST * longest:
                 raise NotImplementedError(f"layer along axis {axis} from {x.start} to {x.stop}: too thin to mesh")

@@ -8,8 +8,10 @@ import numpy as np
 
 from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
+from demheat.scene.shapes.solid import Solid
 from references.voxels import kernels
 from references.voxels.paint import voxelise
+from references.voxels.solids import inside_parts
 from references.voxels.spheres import Balls, groups, windows
 
 # A sphere's surface nearer to a node than this part of a link is taken this far away.  It moves the surface by 2e-4 of
@@ -43,7 +45,7 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
     if phase is None and _rounded(scene):
         phase = voxelise(scene, shape, laminate=False).phase
     # What has no end last: the order of addition decides how sums are rounded, nothing else.
-    inclusions = sorted(enumerate(scene.inclusions, start=1), key=lambda pair: not pair[1].bounded)
+    inclusions = sorted(enumerate(scene.inclusions, start=1), key=lambda pair: pair[1].flat)
     parts = list(groups(inclusions, scene.size, periodic=scene.periodic))
     found = []
     with stage("links") as done:
@@ -105,7 +107,7 @@ def _finish(scene, axis, resistance, resistivity, phase):
 
 def _rounded(scene):
     """Whether there are surfaces other than planes across the box."""
-    return any(shape.bounded for shape in scene.inclusions)
+    return any(not shape.flat for shape in scene.inclusions)
 
 
 @singledispatch
@@ -147,6 +149,13 @@ def _cut_spheres(spheres, resistance, axis, change, spacing):
 def _(shape: Sphere, resistance, axis, change, spacing):
     one = Balls(np.zeros(1, np.int64), np.array([shape.center]), np.array([shape.radius]))
     _cut_spheres(one, resistance, axis, np.array([change]), spacing)
+
+
+@cut.register
+def _(shape: Solid, resistance, axis, change, spacing):
+    counts = tuple(n - (a == axis) for a, n in enumerate(resistance.shape))
+    rows, inside = inside_parts(shape, counts, spacing, axis)
+    np.moveaxis(resistance, axis, 2)[rows[:, 0], rows[:, 1]] += change * inside
 
 
 @cut.register

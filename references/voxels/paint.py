@@ -17,8 +17,10 @@ import numpy as np
 
 from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
+from demheat.scene.shapes.solid import Solid
 from references.voxels import kernels
 from references.voxels.laminates import cut_tensors, packed
+from references.voxels.solids import cut_voxels, window
 from references.voxels.spheres import Balls, groups, windows
 
 # Phases are kept as 16-bit numbers, flat voxel indices of one axis fit 32 bits.
@@ -307,15 +309,29 @@ def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
         raise NotImplementedError(
             f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
         )
-    low, high = (np.clip(ends, 0.0, grid.shape * spacing) / spacing for ends in shape.bounds())
-    low, high = np.floor(low).astype(int), np.ceil(high).astype(int)
+    _fill(shape, grid, spacing, number)
+    return _none()
+
+
+def _fill(shape, grid, spacing, number):
+    """Paint the voxels whose centres lie in one image of a shape."""
+    low, high = window(shape, np.array(grid.shape), spacing, clipped=True)
     y, z = (np.arange(low[axis], high[axis]) for axis in (1, 2))
     # Slice by slice: no array of points as large as the grid.
     for x in range(low[0], high[0]):
         points = np.stack(np.meshgrid([x], y, z, indexing="ij"), axis=-1).reshape(-1, 3)
         inside = shape.contains((points + 0.5) * spacing)
         grid[tuple(points[inside].T)] = number
-    return _none()
+
+
+@paint.register
+def _(shape: Solid, grid, spacing, number, *, cutting):
+    _fill(shape, grid, spacing, number)
+    if not cutting:
+        return _none()
+    index, fraction, moment = cut_voxels(shape, grid.shape, spacing)
+    cut = (fraction > kernels.FULL) & (fraction < 1 - kernels.FULL)
+    return Cuts(index[cut], fraction[cut], moment[cut], np.full(int(cut.sum()), number))
 
 
 @paint.register

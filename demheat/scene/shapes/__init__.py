@@ -1,7 +1,12 @@
-"""Shapes of inclusions, one per file: `Sphere`, `Layer`, and `Shape`, which says what the next one must supply."""
+"""Shapes of inclusions, one per file, and `Shape`, which says what the next one must supply."""
 
 from demheat.scene.shapes.base import Shape
+from demheat.scene.shapes.box import Box
+from demheat.scene.shapes.cylinder import Cylinder
+from demheat.scene.shapes.ellipsoid import Ellipsoid
+from demheat.scene.shapes.half_space import HalfSpace
 from demheat.scene.shapes.layer import Layer
+from demheat.scene.shapes.level_set import LevelSet
 from demheat.scene.shapes.sphere import Sphere
 
-__all__ = ["Layer", "Shape", "Sphere"]
+__all__ = ["Box", "Cylinder", "Ellipsoid", "HalfSpace", "Layer", "LevelSet", "Shape", "Sphere"]

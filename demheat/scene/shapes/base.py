@@ -17,11 +17,12 @@ from demheat.scene.material import WITHIN, Material
 TOUCH = 1e-12
 # What a class derived from a finished shape must leave as it is.
 GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
-GEOMETRY |= {"images", "point_in", "volume_in", "fills_bounds", "fills_ball"}
+GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
+GEOMETRY |= {"width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
 
 
 class Shape(ABC):
-    """A convex region of one material: what every inclusion is, and what the next one must supply.
+    """A region of one material, mostly convex: what every inclusion is, and what the next one must supply.
 
     A shape is a frozen dataclass in a file of its own. It checks its fields as it is made (`demheat.scene.inputs`) and
     lives in unbounded space: it knows neither box nor walls. All lengths are metres. What it must supply:
@@ -34,12 +35,13 @@ class Shape(ABC):
     Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
     along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
     (`nearest`). What a shape may override, where it has something sharper or faster, is `contains`, `ball`, `meets`,
-    `volume_in`, `fills_bounds` and `fills_ball`.
+    `volume_in`, `width`, `fills_bounds` and `fills_ball`, and for pairs `reach`, `hull`, `planes` and `encloses`. One
+    that is not convex says so; one whose distance is not exact overrides `sure_distance`. `Solid` supplies most of it.
 
     That is enough for phases, voxels that belong to the phase of their centre, and the DEM without conforming facets.
     What a method must know besides, it asks for by the shape's type, and refuses other shapes: `Scene.require`, and
     the functions that shapes are registered with, `demheat.packing.interfaces.surfaces`,
-    `references.voxels.paint.paint` and `references.voxels.links.cut`.
+    `references.voxels.paint.paint`, `references.voxels.links.cut` and `references.mesh.cad.solid`.
     """
 
     center: tuple[float, float, float]
@@ -50,6 +52,12 @@ class Shape(ABC):
     fills_bounds = False
     # Whether it is all of its `ball`: balls are looked at all at once.
     fills_ball = False
+    # Whether its surface is planes across the box and its axes, which grids follow exactly.
+    flat = False
+    # Whether it holds the line between any two of its points.
+    convex = True
+    # Whether it may be wider than a box with walls, which cut it.
+    overhangs = False
 
     def __init_subclass__(cls, **knobs):
         """Refuse a class that changes the geometry of a finished shape: what knows that by its type would not ask."""
@@ -123,6 +131,13 @@ class Shape(ABC):
         return self.distance(points, period=period) <= 0.0
 
     @property
+    def width(self) -> float:
+        """Its least width in any direction, m, or that along the axes where no more is known; infinite without ends."""
+        low, high = self.bounds()
+        ends = np.isfinite(low)
+        return float(np.min(high[ends] - low[ends], initial=np.inf))
+
+    @property
     def kind(self) -> str:
         """What it is called in messages."""
         return type(self).__name__.lower()
@@ -165,9 +180,19 @@ class Shape(ABC):
         for shift in product((0, -1, 1), repeat=3):
             sides = zip(shift, low, high, size, strict=True)
             if all(b + s * side > -TOUCH * side and a + s * side < (1 + TOUCH) * side for s, a, b, side in sides):
-                image = replace(self, center=tuple(c + s * side for c, s, side in zip(home, shift, size, strict=True)))
+                place = tuple(c + s * side for c, s, side in zip(home, shift, size, strict=True))
+                image = self.placed(place)
                 found += [image] if image.meets(size) else []
         return found
+
+    def placed(self, center: Sequence[float]) -> Shape:
+        """The same shape with its centre elsewhere.
+
+        Parameters
+        ----------
+        center : (3,) sequence of float, m
+        """
+        return replace(self, center=tuple(center))
 
     def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
         """A point of the box that lies inside, (3,) float array, m.
@@ -200,6 +225,102 @@ class Shape(ABC):
         if not periodic and np.any((low < -slack) | (high > np.array(size) + slack)):
             raise NotImplementedError(f"no closed form for the volume of a {self.kind} at {self.center} cut by a wall")
         return self.volume
+
+    def surface(self, points: np.ndarray, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """`distance` and `normal` of points, at once where that is faster.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        period : (3,) float array, m, optional
+            Of a periodic cell.
+
+        Returns
+        -------
+        distance : (n,) float array, m
+        normal : (n, 3) float array
+        """
+        return self.distance(points, period=period), self.normal(points, period=period)
+
+    def sure_distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+        """Distance that a point surely has to the surface at least, outside; inside less than 0 where that is exact.
+
+        Parameters
+        ----------
+        points : (n, 3) float array, m
+        period : (3,) float array, m, optional
+            Of a periodic cell.
+
+        Returns
+        -------
+        (n,) float array, m
+        """
+        return self.distance(points, period=period)
+
+    def reach(self, direction: np.ndarray, size: Sequence[float] | None = None) -> float:
+        """How far it reaches along a direction: direction . x is no more in any of its points, m.
+
+        Parameters
+        ----------
+        direction : (3,) float array
+        size : (3,) sequence of float, m, optional
+            Of a box with walls: what lies beyond need not count.
+        """
+        low, high = self._clipped(size)
+        with np.errstate(invalid="ignore"):
+            parts = np.maximum(direction * low, direction * high)
+        return float(np.where(direction == 0, 0.0, parts).sum())
+
+    def hull(self, size: Sequence[float] | None = None) -> tuple[np.ndarray, float] | None:
+        """Balls of one radius whose convex hull holds it.
+
+        Parameters
+        ----------
+        size : (3,) sequence of float, m, optional
+            Of a box with walls: what lies beyond need not count.
+
+        Returns
+        -------
+        centres : (m, 3) float array, m
+        radius : float, m
+            None in place of both where it has no end.
+        """
+        low, high = self._clipped(size)
+        if not (np.all(np.isfinite(low)) and np.all(np.isfinite(high))):
+            return None
+        return np.array(list(product(*zip(low, high, strict=True)))), 0.0
+
+    def planes(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Outward normals (m, 3) and offsets (m,), m, of the planes that it is all of the inside of; None if none."""
+        return None
+
+    def encloses(self, other: Shape, shift: np.ndarray) -> bool:
+        """Whether it surely holds another shape, by what both know of their own kind.
+
+        Parameters
+        ----------
+        other : Shape
+        shift : (3,) float array, m
+            By which the other is moved first.
+        """
+        return False
+
+    def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
+        """Raise ValueError unless it can lie in a box, but for its width, for which its bounds are looked at.
+
+        Parameters
+        ----------
+        name : str
+            For the message.
+        size : (3,) sequence of float, m
+        periodic : bool
+        """
+        return
+
+    def _clipped(self, size):
+        """Bounds, of what lies in a box if there is one."""
+        low, high = self.bounds()
+        return (low, high) if size is None else (np.maximum(low, 0.0), np.minimum(high, size))
 
 
 def check_resistance(shape: Shape) -> None:

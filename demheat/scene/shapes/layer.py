@@ -41,6 +41,7 @@ class Layer(Shape):
     resistance: float = field(default=0.0, kw_only=True)
 
     fills_bounds = True
+    flat = True
 
     def __post_init__(self):
         object.__setattr__(self, "axis", whole("Layer.axis", self.axis, "0, 1 or 2", lambda v: 0 <= v <= 2))
@@ -101,6 +102,12 @@ class Layer(Shape):
     def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
         """Volume of the part in a box, m3; see `Shape.volume_in`."""
         return (self.stop - self.start) * math.prod(size) / size[self.axis]
+
+    def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
+        """Raise ValueError unless it lies in a box; see `Shape.check_fit`."""
+        length = size[self.axis]
+        if self.start < -TOUCH * length or self.stop > length * (1 + TOUCH):
+            raise ValueError(f"{name}: layer from {self.start} to {self.stop} must lie in the box, 0 to {length}")
 
     @property
     def _middle(self):

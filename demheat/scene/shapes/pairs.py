@@ -11,6 +11,7 @@ import numpy as np
 from demheat.scene.shapes.base import TOUCH, Shape, nearest
 from demheat.scene.shapes.bins import ball_bins, candidates
 from demheat.scene.shapes.holders import bounding_balls
+from demheat.scene.shapes.parted import nested, parted
 
 
 class _Cell(NamedTuple):
@@ -18,12 +19,19 @@ class _Cell(NamedTuple):
     period: np.ndarray | None  # (3,) m
     tolerance: float  # m
 
+    @property
+    def box(self):
+        """The box whose walls end all there is, none in a periodic cell."""
+        return self.size if self.period is None else None
+
 
 def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: bool) -> None:
     """Refuse shapes that overlap partially, and shapes that later ones hide.
 
-    Exact for spheres, layers and what fills its bounds; of other shapes it takes those pairs that their bounds and
-    bounding balls show to be apart or nested.
+    Exact for spheres, layers and what fills its bounds, and for one of these or a half-space beside a shape whose
+    distance is exact. Of other convex shapes it takes those pairs that a plane is found to part, or of which one holds
+    balls or corners around the other; of what is not convex, those whose bounds are apart or in the other. What it
+    takes is certain, what it refuses may only be too near to tell.
 
     Parameters
     ----------
@@ -58,7 +66,7 @@ def _close(shapes, centers, radii, cell):
     for number in np.flatnonzero(~ends):
         # A ball beside an endless shape, which most are, is apart from it.
         near = ~ends
-        near[ball] = shapes[number].distance(centers[ball], period=cell.period) < radii[ball] - cell.tolerance
+        near[ball] = shapes[number].sure_distance(centers[ball], period=cell.period) < radii[ball] - cell.tolerance
         others = np.flatnonzero(near)
         found.append(np.stack([np.full(len(others), number), others]))
     pairs = np.sort(np.concatenate(found, axis=1), axis=0)
@@ -82,14 +90,18 @@ def _check_pair(shapes, i, j, cell):
 
 def _unsure(first, second):
     """What to add where the shapes might be apart all the same."""
-    told = all(_is_ball(shape) or shape.fills_bounds for shape in (first, second))
-    return "" if told else ", or are too near for their bounds and bounding balls to tell them apart"
+    return "" if _told(first, second) else ", or are too near for their bounds and bounding balls to tell them apart"
+
+
+def _told(first, second):
+    """Whether bounds and balls tell all of two shapes."""
+    return all(_is_ball(shape) or shape.fills_bounds for shape in (first, second))
 
 
 def _is_ball(shape):
     center, radius = shape.ball()
     # Of two lengths that are equal but for rounding.
-    return shape.bounded and -shape.distance(center[None])[0] >= radius * (1 - 1e-9)
+    return shape.bounded and -shape.sure_distance(center[None])[0] >= radius * (1 - 1e-9)
 
 
 def _crossed(first, second):
@@ -101,12 +113,13 @@ def _crossed(first, second):
 def _apart(first, second, cell):
     for one, other in ((first, second), (second, first)):
         center, radius = one.ball()
-        if one.bounded and other.distance(center[None], period=cell.period)[0] >= radius - cell.tolerance:
+        if one.bounded and other.sure_distance(center[None], period=cell.period)[0] >= radius - cell.tolerance:
             return True
-    return any(
+    beside = any(
         all(d <= a + cell.tolerance or b <= c + cell.tolerance for a, b in before for c, d in after)
         for before, after in zip(_spans(first, cell), _spans(second, cell), strict=True)
     )
+    return beside or (not _told(first, second) and parted(first, second, cell.box, cell.period, cell.tolerance))
 
 
 def _holds(outer, inner, cell):
@@ -114,10 +127,12 @@ def _holds(outer, inner, cell):
         _covers(a, b, cell.tolerance) for a, b in zip(_spans(outer, cell), _spans(inner, cell), strict=True)
     ):
         return True
-    if not inner.bounded:
+    if not _told(outer, inner) and nested(outer, inner, cell.box, cell.period, cell.tolerance):
+        return True
+    if not inner.bounded or not outer.convex:
         return False
     center, radius = inner.ball()
-    if outer.distance(center[None], period=cell.period)[0] <= cell.tolerance - radius:
+    if outer.sure_distance(center[None], period=cell.period)[0] <= cell.tolerance - radius:
         return True
     return outer.bounded and _holds_corners(outer, inner, cell)
 

@@ -83,6 +83,14 @@ class Sphere(Shape):
         """Centre and radius, m."""
         return np.array(self.center), self.radius
 
+    def reach(self, direction: np.ndarray, size: Sequence[float] | None = None) -> float:
+        """How far it reaches along a direction, m; see `Shape.reach`."""
+        return float(direction @ np.array(self.center) + self.radius * np.linalg.norm(direction))
+
+    def hull(self, size: Sequence[float] | None = None) -> tuple[np.ndarray, float]:
+        """Centre and radius, m; see `Shape.hull`."""
+        return np.array([self.center]), self.radius
+
     def meets(self, size: Sequence[float]) -> bool:
         """Whether it reaches into the box from 0 to a size, three lengths in metres."""
         gap2 = sum(max(0.0, -c, c - side) ** 2 for c, side in zip(self.center, size, strict=True))

@@ -1,0 +1,100 @@
+"""A box, turned as one likes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from demheat.scene.inputs import vector
+from demheat.scene.material import Material, check_material
+from demheat.scene.shapes.base import check_resistance
+from demheat.scene.shapes.directions import IDENTITY, corners, rotation, turned_rotation
+from demheat.scene.shapes.ellipsoid import lengths
+from demheat.scene.shapes.solid import Solid
+
+
+@dataclass(frozen=True)
+class Box(Solid):
+    """A rectangular box.
+
+    Parameters
+    ----------
+    center : (3,) sequence of float, m
+    sides : (3,) sequence of float, m
+        Lengths along its own axes.
+    material : Material
+    rotation : (3, 3) array_like or scipy.spatial.transform.Rotation
+        Columns are the directions of its own axes. Kept as a tuple of rows; by default they are x, y and z.
+    resistance : float, m2 K/W
+        Of its surface towards whatever it lies in, as that of a `Sphere`.
+    """
+
+    center: tuple[float, float, float]
+    sides: tuple[float, float, float]
+    material: Material
+    rotation: tuple[tuple[float, ...], ...] = field(default=IDENTITY, kw_only=True)
+    resistance: float = field(default=0.0, kw_only=True)
+
+    def __post_init__(self):
+        object.__setattr__(self, "center", vector("Box.center", self.center))
+        object.__setattr__(self, "sides", lengths("Box.sides", self.sides))
+        check_material("Box.material", self.material)
+        object.__setattr__(self, "rotation", rotation("Box.rotation", self.rotation))
+        check_resistance(self)
+
+    @property
+    def fills_bounds(self) -> bool:
+        """Whether it is all of the box of its `bounds`."""
+        return np.count_nonzero(self.rotation) == 3
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest coordinates along each axis, two (3,) float arrays, m."""
+        half = np.abs(self.rotation) @ (0.5 * np.array(self.sides))
+        return np.array(self.center) - half, np.array(self.center) + half
+
+    @property
+    def volume(self) -> float:
+        """Volume, m3."""
+        return math.prod(self.sides)
+
+    @property
+    def width(self) -> float:
+        """Its least width, m."""
+        return min(self.sides)
+
+    def turned(self, order: Sequence[int]) -> Box:
+        """The same box with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+        center = tuple(self.center[axis] for axis in order)
+        return replace(self, center=center, rotation=turned_rotation(self.rotation, order))
+
+    def reach(self, direction: np.ndarray, size: Sequence[float] | None = None) -> float:
+        """How far it reaches along a direction, m; see `Shape.reach`."""
+        half = 0.5 * np.array(self.sides)
+        return float(np.dot(direction, self.center) + np.abs(direction @ np.array(self.rotation)) @ half)
+
+    def hull(self, size: Sequence[float] | None = None) -> tuple[np.ndarray, float]:
+        """Its corners; see `Shape.hull`."""
+        return np.array(self.center) + corners(np.array(self.rotation) * (0.5 * np.array(self.sides))), 0.0
+
+    def planes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Those of its six faces; see `Shape.planes`."""
+        normals = np.concatenate([np.array(self.rotation).T, -np.array(self.rotation).T])
+        return normals, normals @ np.array(self.center) + np.tile(0.5 * np.array(self.sides), 2)
+
+    def _own(self, offsets):
+        own = offsets @ np.array(self.rotation)
+        return own, np.abs(own) - 0.5 * np.array(self.sides)
+
+    def _distance(self, offsets):
+        _, beyond = self._own(offsets)
+        return np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
+
+    def _normal(self, offsets):
+        own, beyond = self._own(offsets)
+        out = np.maximum(beyond, 0.0)
+        # Inside, and on the surface, that of the nearest face.
+        out[np.arange(len(out)), beyond.argmax(axis=1)] += np.all(beyond <= 0, axis=1)
+        return np.copysign(out, own) / np.linalg.norm(out, axis=1, keepdims=True) @ np.array(self.rotation).T

@@ -1,0 +1,118 @@
+"""All that lies on one side of a plane."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
+
+import numpy as np
+
+from demheat.scene.inputs import vector
+from demheat.scene.material import Material, check_material
+from demheat.scene.shapes.base import check_resistance
+from demheat.scene.shapes.directions import unit
+from demheat.scene.shapes.sections import below
+from demheat.scene.shapes.solid import Solid
+
+
+@dataclass(frozen=True)
+class HalfSpace(Solid):
+    """All that lies behind a plane, which may be inclined; in boxes with walls only, for nothing repeats it.
+
+    Parameters
+    ----------
+    point : (3,) sequence of float, m
+        Of the plane.
+    outward : (3,) sequence of float
+        Out of it, of any length but 0.
+    material : Material
+    resistance : float, m2 K/W
+        Of the plane, as that of the surface of a `Sphere`.
+    """
+
+    point: tuple[float, float, float]
+    outward: tuple[float, float, float]
+    material: Material
+    resistance: float = field(default=0.0, kw_only=True)
+
+    def __post_init__(self):
+        object.__setattr__(self, "point", vector("HalfSpace.point", self.point))
+        object.__setattr__(self, "outward", unit("HalfSpace.outward", self.outward))
+        check_material("HalfSpace.material", self.material)
+        check_resistance(self)
+
+    @property
+    def kind(self) -> str:
+        """What it is called in messages."""
+        return "half-space"
+
+    @property
+    def center(self) -> tuple[float, float, float]:
+        """The point of its plane, m."""
+        return self.point
+
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Infinite, m: along an axis it ends at most on one side."""
+        return np.full(3, -math.inf), np.full(3, math.inf)
+
+    @property
+    def volume(self) -> float:
+        """Infinite; see `volume_in`."""
+        return math.inf
+
+    def turned(self, order: Sequence[int]) -> HalfSpace:
+        """The same half-space with axes order[0], order[1], order[2] as axes 0, 1, 2."""
+        return replace(self, **{name: tuple(getattr(self, name)[a] for a in order) for name in ("point", "outward")})
+
+    def meets(self, size: Sequence[float]) -> bool:
+        """Whether it reaches into the box from 0 to a size, three lengths in metres."""
+        return bool(self._distance(_box_corners(size) - np.array(self.point)).min() < 0)
+
+    def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
+        """Volume of the part in a box, m3; see `Shape.volume_in`."""
+        box = np.array(size, dtype=float)
+        share, _ = below(np.array([self.outward]), self.distance(box[None] / 2), box)
+        return float(share[0]) * math.prod(size)
+
+    def reach(self, direction: np.ndarray, size: Sequence[float] | None = None) -> float:
+        """How far it reaches along a direction, m; see `Shape.reach`."""
+        found = self.hull(size)
+        if found is None:
+            along = float(np.dot(direction, self.outward))
+            same = np.linalg.norm(direction - along * np.array(self.outward)) <= 1e-14 * abs(along)
+            return along * float(np.dot(self.point, self.outward)) if same and along > 0 else math.inf
+        return float((found[0] @ direction).max())
+
+    def hull(self, size: Sequence[float] | None = None) -> tuple[np.ndarray, float] | None:
+        """Corners of its part in a box; see `Shape.hull`."""
+        if size is None:
+            return None
+        points = _box_corners(size)
+        height = self._distance(points - np.array(self.point))
+        found = [points[height <= 0]]
+        for i, j in ((i, i | bit) for i in range(8) for bit in (1, 2, 4) if not i & bit):
+            if (height[i] < 0) != (height[j] < 0) and height[i] != height[j]:
+                found.append((points[i] + height[i] / (height[i] - height[j]) * (points[j] - points[i]))[None])
+        return np.concatenate(found), 0.0
+
+    def planes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Its one plane; see `Shape.planes`."""
+        return np.array([self.outward]), np.array([np.dot(self.point, self.outward)])
+
+    def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
+        """Raise ValueError in a periodic cell; see `Shape.check_fit`."""
+        if periodic:
+            raise ValueError(f"{name}: half-space in a periodic cell does not repeat; must be in a box with walls")
+
+    def _distance(self, offsets):
+        return offsets @ np.array(self.outward)
+
+    def _normal(self, offsets):
+        return np.tile(self.outward, (len(offsets), 1))
+
+
+def _box_corners(size):
+    """Corners of a box from 0 to a size, numbered by the bits 4 of x, 2 of y and 1 of z."""
+    return np.array(list(product(*((0.0, float(side)) for side in size))))

@@ -1,0 +1,84 @@
+"""Points all over the surface of a shape, each with the area that it stands for, by cells that close in on it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import product
+
+import numpy as np
+
+from demheat.scene.shapes.sections import below
+
+# Cells along the longest side that are looked at first, and looked at together.
+FIRST, BLOCK = 16, 1 << 16
+# Distances are exact or nearly so: a cell whose middle is farther off than this many half diagonals has no surface.
+SLACK = 1.5
+
+
+def cells_on(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Cells of a box that the surface of a shape may cut.
+
+    Parameters
+    ----------
+    shape : Shape
+    low, high : (3,) float arrays, m
+        Corners of the box.
+    pitch : float, m
+        Cells are no wider.
+
+    Returns
+    -------
+    centers : (n, 3) float array, m
+    sides : (3,) float array, m
+    """
+    span = np.asarray(high, dtype=float) - low
+    counts = np.maximum(1, np.ceil(span / span.max() * min(FIRST, np.ceil(span.max() / pitch)))).astype(int)
+    sides = span / counts
+    grid = np.meshgrid(*map(np.arange, counts), indexing="ij")
+    centers = low + (np.stack(grid, axis=-1).reshape(-1, 3) + 0.5) * sides
+    centers = _near(shape, centers, sides)
+    while sides.max() > pitch * (1 + 1e-9):
+        # Cells stay nearly cubic.
+        halved = sides > 0.75 * sides.max()
+        sides = np.where(halved, sides / 2, sides)
+        shifts = np.array(list(product(*((-0.5, 0.5) if half else (0.0,) for half in halved)))) * sides
+        centers = np.concatenate([_near(shape, (b[:, None] + shifts).reshape(-1, 3), sides) for b in _blocks(centers)])
+    return centers, sides
+
+
+def surface_points(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarray]:
+    """Points on the surface of a shape, in a box, and the area of each.
+
+    Parameters
+    ----------
+    shape : Shape
+    low, high : (3,) float arrays, m
+        Corners of the box.
+    pitch : float, m
+        Of the cells that have a point each.
+
+    Returns
+    -------
+    points : (n, 3) float array, m
+    areas : (n,) float array, m2
+    """
+    centers, sides = cells_on(shape, low, high, pitch)
+    found = [(np.empty((0, 3)), np.empty(0))]
+    for block in _blocks(centers):
+        distance, normal = shape.surface(block)
+        area = below(normal, distance, sides)[1]
+        points = block - distance[:, None] * normal
+        found.append((points[area > 0], area[area > 0]))
+    return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+
+def _near(shape, centers, sides):
+    """The centres of cells that the surface may cut."""
+    half = 0.5 * SLACK * np.linalg.norm(sides)
+    return np.concatenate([b[np.abs(shape.distance(b)) <= half] for b in _blocks(centers)])
+
+
+def _blocks(points) -> Iterator[np.ndarray]:
+    """Points in parts of limited number; one empty part of none."""
+    for start in range(0, max(len(points), 1), BLOCK):
+        yield points[start : start + BLOCK]
