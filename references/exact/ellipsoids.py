@@ -89,9 +89,8 @@ def maxwell(contrast, axes, fraction, *, envelope=(1.0, 1.0, 1.0), frame=None) -
     fraction : float
         Volume fraction of the ellipsoids.
     envelope : (3,) sequence of float
-        Half axes of the envelope, along those of the ellipsoids. A sphere is Maxwell's, of ellipsoids spread alike along
-        all directions; with the ellipsoids' own axes it is the exact value of confocally coated ellipsoids as thin as
-        their fraction goes to 0.
+        Half axes of the envelope, along those of the ellipsoids: a sphere where they are spread alike along all
+        directions.
 
     Returns
     -------
@@ -108,8 +107,8 @@ def maxwell(contrast, axes, fraction, *, envelope=(1.0, 1.0, 1.0), frame=None) -
     against = 1 - fraction * depolarisation(envelope) * along
     if np.any(against <= 0):
         raise ValueError(
-            f"fraction = {fraction!r}: too many ellipsoids of axes {tuple(axes)} for an envelope {tuple(envelope)}; must "
-            "be fewer, or the envelope nearer to their shape"
+            f"fraction = {fraction!r}: too many ellipsoids of axes {tuple(axes)} for an envelope {tuple(envelope)}; "
+            "must be fewer, or the envelope nearer to their shape"
         )
     return turn.T @ np.diag(1 + fraction * along / against) @ turn
 

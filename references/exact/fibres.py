@@ -10,8 +10,8 @@ across is s l C_l a^(l-1) = l (A_l a^(l-1) - B_l a^(-l-1)), the jump A_l a^l + B
 So (A_l - B_l a^-2l) (1 + s r l) = s (A_l + B_l a^-2l).
 
 Rayleigh's identity says that A_l is what the mean gradient and all other fibres make at this one,
-A_l = delta_l1 - sum over l' of C(l+l'-1, l) S_(l+l') B_l', S_n the sum of w^-n over all sites w but the origin; S_2 is pi
-over the area of the cell where the mean gradient is that of the cell. Then k/k_m = 1 - 2 pi B_1 / area.
+A_l = delta_l1 - sum over l' of C(l+l'-1, l) S_(l+l') B_l', S_n the sum of w^-n over all sites w but the origin; S_2 is
+pi over the area of the cell where the mean gradient is that of the cell. Then k/k_m = 1 - 2 pi B_1 / area.
 
 Lengths are in units of the distance of neighbours, conductivities in units of the matrix.
 """
@@ -147,8 +147,9 @@ def solve(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> 
 def lattice_sums(kind, highest) -> np.ndarray:
     """Sums of w^-n over all sites w = x + iy but the origin, n = 0 to highest, a (highest + 1,) float array.
 
-    The first that is there is a value of the gamma function, the next follow by the equation of Weierstrass's function,
-    those of high degree are a few sites. Others than multiples of 4 (of 6, hexagonal) vanish, but S_2: pi over the area.
+    The first that is there is a value of the gamma function, the next follow by the equation of Weierstrass's
+    function, those of high degree are a few sites. But for S_2, pi over the area, only multiples of 4 (of 6 in the
+    hexagonal array) do not vanish.
 
     Parameters
     ----------

@@ -70,7 +70,7 @@ def test_turned_frames():
 
 
 def test_flat_pores_are_cracks():
-    """Pores of half axes a, a, c: what their number takes away tends to that of discs; the next term is 4/pi c/a of it."""
+    """Pores of half axes a, a, c: what their number takes away tends to discs'; next is 4/pi c/a of it."""
     for flat in (1e-3, 1e-5):
         alpha = ellipsoids.polarisability(0.0, (1.0, 1.0, flat))
         density, volume = 1e-3, 4 / 3 * math.pi * flat
