@@ -14,7 +14,8 @@ from studies.harness.pick import pick, present, worst
 PAPER = {}
 TIMEOUT = 3600.0
 # Limits of errors at the resolutions of each method, %: set before any value was seen, from what the methods declare
-# without damage; of cracks, which no element size was ever fitted to, by the share of the particle's size in the radius.
+# without damage. Those of cracks after a look at other radii and numbers, where what discs take away was 21 % too large
+# with 1000 particles, 12 % with 4000, 6 % with 16 000.
 LIMITS = {"dem": (1.0, 0.3), "fem": (0.5, 0.1), "fft": (3.0, 1.0)}
 CRACK_LIMITS = (8.0, 4.0, 2.0)
 
@@ -67,7 +68,7 @@ def warm_up(part, name, method, share=None, radius=None, body=None, number=None,
 
 
 def claims(df):
-    """Spheres and discs within limits set before; of links what is exact: the first ones, an upper bound, the threshold.
+    """Spheres and discs within limits; of links what is exact: the first ones, an upper bound, the threshold.
 
     A field that the damage does not change carries (1 - q) of the heat, and the true one no more: an upper bound of the
     mean over all draws.
@@ -103,7 +104,7 @@ def _link_claims(rows):
     from studies.damage.means import above_bound, beside_theory, first_loss
 
     lattice = pick(rows, body="lattice")
-    yield "lattice: first links gone, off the exact loss of 1.5 of their share, of it", first_loss(lattice), 0.2
+    yield "lattice: first links gone, off the exact loss of 1.5 of their share, of it", first_loss(lattice), 0.1
     text = "lattice: worst error of the effective medium theory up to 0.4 gone, of the conductivity left"
     yield text, beside_theory(lattice, 0.4), 0.05
     dense = lattice[lattice["removed"] < 1 - THRESHOLD - 0.1]
