@@ -39,6 +39,10 @@ class SolvedFibres(NamedTuple):
 
     Attributes
     ----------
+    kind : {"square", "hexagonal"}
+    contrast, resistance : float
+        As they were given; an infinite resistance is a contrast of 0.
+    radius : float, distances of neighbours
     conductivity : float
         Across the fibres, over that of the matrix.
     order : int
@@ -48,13 +52,20 @@ class SolvedFibres(NamedTuple):
     degree : (n,) int array
     source : (n,) float array, distances of neighbours
         B_l / a^l, for a mean unit gradient along x.
+    outer : (n,) float array, distances of neighbours
+        A_l a^l.
     """
 
+    kind: str
+    contrast: float
+    resistance: float
+    radius: float
     conductivity: float
     order: int
     digits: float
     degree: np.ndarray
     source: np.ndarray
+    outer: np.ndarray
 
 
 def touching(kind) -> float:
@@ -168,15 +179,20 @@ def lattice_sums(kind, highest) -> np.ndarray:
         k, m = n // 2, np.arange(2, n // 2 - 1)
         products = (2 * m - 1) * sums[2 * m] * (2 * (k - m) - 1) * sums[2 * (k - m)]
         sums[n] = 3 * products.sum() / ((2 * k + 1) * (k - 3)) / (2 * k - 1)
-    near = _sites(kind)
+    near = sites(kind)
     for n in range(-(-DIRECT // fold) * fold, highest + 1, fold):
         sums[n] = (near**-n).real.sum()
     sums[2] = math.pi / AREA[kind]
     return sums[: highest + 1]
 
 
-def _sites(kind):
-    """Sites up to `NEAR` from the origin, without it, in the plane of complex numbers."""
+def sites(kind):
+    """Sites up to `NEAR` from the origin, without it, a complex array.
+
+    Parameters
+    ----------
+    kind : {"square", "hexagonal"}
+    """
     steps = np.arange(-2 * NEAR, 2 * NEAR + 1)
     turn = np.exp(2j * math.pi / FOLD[kind])
     w = (steps[:, None] + turn * steps).ravel()
@@ -199,21 +215,38 @@ def _solve(kind, contrast, fraction, resistance, order):
     # touching it falls geometrically.
     change = 3 * moment * abs(source[0] - rough[0]) / abs(ratio)
     digits = ENOUGH if change == 0 else max(0.0, min(ENOUGH, -math.log10(change)))
-    return SolvedFibres(float(ratio), order, digits, degree, source)
+    return SolvedFibres(
+        kind=kind,
+        contrast=float(contrast),
+        resistance=float(resistance),
+        radius=radius,
+        conductivity=float(ratio),
+        order=order,
+        digits=digits,
+        degree=degree,
+        source=source,
+        outer=np.where(degree == 1, radius, 0.0) - system @ source,
+    )
 
 
 def _system(kind, degree, radius):
     """What fibres with B_l' = a^l' make at another one, minus A_l a^l: C(l+l'-1, l) S_(l+l') a^(l+l')."""
-    top = 2 * int(degree.max())
-    # Binomials over 2^n stay within the range of floats, as do the powers of 2 a, at most 1.
-    halved = np.zeros((top + 1, top + 1))
-    halved[0, 0] = 1.0
-    for n in range(1, top + 1):
-        halved[n, 0] = halved[n - 1, 0] / 2
-        halved[n, 1:] = (halved[n - 1, 1:] + halved[n - 1, :-1]) / 2
     here, there = degree[:, None], degree[None]
     total = here + there
-    return 0.5 * halved[total - 1, here] * lattice_sums(kind, top)[total] * (2 * radius) ** total.astype(float)
+    top = int(total.max())
+    # Powers of 2 a, at most 1, stay within the range of floats, as those binomials do.
+    choose = halved_binomials(top)[total - 1, here]
+    return 0.5 * choose * lattice_sums(kind, top)[total] * (2 * radius) ** total.astype(float)
+
+
+def halved_binomials(most):
+    """C(n, k) / 2^n up to n = most, a (most + 1, most + 1) float array."""
+    halved = np.zeros((most + 1, most + 1))
+    halved[0, 0] = 1.0
+    for n in range(1, most + 1):
+        halved[n, 0] = halved[n - 1, 0] / 2
+        halved[n, 1:] = (halved[n - 1, 1:] + halved[n - 1, :-1]) / 2
+    return halved
 
 
 def _polarisability(contrast, degree, resistance):
