@@ -77,7 +77,7 @@ def cracks(radius, *, method, **knobs):
     return row | {name: field.stats.get(name) for name in NAMES} | cost
 
 
-def links(body, number, removed, draw, *, method):
+def links(body, number, removed, draw, *, method, **knobs):
     """A lattice or a packing without some of its links.
 
     Parameters
@@ -90,9 +90,11 @@ def links(body, number, removed, draw, *, method):
     draw : int
         Seed of their choice.
     method : str
+    **knobs
+        Of `demheat.damage.solve`.
     """
     where = {"packing": lattice(number)} if body == "lattice" else {"particles": number}
-    field, cost = measured(solve, DIAGONAL, removed=removed, draw=draw, **where)
+    field, cost = measured(solve, DIAGONAL, removed=removed, draw=draw, **where, **knobs)
     return {"k_ratio": field.conductivity} | {name: field.stats.get(name) for name in NAMES} | cost
 
 
