@@ -28,7 +28,9 @@ def _cases():
     for name, values in DEBONDED.items():
         for value in values:
             for share in SHARES:
-                yield methods.case(name, part="debonded", share=share, **_at(name, value))
+                case = methods.case(name, part="debonded", share=share, **_at(name, value))
+                # Beside pores laminates are slow and 4.6 % off at 32 voxels: the method's own choice there is better.
+                yield case | ({"rule": "auto"} if name == "fft" else {})
     for particles in CRACKED:
         for radius in RADII:
             yield methods.case("dem", part="cracks", radius=radius, **_at("dem", particles))
