@@ -161,6 +161,19 @@ LAYERS = {
         "demheat.method",
         "demheat.dem",
     ),
+    "demheat.damage": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.progress",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+        "demheat.build",
+        "demheat.dem",
+        "demheat.damage",
+    ),
     # What methods cost and how far they are off, and the cheapest of them: it loads a method by its name alone.
     "demheat.cheapest": (
         "demheat.scene",

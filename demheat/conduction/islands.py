@@ -1,6 +1,6 @@
 """What pores leave of a network: bodies of conducting particles, and those that no heat can pass in a steady state.
 
-Pores are phases of conductivity 0. Without them nothing here is asked: networks are one body.
+Pores are phases of conductivity 0. Without them, and without damage, nothing here is asked: networks are one body.
 """
 
 from typing import NamedTuple
@@ -38,7 +38,7 @@ class Bodies(NamedTuple):
 
 
 def bodies(network, scene):
-    """Bodies of a network; None if all phases conduct.
+    """Bodies of a network; None if all phases and links conduct.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def bodies(network, scene):
     Bodies or None
     """
     conductivity = scene.conductivities
-    if conductivity.min() > 0:
+    if conductivity.min() > 0 and network.whole:
         return None
     solid = conductivity[network.phase] > 0
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))

@@ -49,7 +49,7 @@ class Solution(NamedTuple):
     stats : dict
         unknowns, iterations, residual, solver, islands; with radiation its rounds, as it was linearised so often.
     still : (n,) bool array, optional
-        Particles that no heat passes, see `demheat.conduction.islands`; None if all phases conduct.
+        Particles that no heat passes, see `demheat.conduction.islands`; None if everything conducts.
     """
 
     temperature: np.ndarray

@@ -78,6 +78,8 @@ class Network(NamedTuple):
         Facets bound cells that fill the body, as those of the radical tessellation do: what is linear is exact.
     stats : dict, optional
         What a Field says of it: law, calibration (C_t), tessellation_s, network_s and packing, how that was made.
+    whole : bool
+        Links that should conduct do; if not, bodies that no heat passes are looked for though all phases conduct.
     """
 
     centers: np.ndarray
@@ -100,6 +102,7 @@ class Network(NamedTuple):
     distance: np.ndarray | None = None
     cells: bool = True
     stats: dict | None = None
+    whole: bool = True
 
 
 def wall_normals(walls):

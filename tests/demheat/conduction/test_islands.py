@@ -1,5 +1,7 @@
 """Bodies of a network with pores: beside a search by hand, and what a steady solution makes of them."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from bodies_by_hand import walk
@@ -68,7 +70,7 @@ def layers(**load):
 def test_nothing_is_looked_for_where_all_conducts(monkeypatch):
     monkeypatch.setattr(kernels, "gather", None)
     scene = Scene((1, 1, 1), ONE, [Layer(1, 0.2, 0.5, Material(1e-30))], gradient=(1.0, 0.0, 0.0))
-    assert islands.bodies(None, scene) is None
+    assert islands.bodies(SimpleNamespace(whole=True), scene) is None
 
 
 def test_a_solution_has_bodies_at_their_levels():

@@ -1,0 +1,78 @@
+"""Steady conduction in a damaged body by the discrete element method."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+
+from demheat.build import network_of
+from demheat.conduction.steady import check_solver, solve_checked
+from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed
+from demheat.damage.inclusions import drawn
+from demheat.damage.links import without_links
+from demheat.dem.options import asked
+from demheat.field import Field
+from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.progress import stage
+from demheat.sampling.field_of import field_of
+from demheat.scene import Scene, check_scene
+from demheat.scene.inputs import whole
+
+
+def solve(
+    scene: Scene,
+    *,
+    removed: float = 0.0,
+    draw: int = 0,
+    cracks: Sequence[Disc | Rectangle] = (),
+    law: str | Laguerre | Calibrated | Platonic = "laguerre",
+    particles: int = 100_000,
+    **knobs: object,
+) -> Field:
+    """Steady conduction in a scene some of whose links are gone, or that has insulated cracks.
+
+    Parameters
+    ----------
+    scene : Scene
+        For inclusions that have come off see `demheat.damage.debonded`: any method solves such a scene.
+    removed : float
+        Share of the links between particles that conduct nothing, drawn at random among those that cracks leave.
+    draw : int
+        Seed of that draw.
+    cracks : sequence of Disc and Rectangle
+        In a periodic cell their images count. With facets on interfaces, law "laguerre", particles are mirrored in
+        their planes; in any case links that cross them conduct nothing.
+    law, particles, **knobs
+        As those of `demheat.solve`, with its seed, solver and tolerance.
+
+    Returns
+    -------
+    Field
+        It knows no error of itself. Where no heat can pass the conductivity is exactly 0. Near cracks temperatures are
+        those of cells and their slopes, which know a crack only by the links that it cuts.
+
+    Raises
+    ------
+    ValueError, TypeError, NotImplementedError, RuntimeError
+        As `demheat.solve`; ValueError also if the damage is not as described, before any heavy work.
+    """
+    check_scene(scene)
+    how = {"solver": knobs.pop("solver", "auto"), "tolerance": knobs.pop("tolerance", 1e-8)}
+    check_solver(**how)
+    cracks = check_cracks(cracks)
+    drawn(0, removed, whole("draw", draw, "an integer >= 0", lambda v: v >= 0), "removed")
+    law, wanted = asked(law, particles, knobs.pop("seed", 0), knobs)
+    scene.require(steady=True, takes=("resistance", "exchange"))
+    law.check(scene)
+    begun = time.perf_counter()
+    packing = wanted.packed(scene, wanted.counts(scene, law))
+    spent = {"packing_s": time.perf_counter() - begun}
+    if cracks and law.conforming:
+        packing = seamed(packing, cracks)
+    network = cracked(network_of(scene, packing, law, seed=wanted.seed), cracks)
+    network = without_links(network, removed, seed=draw)
+    begun = time.perf_counter()
+    solution = solve_checked(network, scene, **how)
+    spent["solve_s"] = time.perf_counter() - begun
+    with stage("field"):
+        return field_of(scene, network, solution, stats=spent)
