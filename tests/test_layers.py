@@ -11,10 +11,16 @@ LAYERS = {
     "demheat.scene.bodies": (),
     "demheat.scene.crossing": ("demheat.scene.bodies",),
     "demheat.scene.dependence": ("demheat.scene.inputs",),
-    "demheat.scene.tensors": ("demheat.scene.inputs",),
+    "demheat.scene.rotations": ("demheat.scene.inputs",),
+    "demheat.scene.tensors": ("demheat.scene.inputs", "demheat.scene.rotations"),
     "demheat.scene.material": ("demheat.scene.inputs", "demheat.scene.dependence", "demheat.scene.tensors"),
     "demheat.scene.image": ("demheat.scene.frozen", "demheat.scene.inputs", "demheat.scene.material"),
-    "demheat.scene.shapes": ("demheat.scene.inputs", "demheat.scene.material", "demheat.scene.shapes"),
+    "demheat.scene.shapes": (
+        "demheat.scene.inputs",
+        "demheat.scene.rotations",
+        "demheat.scene.material",
+        "demheat.scene.shapes",
+    ),
     "demheat.scene.parts": ("demheat.scene.inputs",),
     "demheat.scene.checks": (
         "demheat.scene.frozen",

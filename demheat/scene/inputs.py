@@ -61,8 +61,13 @@ def reals(name: str, value, valid: str) -> np.ndarray:
     except (TypeError, ValueError, OverflowError):
         array = None
     if array is None:
-        raise ValueError(f"{name} = {value!r}: must be {valid}")
+        raise ValueError(f"{name} = {shown(value)}: must be {valid}")
     return array
+
+
+def shown(value) -> str:
+    """A value as it is shown in a message: in one line."""
+    return " ".join(repr(value).split())
 
 
 def whole(name: str, value, valid: str, accept: Callable[[int], bool] = lambda v: True) -> int:

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals
+from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals, shown
+from demheat.scene.rotations import IDENTITY
+from demheat.scene.rotations import rotation as rows_of
 
 # Relative to the largest entry: rounding of a tensor that a user has turned; the least of the smallest conductivity.
 SAME, FLATTEST = 1e-12, 1e-10
-# Rounding of a rotation matrix that is typed with ten digits.
-ORTHOGONAL = 1e-9
 VALID = (
     f"a finite number >= 0 W/(m K), of {LEAST:g} to {MOST:g} where it is not 0, or a symmetric positive definite "
     f"(3, 3) tensor of such, least over {FLATTEST:g} of the largest in any direction"
@@ -32,18 +32,18 @@ def checked_conductivity(name: str, value) -> float | tuple[tuple[float, float, 
     """
     if not isinstance(value, list | tuple) and not (isinstance(value, np.ndarray) and value.ndim):
         return finite(name, value, VALID, lambda v: v >= 0 and moderate(v))
-    tensor = _reals(name, value, VALID)
+    tensor = reals(name, value, VALID)
     good = tensor.shape == (3, 3) and np.all(np.isfinite(tensor))
     largest = float(np.abs(tensor).max()) if good else 0.0
     if not good or not moderate(largest) or np.abs(tensor - tensor.T).max() > SAME * largest:
-        raise ValueError(f"{name} = {_shown(value)}: must be {VALID}")
+        raise ValueError(f"{name} = {shown(value)}: must be {VALID}")
     tensor = (tensor + tensor.T) / 2
     diagonal = tensor.diagonal()
     if np.array_equal(tensor, diagonal[0] * np.eye(3)):
         return checked_conductivity(name, float(diagonal[0]))
     principal = np.linalg.eigvalsh(tensor)
     if not (principal[0] > FLATTEST * principal[-1] and moderate(principal[0])):
-        raise ValueError(f"{name} = {_shown(value)}, {principal.tolist()} along its axes: must be {VALID}")
+        raise ValueError(f"{name} = {shown(value)}, {principal.tolist()} along its axes: must be {VALID}")
     return tuple(map(tuple, tensor.tolist()))
 
 
@@ -68,43 +68,6 @@ def orthotropic(k1: float, k2: float, k3: float, *, rotation=None) -> tuple[tupl
         If a conductivity is not above 0, or the rotation is none.
     """
     principal = [finite(f"k{n}", k, "a number > 0 W/(m K)", lambda v: v > 0) for n, k in enumerate((k1, k2, k3), 1)]
-    turn = np.eye(3) if rotation is None else rotation_matrix(rotation)
+    turn = np.array(IDENTITY if rotation is None else rows_of("rotation", rotation))
     tensor = turn @ np.diag(principal) @ turn.T
     return tuple(map(tuple, ((tensor + tensor.T) / 2).tolist()))
-
-
-def rotation_matrix(rotation) -> np.ndarray:
-    """A rotation as a matrix, by Rodrigues' formula.
-
-    Parameters
-    ----------
-    rotation : (3,) or (3, 3) array_like
-        See `orthotropic`.
-
-    Returns
-    -------
-    (3, 3) float array
-    """
-    valid = "a rotation vector of three finite numbers, radians, or a (3, 3) rotation matrix"
-    found = _reals("rotation", rotation, valid)
-    if found.shape == (3,) and np.all(np.isfinite(found)):
-        angle = float(np.sqrt(found @ found))
-        x, y, z = found / angle if angle else np.zeros(3)
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-        return np.eye(3) + np.sin(angle) * cross + 2 * np.sin(angle / 2) ** 2 * (cross @ cross)
-    square = found.shape == (3, 3) and np.all(np.isfinite(found))
-    if not square or np.abs(found @ found.T - np.eye(3)).max() > ORTHOGONAL or np.linalg.det(found) < 0:
-        raise ValueError(f"rotation = {_shown(rotation)}: must be {valid}")
-    return found
-
-
-def _reals(name, value, valid):
-    """`reals`, with what is shown of an array in one line."""
-    try:
-        return reals(name, value, valid)
-    except ValueError:
-        raise ValueError(f"{name} = {_shown(value)}: must be {valid}") from None
-
-
-def _shown(value):
-    return " ".join(repr(value).split())

@@ -10,8 +10,9 @@ import numpy as np
 
 from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
+from demheat.scene.rotations import IDENTITY, rotation, turned_rotation
 from demheat.scene.shapes.base import check_resistance
-from demheat.scene.shapes.directions import IDENTITY, corners, rotation, turned_rotation
+from demheat.scene.shapes.directions import corners
 from demheat.scene.shapes.ellipsoid import lengths
 from demheat.scene.shapes.solid import Solid
 
@@ -26,8 +27,9 @@ class Box(Solid):
     sides : (3,) sequence of float, m
         Lengths along its own axes.
     material : Material
-    rotation : (3, 3) array_like or scipy.spatial.transform.Rotation
-        Columns are the directions of its own axes. Kept as a tuple of rows; by default they are x, y and z.
+    rotation : (3,) or (3, 3) array_like, or scipy.spatial.transform.Rotation
+        A rotation vector in radians, or a matrix, whose columns are the directions of its own axes. Kept as a tuple of
+        rows; by default they are x, y and z.
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
     """

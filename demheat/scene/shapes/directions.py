@@ -1,4 +1,4 @@
-"""Directions and rotations as users give them: unit vectors, orthonormal matrices."""
+"""Directions as users give them: unit vectors."""
 
 from __future__ import annotations
 
@@ -6,12 +6,10 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene.inputs import reals, vector
+from demheat.scene.inputs import vector
 
-# Of a rotation's entries, as people round them; what is closer than the second is left as it is.
-TYPED, ROUNDING = 1e-6, 1e-14
-IDENTITY = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
-VALID = "a 3 x 3 rotation matrix, whose columns are the directions of the body's own axes, or a scipy Rotation"
+# What is closer to straight is left as it is.
+ROUNDING = 1e-14
 
 
 def unit(name: str, value) -> tuple[float, float, float]:
@@ -39,49 +37,6 @@ def unit(name: str, value) -> tuple[float, float, float]:
     # Rounding of an axis that is straight.
     found[np.abs(found) < ROUNDING] = 0.0
     return tuple((found + 0.0).tolist())
-
-
-def rotation(name: str, value) -> tuple[tuple[float, ...], ...]:
-    """A rotation as the rows of its matrix.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : (3, 3) array_like or scipy.spatial.transform.Rotation
-        Entries may be rounded to 1e-6; the nearest rotation is then taken.
-
-    Raises
-    ------
-    ValueError
-        If the value is no rotation.
-    """
-    valid = f"{VALID}: columns at right angles, of length 1, right-handed"
-    matrix = reals(name, value.as_matrix() if hasattr(value, "as_matrix") else value, valid)
-    good = matrix.shape == (3, 3) and np.all(np.isfinite(matrix))
-    off = np.abs(matrix.T @ matrix - np.eye(3)).max() if good else np.inf
-    if not off < TYPED or np.linalg.det(matrix) < 0:
-        shown = value.tolist() if isinstance(value, np.ndarray) else value
-        raise ValueError(f"{name} = {shown!r}: must be {valid}")
-    if off > ROUNDING:
-        left, _, right = np.linalg.svd(matrix)
-        matrix = left @ right
-    return tuple(tuple(row) for row in (matrix + 0.0).tolist())
-
-
-def turned_rotation(rows, order) -> tuple[tuple[float, ...], ...]:
-    """A rotation after axes order[0], order[1], order[2] have become axes 0, 1, 2, of a body with three mirrors.
-
-    Parameters
-    ----------
-    rows : (3, 3) tuple of float
-    order : (3,) sequence of int
-    """
-    matrix = np.array(rows)[list(order)]
-    if np.linalg.det(matrix) < 0:
-        # What a mirror made left-handed: the body is its own mirror image.
-        matrix[:, 2] *= -1
-    return tuple(tuple(row) for row in (matrix + 0.0).tolist())
 
 
 def corners(columns: np.ndarray) -> np.ndarray:

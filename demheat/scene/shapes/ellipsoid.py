@@ -10,8 +10,9 @@ import numpy as np
 
 from demheat.scene.inputs import moderate, vector
 from demheat.scene.material import Material, check_material
+from demheat.scene.rotations import IDENTITY, rotation, turned_rotation
 from demheat.scene.shapes.base import Shape, check_resistance
-from demheat.scene.shapes.directions import IDENTITY, corners, rotation, turned_rotation
+from demheat.scene.shapes.directions import corners
 from demheat.scene.shapes.solid import Solid
 
 # Newton steps to the foot of a point, at most: found 5 to 15; each at least halves what is far, where few count.
@@ -30,8 +31,9 @@ class Ellipsoid(Solid):
     semi_axes : (3,) sequence of float, m
         Half its length along each of its own axes.
     material : Material
-    rotation : (3, 3) array_like or scipy.spatial.transform.Rotation
-        Columns are the directions of its own axes. Kept as a tuple of rows; by default they are x, y and z.
+    rotation : (3,) or (3, 3) array_like, or scipy.spatial.transform.Rotation
+        A rotation vector in radians, or a matrix, whose columns are the directions of its own axes. Kept as a tuple of
+        rows; by default they are x, y and z.
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
     """
