@@ -143,7 +143,9 @@ def test_bad_scenes(make, words):
 
 
 @pytest.mark.parametrize(
-    "solve", [exact.solve, multipole.solve, bounds.estimate, bracket.solve, effective, zeta.zeta2], ids=repr
+    "solve",
+    [exact.solve, multipole.solve, bounds.estimate, bracket.solve, effective, zeta.zeta2],
+    ids=lambda each: f"{each.__module__}.{each.__name__}",
 )
 def test_what_cannot_take_an_image_says_so(solve):
     with pytest.raises(NotImplementedError, match="^Scene.image, which FFT, finite elements") as caught:
