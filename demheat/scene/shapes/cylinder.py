@@ -104,10 +104,6 @@ class Cylinder(Solid):
         ends = [np.array(self.center) + ring + end * u for end in (-half, half)]
         return np.concatenate(ends), 0.0
 
-    def planes(self) -> None:
-        """None: it is round; see `Shape.planes`."""
-        return None
-
     def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
         """Volume of the part in a box, m3; see `Shape.volume_in`."""
         if self.length is not None:
