@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from demheat.build import network_of
 from demheat.conduction.steady import check_solver, solve_checked
-from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed
+from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
 from demheat.dem.options import asked
@@ -55,6 +55,11 @@ def solve(
     ------
     ValueError, TypeError, NotImplementedError, RuntimeError
         As `demheat.solve`; ValueError also if the damage is not as described, before any heavy work.
+
+    Warns
+    -----
+    UserWarning
+        As `demheat.solve`, and if cracks are small for the particles.
     """
     check_scene(scene)
     how = {"solver": knobs.pop("solver", "auto"), "tolerance": knobs.pop("tolerance", 1e-8)}
@@ -67,6 +72,7 @@ def solve(
     begun = time.perf_counter()
     packing = wanted.packed(scene, wanted.counts(scene, law))
     spent = {"packing_s": time.perf_counter() - begun}
+    warn_of_small(packing, cracks)
     if cracks and law.conforming:
         packing = seamed(packing, cracks)
     network = cracked(network_of(scene, packing, law, seed=wanted.seed), cracks)

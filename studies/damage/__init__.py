@@ -48,12 +48,11 @@ CASES = list(_cases())
 
 
 def QUICK(case):
-    """Coarse rows: half and all of the spheres, two cracks, small lattices."""
+    """Coarse rows: half and all of the spheres, few particles, small lattices."""
     if case["part"] == "debonded":
         coarse = _at(case["name"], DEBONDED[case["name"]][0])
-        return (
-            case["share"] in ((0.5,) if case["name"] == "fem" else (0.0, 0.5, 1.0)) and coarse.items() <= case.items()
-        )
+        shares = (0.5, 1.0) if case["name"] in ("dem", "multipole") else (0.5,)
+        return case["share"] in shares and coarse.items() <= case.items()
     if case["part"] == "cracks":
         return case["particles"] == CRACKED[0] or (case["particles"] == CRACKED[1] and case["radius"] == RADII[1])
     few = case["number"] in (LATTICE[0], PACKED[0]) and case["draw"] in DRAWS[:2]

@@ -103,6 +103,15 @@ def test_a_crack_through_the_body_stops_the_heat():
 
 
 @pytest.mark.parametrize(
+    "crack", [Disc((0.5, 0.5, 0.5), 1e-4, (0, 0, 1)), Rectangle((0.5, 0.5, 0.5), (0.3, 0.0, 0.0), (0.0, 1e-4, 0.0))]
+)
+def test_what_is_smaller_than_particles_is_said(crack):
+    with pytest.warns(UserWarning, match=r"cracks \[0\] are small for particles of diameter"):
+        found = damage.solve(CELL, cracks=[crack], particles=500)
+    assert 0.9 < found.conductivity <= 1 + 1e-9
+
+
+@pytest.mark.parametrize(
     ("make", "match"),
     [
         (lambda: Disc((0, 0), 1.0, (0, 0, 1)), r"Disc.center = \(0, 0\)"),
