@@ -100,6 +100,17 @@ SOLVED = exact.solve(WALLED, points_per_axis=2)
 TWO = {"k_matrix": 1.0, "k_inclusion": 2.0, "fraction": 0.1}
 TWO_BAD = {"k_matrix": ARRAY, "k_inclusion": ARRAY, "fraction": SHARE}
 CUBIC = {"contrast": PART, "fraction": POSITIVE, "edge": POSITIVE, "matrix": MATERIAL, "axis": (*WHOLE, 3)}
+FACTORS = (
+    None,
+    "a",
+    5,
+    [],
+    [(0.0, 1.0)],
+    [(0.0, 1.0), (0.0, 2.0)],
+    [(0.0, 1.0), (1.0, 0.0)],
+    [("0", 1), (1, 1)],
+    HIDDEN,
+)
 LAWS = {
     "interface": WORD,
     "sparse": WORD,
@@ -113,6 +124,9 @@ BOUNDS = ("maxwell", "hashin_shtrikman", "bruggeman", "bruggeman_differential", 
 # Function, good arguments, and what is bad of which.
 TABLE = [
     (demheat.Material, {"conductivity": 1.0}, {"conductivity": PART, "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
+    (demheat.Material, {"conductivity": 1.0}, {"dependence": or_none(FACTORS)}),
+    (demheat.Dependence, {"points": [(0.0, 1.0), (1.0, 2.0)]}, {"points": FACTORS}),
+    (demheat.orthotropic, {"k1": 1.0, "k2": 2.0, "k3": 3.0}, {"k1": POSITIVE, "k3": POSITIVE, "rotation": ("a", 0.5, (0.5, 0.5), (NAN, 0.0, 0.0), HIDDEN, np.ones((3, 3)))}),
     (demheat.Sphere, {"center": (0.5,) * 3, "radius": 0.2, "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "material": MATERIAL}),
     (demheat.Layer, {"axis": 0, "start": 0.2, "stop": 0.4, "material": OTHER}, {"axis": (*WHOLE, 3), "start": NUMBER, "stop": POSITIVE, "material": MATERIAL}),
     (demheat.Flux, {}, {"value": NUMBER}),
