@@ -257,7 +257,7 @@ def test_a_name_is_no_law():
 
 
 def test_an_inclusion_that_no_particle_hits_is_warned_of():
-    film = Scene((1, 1, 1), METAL, [Layer(1, 0.5, 0.50005, TEN)], walls={"y-": 0.0, "y+": 1.0})
+    film = Scene((1, 1, 1), METAL, [Layer(1, 0.5, 0.5 + 5e-8, TEN)], walls={"y-": 0.0, "y+": 1.0})
     with pytest.warns(UserWarning, match="no particle lies in inclusions \\[0\\]"):
         network_of(film, packed(film), Laguerre(conforming=False))
 
