@@ -276,7 +276,7 @@ class Platonic(_Contacts):
 
 def check_numbers(scene: Scene) -> None:
     """Raise NotImplementedError if a conductivity is a tensor: no law of two points can do with one."""
-    scene.require(TWO_POINTS, takes=("resistance", "exchange", "dependence"))
+    scene.require(TWO_POINTS, takes=("resistance", "exchange", "dependence", "image"))
 
 
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}

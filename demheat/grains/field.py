@@ -51,6 +51,15 @@ class GrainField:
         As `demheat.packing.io.write` draws it.
     stats : mapping
         unknowns, iterations, residual, solver, islands.
+
+    Examples
+    --------
+    >>> from demheat import grains
+    >>> from demheat.packing import make_packing
+    >>> row = make_packing([[1, 1, 0.99], [1, 1, 2.97]], [1.0, 1.0], (2, 2, 3.96), False, {})
+    >>> field = grains.solve(row, 16.0, walls={"z-": 0.0, "z+": 1.0}, gap=grains.Gap(conductivity=0.026))
+    >>> field.heat.shape, field.wall_heat["z+"] > 0 > field.wall_heat["z-"]
+    ((1,), True)
     """
 
     packing: Packing
