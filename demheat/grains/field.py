@@ -82,7 +82,7 @@ class GrainField:
     def conductivity(self) -> float:
         """Effective conductivity of the box along the load, W/(m K).
 
-        In a periodic cell -<q>.g/|g|^2; between two opposite walls mean flux times length over the difference of
+        In a periodic cell -<q>.g / (g.g); between two opposite walls mean flux times length over the difference of
         temperatures. With layers that is the heat that passes times the mean distance, weighted with heat, of the
         grains that give it from those that take it.
 
