@@ -84,9 +84,17 @@ def test_packing_to_network(run, tmp_path):
     assert _numbers(lines[2])[1] == 1.0  # what C_t is for
 
 
+def test_settled_bed(run, tmp_path):
+    k, bottom, top = (_numbers(part)[0] for part in re.split(r"'z[-+]':", run("settled_bed.py")[0]))
+    # Steel in air: above the air, far below the steel. The solver's tolerance is 1e-10 of the heat that passes.
+    assert 0.026 < k < 16.0 and abs(bottom + top) < 1e-8 * bottom
+    rows = (tmp_path / "settled_bed_flows.csv").read_text(encoding="utf-8").splitlines()
+    assert len(rows) > 120
+
+
 def test_every_script_is_run_here_short_and_on_the_page():
     text = Path(__file__).read_text(encoding="utf-8")
-    assert len(SCRIPTS) == 6
+    assert len(SCRIPTS) == 7
     for path in SCRIPTS:
         assert f'run("{path.name}")' in text and path.name in PAGE
         lines = path.read_text(encoding="utf-8").splitlines()

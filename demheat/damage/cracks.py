@@ -40,6 +40,12 @@ class Disc:
     radius : float, m
     normal : (3,) sequence of float
         Of any length but 0.
+
+    Examples
+    --------
+    >>> from demheat import damage
+    >>> damage.Disc(center=(0.5, 0.5, 0.5), radius=0.25, normal=(0, 0, 1)).beyond(0.5, 0.0).item()
+    0.25
     """
 
     center: tuple[float, float, float]
@@ -111,6 +117,12 @@ class Rectangle:
     center : (3,) sequence of float, m
     along, across : (3,) sequence of float, m
         From the centre to the middles of two sides, at right angles.
+
+    Examples
+    --------
+    >>> from demheat import damage
+    >>> damage.Rectangle(center=(0.5, 0.5, 0.5), along=(0.5, 0, 0), across=(0, 0.2, 0)).sides.tolist()
+    [0.5, 0.2]
     """
 
     center: tuple[float, float, float]
@@ -251,6 +263,16 @@ def cracked(network: Network, cracks: Sequence[Disc | Rectangle]) -> Network:
     ------
     ValueError
         If the cracks are not such a sequence.
+
+    Examples
+    --------
+    >>> from demheat import Laguerre, damage, gallery
+    >>> from demheat.build import network_of
+    >>> from demheat.packing.relax import relax
+    >>> network = network_of(gallery.slab(size=(1.0, 1.0, 1.0), periodic=True), relax(500, seed=0), Laguerre())
+    >>> crack = damage.Disc(center=(0.5, 0.5, 0.5), radius=0.3, normal=(0, 0, 1))
+    >>> print(damage.cracked(network, [crack]).conductance.sum() < network.conductance.sum())
+    True
     """
     cracks = check_cracks(cracks)
     both = pairs(network)

@@ -63,6 +63,14 @@ def debonded(scene: Scene, share: float, *, seed: int, resistance: float | None 
     ------
     ValueError
         If an argument is not as described.
+
+    Examples
+    --------
+    >>> from demheat import damage, gallery
+    >>> composite = gallery.random_dispersion(8, diameter=0.3, seed=1, edge=1.0)
+    >>> off = damage.debonded(composite, 0.5, seed=0)
+    >>> int((off.conductivities == 0).sum())
+    4
     """
     check_scene(scene)
     if resistance is not None:

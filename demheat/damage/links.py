@@ -30,6 +30,17 @@ def without_links(network: Network, share: float, *, seed: int) -> Network:
     ------
     ValueError
         If an argument is not as described.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import Laguerre, damage, gallery
+    >>> from demheat.build import network_of
+    >>> from demheat.packing.relax import relax
+    >>> network = network_of(gallery.slab(size=(1.0, 1.0, 1.0), periodic=True), relax(500, seed=0), Laguerre())
+    >>> fewer = damage.without_links(network, 0.25, seed=0)
+    >>> print(f"{np.count_nonzero(fewer.conductance) / np.count_nonzero(network.conductance):.3f}")
+    0.750
     """
     first, second = pairs(network)
     conducts = network.conductance[first] > 0

@@ -60,6 +60,16 @@ def solve(
     -----
     UserWarning
         As `demheat.solve`, and if cracks are small for the particles.
+
+    Examples
+    --------
+    >>> from demheat import Material, Scene, damage
+    >>> from references.exact.cracks import discs
+    >>> cell = Scene((1.0, 1.0, 1.0), Material(1.0), gradient=(0, 0, 1))
+    >>> crack = damage.Disc(center=(0.5, 0.5, 0.5), radius=0.35, normal=(0, 0, 1))
+    >>> field = damage.solve(cell, cracks=[crack], particles=2000)
+    >>> print(f"{field.conductivity:.2f} {discs(0.35).conductivity:.2f}")
+    0.88 0.89
     """
     check_scene(scene)
     how = {"solver": knobs.pop("solver", "auto"), "tolerance": knobs.pop("tolerance", 1e-8)}

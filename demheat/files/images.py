@@ -70,6 +70,19 @@ def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
         If the file is none of these, or broken, or does not fit into memory; or as `Image`. One line with the path.
     ImportError
         If a library that the format needs is not installed.
+
+    Examples
+    --------
+    >>> import tempfile, numpy as np
+    >>> from pathlib import Path
+    >>> from demheat import Material, files
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     np.save(Path(folder, "rock.npy"), np.arange(8).reshape(2, 2, 2) % 2)
+    ...     image = files.read_image(
+    ...         Path(folder, "rock.npy"), voxel=5e-6, materials={0: Material(0.2), 1: Material(2.0)}
+    ...     )
+    >>> image.shape, image.fractions.tolist()
+    ((2, 2, 2), [0.5, 0.5])
     """
     path = checked_path(path)
     reader = READERS.get(path.suffix.lower())

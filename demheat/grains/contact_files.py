@@ -21,7 +21,7 @@ def read_contacts(
     ids: Sequence[int] | None = None,
     step: int | None = None,
 ) -> Contacts:
-    """Read which grains touch, and how large the contacts are or with which forces they press.
+    r"""Read which grains touch, and how large the contacts are or with which forces they press.
 
     Parameters
     ----------
@@ -45,6 +45,18 @@ def read_contacts(
     ------
     ValueError
         If an argument is not as described, or the file is broken: then its line, what was found and what expected.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from demheat import grains
+    >>> dump = "ITEM: TIMESTEP\n9\nITEM: NUMBER OF ENTRIES\n1\nITEM: ENTRIES c_p[1] c_p[2] c_p[3]\n1 2 0.25\n"
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "pairs.dump").write_text(dump)
+    ...     found = grains.read_contacts(Path(folder, "pairs.dump"), columns={"id1": 1, "id2": 2, "radius": "c_p[3]"})
+    >>> found.first.tolist(), found.second.tolist(), found.radius.tolist()
+    ([0], [1], [0.25])
     """
     path = checked_path(path)
     strange = [name for name in columns or {} if name not in KNOWN]

@@ -51,6 +51,15 @@ class GrainField:
         As `demheat.packing.io.write` draws it.
     stats : mapping
         unknowns, iterations, residual, solver, islands.
+
+    Examples
+    --------
+    >>> from demheat import grains
+    >>> from demheat.packing import make_packing
+    >>> row = make_packing([[1, 1, 0.99], [1, 1, 2.97]], [1.0, 1.0], (2, 2, 3.96), False, {})
+    >>> field = grains.solve(row, 16.0, walls={"z-": 0.0, "z+": 1.0}, gap=grains.Gap(conductivity=0.026))
+    >>> field.heat.shape, field.wall_heat["z+"] > 0 > field.wall_heat["z-"]
+    ((1,), True)
     """
 
     packing: Packing
@@ -73,7 +82,7 @@ class GrainField:
     def conductivity(self) -> float:
         """Effective conductivity of the box along the load, W/(m K).
 
-        In a periodic cell -<q>.g/|g|^2; between two opposite walls mean flux times length over the difference of
+        In a periodic cell -<q>.g / (g.g); between two opposite walls mean flux times length over the difference of
         temperatures. With layers that is the heat that passes times the mean distance, weighted with heat, of the
         grains that give it from those that take it.
 

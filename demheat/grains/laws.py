@@ -56,6 +56,12 @@ class Gap:
     ------
     ValueError
         If one is not as described.
+
+    Examples
+    --------
+    >>> from demheat import grains
+    >>> grains.Gap(conductivity=0.026)  # air
+    Gap(conductivity=0.026, disc=0.5, widest=0.5)
     """
 
     conductivity: float
@@ -70,7 +76,15 @@ class Gap:
 
 @dataclass(frozen=True)
 class Overlap:
-    """Contact radius: of the circle in which two overlapping spheres cut each other, or a sphere a wall."""
+    """Contact radius: of the circle in which two overlapping spheres cut each other, or a sphere a wall.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import grains
+    >>> grains.Overlap().radius(np.array([1.6, 2.1]), 1.0, 1.0).round(12).tolist()  # 3, 4, 5; apart
+    [0.6, 0.0]
+    """
 
     def radius(self, distance, first, second):
         """Contact radius of each pair, (m,) float array, m; 0 where spheres do not overlap.
@@ -107,6 +121,13 @@ class Hertz:
     ----------
     young : float, Pa, optional
     poisson : float
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import grains
+    >>> grains.Hertz().radius(np.array([1.92, 2.1]), 1.0, 1.0).round(12).tolist()  # a^2 = 0.5 x 0.08; apart
+    [0.2, 0.0]
     """
 
     young: float | None = None
@@ -167,6 +188,13 @@ class Fixed:
         Contact radius over the radius of the smaller grain.
     within : float
         What is nearer than so many radii of the smaller grain touches: rounding of a file, or less.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import grains
+    >>> grains.Fixed(ratio=0.1).radius(np.array([2.0, 2.1]), np.array([1.0, 1.0]), np.array([1.0, 1.0])).tolist()
+    [0.1, 0.0]
     """
 
     ratio: float

@@ -33,6 +33,14 @@ class Contacts(NamedTuple):
         Of the contacts.
     force : (m, 3) float array, N, optional
         On the first grain, as `pressed` needs it.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import grains
+    >>> millimetres = grains.Contacts(np.array([0]), np.array([1]), radius=np.array([0.2]))
+    >>> millimetres.scaled(1e-3).radius.tolist()
+    [0.0002]
     """
 
     first: np.ndarray

@@ -71,6 +71,15 @@ def solve(
         If the packing is not in a box, or a periodic box is so small that grains meet each other twice.
     RuntimeError
         If the residual misses the tolerance.
+
+    Examples
+    --------
+    >>> from demheat import grains
+    >>> from demheat.packing import make_packing
+    >>> row = make_packing([[1, 1, 0.99], [1, 1, 2.97]], [1.0, 1.0], (2, 2, 3.96), False, {})
+    >>> field = grains.solve(row, 16.0, walls={"z-": 0.0, "z+": 1.0}, contact=grains.Fixed(ratio=0.1))
+    >>> field.temperature.round(12).tolist()  # a wall has no half-space of its own to cross
+    [0.25, 0.75]
     """
     contact = Overlap() if contact is None else contact
     check_packing(packing)

@@ -27,6 +27,13 @@ class Dependence:
     ----------
     points : sequence of (float, float)
         Temperature, in the scale of the scene's walls, and factor > 0; ascending.
+
+    Examples
+    --------
+    >>> from demheat import Dependence, Material
+    >>> rising = Dependence.linear(2e-3, 20.0, (0.0, 100.0))  # 1 + 0.002 (T - 20), constant beyond
+    >>> Material(16.0, dependence=rising).dependence.factor([20.0, 70.0, 500.0]).round(12).tolist()
+    [1.0, 1.1, 1.16]
     """
 
     points: tuple[tuple[float, float], ...]

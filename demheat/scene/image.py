@@ -38,6 +38,16 @@ class Image:
     ------
     ValueError
         If an argument is not as described; the message names it, its value and what would be valid.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from demheat import Image, Material, Scene
+    >>> labels = np.zeros((4, 4, 4), dtype=np.uint8)
+    >>> labels[1:3] = 255
+    >>> image = Image(labels, voxel=2e-6, materials={0: Material(0.2), 255: Material(2.0)})
+    >>> image.fractions.tolist(), Scene.of_image(image, gradient=(1, 0, 0)).conductivities.tolist()
+    ([0.5, 0.5], [0.2, 2.0])
     """
 
     labels: np.ndarray

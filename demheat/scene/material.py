@@ -27,7 +27,7 @@ class Material:
         Needed by transients only.
     heat_capacity : float, J/(kg K), optional
         Specific heat, needed by transients only.
-    dependence : Dependence, or sequence of (temperature, factor), optional
+    dependence : Dependence, or sequence of pairs of temperature and factor, optional
         How the conductivity follows the temperature: by which factor it differs from `conductivity`.
 
     Examples

@@ -53,7 +53,7 @@ def orthotropic(k1: float, k2: float, k3: float, *, rotation=None) -> tuple[tupl
     Parameters
     ----------
     k1, k2, k3 : float, W/(m K)
-    rotation : (3,) or (3, 3) array_like, optional
+    rotation : (3,) or (3, 3) array_like, or scipy.spatial.transform.Rotation, optional
         A rotation vector, along the axis and as long as the angle in radians; or a rotation matrix, whose columns are
         the principal directions.
 
@@ -66,6 +66,14 @@ def orthotropic(k1: float, k2: float, k3: float, *, rotation=None) -> tuple[tupl
     ------
     ValueError
         If a conductivity is not above 0, or the rotation is none.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> import numpy as np
+    >>> from demheat import orthotropic
+    >>> np.round(orthotropic(1.0, 2.0, 3.0, rotation=(0, 0, pi / 4)), 12).tolist()
+    [[1.5, -0.5, 0.0], [-0.5, 1.5, 0.0], [0.0, 0.0, 3.0]]
     """
     principal = [finite(f"k{n}", k, "a number > 0 W/(m K)", lambda v: v > 0) for n, k in enumerate((k1, k2, k3), 1)]
     turn = np.array(IDENTITY if rotation is None else rows_of("rotation", rotation))

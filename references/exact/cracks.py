@@ -59,6 +59,12 @@ def discs(radius, *, height=1.0) -> SolvedDiscs:
     ------
     ValueError
         If an argument is not as described.
+
+    Examples
+    --------
+    >>> from references.exact.cracks import discs
+    >>> print(f"{discs(0.25).conductivity:.6f}")
+    0.958779
     """
     if not 0 < radius <= LARGEST:
         raise ValueError(f"radius = {radius!r}: must be > 0 and <= {LARGEST} sides of the square")

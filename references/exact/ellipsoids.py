@@ -33,6 +33,12 @@ def depolarisation(axes) -> np.ndarray:
     Notes
     -----
     L_i = abc/2 times the integral over t from 0 of 1/((t + a_i^2) sqrt((t + a^2)(t + b^2)(t + c^2))): Carlson's R_D.
+
+    Examples
+    --------
+    >>> from references.exact.ellipsoids import depolarisation
+    >>> depolarisation((2.0, 1.0, 1.0)).round(6).tolist()
+    [0.173564, 0.413218, 0.413218]
     """
     axes = _checked_axes(axes)
     a, b, c = (axes / axes.max()) ** 2
@@ -56,6 +62,12 @@ def polarisability(contrast, axes, *, frame=None) -> np.ndarray:
     ------
     ValueError
         If an argument is not as described.
+
+    Examples
+    --------
+    >>> from references.exact.ellipsoids import polarisability
+    >>> polarisability(10.0, (2.0, 1.0, 1.0)).diagonal().round(4).tolist()
+    [3.5128, 1.9072, 1.9072]
     """
     shape, turn = depolarisation(axes), _checked_frame(frame)
     return turn.T @ np.diag(_along_axes(contrast, shape)) @ turn
@@ -74,6 +86,12 @@ def dilute(contrast, axes, fraction, *, frame=None) -> np.ndarray:
     Returns
     -------
     (3, 3) float array
+
+    Examples
+    --------
+    >>> from references.exact.ellipsoids import dilute
+    >>> dilute(10.0, (2.0, 1.0, 1.0), 0.01).diagonal().round(5).tolist()
+    [1.03513, 1.01907, 1.01907]
     """
     _check_fraction(fraction)
     return np.eye(3) + fraction * polarisability(contrast, axes, frame=frame)
@@ -101,6 +119,12 @@ def maxwell(contrast, axes, fraction, *, envelope=(1.0, 1.0, 1.0), frame=None) -
     ------
     ValueError
         If an argument is not as described, or the envelope is so unlike the ellipsoids that the estimate has no sense.
+
+    Examples
+    --------
+    >>> from references.exact.ellipsoids import maxwell
+    >>> maxwell(10.0, (2.0, 1.0, 1.0), 0.1).diagonal().round(5).tolist()
+    [1.39786, 1.20367, 1.20367]
     """
     _check_fraction(fraction)
     along, turn = _along_axes(contrast, depolarisation(axes)), _checked_frame(frame)
@@ -127,6 +151,12 @@ def penny_cracks(density) -> float:
     ------
     ValueError
         If the density is not from 0 to 3/8.
+
+    Examples
+    --------
+    >>> from references.exact.ellipsoids import penny_cracks
+    >>> print(f"{penny_cracks(0.03):.2f}")
+    0.92
     """
     if not 0 <= density <= 3 / 8:
         raise ValueError(f"density = {density!r}: must be from 0 to 3/8, discs per volume times their cubed radius")

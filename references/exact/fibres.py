@@ -88,6 +88,12 @@ def along(contrast, fraction) -> float:
         Conductivity of the fibres over that of the matrix, finite.
     fraction : float
         Volume fraction of the fibres.
+
+    Examples
+    --------
+    >>> from references.exact import fibres
+    >>> print(f"{fibres.along(10.0, 0.3):.6f}")
+    3.700000
     """
     _check_contrast(contrast, most="a finite number >= 0", fits=math.isfinite)
     if not 0 <= fraction <= 1:
@@ -111,6 +117,12 @@ def conductivity(kind, contrast, fraction, *, resistance=0.0, order=None, digits
     ------
     ValueError
         As for `solve`.
+
+    Examples
+    --------
+    >>> from references.exact import fibres
+    >>> print(f"{fibres.conductivity('square', 10.0, 0.3):.6f}")
+    1.652036
     """
     return solve(kind, contrast, fraction, resistance=resistance, order=order, digits=digits).conductivity
 
@@ -140,6 +152,13 @@ def solve(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> 
     ------
     ValueError
         If an argument is out of range, or fibres come so close that `digits` are not reached.
+
+    Examples
+    --------
+    >>> from references.exact import fibres
+    >>> found = fibres.solve("hexagonal", 10.0, 0.3)
+    >>> print(f"{found.conductivity:.4f} {found.digits > 6}")
+    1.6506 True
     """
     _check(kind, contrast, fraction, resistance, order)
     if math.isinf(resistance):

@@ -43,6 +43,13 @@ def temperature(array, points, gradient) -> np.ndarray:
     Returns
     -------
     (n,) float array
+
+    Examples
+    --------
+    >>> from references.exact import fibres
+    >>> from references.exact.fibres_field import temperature
+    >>> temperature(fibres.solve("square", 10.0, 0.3), [[0.5, 0.0]], (1.0, 0.0)).round(9).tolist()  # by symmetry
+    [0.5]
     """
     parts, (home, z, inside) = _parts(array, gradient), _cells(array, points)
     found = np.empty(len(z))
@@ -59,6 +66,13 @@ def flux(array, points, gradient) -> np.ndarray:
     ----------
     array, points, gradient
         As those of `temperature`.
+
+    Examples
+    --------
+    >>> from references.exact import fibres
+    >>> from references.exact.fibres_field import flux
+    >>> print(f"{flux(fibres.solve('square', 10.0, 0.3), [[0.0, 0.0]], (1.0, 0.0))[0, 0]:.3f}")
+    -2.415
     """
     parts, (_, z, inside) = _parts(array, gradient), _cells(array, points)
     slope = np.empty(len(z), complex)

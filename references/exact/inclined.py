@@ -27,6 +27,12 @@ def laminate(conductivities, shares, normal, *, resistance=0.0) -> np.ndarray:
     ------
     ValueError
         If an argument is not as described.
+
+    Examples
+    --------
+    >>> from references.exact.inclined import laminate
+    >>> laminate([1.0, 4.0], [0.5, 0.5], normal=(1, 1, 0)).round(9).tolist()
+    [[2.05, -0.45, 0.0], [-0.45, 2.05, 0.0], [0.0, 0.0, 2.5]]
     """
     tensors = [_checked_tensor(each) for each in conductivities]
     shares = _checked_shares(shares, len(tensors))

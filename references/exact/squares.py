@@ -20,6 +20,12 @@ def checkerboard(contrast) -> float:
     ------
     ValueError
         If it is not.
+
+    Examples
+    --------
+    >>> from references.exact.squares import checkerboard
+    >>> checkerboard(4.0)
+    2.0
     """
     return math.sqrt(_checked(contrast))
 
@@ -38,6 +44,12 @@ def square_rods(contrast) -> float:
     ------
     ValueError
         If it is not.
+
+    Examples
+    --------
+    >>> from references.exact.squares import square_rods
+    >>> print(f"{square_rods(4.0):.6f} {square_rods(0.25) * square_rods(4.0):.6f}")  # Keller
+    1.362770 1.000000
     """
     s = _checked(contrast, endless=True)
     return math.sqrt(3.0) if math.isinf(s) else math.sqrt((1 + 3 * s) / (3 + s))

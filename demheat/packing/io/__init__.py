@@ -176,7 +176,7 @@ def read(
 
 
 def ids(path: str | os.PathLike, *, format: str | None = None, step: int | None = None) -> np.ndarray:
-    """Ids of the spheres of a file in the order in which `read` gives them: rising.
+    r"""Ids of the spheres of a file in the order in which `read` gives them: rising.
 
     Parameters
     ----------
@@ -192,6 +192,18 @@ def ids(path: str | os.PathLike, *, format: str | None = None, step: int | None 
     ------
     ValueError
         As `read`; or if the file has no ids.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> from demheat.packing import io
+    >>> lines = ["3", 'Lattice="2 0 0 0 2 0 0 0 2" Properties=id:I:1:pos:R:3:radius:R:1']
+    >>> lines += ["7 0.5 0.5 0.5 0.2", "2 1.5 0.5 0.5 0.2", "5 0.5 1.5 0.5 0.2"]
+    >>> with tempfile.TemporaryDirectory() as folder:
+    ...     _ = Path(folder, "grains.xyz").write_text("\n".join(lines))
+    ...     io.ids(Path(folder, "grains.xyz")).tolist()
+    [2, 5, 7]
     """
     path, name, _ = _format(path, format)
     _check_knobs(name, None, None, None, step, "given")

@@ -32,6 +32,20 @@ class Box(Solid):
         rows; by default they are x, y and z.
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> from demheat import Material
+    >>> from demheat.scene import Box
+    >>> upright = Box((0.5, 0.5, 0.5), (0.4, 0.2, 0.1), Material(5.0), rotation=(0, -pi / 2, 0))
+    >>> low, high = upright.bounds()
+    >>> low.round(12).tolist(), high.round(12).tolist()
+    ([0.45, 0.4, 0.3], [0.55, 0.6, 0.7])
+    >>> Box((0.5, 0.5, 0.5), (0.4, 0.2, 0.0), Material(5.0))
+    Traceback (most recent call last):
+        ...
+    ValueError: Box.sides = (0.4, 0.2, 0.0): must be three lengths > 0 m
     """
 
     center: tuple[float, float, float]

@@ -34,6 +34,17 @@ class Cylinder(Solid):
         Between its flat ends. None: it goes on without end; in a periodic cell it must then lie along x, y or z.
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
+
+    Examples
+    --------
+    >>> from demheat import Material, Scene
+    >>> from demheat.scene import Cylinder
+    >>> fibre = Cylinder(center=(0.5, 0.5, 0.0), radius=0.3, axis=(0, 0, 1), material=Material(5.0))
+    >>> rod = Cylinder((0.5, 0.5, 0.5), 0.1, (1, 1, 0), Material(5.0), length=0.6)
+    >>> print(f"{rod.volume:.6f} {rod.distance([[0.5, 0.5, 0.7]])[0]:.3f}")
+    0.018850 0.100
+    >>> Scene((1.0, 1.0, 1.0), Material(1.0), [fibre], gradient=(1, 0, 0)).phase_at([[0.5, 0.7, 0.9]]).tolist()
+    [1]
     """
 
     center: tuple[float, float, float]

@@ -36,6 +36,16 @@ class Ellipsoid(Solid):
         rows; by default they are x, y and z.
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
+
+    Examples
+    --------
+    >>> from math import pi
+    >>> from demheat import Material
+    >>> from demheat.scene import Ellipsoid
+    >>> along_y = Ellipsoid((0.5, 0.5, 0.5), (0.4, 0.2, 0.1), Material(5.0), rotation=(0, 0, pi / 2))
+    >>> low, high = along_y.bounds()
+    >>> low.round(12).tolist(), high.round(12).tolist()
+    ([0.3, 0.1, 0.4], [0.7, 0.9, 0.6])
     """
 
     center: tuple[float, float, float]

@@ -30,6 +30,17 @@ class HalfSpace(Solid):
     material : Material
     resistance : float, m2 K/W
         Of the plane, as that of the surface of a `Sphere`.
+
+    Examples
+    --------
+    >>> from demheat import Material, Scene
+    >>> from demheat.scene import HalfSpace
+    >>> below = HalfSpace(point=(0.5, 0.5, 0.5), outward=(0, 1, 1), material=Material(5.0))
+    >>> scene = Scene((1.0, 1.0, 1.0), Material(1.0), [below], walls={"y-": 0.0, "y+": 1.0})
+    >>> scene.phase_at([[0.5, 0.2, 0.7], [0.5, 0.4, 0.7]]).tolist()
+    [1, 0]
+    >>> print(f"{below.volume_in(scene.size, periodic=False):.6f}")
+    0.500000
     """
 
     point: tuple[float, float, float]
