@@ -8,6 +8,7 @@ from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads
+from references.exact.fibre_forms import fibre_array
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
 from references.exact.kirchhoff import layers, transformed
 from references.exact.layers import tensor_laminate
@@ -15,9 +16,10 @@ from references.midpoints import check_points_per_axis, midpoints
 
 KNOWN = (
     "a homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic cell "
-    "of equal spheres, spheres apart in a matrix of no conductivity, and neutral coated spheres, each under a mean "
-    "gradient or one pair of opposite walls (with an imposed flux only where the flux is uniform); layers of tensors, "
-    "between walls where these bend no flux; layers across that follow the temperature, or all that do so alike"
+    "of equal spheres, a periodic square or hexagonal array of fibres along one axis, or a fibre in the middle of a "
+    "square box, spheres apart in a matrix of no conductivity, and neutral coated spheres, each under a mean gradient "
+    "or one pair of opposite walls (with an imposed flux only where the flux is uniform); layers of tensors, between "
+    "walls where these bend no flux; layers across that follow the temperature, or all that do so alike"
 )
 
 
@@ -28,8 +30,9 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     ----------
     scene : Scene
         Homogeneous, laminate, cubic array of spheres, spheres in a matrix of no conductivity or neutral coated
-        spheres; see `forms`. Layers of tensors, see `layers`; with conductivities that depend on temperature layers
-        across, and all else in which they do so alike, see `kirchhoff`.
+        spheres; see `forms`. Square or hexagonal array of fibres, see `fibre_forms`. Layers of tensors, see `layers`;
+        with conductivities that depend on temperature layers across, and all else in which they do so alike, see
+        `kirchhoff`.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
 
@@ -89,7 +92,7 @@ def _linear(scene):
     """The closed form of a scene whose conductivities do not depend on temperature."""
     if scene.anisotropic:
         return tensor_laminate(scene)
-    return laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene)
+    return laminate(scene) or insulated(scene) or cubic_array(scene) or coated_spheres(scene) or fibre_array(scene)
 
 
 def solve_axes(scene: Scene, *, points_per_axis: int = 24) -> tuple[Field, Field, Field]:

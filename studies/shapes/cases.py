@@ -1,0 +1,37 @@
+"""What the study looks at, and its limits; light, since every listing of studies loads it."""
+
+# Coarse and fine: particles, voxels along an edge, element sizes in edges; a small body asks for more.
+SPENT = {"dem": (3_000, 30_000), "fft": (32, 64), "fem": (1 / 8, 1 / 16)}
+SPENT_ON_ELLIPSOID = {"dem": (20_000, 100_000), "fft": (64, 96), "fem": (1 / 4, 1 / 6)}
+CONTRASTS, FRACTIONS = (0.01, 0.1, 10.0, 100.0), (0.3, 0.6)
+# The fibre whose temperature is looked at, too.
+CONTRAST, FRACTION = 10.0, 0.3
+# Contrasts of each part besides fibres, and the methods that take it: voxels know no resistance, FEM no level set.
+PARTS = {
+    "neutral fibre": ((CONTRAST,), ("dem", "fem")),
+    "square rods": ((0.1, 10.0), tuple(SPENT)),
+    "diagonal": ((4.0, 10.0), tuple(SPENT)),
+    "sphere": ((CONTRAST,), tuple(SPENT)),
+    "level set": ((CONTRAST,), ("dem", "fft")),
+    "ellipsoid": ((CONTRAST,), tuple(SPENT)),
+    "capped rod": ((CONTRAST,), tuple(SPENT)),
+}
+BALLS, FEW = 0.2, 0.002
+# Fields beside edges that a smooth surface has not.
+SINGULAR = ("square rods", "diagonal", "capped rod")
+
+# Largest error of the conductivity, %, coarse and fine, of rows of a part at some contrasts.
+LIMITS = (
+    ("fibres", (0.1, 10.0), {"dem": (1.5, 0.4), "fft": (1.0, 0.4), "fem": (0.3, 0.02)}),
+    ("fibres", (0.01, 100.0), {"dem": (1.5, 0.4), "fft": (2.0, 0.6), "fem": (0.3, 0.02)}),
+    ("neutral fibre", (10.0,), {"dem": (1.0, 0.3), "fem": (0.3, 0.05)}),
+    ("square rods", (0.1, 10.0), {"dem": (1.5, 0.7), "fft": (2.0, 1.0), "fem": (1.5, 0.7)}),
+    ("diagonal", (4.0,), {"dem": (0.6, 0.3), "fft": (0.6, 0.3), "fem": (1.0, 0.5)}),
+    ("diagonal", (10.0,), {"dem": (3.0, 1.5), "fft": (3.0, 1.5), "fem": (5.0, 3.0)}),
+    ("sphere", (10.0,), {"dem": (0.8, 0.2), "fft": (0.5, 0.2), "fem": (0.3, 0.05)}),
+    ("level set", (10.0,), {"dem": (0.8, 0.2), "fft": (0.5, 0.2)}),
+)
+# Of the temperature's root mean square, % of the span.
+WARMTH = {"dem": (1.0, 0.3), "fft": (1.0, 0.5), "fem": (0.1, 0.02)}
+# Of the ellipsoid's tensor, % of what it adds to the matrix's; that of the finest elements is the theory's own.
+ADDED = {"dem": (12.0, 4.0), "fft": (12.0, 4.0), "fem": (2.0, None)}
