@@ -10,11 +10,16 @@ from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress
 from demheat.scene import (
+    Box,
     Convection,
+    Cylinder,
     Dependence,
+    Ellipsoid,
     Flux,
+    HalfSpace,
     Image,
     Layer,
+    LevelSet,
     Material,
     MovingCylinder,
     Radiation,
@@ -25,14 +30,19 @@ from demheat.scene import (
 )
 
 __all__ = [
+    "Box",
     "Calibrated",
     "Convection",
+    "Cylinder",
     "Dependence",
+    "Ellipsoid",
     "Field",
-    "Image",
     "Flux",
+    "HalfSpace",
+    "Image",
     "Laguerre",
     "Layer",
+    "LevelSet",
     "Material",
     "MovingCylinder",
     "Platonic",
