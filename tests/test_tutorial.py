@@ -40,7 +40,7 @@ def test_every_block_runs_and_prints_what_is_said(tmp_path, monkeypatch, capsys)
             check_alike(printed, block.printed)
     assert {block.kind for block in found} == {"python", "toml", "sh"}
     written = {path.name for path in tmp_path.iterdir()}
-    assert {"beads.csv", "field.vtu", "field.vti", "again.toml"} <= written
+    assert {"beads.csv", "field.vtu", "field.vti", "again.toml", "scan.npy", "bed.dump", "flows.csv"} <= written
     assert {path.suffix for path in (tmp_path / "out").iterdir()} >= {".csv", ".png"}
 
 
