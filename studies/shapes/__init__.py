@@ -1,7 +1,7 @@
 """Shapes: fibres, square rods, ellipsoids, half-spaces, level sets and short rods, each beside an exact value.
 
 `fibres`: square arrays of round fibres, across them, beside Rayleigh's values (`exact.solve`); at contrast 10 the
-temperature at points, too. `neutral fibre`: its surface resists so that the conductivity is nearly the matrix's.
+temperature at points, too. `neutral fibre`: its surface resists so that the conductivity is the matrix's.
 `square rods`: a quarter of the area, beside Obnosov's sqrt((1 + 3 s)/(3 + s)). `diagonal`: a half-space that cuts a
 square between two walls along its diagonal, sqrt(s) exactly. `sphere` and `level set`: one ball in a cube, as a Sphere
 and as a function. `ellipsoid`: the whole tensor of a turned one, 0.2 % of a cube, beside theory of second order in the
@@ -125,12 +125,12 @@ def _tensor(rows):
 
 
 def _intervals(rows):
-    """Each method's interval against that of the finest elements there are."""
+    """Each method's interval, and that of coarse elements, against that of the finest ones."""
     from studies.harness.pick import finest
 
     witness = finest(pick(rows, name="fem"))
     for text, mine, _ in _levels(rows, "capped rod", {name: (None, None) for name in SPENT}):
-        if not len(mine) or not len(witness):
+        if not len(mine) or not len(witness) or mine.index[0] in witness.index:
             continue
         low = max(float(mine["lower_ratio"].iloc[0]), float(witness["lower_ratio"].iloc[0]))
         high = min(float(mine["upper_ratio"].iloc[0]), float(witness["upper_ratio"].iloc[0]))
