@@ -38,27 +38,62 @@ def fibres(contrast, fraction=FRACTION, *, kapitza=0.0, method, **knobs):
 
 
 def neutral_fibre(contrast, **knobs):
-    """A fibre whose surface resists just as much that its dipole is none; see `fibres`."""
+    """A fibre whose surface resists just as much that its dipole is none; see `fibres`.
+
+    Parameters
+    ----------
+    contrast : float
+    **knobs
+        As those of `methods.solved`.
+    """
     return fibres(contrast, kapitza=(contrast - 1) / contrast, **knobs)
 
 
 def square_rods(contrast, **knobs):
-    """Square rods beside Obnosov's value."""
+    """Square rods beside Obnosov's value.
+
+    Parameters
+    ----------
+    contrast : float
+    **knobs
+        As those of `methods.solved`.
+    """
     return methods.solve_row(scenes.square_rod(contrast), squares.square_rods(contrast), **knobs)
 
 
 def diagonal(contrast, **knobs):
-    """A square cut along its diagonal beside the root of the contrast: it is its own dual."""
+    """A square cut along its diagonal beside the root of the contrast: it is its own dual.
+
+    Parameters
+    ----------
+    contrast : float
+    **knobs
+        As those of `methods.solved`.
+    """
     return methods.solve_row(scenes.diagonal(contrast), squares.checkerboard(contrast), **knobs)
 
 
 def sphere(contrast, **knobs):
-    """A sphere beside Rayleigh's value."""
+    """A sphere beside Rayleigh's value.
+
+    Parameters
+    ----------
+    contrast : float
+    **knobs
+        As those of `methods.solved`.
+    """
     return _ball("sphere", contrast, knobs)
 
 
 def level_set(contrast, **knobs):
-    """The same sphere, as what a function tells."""
+    """The same sphere, as what a function tells.
+
+    Parameters
+    ----------
+    contrast : float
+    **knobs
+        As those of `methods.solved`.
+    """
     return _ball("level set", contrast, knobs)
 
 
