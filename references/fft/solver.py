@@ -277,9 +277,9 @@ def _check_grid(box, rule, shape):
 def _check_tensors(box, scheme, rule):
     """Conductivities that are tensors are for the scalar scheme on voxels."""
     if scheme == "eyre-milton":
-        box.require("Eyre and Milton's reference is as good in all directions; use scheme 'cg'")
+        box.require("Eyre and Milton's reference is as good in all directions; use scheme 'cg'", takes=("image",))
     if rule == "links":
-        box.require("links along the axes see only its diagonal; use rule 'laminate'")
+        box.require("links along the axes see only its diagonal; use rule 'laminate'", takes=("image",))
 
 
 def _check_scheme(box, scheme, rule):
