@@ -28,6 +28,7 @@ def draw(df):
     _fibres(right, pick(rows, part="fibres"))
     smooth = [_worst(rows, part) for part in ("fibres", *PARTS) if part not in SINGULAR]
     edged = [_worst(rows, part) for part in SINGULAR]
+    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     figure.suptitle(
         f"At the finer resolution smooth shapes err by {_most(smooth)} % at most, those with edges by {_most(edged)} %"
     )
@@ -68,7 +69,6 @@ def _shapes(axes, rows):
     names = [f"{part}\n(from FEM, no exact value)" if part == "capped rod" else part for part in parts]
     axes.set(xscale="log", yticks=range(len(parts)), yticklabels=names, ylim=(len(parts) - 0.5, -0.5))
     axes.set(xlabel="largest |error of the conductivity|, %", title="Open: coarse, filled: fine")
-    axes.legend(loc="upper left")
 
 
 def _fibres(axes, rows):
@@ -78,9 +78,8 @@ def _fibres(axes, rows):
             if not len(mine):
                 continue
             best = finest(mine).sort_values("contrast")
-            how = look(name, linestyle=style, label=f"{look(name)['label']}, f = {fraction:g}")
+            how = look(name, linestyle=style)
             axes.plot(best["contrast"], np.maximum(best["error_percent"].abs(), LEAST), **how)
     axes.axvline(1.0, color=GREY, linewidth=0.8)
     axes.set(xscale="log", yscale="log", xlabel="conductivity of the fibres over the matrix's", xlim=(0.005, 200))
-    axes.set(ylabel="|error of the conductivity|, %", title="Square arrays of fibres, fine")
-    axes.legend()
+    axes.set(ylabel="|error of the conductivity|, %", title="Square arrays of fibres, fine (dashed: f = 0.6)")
