@@ -77,6 +77,11 @@ ARRAY = (None, "a", "0.5", NAN, -1.0, True, 1j, [1.0, "a"], np.ma.masked, 10**40
 SHARE = (*ARRAY, INF, 1.5, [0.5, 1.1])
 
 
+def round_set(points):
+    """Below 0 in a ball."""
+    return np.linalg.norm(points - 0.5, axis=1) - 0.25
+
+
 def without(values, *left_out):
     """The values but for some that an argument may have."""
     return tuple(value for value in values if repr(value) not in map(repr, left_out))
@@ -86,6 +91,7 @@ def or_none(values):
     return values[1:]
 
 
+TURN = ("a", 0.5, (0.5, 0.5), (NAN, 0.0, 0.0), HIDDEN, np.ones((3, 3)))
 METAL = demheat.Material(1.0, 1.0, 1.0)
 OTHER = demheat.Material(5.0)
 CUBE = {"size": (1.0, 1.0, 1.0), "matrix": METAL}
@@ -125,10 +131,16 @@ BOUNDS = ("maxwell", "hashin_shtrikman", "bruggeman", "bruggeman_differential", 
 TABLE = [
     (demheat.Material, {"conductivity": 1.0}, {"conductivity": PART, "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
     (demheat.Material, {"conductivity": 1.0}, {"dependence": or_none(FACTORS)}),
+    (demheat.Image, {"labels": np.zeros((2, 2, 2), int), "voxel": 0.1, "materials": {0: OTHER}}, {"labels": (None, "a", 0.5, np.zeros((2, 2)), np.zeros((2, 2, 2)), np.ones((2, 2, 2), int), np.zeros((0, 2, 2), int)), "voxel": (*POSITIVE, (0.1, 0.1)), "materials": (None, [OTHER], {"a": OTHER}, {0: 1.0}, {})}),
     (demheat.Dependence, {"points": [(0.0, 1.0), (1.0, 2.0)]}, {"points": FACTORS}),
-    (demheat.orthotropic, {"k1": 1.0, "k2": 2.0, "k3": 3.0}, {"k1": POSITIVE, "k3": POSITIVE, "rotation": ("a", 0.5, (0.5, 0.5), (NAN, 0.0, 0.0), HIDDEN, np.ones((3, 3)))}),
+    (demheat.orthotropic, {"k1": 1.0, "k2": 2.0, "k3": 3.0}, {"k1": POSITIVE, "k3": POSITIVE, "rotation": TURN}),
     (demheat.Sphere, {"center": (0.5,) * 3, "radius": 0.2, "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "material": MATERIAL}),
     (demheat.Layer, {"axis": 0, "start": 0.2, "stop": 0.4, "material": OTHER}, {"axis": (*WHOLE, 3), "start": NUMBER, "stop": POSITIVE, "material": MATERIAL}),
+    (demheat.Box, {"center": (0.5,) * 3, "sides": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "sides": VECTOR, "material": MATERIAL, "rotation": TURN}),
+    (demheat.Cylinder, {"center": (0.5,) * 3, "radius": 0.2, "axis": (0, 0, 1), "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "axis": VECTOR, "material": MATERIAL, "length": or_none(POSITIVE)}),
+    (demheat.Ellipsoid, {"center": (0.5,) * 3, "semi_axes": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "semi_axes": VECTOR, "material": MATERIAL, "rotation": TURN}),
+    (demheat.HalfSpace, {"point": (0.5,) * 3, "outward": (0, 0, 1), "material": OTHER}, {"point": VECTOR, "outward": VECTOR, "material": MATERIAL}),
+    (demheat.LevelSet, {"function": round_set, "limits": ((0.2,) * 3, (0.8,) * 3), "material": OTHER}, {"function": (None, 1.0, "a"), "limits": (None, "a", 0.5, ((0.2,) * 3,), ((0.8,) * 3, (0.2,) * 3)), "material": MATERIAL}),
     (demheat.Flux, {}, {"value": NUMBER}),
     (demheat.Convection, {"coefficient": 1.0, "temperature": 1.0}, {"coefficient": (*POSITIVE, 1e300), "temperature": (*NUMBER, 1e300)}),
     (demheat.Radiation, {"emissivity": 0.5, "temperature": 1.0}, {"emissivity": (*POSITIVE, 1.01, 1e-300), "temperature": (*PART, 1e300)}),
@@ -225,8 +237,8 @@ TABLE = [
     (fem.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "order": (*COUNT, 3), "size": or_none(POSITIVE), "curved": FLAG, "tolerance": POSITIVE}),
     (fem.evolve, {"scene": WARMING, "times": [1.0], "elements": "hexahedra"}, {"scene": OBJECT, "times": TIMES, "order": or_none((*COUNT, 2)), "size": or_none(POSITIVE), "elements": WORD, "step": or_none(POSITIVE), "accuracy": POSITIVE, "tolerance": POSITIVE}),
     (mesh.make, {"scene": CELL}, {"scene": OBJECT, "size": or_none(POSITIVE), "order": (*COUNT, 3), "curved": FLAG}),
-    (fft.solve, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(COUNT, [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
-    (fft.solve_axes, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(COUNT, [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
+    (fft.solve, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(or_none(COUNT), [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
+    (fft.solve_axes, {"scene": BALL, "voxels": 4}, {"scene": OBJECT, "voxels": (*without(or_none(COUNT), [5]), (4, 4), ("4",) * 3, (4.5, 4, 4), (True, 4, 4), (0, 4, 4)), "scheme": WORD, "rule": WORD, "precision": WORD, "threads": or_none(COUNT), "tolerance": or_none(POSITIVE), "max_iterations": COUNT}),
     (zeta.zeta2, {"scene": BALL, "voxels": 32}, {"scene": OBJECT, "voxels": without(COUNT, [5]), "extrapolate": FLAG, "threads": or_none(COUNT)}),
     (multipole.solve, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),
     (multipole.solve_axes, {"scene": BALL, "order": 3}, {"scene": OBJECT, "order": or_none(COUNT), "accuracy": POSITIVE, "tolerance": or_none(POSITIVE), "points_per_axis": COUNT, "threads": COUNT}),

@@ -12,7 +12,7 @@ from numbers import Integral
 import numpy as np
 
 from demheat.scene.frozen import ReadOnly, read_only
-from demheat.scene.inputs import LEAST, MOST, moderate, vector
+from demheat.scene.inputs import LEAST, MOST, finite, moderate, vector
 from demheat.scene.material import Material, check_material
 
 # Phases are numbered in 16 bits, as on the grids of methods; voxels of one slab, which takes 8 bytes for each.
@@ -178,8 +178,8 @@ def _checked_labels(labels):
 
 
 def _checked_voxel(voxel):
-    given = (voxel,) * 3 if np.ndim(voxel) == 0 else voxel
-    edges = vector("Image.voxel", given)
+    valid = "a finite number of metres, or three of them"
+    edges = (finite("Image.voxel", voxel, valid),) * 3 if np.ndim(voxel) == 0 else vector("Image.voxel", voxel)
     if not min(edges) > 0:
         raise ValueError(f"Image.voxel = {voxel!r}: all edges must be > 0 m")
     return edges

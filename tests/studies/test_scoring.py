@@ -12,6 +12,9 @@ QUANTITIES = {"temperature", "flux", "conductivity", "k_ratio", "mean_flux"}
 EXCEPTIONS = {
     ("common/field_errors.py", "field_pictures"): "temperature over that of the coldest wall",
     ("crystal/rows.py", "_received"): "heat that flows along links",
+    ("damage/means.py", "theory"): "share of links that is left",
+    ("damage/means.py", "first_loss"): "share of the conductivity that is lost",
+    ("damage/means.py", "above_bound"): "distance to a bound",
     ("fig18_fields/rows.py", "field_row"): "level of the temperature in a periodic cell",
     ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
     ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",

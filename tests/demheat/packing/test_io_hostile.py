@@ -15,6 +15,7 @@ import numpy as np
 import pytest
 from packing_files import ASE, DUMP, VTK_ASCII, awkward, put
 
+from demheat import limits
 from demheat.packing import io
 from demheat.packing.io import extxyz, npz, source, text
 
@@ -38,8 +39,8 @@ def refused(path, message, **given):
 @pytest.fixture
 def small(monkeypatch):
     """Limits of files, small, so that those of the tests may be."""
-    monkeypatch.setattr(source, "ALWAYS", 2**16)
-    monkeypatch.setattr(text, "ALWAYS", 2**16)
+    for module in (limits, source, text):
+        monkeypatch.setattr(module, "ALWAYS", 2**16)
 
 
 @pytest.mark.parametrize("line", [b"0 0 0 1\n", b" ", b"\n"])
@@ -72,13 +73,13 @@ def test_a_file_larger_than_memory(tmp_path, monkeypatch):
     path = tmp_path / "a.yade"
     with path.open("wb") as file:
         file.truncate(2**33)  # of zeros that take no disk
-    monkeypatch.setattr(source, "free_memory", lambda: 2.0**32)
+    monkeypatch.setattr(limits, "free_memory", lambda: 2.0**32)
     refused(path, "a.yade: takes 8 GiB of memory or more, and 4 GiB are free")
 
 
 def test_rows_that_take_more_than_memory(tmp_path, small, monkeypatch):
     path = put(tmp_path, "#x\n" + "1\n" * 200_000, ".yade")
-    monkeypatch.setattr(source, "free_memory", lambda: 2.0**20)
+    monkeypatch.setattr(limits, "free_memory", lambda: 2.0**20)
     refused(path, "are free; must be a smaller file")
 
 
