@@ -38,7 +38,7 @@ def test_the_studies_are_there():
 
 
 # Their quick rows take 24 to 52 CPU-seconds each, a third of all tests: `make test-slow`.
-SLOW = ("fig15_16_fields", "fig17_etc", "fig18_fields", "speed_error", "stability", "zeta2")
+SLOW = ("fig15_16_fields", "fig17_etc", "fig18_fields", "shapes", "speed_error", "stability", "zeta2")
 
 
 # Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.
