@@ -10,9 +10,6 @@ from demheat.scene import Scene
 from demheat.scene.symmetry import alike_axes, mirrors, reduced
 from demheat.tensor import axis_loads
 
-# Of scenes, besides plain ones.
-TAKES = ("resistance", "exchange")
-
 
 class Loads(NamedTuple):
     """Loads that show a body's tensor.
@@ -62,7 +59,6 @@ def loads_of(scene: Scene) -> Loads:
         As `demheat.tensor.axis_loads`.
     """
     wholes = dict(enumerate(axis_loads(scene)))
-    scene.require("no law of error and cost is known there; solve_axes of a method has no need of one", takes=TAKES)
     if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
         raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")
     scene.require("laws of error and symmetry are those of shapes; use solve_axes of a method", takes=("resistance",))
