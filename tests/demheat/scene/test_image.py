@@ -98,7 +98,7 @@ def test_a_turned_image():
         ({"labels": np.arange(41**3).reshape(41, 41, 41)}, "68921 different ones; must be at most 65536"),
         ({"voxel": 0.0}, "Image.voxel = 0.0: all edges must be > 0 m"),
         ({"voxel": (1.0, 1.0)}, "Image.voxel = (1.0, 1.0): must be three finite numbers"),
-        ({"voxel": (1.0, np.nan, 1.0)}, "must be a finite number of metres, or three"),
+        ({"voxel": (1.0, np.nan, 1.0)}, "must be three finite numbers"),
         ({"voxel": np.inf}, "must be a finite number of metres, or three"),
         ({"voxel": "2 um"}, "must be a finite number of metres, or three"),
         ({"voxel": 1e300}, "sides of the image must be from 1e-50 to 1e+50 m"),
