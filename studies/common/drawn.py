@@ -156,7 +156,7 @@ def scene_of(kind, seed):
         try:
             return DRAW[kind](rng)
         except RuntimeError:
-            # No room for the last sphere: as in one scene of 1600, drawn anew.
+            # No room for the last sphere: drawn anew.
             continue
 
 
