@@ -31,6 +31,7 @@ def run(tmp_path, monkeypatch, capsys):
     return of
 
 
+@pytest.mark.slow
 def test_own_composite(run):
     lines = run("own_composite.py")
     assert sum(_numbers(lines[0])) == pytest.approx(1.0, abs=2e-3)  # three digits each
@@ -41,6 +42,7 @@ def test_own_composite(run):
     assert max(found) / min(found) < 1.02
 
 
+@pytest.mark.slow
 def test_speed_against_error(run):
     lines = run("speed_against_error.py")[2:-1]
     errors = {name: [abs(float(line.split()[4])) for line in lines if line.startswith(name)] for name in ("DEM", "FFT")}

@@ -37,8 +37,19 @@ def test_the_studies_are_there():
     assert {"fig03_calibration", "packings"} <= set(NAMES)
 
 
-# Their quick rows take 24 to 52 CPU-seconds each, a third of all tests: `make test-slow`.
-SLOW = ("fig15_16_fields", "fig17_etc", "fig18_fields", "shapes", "speed_error", "stability", "zeta2")
+# Their quick rows take 15 to 52 CPU-seconds each, a third of all tests: `make test-slow`.
+SLOW = (
+    "damage",
+    "fig15_16_fields",
+    "fig17_etc",
+    "fig18_fields",
+    "grains",
+    "images",
+    "shapes",
+    "speed_error",
+    "stability",
+    "zeta2",
+)
 
 
 # Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.
