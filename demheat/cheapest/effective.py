@@ -13,11 +13,11 @@ import numpy as np
 
 from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
-from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, one_line, ways
+from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, ways
 from demheat.limits import free_memory
 from demheat.scene import Scene
 from demheat.scene.frozen import read_only
-from demheat.scene.inputs import chosen, finite
+from demheat.scene.inputs import chosen, finite, one_line
 
 # Of the memory that is free.
 SHARE = 0.8

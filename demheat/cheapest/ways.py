@@ -10,6 +10,7 @@ from typing import NamedTuple
 from demheat.cheapest.laws import ON_SPHERE, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
+from demheat.scene.inputs import one_line
 
 # Modules, by the names that their methods have in `METHODS`; in the order of preference where nothing is known.
 HOMES = {
@@ -216,13 +217,3 @@ def _within(way, memory):
 
 def _gib(number):
     return f"{number / 2**30:.2g} GiB"
-
-
-def one_line(error: Exception) -> str:
-    """Message of an error or a warning without its line breaks, or its kind where it says nothing.
-
-    Parameters
-    ----------
-    error : Exception
-    """
-    return " ".join(str(error).split()) or type(error).__name__

@@ -8,10 +8,10 @@ import time
 import warnings
 from typing import NamedTuple
 
-from demheat.cheapest.ways import one_line
 from demheat.commands.knobs import Asked
 from demheat.declared import load
 from demheat.field import Field
+from demheat.scene.inputs import one_line
 
 
 class Answer(NamedTuple):

@@ -127,7 +127,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
     how = {"solver": chosen, "tolerance": tolerance, "most": max_iterations, "kept": kept}
-    first = _start(network, scene, reached) if start is None else np.where(reached, start - _level(scene), 0.0)
+    first = _start(network, scene, reached) if start is None else np.where(reached, start - level_of(scene), 0.0)
     solve = _radiating if scene.radiates else _linear
     system, x, iterations, size, more = solve(network, scene, reached, first, how)
     if not size <= tolerance:
@@ -165,7 +165,7 @@ def imbalance(network, scene, solution) -> float:
     """
     network = network if solution.still is None else without_links(network, solution.still)
     reached = _reached(network, scene)
-    x = np.where(reached, np.nan_to_num(solution.temperature) - _level(scene), 0.0)
+    x = np.where(reached, np.nan_to_num(solution.temperature) - level_of(scene), 0.0)
     if scene.radiates:
         surface = np.maximum(np.nan_to_num(solution.wall_temperature), COLDEST * hottest(network, scene))
         system = _system(network, scene, reached, films_of(network, scene, surface))
@@ -180,8 +180,13 @@ def _relative(system, x):
     return norm / passing if passing > 0 else float(norm > 0), r, passing if passing > 0 else norm
 
 
-def _level(scene):
-    """What temperatures are counted from between walls."""
+def level_of(scene):
+    """What temperatures are counted from between walls: their mean.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
     return float(np.mean(list(scene.imposed_temperatures.values())))
 
 
@@ -272,7 +277,7 @@ def _system(network, scene, reached, films=None):
         return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
     films = films_of(network, scene) if films is None else films
     ties = films.ties(network.wall_conductance)
-    level = _level(scene)
+    level = level_of(scene)
     held = np.nan_to_num(films.outside - level)
     heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
     diagonal += np.bincount(network.wall_particle, ties, minlength=n)

@@ -8,7 +8,7 @@ is then linear in that integral, whatever the temperatures. Picard's iteration t
 
 import numpy as np
 
-from demheat.conduction.steady import imbalance, solve_checked
+from demheat.conduction.steady import imbalance, level_of, solve_checked
 from demheat.network.base import branches, link_distances, row_numbers
 
 # Rounds at most, and what each round's linear equations leave of the residual that it begins with.
@@ -110,7 +110,7 @@ def solve_varying(network, scene, *, tolerance, **how):
     RuntimeError
         If the residual stays above the tolerance.
     """
-    conducting, start, total, aim, level = Conductances(network, scene), None, 0, FURTHER, _level(scene)
+    conducting, start, total, aim, level = Conductances(network, scene), None, 0, FURTHER, level_of(scene)
     for rounds in range(1, ROUNDS + 1):
         solution = solve_checked(network, scene, tolerance=aim, start=start, **how)
         start, total = np.nan_to_num(solution.temperature, nan=level), total + solution.stats["iterations"]
@@ -124,8 +124,3 @@ def solve_varying(network, scene, *, tolerance, **how):
         f"solve_varying: relative residual {left:.2e} after {ROUNDS} rounds, each with conductivities at the last "
         f"one's temperatures, asked for {tolerance:.1e}; must be a smaller change of conductivity, or larger"
     )
-
-
-def _level(scene):
-    """A temperature for what has none."""
-    return float(np.mean(list(scene.imposed_temperatures.values())))

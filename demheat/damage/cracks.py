@@ -14,20 +14,21 @@ from scipy.spatial import cKDTree
 from demheat.damage.links import cut, pairs
 from demheat.network.base import Network, image_shifts, row_numbers
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.conforming import CLEARANCE, COVER, EXCESS, OFFSET
+from demheat.packing.conforming import CLEARANCE, NEAR_WALL, OFFSET, margin
 from demheat.packing.patterns import SPACING
+from demheat.packing.solids import SQUARE
 from demheat.scene.inputs import finite, vector
+from demheat.scene.shapes.directions import across
 
 # Side of the square that stands for one twin of an even pattern, in mean radii.
-PITCH = math.sqrt(math.sqrt(0.75)) * SPACING
+PITCH = SQUARE * SPACING
 # Half the width, in mean radii, below which cracks are said to be small: what a disc takes away was 61 % too large at
 # 2.0, 20 % at 4.0 and 12 % at 8.1.
 SMALL = 2.0
 # Touch points nearer to each other than this part of a pitch are one: where cracks meet each other or their images.
 APART = 0.6
-# Twins nearer to a wall than this part of their offset are left out, as those of interfaces are.
-NEAR_WALL = 0.3
-SQUARE = 1e-9
+# Cosine of a right angle, at most.
+STRAIGHT = 1e-9
 
 
 @dataclass(frozen=True)
@@ -73,9 +74,7 @@ class Disc:
     def frame(self) -> np.ndarray:
         """Unit vectors along the crack, two, and across it, the rows of a (3, 3) float array."""
         n = np.array(self.normal) / np.linalg.norm(self.normal)
-        side = np.eye(3)[np.argmin(np.abs(n))]
-        u = np.cross(n, side) / np.linalg.norm(np.cross(n, side))
-        return np.array([u, np.cross(n, u), n])
+        return np.array([*across(n), n])
 
     def beyond(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
         """Distance from the rim of points of its plane, m, negative inside.
@@ -133,7 +132,7 @@ class Rectangle:
         for name in ("center", "along", "across"):
             object.__setattr__(self, name, vector(f"Rectangle.{name}", getattr(self, name)))
         u, v = np.array(self.along), np.array(self.across)
-        if not (u.any() and v.any() and abs(u @ v) <= SQUARE * np.linalg.norm(u) * np.linalg.norm(v)):
+        if not (u.any() and v.any() and abs(u @ v) <= STRAIGHT * np.linalg.norm(u) * np.linalg.norm(v)):
             raise ValueError(
                 f"Rectangle.along = {self.along}, across = {self.across}: must be two vectors at right angles, not 0"
             )
@@ -237,7 +236,7 @@ def seamed(packing: Packing, cracks) -> Packing:
             np.minimum(near, np.hypot(w, np.maximum(crack.beyond(u, v) - pitch, 0.0)), out=near)
     twins = _fitting(packing, np.concatenate(found), radius).reshape(-1, 3)
     keep = near > (OFFSET + CLEARANCE) * radius
-    most = near**2 - ((COVER * SPACING) ** 2 + EXCESS) * radius**2
+    most = near**2 - margin(radius)
     kept = np.minimum(packing.radii**2, most)[keep]
     raised = np.concatenate([kept, np.full(len(twins), radius**2)])
     raised += max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))

@@ -27,6 +27,7 @@ from demheat.files.source import nearest, shown
 from demheat.limits import check_free
 from demheat.paths import checked_path
 from demheat.scene import Image, Material
+from demheat.scene.inputs import one_line
 
 # Types of a MetaImage.
 ELEMENTS = {
@@ -118,7 +119,7 @@ def _npy(path):
     try:
         return np.load(path, mmap_mode="r", allow_pickle=False), None
     except (ValueError, EOFError) as error:
-        raise ValueError(f"{path}: no array of NumPy, or a part of one: {_line(error)}") from None
+        raise ValueError(f"{path}: no array of NumPy, or a part of one: {one_line(error)}") from None
 
 
 def _tiff(path):
@@ -146,7 +147,7 @@ def _complaints(library):
     found = []
     logger = logging.getLogger(library)
     handler = logging.Handler(logging.ERROR)
-    handler.emit = lambda record: found.append(_line(record.getMessage()))
+    handler.emit = lambda record: found.append(one_line(record.getMessage()))
     before = logger.propagate
     logger.addHandler(handler)
     logger.propagate = False
@@ -167,7 +168,7 @@ def _one_line(path, kind):
     except Exception as error:  # noqa: BLE001
         if isinstance(error, ValueError) and str(error).startswith(str(path)):
             raise
-        raise ValueError(f"{path}: no {kind}, or a part of one: {_line(error)}") from None
+        raise ValueError(f"{path}: no {kind}, or a part of one: {one_line(error)}") from None
 
 
 def _paged(path, stack):
@@ -290,10 +291,6 @@ def _spacings(header):
     else:
         return None
     return tuple(float(h) * UNITS[unit] for h, unit in zip(lengths, units, strict=False))
-
-
-def _line(error):
-    return " ".join(str(error).split()) or type(error).__name__
 
 
 READERS = {

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
@@ -13,7 +12,7 @@ import numpy as np
 from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
-from demheat.paths import checked_path
+from demheat.paths import checked_path, replaced
 from demheat.scene.frozen import ReadOnly, read_only
 from demheat.scene.html import table_of
 
@@ -152,17 +151,12 @@ class GrainField:
         names = np.arange(self.packing.number) if ids is None else np.asarray(ids)
         if names.shape != (self.packing.number,) or names.dtype.kind not in "iu":
             raise ValueError(f"ids of shape {names.shape}: must be {self.packing.number} whole numbers")
-        part = path.with_name(f".{path.name}.{os.getpid()}.part")
-        try:
-            with open(part, "xb") as stream:
-                if path.suffix.lower() == ".npz":
-                    np.savez(stream, **self._arrays(names))
-                else:
-                    rows = chain([COLUMNS], self._rows(names))
-                    stream.writelines(f"{','.join(map(str, row))}\n".encode() for row in rows)
-            os.replace(part, path)
-        finally:
-            part.unlink(missing_ok=True)
+        with replaced(path) as part, open(part, "xb") as stream:
+            if path.suffix.lower() == ".npz":
+                np.savez(stream, **self._arrays(names))
+            else:
+                rows = chain([COLUMNS], self._rows(names))
+                stream.writelines(f"{','.join(map(str, row))}\n".encode() for row in rows)
 
     def _rows(self, names):
         """Rows of the table: of pairs, then of grains at walls."""

@@ -7,14 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.grains.laws import Fixed, Gap, Hertz, Overlap, contact_conductance, gap_conductance, reduced, resistivity
-from demheat.network.base import SIDES, image_shifts, row_numbers
+from demheat.network.base import SIDES, image_codes, image_shifts, row_numbers
 from demheat.packing.base import Packing
 from demheat.packing.neighbours import neighbours
 from demheat.packing.walls import wall_distance
 from demheat.scene.inputs import finite, reals
 
-# Which image of the other grain is meant, in thirds: 9 (sx + 1) + 3 (sy + 1) + sz + 1, see demheat.network.base.Facets.
-THIRDS = np.array([9, 3, 1])
 # Conductance of what holds a grain of a layer at its wall's temperature, over that of all its links. At 1e6 rounding
 # kept residuals above 1e-10; conductivities take the temperatures that the grains do have.
 HELD = 1e4
@@ -243,7 +241,7 @@ def branches_of(packing, first, second):
     """
     straight = packing.centers[second] - packing.centers[first]
     shift = np.where(packing.periodic, -np.round(straight / packing.size), 0.0)
-    image = ((shift + 1.0) @ THIRDS).astype(np.uint8)
+    image = image_codes(shift)
     branch = straight + image_shifts(image, packing.size)
     return branch, np.sqrt(np.einsum("ij,ij->i", branch, branch)), image
 

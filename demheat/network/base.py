@@ -114,6 +114,21 @@ def wall_normals(walls):
     return normals
 
 
+def image_codes(steps):
+    """Codes of periodic images, which `image_shifts` takes back.
+
+    Parameters
+    ----------
+    steps : (m, 3) float or int array
+        Boxes along each axis, -1, 0 or 1.
+
+    Returns
+    -------
+    (m,) uint8 array
+    """
+    return ((np.asarray(steps) + 1) @ np.array([9, 3, 1])).astype(np.uint8)
+
+
 def image_shifts(image, size):
     """Offsets of periodic images.
 

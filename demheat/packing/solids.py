@@ -15,6 +15,8 @@ from scipy.spatial import cKDTree
 
 from demheat.packing.base import morton_order
 from demheat.scene import Scene, Shape
+from demheat.scene.shapes.base import shifts
+from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.samples import surface_points
 
 # Side of a square pattern over the spacing of a triangular one as dense.
@@ -84,18 +86,9 @@ class SolidSurface:
         if not skip_self:
             return np.abs(self.shape.distance(points, period=self.scene.period))
         nearest = np.full(len(points), np.inf)
-        for shift in _shifts(self.shape, self.scene):
+        for shift in shifts(self.shape, self.scene.period):
             nearest = np.minimum(nearest, np.abs(self.shape.distance(points - shift)))
         return nearest
-
-
-def _shifts(shape, scene):
-    """By what the nearest images of a shape are moved, itself aside."""
-    if not scene.periodic:
-        return []
-    ends = np.isfinite(shape.bounds()[0])
-    steps = product(*((-1, 0, 1) if end else (0,) for end in ends))
-    return [np.array(step) * scene.size for step in steps if any(step)]
 
 
 def on_cylinder(shape, scene, spacing, rng):
@@ -147,7 +140,7 @@ def on_prism(shape, scene, points, normals):
     height = own @ axis
     count = 40 * len(own)
     turn = np.pi * (1 + np.sqrt(5.0)) * np.arange(count)
-    frame = _across(axis)
+    frame = across(axis)
     # Between the outermost rows: beyond them no point is nearer than those.
     where = height.min() + (np.arange(count) + 0.5) / count * np.ptp(height)
     out = np.outer(np.cos(turn), frame[0]) + np.outer(np.sin(turn), frame[1])
@@ -289,16 +282,9 @@ def _ordered(samples, areas):
 def _frame(axis, rng):
     """Two random directions across an axis, and the axis, as rows."""
     angle = rng.uniform(0, 2 * np.pi)
-    one, other = _across(np.array(axis))
+    one, other = across(np.array(axis))
     first = np.cos(angle) * one + np.sin(angle) * other
     return np.stack([first, np.cross(axis, first), axis])
-
-
-def _across(axis):
-    """Two directions across an axis and each other, as rows."""
-    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    one /= np.linalg.norm(one)
-    return np.stack([one, np.cross(axis, one)])
 
 
 def _along(shape, scene):

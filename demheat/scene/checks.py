@@ -44,6 +44,16 @@ def check_domain(scene) -> None:
         raise ValueError(f"Scene.gradient with domain = {scene.domain!r}: only a box can be a periodic cell")
 
 
+def check_dependence(scene) -> None:
+    """Raise ValueError if a conductivity of a periodic Scene depends on temperature."""
+    if scene.periodic and scene.varies:
+        which = next(n for n, material in enumerate(scene.materials) if material.dependence is not None)
+        raise ValueError(
+            f"Material.dependence in phase {which} with Scene.gradient: must be None, as temperatures of a "
+            "periodic cell have no level; give Scene.walls instead"
+        )
+
+
 def check_image(scene) -> None:
     """Raise ValueError unless the image of a Scene, if it has one, is all of it."""
     image = scene.image

@@ -65,6 +65,16 @@ def reals(name: str, value, valid: str) -> np.ndarray:
     return array
 
 
+def one_line(error: Exception) -> str:
+    """Message of an error or a warning without its line breaks, or its kind where it says nothing.
+
+    Parameters
+    ----------
+    error : Exception
+    """
+    return " ".join(str(error).split()) or type(error).__name__
+
+
 def shown(value) -> str:
     """A value as it is shown in a message: in one line."""
     return " ".join(repr(value).split())

@@ -15,6 +15,7 @@ import numpy as np
 
 from demheat.scene.bodies import domain_volume
 from demheat.scene.checks import (
+    check_dependence,
     check_domain,
     check_geometry,
     check_image,
@@ -116,12 +117,7 @@ class Scene:
         check_initial(self.initial, kelvin=self.radiates)
         check_geometry(self)
         check_reached(self)
-        if self.periodic and self.varies:
-            which = next(n for n, material in enumerate(self.materials) if material.dependence is not None)
-            raise ValueError(
-                f"Material.dependence in phase {which} with Scene.gradient: must be None, as temperatures of a "
-                "periodic cell have no level; give Scene.walls instead"
-            )
+        check_dependence(self)
 
     @classmethod
     def of_image(cls, image: Image, **load: object) -> Scene:

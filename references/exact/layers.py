@@ -12,30 +12,6 @@ from demheat.scene import Layer
 from references.exact.forms import SAME, Closed, mean_load, pieces
 
 
-def conductivity(thickness, tensors, axis, *, resistance=0.0) -> np.ndarray:
-    """Effective conductivity of a periodic stack of layers.
-
-    Parameters
-    ----------
-    thickness : (n,) sequence of float, m
-    tensors : (n, 3, 3) float array, W/(m K)
-    axis : {0, 1, 2}
-        Along which they are stacked.
-    resistance : float, m2 K/W
-        Of all their surfaces together.
-
-    Returns
-    -------
-    (3, 3) float array, W/(m K)
-    """
-    thickness, tensors = np.asarray(thickness, dtype=float), np.asarray(tensors, dtype=float)
-    found = np.empty((3, 3))
-    for load, gradient in enumerate(np.eye(3)):
-        slopes = _gradients(thickness, tensors, axis, gradient, resistance)[0]
-        found[:, load] = thickness @ np.einsum("nij,nj->ni", tensors, slopes) / thickness.sum()
-    return found
-
-
 def tensor_laminate(scene):
     """A homogeneous box or plane layers of tensors, in a periodic cell; between walls where heat runs straight across.
 

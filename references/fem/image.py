@@ -20,6 +20,7 @@ from demheat.progress import stage
 from references.fem import islands
 from references.fem.bricks import Bricks, bricks, nodes_of, stiffness, wall_nodes
 from references.fem.multigrid import conjugate_gradients, multigrid
+from references.fem.system import known_part
 
 # Corners of a brick on its node with the least coordinates; of a wall's rectangle.
 CORNERS = np.array([(a, b, c) for a in (0, 1) for b in (0, 1) for c in (0, 1)])
@@ -174,7 +175,7 @@ def _solved(scene, grid, tolerance, kept):
     if conductivity.min() == 0:
         found = islands.find(scene, grid)
         conductivity = np.where(found.still, 0.0, conductivity)
-    lift, level, shares = _known(scene, grid)
+    lift, level, nodes, shares = known_part(scene, grid)
     imposed = _imposed(scene, grid, scene.conductivities[grid.phase] > 0)
     correction, stats = np.zeros(len(lift)), {"unknowns": 0, "iterations": 0, "residual": 0.0}
     matrix = kept.get("matrix") if found is None else None
@@ -201,29 +202,13 @@ def _solved(scene, grid, tolerance, kept):
         temperature_at=view.temperature_at,
         flux_at=view.flux_at,
         wall_temperature=_wall_temperatures(scene, grid, temperature),
-        wall_heat=_wall_heat(scene, grid, heat, shares),
+        wall_heat=_wall_heat(scene, grid, heat, (nodes, shares)),
         stats=stats,
     )
 
 
 def _longest(grid):
     return float(max(np.diff(x).max() for x in grid.axes))
-
-
-def _known(scene, grid):
-    """A known part of the temperature, as lift + level, and the number of held walls on each node."""
-    lift, shares = np.zeros((2, len(grid.points)))
-    if scene.periodic:
-        return grid.points @ np.array(scene.gradient), 0.0, shares
-    # Counted from one of the temperatures, a large common offset costs no digits.
-    level = next(iter(scene.wall_temperatures.values()))
-    for name, value in scene.wall_temperatures.items():
-        nodes = np.unique(grid.walls[name].triangles)
-        lift[nodes] += value - level
-        shares[nodes] += 1
-    # On an edge where two isothermal walls meet, the mean of both.
-    lift[shares > 0] /= shares[shares > 0]
-    return lift, level, shares
 
 
 def _imposed(scene, grid, solid):
@@ -339,12 +324,10 @@ def _wall_temperatures(scene, grid, temperature):
     return walls
 
 
-def _wall_heat(scene, grid, heat, shares):
+def _wall_heat(scene, grid, heat, held):
     """Heat into the body through each loaded wall, W."""
-    found = {}
-    for name in scene.wall_temperatures:
-        nodes = np.unique(grid.walls[name].triangles)
-        found[name] = float(np.sum(heat[nodes] / shares[nodes]))
+    nodes, shares = held
+    found = {name: float(np.sum(heat[own] / shares[own])) for name, own in nodes.items()}
     for name, value in scene.wall_fluxes.items():
         found[name] = float(value * _weights(name, grid, scene.conductivities[grid.phase] > 0).sum())
     return found

@@ -235,11 +235,27 @@ def _at_rest(scene, mesh, given, found):
     return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown)), still), stats, found)
 
 
-def _given(scene, mesh, solid):
-    """Read the load of the scene; `solid` says which elements conduct, only those take a wall's flux."""
+def known_part(scene, mesh) -> tuple[np.ndarray, float, dict[str, np.ndarray], np.ndarray]:
+    """What is known of the temperature: the mean gradient, or that of held walls.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh, or a grid with its `points` and `walls`
+
+    Returns
+    -------
+    lift : (n,) float array, K
+    level : float, K
+        To be added.
+    nodes : mapping of str to (k,) int array
+        Of each held wall.
+    shares : (n,) float array
+        Held walls at each node.
+    """
     lift, shares = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))
     if scene.periodic:
-        return _Given(mesh.points @ np.array(scene.gradient), 0.0, {}, shares, {})
+        return mesh.points @ np.array(scene.gradient), 0.0, {}, shares
     # Counted from one of the temperatures, a large common offset costs no digits.
     level = next(iter(scene.imposed_temperatures.values()))
     nodes = {name: np.unique(mesh.walls[name].triangles) for name in scene.wall_temperatures}
@@ -248,6 +264,12 @@ def _given(scene, mesh, solid):
         shares[nodes[name]] += 1
     # On an edge where two isothermal walls meet, the mean of both.
     lift[shares > 0] /= shares[shares > 0]
+    return lift, level, nodes, shares
+
+
+def _given(scene, mesh, solid):
+    """Read the load of the scene; `solid` says which elements conduct, only those take a wall's flux."""
+    lift, level, nodes, shares = known_part(scene, mesh)
     weights = {}
     for name in (*scene.wall_fluxes, *scene.wall_exchanges):
         triangles, owners = mesh.walls[name]

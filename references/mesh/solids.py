@@ -8,6 +8,8 @@ from itertools import product
 import numpy as np
 
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Shape
+from demheat.scene.shapes.base import shifts
+from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.samples import surface_points
 from references.mesh.turns import GENERIC
 
@@ -65,11 +67,9 @@ def _(shape: HalfSpace, occ, box, scale):
     wide = 2 * np.linalg.norm(box)
     tag = occ.addBox(-wide, -wide, -2 * wide, 2 * wide, 2 * wide, 2 * wide)
     normal = np.array(shape.outward)
-    first = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-    first /= np.linalg.norm(first)
     # The point of its plane that is nearest to the middle: the box is then wide enough around it.
     middle = box / 2 - shape.distance(scale * box[None] / 2)[0] / scale * normal
-    return _placed(occ, tag, np.stack([first, np.cross(normal, first), normal], axis=1), middle)
+    return _placed(occ, tag, np.stack([*across(normal), normal], axis=1), middle)
 
 
 def sized(scene, size: float, planes, rules) -> np.ndarray:
@@ -150,9 +150,9 @@ def _to_other(scene, numbers, points, narrowest, reach):
     shape, other = (scene.inclusions[number] for number in numbers)
     own = numbers[0] == numbers[1]
     # In a periodic cell another one is the nearest of its images.
-    period, shifts = (None, _images(scene, shape)) if own else (scene.period, [np.zeros(3)])
+    period, moved = (None, shifts(shape, scene.period)) if own else (scene.period, [np.zeros(3)])
     least = np.full(len(points), np.inf)
-    for shift in shifts:
+    for shift in moved:
         gap = _away(other, shift, period, points)
         least = np.minimum(least, gap)
         if gap.min() > reach:
@@ -177,9 +177,8 @@ def _narrowest(scene, shape, x, distance):
     angle = np.pi * np.arange(8) / 4
     for _ in range(ROUNDS):
         normal = shape.normal(x[None])[0]
-        one = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
-        one /= np.linalg.norm(one)
-        around = x + step * (np.outer(np.cos(angle), one) + np.outer(np.sin(angle), np.cross(normal, one)))
+        one, other = across(normal)
+        around = x + step * (np.outer(np.cos(angle), one) + np.outer(np.sin(angle), other))
         away, outward = shape.surface(around)
         around -= away[:, None] * outward
         gaps = distance(around)
@@ -189,13 +188,6 @@ def _narrowest(scene, shape, x, distance):
         else:
             step /= 2
     return x, gap
-
-
-def _images(scene, shape):
-    """By what the images of a shape that may be next to it are moved."""
-    ends = np.isfinite(shape.bounds()[0]) & scene.periodic
-    shifts = product(*((0, -1, 1) if end else (0,) for end in ends))
-    return [np.array(shift) * scene.size for shift in shifts if any(shift)]
 
 
 def _to_planes(scene, shape, points, planes, narrowest):

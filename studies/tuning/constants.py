@@ -37,7 +37,7 @@ def _offset(value):
 
 
 def _margin_of(value):
-    return {"_margin": lambda radius: value * radius**2}
+    return {"margin": lambda radius: value * radius**2}
 
 
 def _excess(value):
@@ -82,7 +82,7 @@ def _room(value):
 
 
 CLOSE = Laguerre().gap_spacing
-MARGIN = float(conforming._margin(1.0))
+MARGIN = float(conforming.margin(1.0))
 # What the margin was before it became wider: with the other sign of EXCESS.
 NARROW = MARGIN - 2 * conforming.EXCESS
 SPHERE, UNSAID = "centred sphere, four contrasts", "nobody wrote it down"

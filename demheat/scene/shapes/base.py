@@ -334,6 +334,20 @@ def check_resistance(shape: Shape) -> None:
     number(shape, "resistance", f"a finite number >= 0 m2 K/W{WITHIN}", lambda v: v >= 0 and moderate(v))
 
 
+def shifts(shape: Shape, period: np.ndarray | None) -> list[np.ndarray]:
+    """By what the images beside a shape are moved, m: along axes along which it ends; none without a period.
+
+    Parameters
+    ----------
+    shape : Shape
+    period : (3,) float array, m, or None
+    """
+    if period is None:
+        return []
+    steps = product(*((-1, 0, 1) if end else (0,) for end in np.isfinite(shape.bounds()[0])))
+    return [np.array(step) * period for step in steps if any(step)]
+
+
 def nearest(offsets: np.ndarray, period: np.ndarray | None) -> np.ndarray:
     """Offsets to the nearest periodic image.
 

@@ -11,7 +11,7 @@ import numpy as np
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, number, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import TOUCH, check_resistance
-from demheat.scene.shapes.directions import unit
+from demheat.scene.shapes.directions import across, unit
 from demheat.scene.shapes.solid import Solid
 
 # Of the prism around a cylinder, whose corners lie in what holds it: 0.2 % too wide.
@@ -147,9 +147,7 @@ class Cylinder(Solid):
     def _frame(self):
         """Two directions across the axis and the axis, as columns."""
         u = np.array(self.axis)
-        v = np.cross(u, np.eye(3)[np.argmin(np.abs(u))])
-        v /= np.linalg.norm(v)
-        return np.stack([v, np.cross(u, v), u], axis=1)
+        return np.stack([*across(u), u], axis=1)
 
     def _parts(self, offsets):
         """Offsets along the axis, across it and the length of these."""

@@ -39,6 +39,19 @@ def unit(name: str, value) -> tuple[float, float, float]:
     return tuple((found + 0.0).tolist())
 
 
+def across(direction: np.ndarray) -> np.ndarray:
+    """Two directions at right angles to another and to each other, the rows of a (2, 3) float array.
+
+    Parameters
+    ----------
+    direction : (3,) float array
+        Of length 1.
+    """
+    one = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
+    one = one / np.linalg.norm(one)
+    return np.stack([one, np.cross(direction, one)])
+
+
 def corners(columns: np.ndarray) -> np.ndarray:
     """The eight sums of three vectors with all signs, (8, 3) float array.
 

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from demheat import Layer, Material, Scene, Sphere, orthotropic
 from demheat.tensor import conductivity_tensor
 from references import exact
-from references.exact.layers import conductivity
+from references.exact.inclined import laminate
 from references.voxels.laminates import laminated
 
 TENSORS = np.array(
@@ -28,7 +28,7 @@ def test_the_tensor_is_that_of_the_textbook(axis):
     assert_allclose(
         found, laminated(np.zeros(3, int), THICK, TENSORS, np.eye(3)[axis : axis + 1])[0], rtol=1e-13, atol=1e-14
     )
-    assert_allclose(found, conductivity(THICK, TENSORS, axis), rtol=1e-13, atol=1e-14)
+    assert_allclose(found, laminate(TENSORS, THICK, np.eye(3)[axis]), rtol=1e-13, atol=1e-14)
 
 
 def test_of_numbers_it_is_the_laminate():
@@ -36,7 +36,7 @@ def test_of_numbers_it_is_the_laminate():
     for resistance in (0.0, 0.3):
         plain = conductivity_tensor(exact.solve_axes(stack(materials=numbers, resistance=resistance)))
         # Both faces of the layer resist.
-        found = conductivity(THICK, numbers[:, None, None] * np.eye(3), 1, resistance=2 * resistance)
+        found = laminate(numbers, THICK, (0, 1, 0), resistance=2 * resistance)
         assert_allclose(found, plain, rtol=1e-13, atol=1e-15)
 
 
@@ -71,7 +71,7 @@ def test_between_walls_it_must_run_straight():
     about = np.stack([orthotropic(1, 2, 3, rotation=(0, 1, 0)), np.diag([0.5, 4.0, 1.0]), TENSORS[2]])
     assert_allclose(
         exact.solve(stack(materials=about, walls={"y-": 1.0, "y+": 3.0})).conductivity,
-        conductivity(THICK, about, 1)[1, 1],
+        laminate(about, THICK, (0, 1, 0))[1, 1],
     )
 
 
