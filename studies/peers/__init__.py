@@ -1,0 +1,97 @@
+"""Programs that others wrote, beside ours: the same bodies, the same images and meshes, one referee.
+
+Each program runs as its users run it, in a process of its own; one that is not installed has rows that say so. Ours get
+what the others get: on an image the image, else the body.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from pathlib import Path
+
+from demheat.referee import value_error
+from studies.harness import methods
+from studies.peers.cases import QUICK_SCENES, ours
+
+HOME = Path(__file__).parent / "programs"
+PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != "__init__"))
+MODULES = {name: f"studies.peers.programs.{name}" for name in PROGRAMS}
+PAPER = {}
+TIMEOUT = 1800.0
+
+
+def program(name):
+    """Module of a program by its name."""
+    return import_module(MODULES[name])
+
+
+def _cases():
+    for name in PROGRAMS:
+        for case in program(name).CASES:
+            yield {"name": name, "given": program(name).KIND, **case, "method": name}
+    for name, kind, scene, knobs in ours():
+        yield methods.case(name, given=kind, scene=scene, **knobs)
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Ours on two bodies, coarsely: what needs no other program."""
+    coarse = case.get("n", 0) <= 16 and case.get("voxels", 0) <= 32 and case.get("particles", 0) <= 2000
+    return case["name"] not in PROGRAMS and case["scene"] in QUICK_SCENES and coarse and case.get("size", 1.0) > 0.05
+
+
+def run(name, given, scene, method, **knobs):
+    """Solve a body, or its image, by one program."""
+    from studies.peers.given import known
+
+    found = _ours(given, scene, method, knobs) if method not in MODULES else _theirs(name, scene, knobs)
+    return found | {"known": known(scene), "error_percent": 100 * value_error(found["conductivity"], known(scene))}
+
+
+def _theirs(name, scene, knobs):
+    from studies.peers import given
+
+    reason = program(name).missing()
+    if reason:
+        raise NotImplementedError(reason)
+    found = program(name).solve(given.scene(scene), **knobs)
+    shown = {"conductivity": found.conductivity, "unknowns": found.unknowns, "iterations": found.iterations}
+    return shown | {"version": program(name).version(), "remark": found.note, **found.cost}
+
+
+def _ours(kind, scene, method, knobs):
+    from demheat import Scene
+    from studies.harness.cost import measured
+    from studies.peers import given
+
+    body = given.scene(scene)
+    if kind == "image":
+        body = Scene.of_image(given.image(body, knobs.pop("n")), walls=given.WALLS)
+    field, cost = measured(methods.load(method).solve, body, **knobs)
+    shown = {"conductivity": field.conductivity, "version": ""}
+    return shown | {name: field.stats.get(name) for name in ("unknowns", "iterations")} | cost
+
+
+def warm_up(name, given, scene, method, **knobs):
+    """Load our solvers; a program of others has a process of its own."""
+    if method not in MODULES:
+        knobs.pop("n", None)
+        methods.warm_up(method, **knobs)
+
+
+def claims(df):
+    """None yet."""
+    return iter(())
+
+
+def plot(df):
+    """Errors against costs."""
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    axes = figure.add_subplot(xlabel="CPU time, s", ylabel="|error|, %", xscale="log", yscale="log")
+    for name, rows in df[df["status"] == "ok"].groupby("name"):
+        axes.plot(rows["cpu_s"], rows["error_percent"].abs(), "o", label=name)
+    return figure

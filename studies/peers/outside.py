@@ -1,0 +1,127 @@
+"""A program in a process of its own: which Python has it, how it is run, and what it cost."""
+
+from __future__ import annotations
+
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parents[2]
+# Where programs in Python may have environments of their own, which `.peers/NAME` names.
+HOMES = Path(os.environ.get("DEMHEAT_PEERS", ROOT / ".peers"))
+LIMIT = 900.0
+
+
+class Found(NamedTuple):
+    """What a program found, and what it cost."""
+
+    conductivity: float  # W/(m K), effective, along x
+    cost: dict  # wall_s, cpu_s, peak_mib
+    unknowns: int | None = None
+    iterations: int | None = None
+    note: str = ""
+
+
+def ran(command, *, folder=None, stdin="", limit=LIMIT, environment=None) -> tuple[str, dict]:
+    """Run a program to its end.
+
+    Parameters
+    ----------
+    command : sequence of str
+    folder : path, optional
+        Where it runs.
+    stdin : str
+    limit : float, s
+        After which it is ended.
+    environment : mapping of str to str, optional
+        What is added to the environment.
+
+    Returns
+    -------
+    printed : str
+        On its standard output.
+    cost : dict
+        `wall_s`, `cpu_s` of the process and its children, `peak_mib` resident at its peak, s and MiB; of the whole
+        process, its start included.
+
+    Raises
+    ------
+    RuntimeError
+        If it did not exit with 0; with the end of what it printed.
+    """
+    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
+    with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as complained:
+        child = subprocess.Popen(
+            [str(word) for word in command],
+            cwd=folder,
+            stdin=subprocess.PIPE,
+            stdout=said,
+            stderr=complained,
+            text=True,
+            env={**os.environ, **(environment or {})},
+        )
+        try:
+            child.communicate(stdin, timeout=limit)
+        except subprocess.TimeoutExpired:
+            child.kill()
+            child.communicate()
+            raise RuntimeError(f"{Path(command[0]).name}: not done after {limit:.0f} s") from None
+        wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+        said.seek(0), complained.seek(0)
+        printed, errors = said.read(), complained.read()
+    if child.returncode:
+        tail = " ".join((errors or printed).split())[-400:]
+        raise RuntimeError(f"{Path(command[0]).name}: exit status {child.returncode}: {tail}")
+    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    # Of the largest child so far: rows run in processes of their own, each with one program.
+    return printed, {"wall_s": wall, "cpu_s": cpu, "peak_mib": after.ru_maxrss / 1024}
+
+
+def asked(python, script, given, **knobs) -> dict:
+    """Run a script that reads one JSON object and prints another as its last line.
+
+    Parameters
+    ----------
+    python : path
+    script : path
+    given : dict
+        What can be written as JSON.
+    **knobs
+        Of `ran`.
+
+    Returns
+    -------
+    dict
+        What it printed, with `whole`, the cost of the whole process.
+    """
+    printed, cost = ran([python, script], stdin=json.dumps(given), **knobs)
+    lines = printed.strip().splitlines()
+    try:
+        return {**json.loads(lines[-1]), "whole": cost}
+    except (IndexError, ValueError):
+        raise RuntimeError(f"{Path(script).name}: printed no JSON, but {printed[-200:]!r}") from None
+
+
+@cache
+def python_of(name: str, module: str | None = None) -> str | None:
+    """The Python that has a package: `.peers/NAME`, this one, or the system's; None if there is none.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    """
+    search = f"import importlib.util as u, sys; sys.exit(u.find_spec({(module or name)!r}) is None)"
+    for python in (HOMES / name / "bin" / "python", Path(sys.executable), Path("/usr/bin/python3")):
+        if python.exists() and subprocess.run([python, "-c", search], capture_output=True).returncode == 0:
+            return str(python)
+    return None
