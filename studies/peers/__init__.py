@@ -23,6 +23,8 @@ PAPER = {}
 TIMEOUT = 1800.0
 # What was asked for before any row was made: so many programs, each with so many bodies.
 PROGRAMS_ASKED, FEWEST = 8, 4
+# Ours: layers are exact but for the equations' tolerance; a sphere to what linear elements of a 25th of its edge give.
+WELL_KNOWN = {"layers off the grid": 1e-5, "sphere 10": 1.0}
 # Linear elements on one mesh have one answer; what is left is what their solvers leave.
 SAME_MESH = 1e-6
 
@@ -94,6 +96,11 @@ def claims(df):
 
 
 def _claims(df):
+    for scene, limit in WELL_KNOWN.items():
+        mine = df[tables.ours(df) & (df["scene"] == scene) & (df["given"] == "body")]
+        if len(mine):
+            best = mine.groupby("name")["error_percent"].apply(lambda errors: errors.abs().min()).max()
+            yield f"{scene}: the worst of our methods on the body, each at its best, %", best, limit
     others = df[~tables.ours(df)]
     if len(others):
         bodies = others.groupby("name")["scene"].nunique()
@@ -119,5 +126,4 @@ def table(df):
 
 def notes(df):
     """Versions, limits, and what conventions explain."""
-    yield tables.versions(df)
-    yield from tables.cannot(PROGRAMS)
+    yield from filter(None, [tables.versions(df), *tables.cannot(PROGRAMS)])
