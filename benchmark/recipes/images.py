@@ -15,9 +15,9 @@ WHERE = (
 DIGEST = "3cf0038d425a6f5743c7411402bcc6c944fd665ddfa9450e3f985a6d23cff3fe"
 HOW = (
     "share .3 of conducting voxels over the tortuosity {:g} that was printed, of TauFactor 2 converged beyond its "
-    "usual tolerance: seven-point differences on these voxels between two held faces, not the continuum of the voxels nor of "
-    "what they show. Not computed again here; every second voxel along each axis gives .201, .251 and .066 along x, y "
-    "and z, which tells the axes apart. The error is that of the printed digits and of one voxel in 500"
+    "usual tolerance: seven-point differences on these voxels between two held faces, not the continuum of the "
+    "voxels nor of what they show. Not computed again here; every second voxel along each axis gives .201, .251 and "
+    ".066 along x, y and z, which tells the axes apart. The error is that of the printed digits and of one voxel in 500"
 )
 
 
