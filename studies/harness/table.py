@@ -93,7 +93,8 @@ def read_frame(study, csv_path):
         raise ValueError(f"{csv_path}: {f'lacks the columns {lacking}' if lacking else 'has no rows'}; run the study")
     df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
     ours = df["case"].isin([case_key(case) for case in study.CASES])
-    df = df[ours | [guest_case(study, key) is not None for key in df["case"]]].reset_index(drop=True)
+    guests = df["case"].map(lambda key: guest_case(study, key) is not None)
+    df = df[ours | guests].reset_index(drop=True)
     return df.fillna({"note": ""})
 
 

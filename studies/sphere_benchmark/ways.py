@@ -29,6 +29,8 @@ from demheat.declared import load
 
 REFUSED = 77
 WARM = "laminate-across"
+# Keywords that a `solve` of ours has and its `evolve` has not.
+STEADY_ONLY = ("curved",)
 VALID = (
     "a module that Python finds, with solve(scene) or estimate(scene), or the path of a program that may be executed"
 )
@@ -141,6 +143,7 @@ def _by_module(module, knobs, table):
     if known.times is not None:
         if not hasattr(module, "evolve"):
             raise NotImplementedError("no evolve(scene, times): steady states only")
+        knobs = {name: value for name, value in knobs.items() if name not in STEADY_ONLY}
         return Answer(None, tuple(module.evolve(scene, sorted(set(known.times.tolist())), **knobs)))
     if not hasattr(module, "solve"):
         if known.conductivity is None:
