@@ -61,6 +61,12 @@ def names(*, group: str | None = None) -> list[str]:
     ----------
     group : str, optional
         As it stands in the files: "cubic arrays", "transients", ...
+
+    Examples
+    --------
+    >>> import benchmark
+    >>> benchmark.names(group="NAFEMS")
+    ['nafems-t2', 'nafems-t3', 'nafems-t4']
     """
     found = sorted(path.stem for path in FOLDER.glob("*.json"))
     return found if group is None else [name for name in found if read(name)["group"] == group]
@@ -102,7 +108,7 @@ def load(name: str, *, image=None) -> tuple[Scene, Known]:
     >>> import benchmark
     >>> scene, known = benchmark.load("sc-third-s10")
     >>> print(f"{known.conductivity:.9f}, {known.error:.0e}, {known.by}")
-    1.395734838, 1e-12, series
+    1.395734838, 2e-12, series
     """
     table = read(name)
     return scene_of(table, image=image), known_of(table)

@@ -94,6 +94,7 @@ def _run(arguments):
         if len(chosen) > 1:
             raise ValueError(f"--method {arguments.method}: must be of one study, as `run sphere_benchmark`")
         knobs["method"] = arguments.method
+        runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
     for name in chosen:
         path = runner.run_study(name, arguments.out, **knobs)

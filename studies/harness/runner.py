@@ -138,7 +138,7 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
     if method is None:
         wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
     else:
-        wanted = _guests(name, study, method, quick)
+        wanted = guests_of(name, method, quick=quick)
     again = force or method is not None
     todo = [case for case in wanted if again or not _holds(rows.get(case_key(case)), study, case)]
     kept = [key for key in rows if guest_case(study, key) is not None]
@@ -158,7 +158,22 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
     return path
 
 
-def _guests(name, study, method, quick):
+def guests_of(name, method, *, quick=False):
+    """Cases of a method that is not ours, in a study that takes such.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    method : str
+    quick : bool
+
+    Raises
+    ------
+    ValueError
+        If the study takes none, or there is no such method.
+    """
+    study = load(name)
     if not hasattr(study, "guests"):
         raise ValueError(f"method = {method!r}: study {name} takes no methods but ours; sphere_benchmark does")
     return study.guests(method, quick=quick)

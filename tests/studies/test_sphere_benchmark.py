@@ -127,7 +127,7 @@ def test_what_is_no_method_is_refused_at_once(method, monkeypatch, tmp_path, cap
     monkeypatch.chdir(ROOT)
     assert main(["run", "sphere_benchmark", "--method", method, "--out", str(tmp_path / "out")]) == 2
     assert f"method = {method!r}: must be a module that Python finds" in capsys.readouterr().err
-    assert not (tmp_path / "out" / "sphere_benchmark.md").exists()
+    assert not (tmp_path / "out").exists()
 
 
 def test_what_a_module_lacks_itself_is_its_own_error(tmp_path, monkeypatch):
