@@ -24,15 +24,15 @@ def draw(df):
 
     real = df[~df["scene"].str.startswith("relation")]
     good = stepped(real[real["status"] == "ok"])
-    good = good.assign(size=np.maximum(good["error_percent"].abs(), LEAST))
+    good = good.assign(off=np.maximum(good["error_percent"].abs(), LEAST))
     strangers = [name for name in good["name"].unique() if name not in LOOK]
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(13, 5))
     for name, rows in good.groupby("name", sort=False):
         style = _style(name, strangers)
         plain = {"color": style["color"], "marker": style["marker"] or "x", "linestyle": ""}
-        left.plot(rows["cpu_s"], rows["size"], **plain, markersize=4, alpha=0.35, markeredgewidth=0)
-        middle = rows.groupby("place")[["cpu_s", "size"]].median()
-        left.plot(middle["cpu_s"], middle["size"], **style | {"marker": style["marker"] or "x"}, markersize=9)
+        left.plot(rows["cpu_s"], rows["off"], **plain, markersize=4, alpha=0.35, markeredgewidth=0)
+        middle = rows.groupby("place")[["cpu_s", "off"]].median()
+        left.plot(middle["cpu_s"], middle["off"], **style | {"marker": style["marker"] or "x"}, markersize=9)
         best = np.sort(np.maximum(finest(rows)["error_percent"].abs(), LEAST))
         right.step([*best, 1e3], [*np.arange(1, len(best) + 1), len(best)], where="post", **style | {"marker": ""})
     left.set(xscale="log", yscale="log", xlabel="CPU time, s", ylabel="|error|, %", xlim=(1e-4, None))

@@ -7,6 +7,7 @@ import pytest
 
 import benchmark
 from benchmark import make
+from benchmark.recipes import dispersions
 from references import bracket, fft, multipole
 
 AGAIN = (
@@ -32,11 +33,13 @@ def test_a_file_is_made_again(name):
         assert np.linalg.norm(found.flux - known.flux, axis=1).max() <= known.flux_error + found.flux_error
 
 
-def test_drawn_spheres_are_those_of_the_file():
+def test_drawn_spheres_are_those_of_the_file(monkeypatch):
+    monkeypatch.setattr(dispersions, "ACCURACY", 1e-4)
     (made,) = make.tables(("dispersion-walls",))
-    known = benchmark.load("dispersion-walls")[1]
+    known, found = benchmark.load("dispersion-walls")[1], made["known"]["conductivity"]
     assert json.loads(make.text_of(made))["scene"] == benchmark.read("dispersion-walls")["scene"]
-    assert abs(made["known"]["conductivity"]["value"] - known.conductivity) <= 2 * known.error
+    # What an estimate to few digits says of itself holds, by the value to many.
+    assert known.error < abs(found["value"] - known.conductivity) <= found["error"] < 1e-2
 
 
 def test_many_spheres_to_fewer_degrees():
@@ -45,6 +48,7 @@ def test_many_spheres_to_fewer_degrees():
 
 
 # Limits: laminates are exact by voxels that are laminates; else what 32 voxels may leave, guessed before a first run.
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 @pytest.mark.parametrize(
     "name, limit",
     [
@@ -59,6 +63,7 @@ def test_voxels_find_the_conductivity(name, limit):
     assert abs(fft.solve(scene, voxels=32).conductivity / known.conductivity - 1) < limit
 
 
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 @pytest.mark.parametrize("name", ["bcc-f30-s10", "fibres-square-f50-s10", "coated-off-centre", "dispersion-walls"])
 def test_voxels_find_the_temperatures(name):
     """Less that of the first point in a periodic cell; the span is 1 K, and 32 voxels leave some thousandths of it."""
@@ -69,7 +74,7 @@ def test_voxels_find_the_temperatures(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["sc-f50-s10", "coated-hollow", "fcc-f65-s10", "square-rods-s10", "dispersion-20-pores"]
+    "name", ["sc-f50-s10", "sc-third-s0.01", "coated-s10", "fcc-f65-s10", "laminate-three", "dispersion-20-s10"]
 )
 def test_certain_bounds_hold_the_value(name):
     scene, known = benchmark.load(name)
