@@ -10,8 +10,9 @@ import benchmark
 from benchmark.parts import scene_of
 from demheat import referee
 from studies.harness.cost import measured
-from studies.sphere_benchmark import RELATED
 
+# Spheres between walls, none at its mirror image's place.
+RELATED = "dispersion-walls"
 FACTOR = 7.0
 AXES = "xyz"
 
