@@ -11,7 +11,7 @@ from benchmark.parts import scene_of
 from demheat import referee
 from studies.harness.cost import measured
 
-# Spheres between walls, none at its mirror image's place.
+# Spheres between walls, with no symmetry.
 RELATED = "dispersion-walls"
 FACTOR = 7.0
 AXES = "xyz"
