@@ -31,7 +31,7 @@ LADDERS = {
 IN_TIME = ("dem", "fem")
 ROUND = ("cubic arrays", "coated spheres", "dispersions")
 RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")
-QUICK_SCENES = ("sc-third-s10", "laminate-off-grid", "fibres-square-f50-s10", "slab-step")
+QUICK_SCENES = ("sc-third-s10", "laminate-off-grid", "slab-step")
 QUICK_RELATIONS = (("relation scaled", "fft"), ("relation scaled", "maxwell"))
 
 
@@ -54,7 +54,7 @@ CASES = list(_cases())
 
 
 def QUICK(case):
-    """Coarse rows of an array, a laminate, fibres and a slab in time, and one relation."""
+    """Coarse rows of an array, a laminate and a slab in time, and one relation."""
     finer = case.get("particles", 0) > 2_000 or case.get("voxels", 0) > 32 or case.get("size", 1.0) < 0.2
     return not finer and (case["scene"] in QUICK_SCENES or (case["scene"], case["name"]) in QUICK_RELATIONS)
 

@@ -174,7 +174,7 @@ def test_rows_of_a_guest_stay_when_it_is_gone(tmp_path, monkeypatch, capsys):
     out, quick = tmp_path / "out", {"quick": True, "say": lambda line: None, "compute": _here}
     path = runner.run_study("sphere_benchmark", out, method=name, **quick)
     mine = {key: row for key, row in store.read_rows(path).items() if row["method"] == GUEST}
-    assert len(mine) == len(store.read_rows(path)) == len(guests(name, quick=True)) == 10
+    assert len(mine) == len(store.read_rows(path)) == len(guests(name, quick=True)) == 8
     assert {row["status"] for row in mine.values()} == {"ok", "unsupported"}
     assert all(guest_case(key) == runner.find_case(STUDY, key) for key in mine)
     (tmp_path / "linear_guess.py").unlink()
