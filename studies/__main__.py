@@ -43,6 +43,7 @@ def _parser():
     run.add_argument("names", nargs="*", metavar="NAME")
     run.add_argument("--quick", action="store_true", help="only the quick rows")
     run.add_argument("--force", action="store_true", help="repeat rows that could be reused")
+    run.add_argument("--method", metavar="MODULE|PROGRAM", help="rows of a method that is not ours, beside those there")
     run.set_defaults(action=_run)
     render = actions.add_parser("render", help="write table, claims and figure again from the CSV")
     render.add_argument("names", nargs=1, metavar="NAME")
@@ -88,11 +89,26 @@ def _run(arguments):
     chosen = arguments.names or study_names()
     for name in chosen:
         runner.load(name)  # a misspelt name must not cost the studies before it
-    status = 0
+    status, knobs = 0, {"quick": arguments.quick, "force": arguments.force, "say": _say}
+    if arguments.method is not None:
+        if len(chosen) > 1:
+            raise ValueError(f"--method {arguments.method}: must be of one study, as `run sphere_benchmark`")
+        knobs["method"] = arguments.method
+        runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
+        _beside_stored(chosen[0], arguments.out)
     for name in chosen:
-        path = runner.run_study(name, arguments.out, quick=arguments.quick, force=arguments.force, say=_say)
+        path = runner.run_study(name, arguments.out, **knobs)
         status |= _show(name, path)
     return status
+
+
+def _beside_stored(name, out):
+    """Rows that a study's new ones are to stand beside: the stored ones, where there are none yet."""
+    stored, path = STORED / f"{name}.csv", out / f"{name}.csv"
+    if stored.exists() and not path.exists():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(stored.read_bytes())
+        print(f"{path}: begun with the rows of {stored}")
 
 
 def _render(arguments):

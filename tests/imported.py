@@ -4,7 +4,7 @@ import ast
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-OURS = ("demheat", "references", "studies", "tests")
+OURS = ("demheat", "references", "benchmark", "studies", "tests")
 
 # The one home of each library: module prefixes, or the ending of a module's name.
 HOMES = {
@@ -31,7 +31,7 @@ def module_name(path):
 
 MODULES = {
     module_name(path): path
-    for package in ("demheat", "references", "studies")
+    for package in ("demheat", "references", "benchmark", "studies")
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 

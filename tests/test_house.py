@@ -11,7 +11,7 @@ from demheat.scene.shapes.base import Shape
 ROOT = Path(__file__).parents[1]
 TREES = {
     path.relative_to(ROOT): ast.parse(path.read_text(encoding="utf-8"))
-    for package in ("demheat", "references", "studies")
+    for package in ("demheat", "references", "benchmark", "studies")
     for path in sorted((ROOT / package).rglob("*.py"))
 }
 KERNELS = {path: tree for path, tree in TREES.items() if path.stem.endswith("kernels")}

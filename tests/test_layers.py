@@ -318,14 +318,28 @@ LAYERS = {
     "references.series": ("references.exact.series",),
     "references.zeta": ("references.fft.zeta",),
     "references": (),
+    # Scenes with known answers: what reads them knows the nouns, what made them the witnesses.
+    "benchmark.parts": ("demheat.scene", "demheat.files"),
+    "benchmark.schema": (),
+    "benchmark": ("demheat.scene", "benchmark.parts"),
+    "benchmark.recipes": (
+        "demheat.scene",
+        "demheat.addition",
+        "demheat.gallery",
+        "demheat.referee",
+        "references",
+        "benchmark",
+        "benchmark.recipes",
+    ),
+    "benchmark.make": ("benchmark",),
     "studies.harness": ("demheat", "references", "studies.harness"),
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
-    "studies": ("demheat", "references", "studies.harness", "studies.common"),
+    "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
     "studies.__main__": ("studies",),
 }
 # Packages whose own room is for their front alone.
-FRONTS = ("demheat", "references")
+FRONTS = ("demheat", "references", "benchmark")
 
 
 def room_of(name):

@@ -18,6 +18,7 @@ DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(
         "import demheat",
         "from demheat import gallery, referee",
         "from demheat import Calibrated, Laguerre, Platonic",
+        "import benchmark; benchmark.load('nafems-t3')",
         *(f"import {name}" for name in DECLARING),
     ],
 )

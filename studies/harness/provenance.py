@@ -17,7 +17,7 @@ from pathlib import Path
 from studies.harness.methods import path_of
 
 ROOT = Path(__file__).resolve().parents[2]
-PACKAGES = ("demheat", "references", "studies")
+PACKAGES = ("demheat", "references", "benchmark", "studies")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
 # What must agree for a stored row to stand for a new one.
 SAME = ("code", "machine", "threads", "versions")

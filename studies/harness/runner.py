@@ -9,7 +9,9 @@ A study is a module with
   with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
-  sentences below it that are made of the rows; and `TIMEOUT`, seconds per row.
+  sentences below it that are made of the rows; and `TIMEOUT`, seconds per row;
+- where it takes methods that are not ours, `guests(method, quick=)`, the cases of one, and `guest_case(key)`, such a
+  case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 
 One that is too long for a file is a folder of its name. These stand in `__init__`; what computes is in `rows`, what is
 made of rows in `errors` or `means`, lines of the table in `tables`, the drawing in `figure`. Errors are defined by
@@ -81,6 +83,9 @@ def find_case(study, case):
     dict
     """
     cases = {case_key(each): each for each in study.CASES}
+    guest = guest_case(study, case)
+    if guest is not None:
+        return guest
     # Not of thousands of digits, which Python refuses to read.
     if case.isdecimal() and len(case) < 10 and int(case) < len(study.CASES):
         return study.CASES[int(case)]
@@ -89,7 +94,18 @@ def find_case(study, case):
     return cases[case]
 
 
-def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
+def guest_case(study, key):
+    """Case of a method that is not ours, by its key; None if the study takes no such, or it is no such key.
+
+    Parameters
+    ----------
+    study : module
+    key : str
+    """
+    return study.guest_case(key) if hasattr(study, "guest_case") else None
+
+
+def run_study(name, out, *, quick=False, force=False, method=None, say=print, compute=None):
     """Bring DIR/NAME.csv up to date and return its path.
 
     Rows whose case, code, machine, threads and versions still hold are reused, unless forced. Rows of cases that are
@@ -103,6 +119,8 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
         Only the cases that QUICK accepts.
     force : bool
         Repeat every row.
+    method : str, optional
+        One that is not ours: its rows alone are run, and each anew, as nothing here knows when its code has changed.
     say : callable (str)
         Told of each row as it ends.
     compute : callable (name, study, case) -> dict
@@ -116,9 +134,15 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
     compute = compute or spawn_row
     study = load(name)
     path = Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
-    keys, rows, made = [case_key(case) for case in study.CASES], read_rows(path), {}
-    wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
-    todo = [case for case in wanted if force or not _holds(rows.get(case_key(case)), study, case)]
+    rows, made = read_rows(path), {}
+    if method is None:
+        wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
+    else:
+        wanted = guests_of(name, method, quick=quick)
+    again = force or method is not None
+    todo = [case for case in wanted if again or not _holds(rows.get(case_key(case)), study, case)]
+    kept = [key for key in rows if guest_case(study, key) is not None]
+    keys = list(dict.fromkeys([*map(case_key, study.CASES), *kept, *map(case_key, wanted)]))
     say(f"{name}: {len(wanted)} rows, {len(wanted) - len(todo)} already there, {len(todo)} to run")
     if todo:
         check_writable(path.parent)
@@ -132,6 +156,27 @@ def run_study(name, out, *, quick=False, force=False, say=print, compute=None):
         add_rows(path, made, keys)
         say(_progress(number, len(todo), made[key], time.perf_counter() - start))
     return path
+
+
+def guests_of(name, method, *, quick=False):
+    """Cases of a method that is not ours, in a study that takes such.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    method : str
+    quick : bool
+
+    Raises
+    ------
+    ValueError
+        If the study takes none, or there is no such method.
+    """
+    study = load(name)
+    if not hasattr(study, "guests"):
+        raise ValueError(f"method = {method!r}: study {name} takes no methods but ours; sphere_benchmark does")
+    return study.guests(method, quick=quick)
 
 
 def state(study, rows):

@@ -8,6 +8,7 @@ import traceback
 from pathlib import Path
 from typing import NamedTuple
 
+from studies.harness.runner import guest_case
 from studies.harness.store import case_key, read_rows, replaced
 
 OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": float.__gt__, "=": float.__eq__}
@@ -91,7 +92,9 @@ def read_frame(study, csv_path):
     if lacking or not rows:
         raise ValueError(f"{csv_path}: {f'lacks the columns {lacking}' if lacking else 'has no rows'}; run the study")
     df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
-    df = df[df["case"].isin([case_key(case) for case in study.CASES])].reset_index(drop=True)
+    ours = df["case"].isin([case_key(case) for case in study.CASES])
+    guests = df["case"].map(lambda key: guest_case(study, key) is not None)
+    df = df[ours | guests].reset_index(drop=True)
     return df.fillna({"note": ""})
 
 
@@ -212,7 +215,9 @@ def _all_rows(df):
 
 
 def _origin(study, df):
-    lines = [f"- rows: {len(df)} of {len(study.CASES)} cases; " + _counts(df["status"])]
+    guests = sum(guest_case(study, key) is not None for key in df["case"])
+    others = f" and {guests} of methods that are not ours" if guests else ""
+    lines = [f"- rows: {len(df) - guests} of {len(study.CASES)} cases{others}; " + _counts(df["status"])]
     for name in ("commit", "machine", "threads", "versions"):
         lines.append(f"- {name}: " + " / ".join(str(v) for v in df[name].dropna().unique()))
     lines.append(f"- made between {df['when'].min()} and {df['when'].max()}")

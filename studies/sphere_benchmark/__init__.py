@@ -1,0 +1,142 @@
+"""The scenes of `benchmark/`: every method's error against its cost, and that of a method of your own.
+
+Bodies whose conductivity, or temperatures, are known by closed forms, series, multipoles or certain bounds
+(`benchmark/README.md`). Errors are of the conductivity in per cent of what is known, and where temperatures are asked
+for the worst of them in per cent of their span. Relations need no known value: a uniform body, conductivities seven
+times as large, walls exchanged, axes turned, all lengths tenfold. `python -m studies run sphere_benchmark --method
+my_package.my_module`, or `./my_program`, adds rows of a method that nobody here has heard of (`docs/benchmark.md`).
+"""
+
+import re
+import tempfile
+from contextlib import nullcontext
+
+import benchmark
+from studies.harness import methods
+
+PAPER = {}
+TIMEOUT = 900.0
+# Where a case's method is not one of ours; see `guests`.
+GUEST = "guest"
+MODULES = {GUEST: "studies.sphere_benchmark.ways"}
+KEY = re.compile(rf"name=(.+),scene=([\w. -]+),step=(\d+),method={GUEST}")
+# The column of the knob, and its values; lengths in edges of the box.
+LADDERS = {
+    "dem": ("particles", (2_000, 20_000)),
+    "fem": ("size", (0.2, 0.1)),
+    "fft": ("voxels", (32, 64)),
+    "multipole": ("degree", (7,)),
+    "maxwell": (None, (None,)),
+}
+IN_TIME = ("dem", "fem")
+ROUND = ("cubic arrays", "coated spheres", "dispersions")
+RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")
+QUICK_SCENES = ("sc-third-s10", "laminate-off-grid", "slab-step")
+QUICK_RELATIONS = (("relation scaled", "fft"), ("relation scaled", "maxwell"))
+
+
+def _cases():
+    groups = {name: benchmark.read(name)["group"] for name in benchmark.names()}
+    for scene, group in groups.items():
+        timed = group in ("transients", "NAFEMS")
+        for name, (column, values) in LADDERS.items():
+            if group == "published images" or (name in ("multipole", "maxwell") and group not in ROUND):
+                continue
+            if not timed or name in IN_TIME:
+                for value in values:
+                    yield methods.case(name, scene=scene, **({column: value} if column else {}))
+    for relation in RELATIONS:
+        for name, (column, values) in LADDERS.items():
+            yield methods.case(name, scene=f"relation {relation}", **({column: values[0]} if column else {}))
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """Coarse rows of an array, a laminate and a slab in time, and one relation."""
+    finer = case.get("particles", 0) > 2_000 or case.get("voxels", 0) > 32 or case.get("size", 1.0) < 0.2
+    return not finer and (case["scene"] in QUICK_SCENES or (case["scene"], case["name"]) in QUICK_RELATIONS)
+
+
+def guests(method, *, quick=False):
+    """Cases of a method that is not ours: all scenes and relations, at each of its knobs.
+
+    Parameters
+    ----------
+    method : str
+        A module that Python can import, or the path of a program.
+    quick : bool
+        Only those scenes that a quick run has.
+
+    Raises
+    ------
+    ValueError
+        If it is neither.
+    """
+    from studies.sphere_benchmark import ways
+
+    scenes = list(dict.fromkeys(case["scene"] for case in CASES if not quick or QUICK(case)))
+    steps = range(len(ways.knobs_of(method)))
+    return [{"name": method, "scene": scene, "step": step, "method": GUEST} for scene in scenes for step in steps]
+
+
+def guest_case(key):
+    """The case of a method that is not ours, by its key; None if it is no such key. The method need not be there."""
+    found = KEY.fullmatch(key)
+    return found and {"name": found[1], "scene": found[2], "step": int(found[3]), "method": GUEST}
+
+
+def run(name, scene, method, **knobs):
+    """Solve a scene, or the two of a relation, by one method."""
+    from studies.sphere_benchmark import rows, ways
+
+    way = ways.guest(name, knobs["step"]) if method == GUEST else ways.ours(method, knobs)
+    # The DEM makes its packing on the spot.
+    with tempfile.TemporaryDirectory() as folder, methods.packings_in(folder) if method == "dem" else nullcontext():
+        if scene.startswith("relation "):
+            return rows.related(scene.removeprefix("relation "), way)
+        return rows.solved(scene, way)
+
+
+def warm_up(name, scene, method, **knobs):
+    """Load our solvers; a guest is asked once for a scene that is cheap, unless it is a program."""
+    from studies.sphere_benchmark import ways
+
+    if method == GUEST:
+        ways.warm_up(name, knobs["step"])
+    else:
+        fixed = {key: value for key, value in knobs.items() if key not in ("particles", "size", "voxels", "degree")}
+        methods.warm_up(method, **fixed)
+
+
+def claims(df):
+    """What is known is what the files say; the limits of errors were set before the rows were seen."""
+    from studies.sphere_benchmark.means import all_claims
+
+    return all_claims(df)
+
+
+def table(df):
+    """|error| in % by scene, each method at its finest; "-" refused or not asked, "!" failed.
+
+    `known` is the value of the file, W/(m K); where it is empty temperatures are asked for. Last come relations.
+    """
+    from studies.sphere_benchmark import tables
+
+    return tables.by_scene(df)
+
+
+def notes(df):
+    """Over all scenes: how many each method answers, its median and worst error, what it costs."""
+    from studies.harness.table import markdown
+    from studies.sphere_benchmark import tables
+
+    return ["Over all scenes, at each resolution:", markdown(tables.by_method(df))]
+
+
+def plot(df):
+    """Every method's errors against its costs, and how many scenes it answers to a given error."""
+    from studies.sphere_benchmark.figure import draw
+
+    return draw(df)

@@ -1,0 +1,98 @@
+"""What is claimed of the rows, and rows of one method brought together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import benchmark
+from studies.harness.pick import present
+from studies.sphere_benchmark import GUEST, LADDERS, RELATIONS
+
+# At the finest resolution, median and worst error of conductivities, %; patterns of squares have corners at which
+# fluxes are infinite, and no limit.
+LIMITS = {"dem": (0.5, 10.0), "fem": (0.2, 5.0), "fft": (1.0, 10.0), "multipole": (0.01, 1.0)}
+# What a relation may be broken by: rounding and the solver where nothing else changes, else the error of the method.
+KEPT = {"uniform": 1e-4, "scaled": 1e-4, "reversed": 1e-3, "turned": 2.0, "tenfold": 0.1}
+
+
+def all_claims(df):
+    """Pairs of a sentence with a value and a limit.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    yield from present([_files(df), *_errors(df), *_relations(df)])
+
+
+def _files(df):
+    rows = df[df["known"].notna()]
+    now = {name: benchmark.known_of(benchmark.read(name)).conductivity for name in set(rows["scene"])}
+    other = sum(row["known"] != now[row["scene"]] for row in rows.to_dict("records"))
+    return "Rows whose known value is not that of the file", float(other), "= 0"
+
+
+def _errors(df):
+    for name, (middle, worst) in LIMITS.items():
+        rows = finest(df[(df["name"] == name) & df["known"].notna()])
+        rows = rows[~rows["scene"].str.contains("checkerboard|square-rods")]
+        errors = rows["error_percent"].abs()
+        if len(rows) < 5:
+            continue
+        yield f"{name}, finest: median error of conductivities, %", errors.median(), middle
+        yield f"{name}, finest: worst error of conductivities, %", errors.max(skipna=False), worst
+
+
+def _relations(df):
+    good = df[(df["status"] == "ok") & (df["name"].isin(list(LADDERS)))]
+    for relation in RELATIONS:
+        rows = good[good["scene"] == f"relation {relation}"]
+        worst = rows["error_percent"].abs().max(skipna=False) if len(rows) else None
+        yield f"relation {relation}, any method: broken by, %", worst, KEPT[relation]
+
+
+def step_of(row) -> float:
+    """Place of a row on its method's ladder: the larger the finer.
+
+    Parameters
+    ----------
+    row : mapping
+    """
+    if row["method"] == GUEST:
+        return row["step"]
+    column, values = LADDERS[row["name"]]
+    return 0 if column is None else values.index(row[column])
+
+
+def stepped(df):
+    """The rows with their `place` on the ladders."""
+    return df.assign(place=np.array([step_of(row) for row in df.to_dict("records")], dtype=float))
+
+
+def finest(df):
+    """Of each method and scene the finest row that went well."""
+    rows = stepped(df[df["status"] == "ok"]).sort_values("place", kind="stable")
+    return rows.groupby(["name", "scene"], sort=False).tail(1)
+
+
+def title_of(name) -> str:
+    """A method in words; a guest by the last part of its name."""
+    from studies.harness import methods
+
+    found = methods.found().get(name)
+    return found.title if found else name.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
+
+
+def resolution_of(row) -> str:
+    """Resolution of a row in words.
+
+    Parameters
+    ----------
+    row : mapping
+    """
+    from studies.harness import methods
+
+    if row["method"] == GUEST:
+        return f"step {row['step']:.0f}"
+    column, _ = LADDERS[row["name"]]
+    return "" if column is None else methods.found()[row["name"]].resolution.words.format(row[column])
