@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import studies
+from demheat import fresh
 from studies.harness import jobs, runner
 from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
@@ -163,7 +164,7 @@ def _row(arguments):
     # Before any library that reads these is loaded.
     os.environ.update(row_environment())
     if arguments.parent:
-        runner.die_with_parent(arguments.parent)
+        fresh.die_with_parent(arguments.parent)
     study = runner.load(arguments.name)
     case = runner.find_case(study, arguments.case)
     if arguments.json and not arguments.parent:

@@ -43,9 +43,9 @@ def sweep(
     Returns
     -------
     list of dict
-        In the order of the cases: the case, what the function returned (a number or text as `value`), `error` (empty if there
-        is none), `wall_s` and `cpu_s`, s, `when`, `machine`, `host` and `version`. Seconds of different hosts cannot be
-        compared. ``pandas.DataFrame`` takes it as it is.
+        In the order of the cases: the case, what the function returned (a number or text as `value`), `error` (empty if
+        there is none), `wall_s` and `cpu_s`, s, `when`, `machine`, `host` and `version`. Seconds of different hosts
+        cannot be compared. ``pandas.DataFrame`` takes it as it is.
 
     Raises
     ------
