@@ -28,11 +28,7 @@ def case_list(cases: Mapping | Iterable[Mapping], *, plain: bool) -> list[dict]:
     ValueError
         If they are anything else, none, or have a name that every row has.
     """
-    made = (
-        [dict(zip(cases, values, strict=True)) for values in _product(cases)]
-        if isinstance(cases, Mapping)
-        else _listed(cases)
-    )
+    made = _product(cases) if isinstance(cases, Mapping) else _listed(cases)
     if not made:
         raise ValueError(f"cases = {shown(cases)}: must be at least one")
     made = [{name: _python(value) for name, value in case.items()} for case in made]

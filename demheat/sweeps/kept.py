@@ -56,7 +56,10 @@ class Kept:
 
 def opened(path) -> Kept:
     """Rows of a file that may not be there yet, or a ValueError: before any case is computed."""
-    path = checked_path(path)
+    try:
+        path = checked_path(path)
+    except ValueError as error:
+        raise ValueError(f"out: {error}") from None
     try:
         with tempfile.TemporaryFile(dir=path.parent):
             pass

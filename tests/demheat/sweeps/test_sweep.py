@@ -18,6 +18,11 @@ def square(x, y=0.0):
     return x * x + y
 
 
+def read(path):
+    with path.open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
 def measured_apart(rows):
     return [{name: value for name, value in row.items() if name not in ("wall_s", "cpu_s", "when")} for row in rows]
 
@@ -88,21 +93,21 @@ def test_a_file_is_written_row_by_row_and_resumed(tmp_path):
     cases = {"x": [1.0, 0.1, 7.0, 9.0]}
     with pytest.raises(KeyboardInterrupt):
         sweep(stopping, cases, out=path)
-    assert [row["x"] for row in csv.DictReader(path.open())] == ["1.0", "0.1"]
+    assert [row["x"] for row in read(path)] == ["1.0", "0.1"]
     rows = sweep(stopping, cases, out=path)
     assert calls == [1.0, 0.1, 7.0, 7.0, 9.0]
     assert [row["square"] for row in rows] == [1.0, 0.1 * 0.1, 49.0, 81.0] and rows[0]["word"] == "3.0x"
     assert sweep(stopping, cases, out=path) == rows and len(calls) == 5
     # More cases go into the same file, in any order of names.
     assert len(sweep(stopping, {"x": [9.0, 11.0]}, out=path)) == 2 and calls[5:] == [11.0]
-    assert len(list(csv.DictReader(path.open()))) == 5 and os.listdir(tmp_path) == ["rows.csv"]
+    assert len(read(path)) == 5 and os.listdir(tmp_path) == ["rows.csv"]
 
 
 def test_failed_cases_are_tried_again(tmp_path):
     path = tmp_path / "rows.csv"
     assert sweep(square, [{"x": 3.0}], out=path)[0]["error"]
     (row,) = sweep(lambda x: 9.0, [{"x": 3.0}], out=path)
-    assert row["error"] == "" and row["value"] == 9.0 and len(list(csv.DictReader(path.open()))) == 1
+    assert row["error"] == "" and row["value"] == 9.0 and len(read(path)) == 1
 
 
 def test_cases_of_other_names_are_not_mixed_up(tmp_path):
