@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from contextlib import contextmanager
 from pathlib import Path
 
 import studies
 from demheat import fresh
 from studies.harness import jobs, runner
+from studies.harness.cluster import spreading
 from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
@@ -110,25 +110,11 @@ def _run(arguments):
         runner.load(name)  # a misspelt name must not cost the studies before it
     status = 0
     knobs = {"quick": arguments.quick, "force": arguments.force, "say": _say}
-    with _spreading(arguments) as spread:
+    with spreading(arguments.scheduler, arguments.workers, _say) as spread:
         for name in chosen:
             path = runner.run_study(name, arguments.out, spread=spread, **knobs)
             status |= _show(name, path)
     return status
-
-
-@contextmanager
-def _spreading(arguments):
-    """What spreads rows over a cluster; None if none is asked for."""
-    if arguments.scheduler is None and arguments.workers is None:
-        yield None
-        return
-    from demheat.cluster import cluster
-    from studies.harness.cluster import spread_over
-
-    with cluster(arguments.scheduler, arguments.workers) as client:
-        _say(f"dashboard {client.dashboard_link}")
-        yield spread_over(client)
 
 
 def _number(word):

@@ -338,7 +338,7 @@ LAYERS = {
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "studies.harness", "studies.common"),
-    "studies.__main__": ("studies",),
+    "studies.__main__": ("demheat.fresh", "studies"),
 }
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references")

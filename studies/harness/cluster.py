@@ -2,13 +2,33 @@
 
 from __future__ import annotations
 
+from contextlib import contextmanager
 from functools import cache
 
-from demheat.cluster import completed, row_environment
+from demheat.cluster import cluster, completed, row_environment
 from studies.harness import runner
 from studies.harness.cost import triad_gbs
 from studies.harness.provenance import ANYWHERE, provenance
 from studies.harness.store import case_key
+
+
+@contextmanager
+def spreading(scheduler, workers, say):
+    """What spreads rows over a cluster for `runner.run_study`; None if none is asked for.
+
+    Parameters
+    ----------
+    scheduler, workers
+        As those of `demheat.cluster.cluster`.
+    say : callable (str)
+        Told where the dashboard is.
+    """
+    if scheduler is None and workers is None:
+        yield None
+        return
+    with cluster(scheduler, workers) as client:
+        say(f"dashboard {client.dashboard_link}")
+        yield spread_over(client)
 
 
 def spread_over(client):
