@@ -57,6 +57,7 @@ __all__ = [
     "orthotropic",
     "recommend",
     "solve",
+    "sweep",
 ]
 __version__ = "0.1.0"
 RENAMED = {"Heating": "UniformSource"}
@@ -71,6 +72,10 @@ def __getattr__(name):
         from demheat import cheapest
 
         return getattr(cheapest, name)
+    if name == "sweep":
+        from demheat.sweeps import sweep
+
+        return sweep
     if name in RENAMED:
         warnings.warn(f"demheat.{name} is now demheat.{RENAMED[name]}", DeprecationWarning, stacklevel=2)
         return globals()[RENAMED[name]]

@@ -1,4 +1,4 @@
-"""Command line of the studies: list, run, render, row, report."""
+"""Command line of the studies: list, run, render, row, jobs, gather, report."""
 
 from __future__ import annotations
 
@@ -8,13 +8,18 @@ import sys
 from pathlib import Path
 
 import studies
-from studies.harness import runner
+from demheat import fresh
+from studies.harness import jobs, runner
+from studies.harness.cluster import spreading
+from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
 
 DEFAULT_OUT, STORED = Path("out"), Path("results")
 # As a shell says of a command that SIGINT ended.
 INTERRUPTED = 130
+# Processes on one machine: more is a slip.
+MOST_WORKERS = 1024
 
 
 def main(words=None):
@@ -36,7 +41,7 @@ def main(words=None):
 
 def _parser():
     parser = argparse.ArgumentParser(prog="python -m studies", description=__doc__)
-    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | report")
+    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | jobs | gather | report")
     names = actions.add_parser("list", help="name the studies, and say whether stored rows are those of this code")
     names.set_defaults(action=_list)
     run = actions.add_parser("run", help="bring studies up to date (all, if none is named) and judge their claims")
@@ -44,21 +49,33 @@ def _parser():
     run.add_argument("--quick", action="store_true", help="only the quick rows")
     run.add_argument("--force", action="store_true", help="repeat rows that could be reused")
     run.add_argument("--method", metavar="MODULE|PROGRAM", help="rows of a method that is not ours, beside those there")
+    where = run.add_mutually_exclusive_group()
+    where.add_argument("--scheduler", metavar="ADDRESS", help="make rows on the Dask cluster of tcp://HOST:PORT")
+    where.add_argument("--workers", metavar="N", type=_number, help="make rows in N processes side by side, by Dask")
     run.set_defaults(action=_run)
     render = actions.add_parser("render", help="write table, claims and figure again from the CSV")
     render.add_argument("names", nargs=1, metavar="NAME")
     render.set_defaults(action=_render)
-    row = actions.add_parser("row", help="compute one row here and print it")
+    row = actions.add_parser("row", help="compute one row here; print it or keep it in a file")
     row.add_argument("name", metavar="NAME")
     row.add_argument("case", metavar="CASE", help="key as in the column 'case', or number in CASES")
-    row.add_argument("--json", metavar="FILE", help=argparse.SUPPRESS)
+    row.add_argument("--json", metavar="FILE", help="write the row there, in JSON, for `gather`")
     row.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
+    array = actions.add_parser("jobs", help="print a command for each row still to be made, for a batch system")
+    array.add_argument("name", metavar="NAME")
+    array.add_argument("--quick", action="store_true", help="only the quick rows")
+    array.add_argument("--force", action="store_true", help="also rows that could be reused")
+    array.set_defaults(action=_jobs)
+    gather = actions.add_parser("gather", help="add the rows that such commands left in files")
+    gather.add_argument("name", metavar="NAME")
+    gather.add_argument("files", metavar="FILE", nargs="+")
+    gather.set_defaults(action=_gather)
     report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
     words = "also write the tables marked in these pages anew"
     report.add_argument("--page", metavar="FILE", type=Path, nargs="+", default=[], help=words)
     report.set_defaults(action=_report)
-    for each in (names, run, render, report):
+    for each in (names, run, render, array, gather, report):
         where = STORED if each is names and STORED.is_dir() else DEFAULT_OUT
         each.add_argument("--out", default=where, metavar="DIR", type=Path, help=f"default {where}")
     return parser
@@ -76,10 +93,13 @@ def _list(arguments):
     for name in study_names():
         study = runner.load(name)
         quick = sum(bool(study.QUICK(case)) for case in study.CASES)
-        rows = runner.state(study, read_rows(arguments.out / f"{name}.csv"))
+        kept = read_rows(arguments.out / f"{name}.csv")
+        rows = runner.state(study, kept)
+        machines = len(set(origins(kept.values())))
         # Without docstrings (python -OO) the name must do.
         title = (study.__doc__ or name).strip().splitlines()[0]
         stored = ", ".join(f"{count:3} {word}" for word, count in rows.items())
+        stored += f"; {machines} machines" if machines > 1 else ""
         print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick; {stored}   {title}")
     print(f"Rows stored in {arguments.out}: held, made by this code; stale, by other code; missing, not made.")
     return 0
@@ -96,9 +116,10 @@ def _run(arguments):
         knobs["method"] = arguments.method
         runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
-    for name in chosen:
-        path = runner.run_study(name, arguments.out, **knobs)
-        status |= _show(name, path)
+    with spreading(arguments.scheduler, arguments.workers, _say) as spread:
+        for name in chosen:
+            path = runner.run_study(name, arguments.out, spread=spread, **knobs)
+            status |= _show(name, path)
     return status
 
 
@@ -109,6 +130,12 @@ def _beside_stored(name, out):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(stored.read_bytes())
         print(f"{path}: begun with the rows of {stored}")
+
+
+def _number(word):
+    if not word.isdecimal() or not 1 <= int(word) <= MOST_WORKERS:
+        raise argparse.ArgumentTypeError(f"{word!r}: must be a whole number from 1 to {MOST_WORKERS}")
+    return int(word)
 
 
 def _render(arguments):
@@ -138,15 +165,33 @@ def _row(arguments):
     # Before any library that reads these is loaded.
     os.environ.update(row_environment())
     if arguments.parent:
-        runner.die_with_parent(arguments.parent)
+        fresh.die_with_parent(arguments.parent)
     study = runner.load(arguments.name)
-    row = runner.compute_row(study, runner.find_case(study, arguments.case))
+    case = runner.find_case(study, arguments.case)
+    if arguments.json and not arguments.parent:
+        # For itself alone: with a time limit, and a row whatever happens.
+        row = runner.spawn_row(arguments.name, study, case)
+        runner.write_json(row, arguments.json)
+        return 0 if row["status"] in runner.KEPT else 1
+    row = runner.compute_row(study, case)
     if arguments.json:
         runner.write_json(row, arguments.json)
         return 0
     for name, value in row.items():
         print(f"{name:20} {value}")
     return 0 if row["status"] in runner.KEPT else 1
+
+
+def _jobs(arguments):
+    for command in jobs.commands(arguments.name, arguments.out, quick=arguments.quick, force=arguments.force):
+        print(command)
+    return 0
+
+
+def _gather(arguments):
+    path, count = jobs.gather(arguments.name, arguments.out, arguments.files)
+    print(f"{arguments.name}: {count} rows added to {path}")
+    return 0
 
 
 def _report(arguments):

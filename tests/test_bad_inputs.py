@@ -231,6 +231,7 @@ TABLE = [
     (exact.solve, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
     (demheat.effective, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "method": ("a", 5, ["box"], object, b"fem", [], {"fem"}), "memory": or_none(POSITIVE)}),
     (demheat.recommend, {"scene": CELL}, {"scene": OBJECT, "accuracy": (*POSITIVE, 1.0), "memory": or_none(POSITIVE)}),
+    (demheat.sweep, {"function": abs, "cases": [{"x": 1.0}]}, {"function": (None, "a", 5, []), "cases": (None, "a", 5, [], {}, [5], [{}], [{5: 1}], {"x": []}, {"x": "ab"}, {"x": 5}, {"x": {1, 2}}, {5: [1]}, {"error": [1]}, [{"when": 1}], np.ones(3)), "client": ("a", 5, object(), True), "out": (5, "a\0.csv", "nowhere/none.csv", "."), "timeout": (*or_none(POSITIVE), 5.0)}),
     (exact.solve_axes, {"scene": WALLED}, {"scene": OBJECT, "points_per_axis": COUNT}),
     (exact.evolve, {"scene": WARMING, "times": [1.0]}, {"scene": OBJECT, "times": TIMES, "points_per_axis": COUNT}),
     (fem.solve, {"scene": WALLED}, {"scene": OBJECT, "order": (*COUNT, 3), "size": or_none(POSITIVE), "curved": FLAG, "tolerance": POSITIVE}),

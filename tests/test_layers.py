@@ -70,6 +70,9 @@ LAYERS = {
     "demheat.limits": (),
     "demheat.vtk": (),
     "demheat.paths": (),
+    "demheat.machine": (),
+    "demheat.fresh": (),
+    "demheat.cluster": (),
     "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
@@ -188,6 +191,18 @@ LAYERS = {
         "demheat.method",
         "demheat.cheapest",
     ),
+    # One function over many cases: of what it returns it knows a Field and the tensor of `effective`.
+    "demheat.sweeps": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.paths",
+        "demheat.progress",
+        "demheat.machine",
+        "demheat.fresh",
+        "demheat.cluster",
+        "demheat.cheapest.effective",
+        "demheat.sweeps",
+    ),
     # Finds methods where they are declared: by name alone, as the cheapest does.
     "demheat.declared": ("demheat.method",),
     "demheat.files": (
@@ -237,6 +252,7 @@ LAYERS = {
         "demheat.progress",
         "demheat.dem",
         "demheat.cheapest",
+        "demheat.sweeps",
     ),
     # Witnesses know the engine's nouns and not the engine.
     "references.threads": (),
@@ -336,7 +352,7 @@ LAYERS = {
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("studies",),
+    "studies.__main__": ("demheat.fresh", "studies"),
 }
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references", "benchmark")

@@ -14,6 +14,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
+from demheat.machine import host, machine
 from studies.harness.methods import path_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -21,6 +22,8 @@ PACKAGES = ("demheat", "references", "benchmark", "studies")
 LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw", "multivoro")
 # What must agree for a stored row to stand for a new one.
 SAME = ("code", "machine", "threads", "versions")
+# The same where only its numbers count, not its costs: rows may come from several machines.
+ANYWHERE = ("code", "versions")
 # Names of a module that no number depends on, and a module of such.
 DESCRIBING = {"__all__", "__version__", "METHODS"}
 DECLARING = "demheat.method"
@@ -40,6 +43,7 @@ def provenance(study, case):
         "commit": commit(),
         "when": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "machine": machine(),
+        "host": host(),
         "threads": threads(),
         "versions": versions(),
         "load": round(os.getloadavg()[0], 2),
@@ -63,21 +67,6 @@ def row_environment():
         "OMP_NUM_THREADS": count,
         "OPENBLAS_NUM_THREADS": count,
     }
-
-
-@cache
-def machine():
-    """Processor model and number of logical processors; no host name, no path."""
-    model = platform.processor() or platform.machine()
-    try:
-        lines = Path("/proc/cpuinfo").read_text().splitlines()
-    except OSError:
-        lines = []
-    for line in lines:
-        if line.startswith("model name"):
-            model = line.split(":", 1)[1].strip()
-            break
-    return f"{model}, {os.cpu_count()} processors"
 
 
 @cache

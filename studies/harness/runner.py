@@ -20,11 +20,9 @@ made of rows in `errors` or `means`, lines of the table in `tables`, the drawing
 
 from __future__ import annotations
 
-import ctypes
 import importlib
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -32,10 +30,12 @@ import time
 import traceback
 from pathlib import Path
 
+from demheat import fresh
 from demheat.progress import stage
+from studies.harness.beside import counted
 from studies.harness.cost import measured, triad_gbs
-from studies.harness.provenance import SAME, code_hash, module_of, provenance
-from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows
+from studies.harness.provenance import ANYWHERE, SAME, code_hash, module_of, provenance
+from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows, replaced
 
 TIMEOUT = 1800.0
 KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
@@ -105,7 +105,7 @@ def guest_case(study, key):
     return study.guest_case(key) if hasattr(study, "guest_case") else None
 
 
-def run_study(name, out, *, quick=False, force=False, method=None, say=print, compute=None):
+def run_study(name, out, *, quick=False, force=False, method=None, say=print, compute=None, spread=None):
     """Bring DIR/NAME.csv up to date and return its path.
 
     Rows whose case, code, machine, threads and versions still hold are reused, unless forced. Rows of cases that are
@@ -125,36 +125,37 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
         Told of each row as it ends.
     compute : callable (name, study, case) -> dict
         Default `spawn_row`: each row in a fresh process, so that its cost means something.
+    spread : callable (name, study, cases) -> iterator of dict, optional
+        Instead: all rows, in the order in which they are done, by other machines perhaps (`cluster.spread_over`). A
+        stored row then holds whatever machine it is from.
 
     Raises
     ------
     ValueError
         If there is no such study, or its file cannot be read or written.
     """
-    compute = compute or spawn_row
     study = load(name)
-    path = Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
+    path = csv_of(name, out)
+    cases = guests_of(name, method, quick=quick) if method else None
+    same = ANYWHERE if spread else SAME
+    wanted, todo = still_to_run(study, path, cases, quick=quick, force=force or method is not None, same=same)
     rows, made = read_rows(path), {}
-    if method is None:
-        wanted = [case for case in study.CASES if not quick or study.QUICK(case)]
-    else:
-        wanted = guests_of(name, method, quick=quick)
-    again = force or method is not None
-    todo = [case for case in wanted if again or not _holds(rows.get(case_key(case)), study, case)]
     kept = [key for key in rows if guest_case(study, key) is not None]
     keys = list(dict.fromkeys([*map(case_key, study.CASES), *kept, *map(case_key, wanted)]))
     say(f"{name}: {len(wanted)} rows, {len(wanted) - len(todo)} already there, {len(todo)} to run")
-    if todo:
-        check_writable(path.parent)
-    bandwidth = round(triad_gbs(), 1) if todo else None
+    if not todo:
+        return path
+    check_writable(path.parent)
+    arriving = spread(name, study, todo) if spread else _in_turn(compute or spawn_row, name, study, todo)
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
-        key = case_key(case)
-        with stage(f"{name} {number}/{len(todo)}, {_short(key)}", before=time.perf_counter() - start) as done:
+        what = "" if spread else f", {_short(case_key(case))}"
+        with stage(f"{name} {number}/{len(todo)}{what}", before=time.perf_counter() - start) as done:
             done((number - 1) / len(todo))
-            made[key] = {**compute(name, study, case), "triad_gbs": bandwidth}
+            row = next(arriving)
+        made[row["case"]] = row
         add_rows(path, made, keys)
-        say(_progress(number, len(todo), made[key], time.perf_counter() - start))
+        say(_progress(number, len(todo), row, time.perf_counter() - start))
     return path
 
 
@@ -177,6 +178,48 @@ def guests_of(name, method, *, quick=False):
     if not hasattr(study, "guests"):
         raise ValueError(f"method = {method!r}: study {name} takes no methods but ours; sphere_benchmark does")
     return study.guests(method, quick=quick)
+
+
+def csv_of(name, out):
+    """Path of a study's rows in a folder.
+
+    Parameters
+    ----------
+    name : str
+    out : path
+    """
+    return Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
+
+
+def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME):
+    """Cases that are asked for, and those of them without a row that holds.
+
+    Parameters
+    ----------
+    study : module
+    path : path
+        Of the rows there are.
+    cases : list of dict, optional
+        Those of a method that is not ours, instead of the study's.
+    quick, force : bool
+        As those of `run_study`.
+    same : sequence of str
+        Columns in which a stored row must agree with a new one.
+
+    Returns
+    -------
+    wanted, todo : list of dict
+    """
+    rows = read_rows(path)
+    wanted = [case for case in study.CASES if not quick or study.QUICK(case)] if cases is None else cases
+    return wanted, [case for case in wanted if force or not _holds(rows.get(case_key(case)), study, case, same)]
+
+
+def _in_turn(compute, name, study, cases):
+    """Rows made here one after another, each with the bandwidth of the memory as it was before the first."""
+    bandwidth = round(triad_gbs(), 1)
+    for case in cases:
+        yield {**compute(name, study, case), "triad_gbs": bandwidth}
 
 
 def state(study, rows):
@@ -204,11 +247,11 @@ def state(study, rows):
     return found
 
 
-def _holds(row, study, case):
+def _holds(row, study, case, same):
     if row is None or row.get("status") not in KEPT:
         return False
     now = provenance(study, case)
-    return all(row.get(name) == str(now[name]) for name in SAME)
+    return all(row.get(name) == str(now[name]) for name in same)
 
 
 def _progress(number, total, row, elapsed):
@@ -225,7 +268,7 @@ def _short(key):
     return key.split(",method=")[0]
 
 
-def spawn_row(name, study, case):
+def spawn_row(name, study, case, *, environment=None):
     """Compute a row in a fresh process; whatever happens to that process, a row comes back.
 
     Parameters
@@ -234,6 +277,8 @@ def spawn_row(name, study, case):
         Of the study.
     study : module
     case : dict
+    environment : mapping of str to str, optional
+        Of that process; default that of this one.
 
     Returns
     -------
@@ -244,64 +289,16 @@ def spawn_row(name, study, case):
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
-        with log.open("wb") as stream:
-            words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
-            process = subprocess.Popen(
-                [sys.executable, "-m", "studies", *words], stdout=stream, stderr=stream, start_new_session=True
-            )
-            watch = _watch(process)
-            try:
-                code = process.wait(limit)
-            except subprocess.TimeoutExpired:
-                note = f"not finished after {limit:g} s"
-                return {**base, "status": "timeout", "note": note, **provenance(study, case)}
-            finally:
-                _end(process)
-                _dismiss(watch)
+        words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
+        try:
+            code = fresh.run([sys.executable, "-m", "studies", *words], log, limit=limit, environment=environment)
+        except subprocess.TimeoutExpired:
+            note = f"not finished after {limit:g} s"
+            return {**base, "status": "timeout", "note": note, **provenance(study, case)}
         try:
             return json.loads(answer.read_text(encoding="utf-8"))
         except (OSError, ValueError):
-            note = f"{_end_of(code)}; {_last_line(log)}"
-            return {**base, "status": "failed", "note": note, **provenance(study, case)}
-
-
-def _watch(process):
-    """Have a shell end a row's process and all that it started if this process is killed; None without a shell.
-
-    The kernel ends the row's process then, see `die_with_parent`, but not what that has started. The shell hears of it
-    by the end of a pipe of which nobody else holds the other end.
-    """
-    words = ["sh", "-c", 'read word; kill -9 -"$0"', str(process.pid)]
-    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    try:
-        return subprocess.Popen(words, stdin=subprocess.PIPE, start_new_session=True, **quiet)
-    except OSError:
-        return None
-
-
-def _dismiss(watch):
-    if watch is not None:
-        watch.kill()
-        watch.wait()
-        watch.stdin.close()
-
-
-def _end(process):
-    """Kill the row's process and all that it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
-    process.wait()
-
-
-def _end_of(code):
-    return f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
-
-
-def _last_line(log):
-    lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    return lines[-1][:300] if lines else "nothing on its output"
+            return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study, case)}
 
 
 def compute_row(study, case, *, warm=True):
@@ -318,7 +315,8 @@ def compute_row(study, case, *, warm=True):
     try:
         if warm and hasattr(study, "warm_up"):
             study.warm_up(**case)
-        metrics, cost = measured(study.run, **case)
+        with counted() as beside:
+            metrics, cost = measured(study.run, **case)
     except NotImplementedError as error:
         result = {"status": "unsupported", "note": str(error)}
     except Exception as error:
@@ -331,7 +329,7 @@ def compute_row(study, case, *, warm=True):
         clash = sorted(key for key in set(metrics) & set(row) if metrics[key] not in (None, row[key]))
         if clash:
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
-        result = {"status": "ok", "note": "", **cost, **metrics}
+        result = {"status": "ok", "note": "", **cost, **beside, **metrics}
     return {**row, **result, **row, **provenance(study, case)}
 
 
@@ -343,20 +341,5 @@ def write_json(row, path):
     row : dict
     path : path
     """
-    Path(path).write_text(json.dumps(row, default=lambda value: value.item()), encoding="utf-8")
-
-
-def die_with_parent(parent):
-    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind.
-
-    Parameters
-    ----------
-    parent : int
-        Process number of the parent; if it is gone already, the process ends here.
-    """
-    try:
-        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1 = PR_SET_PDEATHSIG
-    except (OSError, AttributeError):
-        return
-    if os.getppid() != parent:
-        os._exit(1)
+    with replaced(path) as temporary:
+        temporary.write_text(json.dumps(row, default=lambda value: value.item()), encoding="utf-8")

@@ -15,7 +15,8 @@ COST = ("wall_s", "cpu_s", "peak_mib", "base_mib", "peak_by")
 TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,
-    *("status", "note", "code", "commit", "when", "machine", "threads", "versions", "load", "triad_gbs"),
+    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions", "load", "beside"),
+    "triad_gbs",
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20

@@ -8,6 +8,7 @@ import traceback
 from pathlib import Path
 from typing import NamedTuple
 
+from studies.harness.machines import of_one_machine, said
 from studies.harness.runner import guest_case
 from studies.harness.store import case_key, read_rows, replaced
 
@@ -94,8 +95,7 @@ def read_frame(study, csv_path):
     df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
     ours = df["case"].isin([case_key(case) for case in study.CASES])
     guests = df["case"].map(lambda key: guest_case(study, key) is not None)
-    df = df[ours | guests].reset_index(drop=True)
-    return df.fillna({"note": ""})
+    return of_one_machine(df[ours | guests].reset_index(drop=True).fillna({"note": ""}))
 
 
 def judged(study, df):
@@ -211,7 +211,7 @@ def _page(study, df, claims, figure):
 
 def _all_rows(df):
     """Every row."""
-    return df.drop(columns=[c for c in ("code", "commit", "when", "machine", "threads", "versions") if c in df])
+    return df.drop(columns=[c for c in ("code", "commit", "when", "machine", "host", "threads", "versions") if c in df])
 
 
 def _origin(study, df):
@@ -226,6 +226,7 @@ def _origin(study, df):
         lines.append(f"- memory bandwidth (triad): {df['triad_gbs'].median():.1f} GB/s")
     if "peak_by" in df and (df["peak_by"] == "ru_maxrss").any():
         lines.append("- peak memory is the whole process's where this system cannot reset it (ru_maxrss)")
+    lines += [f"- {sentence}" for sentence in said(df)]
     return "\n".join(lines)
 
 

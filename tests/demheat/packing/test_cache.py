@@ -1,5 +1,7 @@
 import json
+import threading
 import warnings
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -40,6 +42,23 @@ def test_made_once(tmp_path):
     same(first, second)
     assert first.provenance == {"a": [1], "cached": False} and second.provenance == {"a": [1], "cached": True}
     assert [path.suffix for path in tmp_path.iterdir()] == [".npz"]
+
+
+def test_two_that_make_the_same_at_once_both_have_it(tmp_path):
+    """As two machines do that share a folder: both have looked before either writes."""
+    both = threading.Barrier(2, timeout=20)
+
+    def make():
+        both.wait()
+        return Maker()()
+
+    with ThreadPoolExecutor(2) as pool:
+        first, second = pool.map(lambda _: cached(make, {"seed": 0}, folder=tmp_path), range(2))
+    same(first, second)
+    assert [path.suffix for path in tmp_path.iterdir()] == [".npz"]
+    kept = cached(Maker(), {"seed": 0}, folder=tmp_path)
+    same(first, kept)
+    assert kept.provenance["cached"]
 
 
 def test_another_key_is_another_packing(tmp_path):

@@ -1,0 +1,99 @@
+"""A command in a process of its own, which ends with all that it started: at its time limit, or with its parent."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import signal
+import subprocess
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+
+def run(
+    words: Sequence[str], log: Path, *, limit: float | None = None, environment: Mapping[str, str] | None = None
+) -> int:
+    """Run a command and return its status, negative if a signal ended it.
+
+    Parameters
+    ----------
+    words : sequence of str
+    log : path
+        File for what it prints.
+    limit : float, s, optional
+    environment : mapping of str to str, optional
+        Default: that of this process.
+
+    Raises
+    ------
+    subprocess.TimeoutExpired
+        If it has not ended within the limit; it has been killed then.
+    """
+    with Path(log).open("wb") as stream:
+        process = subprocess.Popen(words, stdout=stream, stderr=stream, start_new_session=True, env=environment)
+        watch = _watch(process)
+        try:
+            return process.wait(limit)
+        finally:
+            _end(process)
+            _dismiss(watch)
+
+
+def ending(code: int, log: Path) -> str:
+    """How a process ended and what it said last, in one line.
+
+    Parameters
+    ----------
+    code : int
+        As `run` returns it.
+    log : path
+    """
+    how = f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
+    lines = Path(log).read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    return f"{how}; {lines[-1][:300] if lines else 'nothing on its output'}"
+
+
+def die_with_parent(parent: int) -> None:
+    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind.
+
+    Parameters
+    ----------
+    parent : int
+        Process number of the parent; if it is gone already, the process ends here.
+    """
+    try:
+        ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1 = PR_SET_PDEATHSIG
+    except (OSError, AttributeError):
+        return
+    if os.getppid() != parent:
+        os._exit(1)
+
+
+def _watch(process):
+    """Have a shell end a process and all that it started if this process is killed; None without a shell.
+
+    The kernel ends the process itself then, see `die_with_parent`, but not what that has started. The shell hears of it
+    by the end of a pipe of which nobody else holds the other end.
+    """
+    words = ["sh", "-c", 'read word; kill -9 -"$0"', str(process.pid)]
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    try:
+        return subprocess.Popen(words, stdin=subprocess.PIPE, start_new_session=True, **quiet)
+    except OSError:
+        return None
+
+
+def _dismiss(watch):
+    if watch is not None:
+        watch.kill()
+        watch.wait()
+        watch.stdin.close()
+
+
+def _end(process):
+    """Kill a process and all that it started."""
+    try:
+        os.killpg(process.pid, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        pass
+    process.wait()

@@ -1,0 +1,89 @@
+"""One case in a fresh process of a worker: its cost is its own, a crash is an error like others, a limit ends it."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+
+from demheat import fresh
+from demheat.cluster import completed, row_environment
+from demheat.sweeps.rows import failed, row_of
+
+
+def on_workers(client, function: Callable, cases: Sequence[dict], limit: float | None) -> Iterator[tuple[int, dict]]:
+    """Rows of cases, as they are done.
+
+    Parameters
+    ----------
+    client : distributed.Client
+    function : callable
+    cases : sequence of dict
+    limit : float, s, optional
+
+    Yields
+    ------
+    number : int
+        Of the case.
+    row : dict
+    """
+    import cloudpickle
+
+    tasks = [(cloudpickle.dumps((function, case)), limit) for case in cases]
+    for number, found in completed(client, in_fresh_process, tasks, label=getattr(function, "__name__", "sweep")):
+        case = cases[number]
+        if isinstance(found, Exception):
+            yield number, failed(case, f"{type(found).__name__}: {found}")
+        elif "lost" in found:
+            yield number, failed(case, found["lost"])
+        else:
+            yield number, {**case, **found}
+
+
+def in_fresh_process(sent: bytes, limit: float | None) -> dict:
+    """The row of a case, or {"lost": why there is none}.
+
+    Parameters
+    ----------
+    sent : bytes
+        Function and case, pickled.
+    limit : float, s, optional
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        question, answer, log = (Path(folder) / name for name in ("case", "row.json", "log"))
+        question.write_bytes(sent)
+        words = [sys.executable, "-m", __name__, str(question), str(answer), str(os.getpid())]
+        try:
+            code = fresh.run(words, log, limit=limit, environment=row_environment())
+        except subprocess.TimeoutExpired:
+            return {"lost": f"TimeoutError: not finished after {limit:g} s"}
+        try:
+            return json.loads(answer.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return {"lost": fresh.ending(code, log)}
+
+
+def main(question: str, answer: str, parent: str) -> None:
+    """Compute the case of one file into another.
+
+    Parameters
+    ----------
+    question, answer : str
+        Names of the files.
+    parent : str
+        Number of the process that waits.
+    """
+    fresh.die_with_parent(int(parent))
+    import cloudpickle
+
+    function, case = cloudpickle.loads(Path(question).read_bytes())
+    row = row_of(function, case)
+    Path(answer).write_text(json.dumps({name: value for name, value in row.items() if name not in case}))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,93 @@
+"""Rows of a sweep in a CSV file, written whole after each row: a sweep that is stopped goes on from there."""
+
+from __future__ import annotations
+
+import csv
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from demheat.paths import checked_path, replaced
+from demheat.sweeps.cases import key_of
+from demheat.sweeps.rows import CASE, TAIL
+
+
+class Kept:
+    """Rows of a file as text, by their cases.
+
+    Parameters
+    ----------
+    path : Path
+    rows : dict of str to dict
+    """
+
+    def __init__(self, path: Path, rows: dict[str, dict]):
+        self.path, self.rows = path, rows
+
+    def has(self, case: Mapping) -> bool:
+        """Whether a case stands there without an error."""
+        row = self.rows.get(key_of(case))
+        return row is not None and not row["error"]
+
+    def row(self, case: Mapping) -> dict:
+        """The row of a case: its values as they were given, the others as the text says, without empty ones."""
+        found = self.rows[key_of(case)]
+        values = {name: _parsed(text) for name, text in found.items() if name != CASE and text != ""}
+        ends = {name: values.pop(name, None) for name in TAIL}
+        others = {name: value for name, value in values.items() if name not in case}
+        return {**case, **others, **ends, "error": found["error"]}
+
+    def add(self, case: Mapping, row: Mapping) -> None:
+        """Put a row in the place of an older one of its case, and write all.
+
+        Parameters
+        ----------
+        case, row : mapping
+        """
+        texts = {name: "" if value is None else str(value) for name, value in row.items()}
+        self.rows[key_of(case)] = {CASE: key_of(case), **texts}
+        seen = dict.fromkeys(name for each in self.rows.values() for name in each)
+        columns = [*(name for name in seen if name not in TAIL), *TAIL]
+        with replaced(self.path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(self.rows.values())
+
+
+def opened(path) -> Kept:
+    """Rows of a file that may not be there yet, or a ValueError: before any case is computed."""
+    try:
+        path = checked_path(path)
+    except ValueError as error:
+        raise ValueError(f"out: {error}") from None
+    try:
+        with tempfile.TemporaryFile(dir=path.parent):
+            pass
+    except OSError as error:
+        raise ValueError(f"out = {str(path)!r}: must be a file in a folder that can be written: {error}") from None
+    if path.is_dir() or not path.name:
+        raise ValueError(f"out = {str(path)!r}: must be a file, and is a folder")
+    if not path.exists():
+        return Kept(path, {})
+    try:
+        with path.open(newline="", encoding="utf-8") as file:
+            reader = csv.DictReader(file, strict=True)
+            rows, columns = list(reader), reader.fieldnames or ()
+    except (OSError, ValueError, csv.Error) as error:
+        raise ValueError(f"out = {str(path)!r}: must hold rows of a sweep as CSV: {error}") from None
+    whole = all(None not in row and None not in row.values() for row in rows)
+    if not {CASE, *TAIL} <= set(columns) or not whole:
+        raise ValueError(f"out = {str(path)!r}: must hold rows of a sweep as CSV; move it away, or mend it")
+    return Kept(path, {row[CASE]: row for row in rows})
+
+
+def _parsed(text):
+    """A cell as what it stood for: a flag, a number or text."""
+    if text in ("True", "False"):
+        return text == "True"
+    for kind in (int, float):
+        try:
+            return kind(text) if "_" not in text else text
+        except ValueError:
+            pass
+    return text

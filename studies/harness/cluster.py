@@ -1,0 +1,114 @@
+"""Rows of a study on a Dask cluster: each in a fresh process of some worker, home one by one."""
+
+from __future__ import annotations
+
+from contextlib import contextmanager
+from functools import cache
+
+from demheat.cluster import cluster, completed, row_environment
+from studies.harness import runner
+from studies.harness.cost import triad_gbs
+from studies.harness.provenance import ANYWHERE, provenance
+from studies.harness.store import case_key
+
+
+@contextmanager
+def spreading(scheduler, workers, say):
+    """What spreads rows over a cluster for `runner.run_study`; None if none is asked for.
+
+    Parameters
+    ----------
+    scheduler, workers
+        As those of `demheat.cluster.cluster`.
+    say : callable (str)
+        Told where the dashboard is.
+    """
+    if scheduler is None and workers is None:
+        yield None
+        return
+    with cluster(scheduler, workers) as client:
+        say(f"dashboard {client.dashboard_link}")
+        yield spread_over(client)
+
+
+def spread_over(client):
+    """What `runner.run_study` needs to have its rows made by the workers of a cluster.
+
+    Parameters
+    ----------
+    client : distributed.Client
+
+    Returns
+    -------
+    callable (name, study, cases) -> iterator of dict
+    """
+
+    def spread(name, study, cases):
+        expected = [_origin(provenance(study, case)) for case in cases]
+        _check_workers(client, name, case_key(cases[0]), expected[0])
+        tasks = [(name, case_key(case)) for case in cases]
+        for number, row in completed(client, row_of, tasks, label=name):
+            if isinstance(row, Exception):
+                row = _failed(study, cases[number], f"{type(row).__name__}: {row}")
+            elif _origin(row) != expected[number]:
+                row = _failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected[number])}")
+            yield row
+
+    return spread
+
+
+def row_of(name, key):
+    """Compute one row in a fresh process of this machine.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    key : str
+        Of the case.
+    """
+    study = runner.load(name)
+    bandwidth = _bandwidth()
+    row = runner.spawn_row(name, study, runner.find_case(study, key), environment=row_environment())
+    return {**row, "triad_gbs": bandwidth}
+
+
+def origin_of(name, key):
+    """What a row of this machine would say of its code and libraries.
+
+    Parameters
+    ----------
+    name, key : str
+        As those of `row_of`.
+    """
+    study = runner.load(name)
+    return _origin(provenance(study, runner.find_case(study, key)))
+
+
+@cache
+def _bandwidth():
+    return round(triad_gbs(), 1)
+
+
+def _origin(row):
+    return {name: str(row[name]) for name in ANYWHERE}
+
+
+def _told(row):
+    return ", ".join(f"{name} {row[name]}" for name in ANYWHERE)
+
+
+def _check_workers(client, name, key, expected):
+    """Raise ValueError if a worker has other code or libraries than we: before an hour's solve."""
+    try:
+        found = client.run(origin_of, name, key)
+    except Exception as error:
+        raise ValueError(f"a worker cannot make rows of {name!r}: {type(error).__name__}: {error}") from None
+    for worker, origin in found.items():
+        if origin != expected:
+            raise ValueError(f"worker {worker} has {_told(origin)}: must be as here, {_told(expected)}")
+
+
+def _failed(study, case, note):
+    note = " ".join(note.split())
+    return {"case": case_key(case), **case, "status": "failed", "note": note, **provenance(study, case)}

@@ -1,0 +1,66 @@
+"""Which machines rows come from: seconds of different ones never stand on one curve."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+
+def origins(rows):
+    """Which machine each row is from; one of unknown host is taken for the only other of its model, if there is one.
+
+    Parameters
+    ----------
+    rows : sequence of mapping
+        With "machine" and, but for old rows, "host".
+
+    Returns
+    -------
+    list of str
+    """
+    pairs = [(_text(row.get("machine")), _text(row.get("host"))) for row in rows]
+    hosts = {}
+    for model, host in pairs:
+        hosts.setdefault(model, set()).update({host} - {""})
+    return [f"{model} {host or ''.join(hosts[model] if len(hosts[model]) == 1 else ())}" for model, host in pairs]
+
+
+def of_one_machine(df):
+    """The rows, without the seconds of those that are not from the machine that made most of them.
+
+    Parameters
+    ----------
+    df : data frame
+
+    Returns
+    -------
+    data frame
+    """
+    timings = [name for name in df if name in ("cpu_s", "wall_s") or name.endswith(("_cpu_s", "_wall_s"))]
+    found = origins(df.to_dict("records"))
+    timed = [origin for origin, seconds in zip(found, df[timings].notna().any(axis=1), strict=True) if seconds]
+    if len(set(timed)) < 2:
+        return df
+    chosen, _ = Counter(timed).most_common(1)[0]
+    return df.assign(**{name: df[name].where([origin == chosen for origin in found]) for name in timings})
+
+
+def said(df):
+    """What a page says of the machines of its rows, a list of sentences; empty if there is nothing to say.
+
+    Parameters
+    ----------
+    df : data frame
+        Of `of_one_machine`.
+    """
+    lines, count = [], len(set(origins(df.to_dict("records"))))
+    if count > 1:
+        lines.append(f"rows are from {count} machines: seconds of all but the one that made most are left out")
+    crowded = int((df["beside"] > 0).sum()) if "beside" in df else 0
+    if crowded:
+        lines.append(f"{crowded} rows ran beside others on their machine: alone they would have cost less")
+    return lines
+
+
+def _text(value):
+    return "" if value is None or (isinstance(value, float) and math.isnan(value)) else str(value)

@@ -1,0 +1,42 @@
+"""Tasks on two Dask workers: all come home, whoever is killed meanwhile; skipped without Dask."""
+
+import os
+import random
+import signal
+import time
+
+import pytest
+
+from demheat import cluster
+
+pytest.importorskip("distributed")
+
+
+def pids_of(client):
+    """Processes of the workers that answer; those that are dying do not."""
+    found = client.run(os.getpid, on_error="return")
+    return sorted(pid for pid in found.values() if isinstance(pid, int))
+
+
+def test_workers_killed_three_times_lose_no_task():
+    drawn, killed, home = random.Random(20), [], {}
+
+    def work(number, seconds):
+        if number == 5:
+            raise RuntimeError("an error of the task's own")
+        time.sleep(seconds)
+        return os.getpid()
+
+    with cluster.cluster(workers=2) as client:
+        tasks = [(number, 0.3) for number in range(16)]
+        for number, result in cluster.completed(client, work, tasks, label="work"):
+            assert number not in home
+            home[number] = result
+            # After so many tasks, while others run, one of those that work is killed.
+            if len(home) in (2, 6, 10):
+                killed.append(drawn.choice(pids_of(client)))
+                os.kill(killed[-1], signal.SIGKILL)
+    assert sorted(home) == list(range(16)) and len(set(killed)) == 3
+    assert str(home.pop(5)) == "an error of the task's own" and all(isinstance(pid, int) for pid in home.values())
+    # New ones have taken the places of those that were killed.
+    assert len({*home.values(), *killed}) >= 4
