@@ -88,6 +88,26 @@ def level_of(scene):
     return float(np.mean(list(scene.imposed_temperatures.values())))
 
 
+def linear_start(network, scene, reached):
+    """Linear field between two opposite temperatures, else zero, relative to the level, (n,) float array, K.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    reached : (n,) bool array
+        As in `system_of`.
+    """
+    temperatures = {} if scene.periodic else scene.imposed_temperatures
+    start = np.zeros(len(reached))
+    for axis, letter in enumerate("xyz"):
+        if {letter + "-", letter + "+"} == set(temperatures):
+            low, high = temperatures[letter + "-"], temperatures[letter + "+"]
+            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
+    start[~reached] = 0.0
+    return start
+
+
 def conducted(network):
     """Sum of the conductances of each particle's links, (n,) float array, W/K."""
     total = np.empty(len(network.volumes))

@@ -9,7 +9,7 @@ from scipy import sparse
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
-from demheat.conduction.balance import at_walls, conducted, level_of, residual, system_of, throughput
+from demheat.conduction.balance import at_walls, conducted, level_of, linear_start, residual, system_of, throughput
 from demheat.conduction.films import COLDEST, films_of, hottest, radiated
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
@@ -115,7 +115,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
     how = {"solver": chosen, "tolerance": tolerance, "most": max_iterations, "kept": kept}
-    first = _start(network, scene, reached) if start is None else np.where(reached, start - level_of(scene), 0.0)
+    first = linear_start(network, scene, reached) if start is None else np.where(reached, start - level_of(scene), 0.0)
     solve = _radiating if scene.radiates else _linear
     system, x, iterations, size, more = solve(network, scene, reached, first, how)
     if not size <= tolerance:
@@ -236,18 +236,6 @@ def _reached(network, scene):
     reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
     kernels.spread(links_of(network), reached)
     return reached
-
-
-def _start(network, scene, reached):
-    """Linear field between two opposite temperatures, else zero, relative to the level."""
-    temperatures = {} if scene.periodic else scene.imposed_temperatures
-    start = np.zeros(len(reached))
-    for axis, letter in enumerate("xyz"):
-        if {letter + "-", letter + "+"} == set(temperatures):
-            low, high = temperatures[letter + "-"], temperatures[letter + "+"]
-            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
-    start[~reached] = 0.0
-    return start
 
 
 def _iterate(system, x, solver, tolerance, most, kept):

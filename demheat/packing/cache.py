@@ -156,12 +156,25 @@ def replicated(
         Which centres are kept, before those at walls are drawn in: a part of the packing, without memory for the rest.
     """
     sides, counts = np.array(size, dtype=float), np.array(counts)
-    replica = relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder)
-    packing = replicate(replica, counts, keep=keep)
+    one = replica(number, counts, size=sides, seed=seed, folder=folder)
+    packing = replicate(one, counts, keep=keep)
     # The size is met exactly: its replicas' may differ by rounding.
     centers = np.minimum(packing.centers, np.nextafter(sides, 0.0), out=packing.centers)
     packing = packing._replace(centers=centers, size=sides)
-    return packing if periodic else walled(packing, None if keep is None else replica.radii.mean())
+    return packing if periodic else walled(packing, None if keep is None else one.radii.mean())
+
+
+def replica(number, counts, *, size, seed=0, folder=None) -> Packing:
+    """The packing that `replicated` repeats.
+
+    Parameters
+    ----------
+    number, counts, size, seed, folder
+        As in `replicated`.
+    """
+    counts = np.array(counts)
+    sides = np.array(size, dtype=float) / counts
+    return relaxed(round(number / int(counts.prod())), size=sides, seed=seed, folder=folder)
 
 
 def _of_shape(maker, modules, request, size, radii, periodic, folder):
