@@ -14,7 +14,7 @@ import numpy as np
 from demheat.dem.options import Particles
 from demheat.laws import Laguerre
 from demheat.mpi.slabs import Slabs
-from demheat.network.base import SIDES, Network
+from demheat.network.base import Network
 from demheat.network.interface import connect
 from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.packing.base import Packing, wrap
@@ -23,6 +23,8 @@ from demheat.packing.conforming import Part, conform
 from demheat.scene import Scene
 from demheat.scene.resistances import between
 
+# Columns of Facets for walls.
+WALLS = ("wall_particle", "wall_side", "wall_area", "wall_distance", "wall_normal")
 # Relative, of the volumes of all cells: as of a whole tessellation.
 DEFECT = 1e-9
 
@@ -33,8 +35,8 @@ class Cells(NamedTuple):
     Attributes
     ----------
     network : Network
-        The rank's own particles first; after them those of its neighbours, at the images that it meets. It ends in
-        insulated planes, side "round".
+        The rank's own particles first; after them those of its neighbours, at the images that it meets, of which
+        the outermost lack links.
     own : int
         Number of the first.
     packing : dict
@@ -105,7 +107,7 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) 
     facets = laguerre(inside, seen.radii**2, local, periodic=seen.periodic)
     own = int(np.count_nonzero(facets.volumes[:own] > 0))
     seen, facets = drop_empty_cells(seen, facets)
-    facets = facets._replace(wall_side=_sides(facets, own, slabs))
+    facets = _without_cuts(facets, own, slabs)
     phase = scene.phase_at(wrap(seen.centers, seen.size, np.broadcast_to(scene.periodic, 3)))
     rule = {"rule": law.interface, "cells": law.cells, "resistance": between(scene)}
     network = connect(seen, facets, phase, scene.conductivities, **rule)
@@ -131,18 +133,16 @@ def _seen(packing, slabs):
     return seen, int(np.count_nonzero(ours))
 
 
-def _sides(facets, own, slabs):
-    """Walls of the facets, where planes that end what is seen count as round: no load has that name in a box."""
-    side = facets.wall_side.copy()
+def _without_cuts(facets, own, slabs):
+    """The facets without those of the planes that end what is seen."""
+    here = np.zeros(len(facets.wall_side), dtype=bool)
     for end, cut in enumerate(slabs.cut):
-        here = cut & (side == 2 * slabs.axis + end)
-        if np.any(facets.wall_particle[here] < own):
-            raise RuntimeError(
-                "demheat.mpi: a cell reaches beyond what its rank sees of its neighbours; use fewer ranks or more "
-                "particles"
-            )
-        side[here] = SIDES.index("round")
-    return side
+        here |= cut & (facets.wall_side == 2 * slabs.axis + end)
+    if np.any(facets.wall_particle[here] < own):
+        raise RuntimeError(
+            "demheat.mpi: a cell reaches beyond what its rank sees of its neighbours; use fewer ranks or more particles"
+        )
+    return facets._replace(**{name: getattr(facets, name)[~here] for name in WALLS})
 
 
 def own_part(network: Network, own: int) -> Network:

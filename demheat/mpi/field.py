@@ -38,7 +38,7 @@ def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm,
         whose slabs the points lie.
     """
     network = own_part(cells.network, cells.own)
-    mine = cells.network.wall_particle < cells.own if not scene.periodic else slice(0)
+    mine = cells.network.wall_particle < cells.own
     own = solution._replace(wall_temperature=solution.wall_temperature[mine], wall_heat=solution.wall_heat[mine])
     local = (mean_flux if scene.periodic else between_walls)(network, scene, own)
     volumes = np.bincount(network.phase, network.volumes, len(scene.materials))
