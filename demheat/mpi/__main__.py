@@ -5,14 +5,19 @@ Exit status as that of `demheat`: 0; 1 if the solve was refused or failed; 2 for
 
 from __future__ import annotations
 
-import argparse
-import os
 import sys
+import traceback
 import warnings
 
 import numpy as np
 
-STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, RuntimeError: 1, MemoryError: 1, ImportError: 1}
+from demheat.commands.options import Parser
+from demheat.files import read
+from demheat.mpi.engines import world
+
+# What all ranks raise alike, before anything heavy, and the exit status of each.
+STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, ImportError: 1}
+ALIKE = tuple(STATUS)
 STAGES = ("packing", "cells", "solve", "field")
 
 
@@ -24,30 +29,31 @@ def main(words=None) -> int:
     words : sequence of str, optional
         Default: those of the process.
     """
-    rank, begun = 0, False
+    comm = None
     try:
-        from demheat.mpi.engines import world
-
         options = _parser().parse_args(words)
         comm = world()
-        rank = comm.rank
-        # Ranks share the cores; compiled loops are told before they are loaded.
-        os.environ.setdefault("OMP_NUM_THREADS", "1")
-        if rank:
+        if comm.rank:
             warnings.simplefilter("ignore")
         _run(options, comm)
-    except tuple(STATUS) as error:
-        return _said(error, rank)
+    except ALIKE as error:
+        return _said(error, comm.rank if comm else 0)
+    except (RuntimeError, MemoryError) as error:
+        _said(error, 0)
+        comm.Abort(1)
+    except Exception:
+        # Other ranks would wait for this one.
+        traceback.print_exc()
+        comm.Abort(1)
     return 0
 
 
 def _run(options, comm):
-    from demheat.files import read
-
-    scene = read(options.scene)
+    # What is heavy loads once MPI is known to be there.
     from demheat import mpi
     from demheat.mpi.solver import outlook
 
+    scene = read(options.scene)
     say = print if comm.rank == 0 else _silent
     say(f"{options.scene}: {options.particles} particles, {outlook(options.particles)}", flush=True)
     knobs = {"seed": options.seed, "tolerance": options.tolerance, "replicas": options.replicas}
@@ -77,7 +83,8 @@ def _say_answer(field, say):
         say(f"  heat at {name}    {heat:.9g} W into the body")
     say(f"  unknowns      {stats['unknowns']}, residual {stats['residual']:.2g}, {stats['iterations']} iterations")
     for name in STAGES:
-        say(f"  {name:<13} {stats[f'{name}_s']:.3g} s, {stats[f'{name}_cpu_s']:.3g} CPU-s on {stats['ranks']} ranks")
+        wall, cpu, most = (stats[f"{name}_{unit}"] for unit in ("s", "cpu_s", "bytes"))
+        say(f"  {name:<13} {wall:.3g} s, {cpu:.3g} CPU-s on {stats['ranks']} ranks, {most / 2**30:.3g} GiB so far")
     more = stats["bytes"] - stats["bytes_before"]
     say(
         f"  memory        {stats['bytes'] / 2**30:.3g} GiB at the peak, of all ranks: {more / stats['unknowns']:.0f} "
@@ -87,7 +94,7 @@ def _say_answer(field, say):
 
 
 def _parser():
-    parser = argparse.ArgumentParser(prog="python -m demheat.mpi", description=__doc__.splitlines()[0])
+    parser = Parser(prog="python -m demheat.mpi", description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("scene", metavar="SCENE.toml")
     parser.add_argument("--particles", type=int, default=1_000_000)
     parser.add_argument("--seed", type=int, default=0)
@@ -105,9 +112,9 @@ def _silent(*_, **__):
 
 
 def _said(error, rank):
-    """One line on standard error, by the first rank: all ranks refuse alike; what fails on one ends all."""
+    """One line on standard error, by the first rank."""
     told = " ".join(str(error).split()) or type(error).__name__
-    status = next(status for kind, status in STATUS.items() if isinstance(error, kind))
+    status = next((status for kind, status in STATUS.items() if isinstance(error, kind)), 1)
     if rank == 0:
         print(f"demheat: {told}", file=sys.stderr, flush=True)
     return status

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.build import warn_of_twins
 from demheat.dem.options import Particles
 from demheat.laws import Laguerre
 from demheat.mpi.slabs import Slabs
@@ -68,7 +69,10 @@ def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) 
     if not law.conforming:
         return packing
     part = Part(radii.mean(), radii.max(), slabs.near)
-    return conform(packing, scene, seed=wanted.seed, gap_spacing=law.gap_spacing, part=part)
+    packing = conform(packing, scene, seed=wanted.seed, gap_spacing=law.gap_spacing, part=part)
+    if comm.rank == 0:
+        warn_of_twins(packing, wanted.particles)
+    return packing
 
 
 def _packed(scene, wanted, counts, slabs):

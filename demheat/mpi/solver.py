@@ -6,6 +6,7 @@ import os
 import resource
 import sys
 import time
+import warnings
 from contextlib import contextmanager
 from dataclasses import replace
 
@@ -63,7 +64,8 @@ def solve(
     -------
     Field
         With `stats` of `demheat.solve` besides: ranks, bytes (at the peak, of all ranks), bytes_before (of Python and
-        libraries alone), and seconds of each stage, the slowest rank's and CPU-seconds of all ranks.
+        libraries alone), and of each stage seconds of the slowest rank, CPU-seconds of all ranks and bytes at the peak
+        so far.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def solve(
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
     share = _on_this_machine(comm)
-    check_memory("particles", particles, needed(particles, share, comm.size))
+    _check_memory(particles, share, comm)
     with limited(max(1, _cores() // share)):
         return _answer(scene, law, wanted, comm, tolerance=tolerance, options=options)
 
@@ -125,6 +127,18 @@ def _check(scene, law, wanted, tolerance):
     wanted.counts(scene, law)
 
 
+def _check_memory(particles, share, comm):
+    """Refuse on all ranks what does not fit where one of them is."""
+    refused = None
+    try:
+        check_memory("particles", particles, needed(particles, share, comm.size))
+    except ValueError as error:
+        refused = str(error)
+    refused = next(filter(None, comm.allgather(refused)), None)
+    if refused:
+        raise ValueError(refused)
+
+
 def _on_this_machine(comm):
     """How many ranks share this machine."""
     return comm.Split_type(sys.modules["mpi4py.MPI"].COMM_TYPE_SHARED).size
@@ -146,12 +160,11 @@ class _Costs:
         wall, cpu = time.perf_counter(), time.process_time()
         yield
         took = self.comm.allreduce(time.process_time() - cpu)
-        self.stages[name] = (max(self.comm.allgather(time.perf_counter() - wall)), took)
+        slowest = max(self.comm.allgather(time.perf_counter() - wall))
+        self.stages |= {f"{name}_s": slowest, f"{name}_cpu_s": took, f"{name}_bytes": self.comm.allreduce(_peak())}
 
     def told(self):
-        seconds = {f"{name}_s": wall for name, (wall, _) in self.stages.items()}
-        cpu = {f"{name}_cpu_s": cpu for name, (_, cpu) in self.stages.items()}
-        return seconds | cpu | {"bytes": self.comm.allreduce(_peak()), "bytes_before": self.before}
+        return self.stages | {"bytes": self.comm.allreduce(_peak()), "bytes_before": self.before}
 
 
 def _peak():
@@ -175,6 +188,9 @@ def _answer(scene, law, wanted, comm, **how):
         field = field_of(scene, cells, solution, slabs, comm, estimator=estimator, stats={})
     mean = comm.allreduce(float(cells.network.radii[: cells.own].sum())) / unknowns
     stats |= solution.stats | {"unknowns": unknowns, "mean_radius": mean} | costs.told()
+    if comm.rank == 0 and np.any(field.fractions == 0):
+        lost = np.flatnonzero(field.fractions == 0) - 1
+        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=3)
     return replace(field, stats=stats)
 
 
