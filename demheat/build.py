@@ -125,8 +125,7 @@ def _tessellated(scene, packing, law, seed):
     if law.conforming:
         asked, packing = packing.number, conform(packing, scene, seed=seed, gap_spacing=law.gap_spacing)
         check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
-        _warn_of_gaps(packing)
-        _warn_of_many(packing, asked)
+        warn_of_twins(packing, asked)
     return *_facets(packing, law), time.perf_counter() - begun
 
 
@@ -174,19 +173,25 @@ def _calibrated(scene, packing, facets, law):
         return calibration(connect(packing, facets, flat.phase_at(packing.centers), flat.conductivities), flat)
 
 
-def _warn_of_gaps(packing):
-    count = packing.provenance["pairs_left_out"]
+def warn_of_twins(packing: Packing, asked: int) -> None:
+    """Warn of pairs of twins that do not fit into gaps, and of twins that are many times as many as particles.
+
+    Twins stand as close as the gaps are narrow, down to a fifth of a mean radius: 64 times as many as elsewhere.
+
+    Parameters
+    ----------
+    packing : Packing
+        As `demheat.packing.conforming.conform` returns it.
+    asked : int
+        Particles that were asked for.
+    """
+    count, twins = packing.provenance["pairs_left_out"], packing.provenance["twins"]
     if count:
         warnings.warn(
             f"{count} pairs of particles do not fit into gaps narrower than a fifth of the mean particle; facets "
             "cross the interfaces there: use more particles where the gaps matter",
             stacklevel=5,
         )
-
-
-def _warn_of_many(packing, asked):
-    """Twins stand as close as the gaps are narrow, down to a fifth of a mean radius: 64 times as many as elsewhere."""
-    twins = packing.provenance["twins"]
     if twins > MANY * max(asked, packing.provenance["even_twins"]):
         warnings.warn(
             f"{twins} twins at interfaces, most of them in narrow gaps, stand beside {asked} particles: memory and "

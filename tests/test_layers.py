@@ -241,6 +241,22 @@ LAYERS = {
         "demheat.files",
         "demheat.commands",
     ),
+    # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
+    "demheat.mpi": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.limits",
+        "demheat.threads",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+        "demheat.build",
+        "demheat.dem",
+        "demheat.mpi",
+    ),
+    "demheat.mpi.__main__": ("demheat.files", "demheat.commands.options", "demheat.mpi"),
     "demheat.__main__": ("demheat.commands",),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),

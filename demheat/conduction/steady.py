@@ -9,12 +9,13 @@ from scipy import sparse
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import islands
 from demheat.conduction import steady_kernels as kernels
-from demheat.conduction.films import COLDEST, Films, films_of, hottest, radiated
+from demheat.conduction.balance import at_walls, conducted, level_of, linear_start, residual, system_of, throughput
+from demheat.conduction.films import COLDEST, films_of, hottest, radiated
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
 from demheat.conduction.preconditioned import preconditioned
-from demheat.network.base import SIDES, Network, without_links
-from demheat.network.links_kernels import links_of, places_of
+from demheat.network.base import SIDES, without_links
+from demheat.network.links_kernels import links_of
 from demheat.process_state import one_blas_thread
 from demheat.progress import stage
 from demheat.scene import Radiation
@@ -58,19 +59,6 @@ class Solution(NamedTuple):
     wall_heat: np.ndarray
     stats: dict
     still: np.ndarray | None = None
-
-
-class _System(NamedTuple):
-    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty."""
-
-    network: Network
-    diagonal: np.ndarray
-    heat: np.ndarray
-    gradient: np.ndarray
-    ties: np.ndarray  # (w,) conductance to held walls and surroundings, W/K
-    held: np.ndarray  # (w,) their temperature above the level, K
-    level: float  # temperatures are solved for relative to it, which spares digits, K
-    films: Films | None = None
 
 
 def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
@@ -127,7 +115,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
     how = {"solver": chosen, "tolerance": tolerance, "most": max_iterations, "kept": kept}
-    first = _start(network, scene, reached) if start is None else np.where(reached, start - level_of(scene), 0.0)
+    first = linear_start(network, scene, reached) if start is None else np.where(reached, start - level_of(scene), 0.0)
     solve = _radiating if scene.radiates else _linear
     system, x, iterations, size, more = solve(network, scene, reached, first, how)
     if not size <= tolerance:
@@ -150,7 +138,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
         "islands": int((~reached).sum()),
     } | more
     still = None if bodies is None else bodies.still
-    return Solution(x, system.gradient, *_at_walls(system, scene, x), stats, still)
+    return Solution(x, system.gradient, *at_walls(system, scene, x), stats, still)
 
 
 def imbalance(network, scene, solution) -> float:
@@ -168,30 +156,20 @@ def imbalance(network, scene, solution) -> float:
     x = np.where(reached, np.nan_to_num(solution.temperature) - level_of(scene), 0.0)
     if scene.radiates:
         surface = np.maximum(np.nan_to_num(solution.wall_temperature), COLDEST * hottest(network, scene))
-        system = _system(network, scene, reached, films_of(network, scene, surface))
+        system = system_of(network, scene, reached, films_of(network, scene, surface))
         return _radiation_left(system, scene, x)[1]
-    return _relative(_system(network, scene, reached), x)[0]
+    return _relative(system_of(network, scene, reached), x)[0]
 
 
 def _relative(system, x):
     """Norm of the residual over that of the heat that passes, the residual, and the latter norm."""
-    r = _residual(system, x)
+    r = residual(system, x)
     norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
     return norm / passing if passing > 0 else float(norm > 0), r, passing if passing > 0 else norm
 
 
-def level_of(scene):
-    """What temperatures are counted from between walls: their mean.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
-    return float(np.mean(list(scene.imposed_temperatures.values())))
-
-
 def _linear(network, scene, reached, first, how):
-    system = _system(network, scene, reached)
+    system = system_of(network, scene, reached)
     return system, *_iterate(system, first, **how), {}
 
 
@@ -202,7 +180,7 @@ def _radiating(network, scene, reached, first, how):
     how, rounds, total, size = how | {"kept": {"serves": SERVES}}, 0, 0, math.inf
     while rounds < ROUNDS and total < how["most"] and not size <= how["tolerance"]:
         films = films_of(network, scene, np.maximum(surface, COLDEST * top))
-        system = _system(network, scene, reached, films)
+        system = system_of(network, scene, reached, films)
         x, count, _ = _iterate(system, x, **how | {"tolerance": aim, "most": how["most"] - total})
         surface, size = _radiation_left(system, scene, x)
         rounds, total = rounds + 1, total + count
@@ -219,7 +197,7 @@ def _radiation_left(system, scene, x):
     tied = np.isin(network.wall_side, black) & (system.ties > 0)
     by_tangents = films.conductance[tied] * (films.outside - surface)[tied]
     missing = radiated(network, scene, surface)[tied] - by_tangents
-    r = _residual(system, x) + np.bincount(network.wall_particle[tied], missing, minlength=len(x))
+    r = residual(system, x) + np.bincount(network.wall_particle[tied], missing, minlength=len(x))
     norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
     return surface, norm / passing if passing > 0 else float(norm > 0)
 
@@ -252,60 +230,12 @@ def check_solver(solver, tolerance):
 def _reached(network, scene):
     """Particles tied to a temperature, a wall's or of surroundings, or in a periodic cell to any other particle."""
     if scene.periodic:
-        return _conducted(network) > 0
+        return conducted(network) > 0
     held = [SIDES.index(name) for name in scene.imposed_temperatures]
     reached = np.zeros(len(network.volumes), dtype=bool)
     reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
     kernels.spread(links_of(network), reached)
     return reached
-
-
-def _conducted(network):
-    """Sum of the conductances of each particle's links, (n,) float array, W/K."""
-    total = np.empty(len(network.volumes))
-    kernels.row_sums(links_of(network), total)
-    return total
-
-
-def _system(network, scene, reached, films=None):
-    n = len(network.volumes)
-    gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
-    diagonal = _conducted(network)
-    if scene.periodic:
-        received = np.empty(n)
-        kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
-        return _System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
-    films = films_of(network, scene) if films is None else films
-    ties = films.ties(network.wall_conductance)
-    level = level_of(scene)
-    held = np.nan_to_num(films.outside - level)
-    heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
-    diagonal += np.bincount(network.wall_particle, ties, minlength=n)
-    cut_off = np.count_nonzero(heat[~reached])
-    if cut_off:
-        raise ValueError(
-            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every wall temperature; "
-            "no steady state exists"
-        )
-    diagonal[~reached] = 0.0
-    return _System(network, diagonal, heat, gradient, ties, held, level, films)
-
-
-def _imposed(network, scene):
-    """Heat that imposed fluxes bring in through each wall facet, W."""
-    return np.array([scene.wall_fluxes.get(name, 0.0) for name in SIDES])[network.wall_side] * network.wall_area
-
-
-def _start(network, scene, reached):
-    """Linear field between two opposite temperatures, else zero, relative to the level."""
-    temperatures = {} if scene.periodic else scene.imposed_temperatures
-    start = np.zeros(len(reached))
-    for axis, letter in enumerate("xyz"):
-        if {letter + "-", letter + "+"} == set(temperatures):
-            low, high = temperatures[letter + "-"], temperatures[letter + "+"]
-            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
-    start[~reached] = 0.0
-    return start
 
 
 def _iterate(system, x, solver, tolerance, most, kept):
@@ -321,22 +251,10 @@ def _iterate(system, x, solver, tolerance, most, kept):
     return x, total, size
 
 
-def _residual(system, x):
-    """Heat that each particle receives in excess; islands, which have no equation, left out."""
-    r = np.empty_like(x)
-    kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
-    r[system.diagonal == 0.0] = 0.0
-    return r
-
-
 def _passing(system, x):
     """Norm of the heat that passes through the particles."""
-    network, received, throughput = system.network, np.empty_like(x), np.empty_like(x)
-    kernels.flows(links_of(network), places_of(network), system.gradient, x, received, throughput)
-    if len(system.ties):
-        particle = network.wall_particle
-        throughput += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
-    return math.sqrt(kernels.dot(throughput, throughput))
+    through = throughput(system, x)
+    return math.sqrt(kernels.dot(through, through))
 
 
 def _jacobi(system):
@@ -389,16 +307,3 @@ def _multigrid(system, kept):
 def _serves(one, other, factor):
     """Whether two diagonals are within a factor of each other."""
     return bool(np.all((one <= factor * other) & (other <= factor * one)))
-
-
-def _at_walls(system, scene, x):
-    """Temperature and entering heat of each wall facet."""
-    if scene.periodic:
-        return np.empty(0), np.empty(0)
-    network, inside = system.network, x[system.network.wall_particle]
-    imposed, conductance = _imposed(network, scene), network.wall_conductance
-    rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
-    is_held = np.isfinite(system.films.outside)
-    temperature = np.where(is_held, system.films.surface(conductance, inside), inside + rise)
-    heat = np.where(is_held, system.ties * (system.held - (inside - system.level)), imposed)
-    return temperature, np.where(np.isnan(heat), 0.0, heat)

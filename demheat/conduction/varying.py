@@ -8,7 +8,8 @@ is then linear in that integral, whatever the temperatures. Picard's iteration t
 
 import numpy as np
 
-from demheat.conduction.steady import imbalance, level_of, solve_checked
+from demheat.conduction.balance import level_of
+from demheat.conduction.steady import imbalance, solve_checked
 from demheat.network.base import branches, link_distances, row_numbers
 
 # Rounds at most, and what each round's linear equations leave of the residual that it begins with.

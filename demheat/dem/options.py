@@ -63,8 +63,6 @@ class Particles:
             check_packing(self.packing)
         if self.packing is None and number < FEWEST and not self.allow_few:
             raise ValueError(f"particles = {number!r}: fewer than {FEWEST}; pass allow_few=True if you mean it")
-        if self.packing is None:
-            check_memory("particles", number, BYTES * int(number))
         if self.packing is not None and self.replicas is not None:
             raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 
@@ -139,6 +137,8 @@ def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic
     knobs = {RENAMED.get(name, name): value for name, value in knobs.items()}
     own = {field.name for field in fields(Particles)}
     wanted = Particles(particles=particles, seed=seed, **{name: knobs[name] for name in own & knobs.keys()})
+    if wanted.packing is None:
+        check_memory("particles", wanted.particles, BYTES * int(wanted.particles))
     return _law(law, {name: value for name, value in knobs.items() if name not in own}), wanted
 
 

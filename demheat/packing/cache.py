@@ -138,6 +138,7 @@ def replicated(
     periodic: bool = True,
     seed: int = 0,
     folder: str | os.PathLike | None = None,
+    keep: Callable | None = None,
 ) -> Packing:
     """Replicas of one relaxed packing, which is made once; between walls for tessellations only.
 
@@ -151,15 +152,29 @@ def replicated(
         As in `relaxed`.
     periodic : bool
         If not, the replicas' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
+    keep : callable (n, 3) float array, m -> (n,) bool array, optional
+        Which centres are kept, before those at walls are drawn in: a part of the packing, without memory for the rest.
     """
     sides, counts = np.array(size, dtype=float), np.array(counts)
-    packing = replicate(
-        relaxed(round(number / int(counts.prod())), size=sides / counts, seed=seed, folder=folder), counts
-    )
+    one = replica(number, counts, size=sides, seed=seed, folder=folder)
+    packing = replicate(one, counts, keep=keep)
     # The size is met exactly: its replicas' may differ by rounding.
     centers = np.minimum(packing.centers, np.nextafter(sides, 0.0), out=packing.centers)
     packing = packing._replace(centers=centers, size=sides)
-    return packing if periodic else walled(packing)
+    return packing if periodic else walled(packing, None if keep is None else one.radii.mean())
+
+
+def replica(number, counts, *, size, seed=0, folder=None) -> Packing:
+    """The packing that `replicated` repeats.
+
+    Parameters
+    ----------
+    number, counts, size, seed, folder
+        As in `replicated`.
+    """
+    counts = np.array(counts)
+    sides = np.array(size, dtype=float) / counts
+    return relaxed(round(number / int(counts.prod())), size=sides, seed=seed, folder=folder)
 
 
 def _of_shape(maker, modules, request, size, radii, periodic, folder):

@@ -5,6 +5,7 @@ weights delta^2 + c (delta the offset from the interface, c one constant) the fa
 exactly its circumscribed polyhedron, whatever the offsets: no facet crosses the interface.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -43,7 +44,26 @@ class _Twins(NamedTuple):
     offsets: np.ndarray  # (k,) m
 
 
-def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float = GAP_SPACING) -> Packing:
+class Part(NamedTuple):
+    """What is known of the whole where a packing is a part of it.
+
+    Attributes
+    ----------
+    radius, largest : float, m
+        Mean radius of the whole packing, and its largest.
+    holds : callable (n, 3) float array, m -> (n,) bool array
+        Which points belong to the part: twins elsewhere are left out. Where particles near an interface give way is
+        right some three mean radii within the part's edges.
+    """
+
+    radius: float
+    largest: float
+    holds: Callable
+
+
+def conform(
+    packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float = GAP_SPACING, part: Part | None = None
+) -> Packing:
     """Replace the particles near every interface of a scene by mirrored twins.
 
     Parameters
@@ -55,6 +75,8 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float
         Turns the point pattern of each sphere.
     gap_spacing : float
         See `demheat.Laguerre`.
+    part : Part, optional
+        The packing is but a part, and gets the twins there that the whole one would have.
 
     Returns
     -------
@@ -75,19 +97,20 @@ def conform(packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float
     check_scene(scene)
     if not scene.inclusions:
         return packing._replace(provenance={**packing.provenance, "twins": 0, "even_twins": 0, "pairs_left_out": 0})
-    radius = packing.radii.mean()
-    _check_number(packing, scene, radius)
-    interfaces = Interfaces(scene, _reach(packing, radius, gap_spacing))
+    if part is None:
+        part = Part(packing.radii.mean(), packing.radii.max(), lambda points: np.ones(len(points), dtype=bool))
+        _check_number(packing, scene, part.radius)
+    radius = part.radius
+    interfaces = Interfaces(scene, _reach(part, gap_spacing))
     tally = Tally(radius)
-    twins, left_out = _twins_on(interfaces, radius, seed, tally, gap_spacing)
-    centers, weights, good = _twin_points(twins, scene, radius)
-    twins = _Twins(*(column[good] for column in twins))
+    twins, number, left_out = _twins_on(interfaces, part, seed, tally, gap_spacing)
+    centers, weights = np.concatenate(_sides(twins)), np.tile(twins.offsets**2 + EXCESS * radius**2, 2)
     near = interfaces.gap(packing.centers)
     keep = near > _cleared(packing, twins, radius, near)
     kept = np.minimum(packing.radii**2, near**2 - margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
     raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
-    counts = {"twins": len(centers), "even_twins": tally.even, "pairs_left_out": left_out}
+    counts = {"twins": number, "even_twins": tally.even, "pairs_left_out": left_out}
     provenance = packing.provenance | counts
     return make_packing(
         np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
@@ -107,18 +130,19 @@ def _check_number(packing, scene, radius):
         )
 
 
-def _reach(packing, radius, gap_spacing):
+def _reach(part, gap_spacing):
     """Gaps that are wider than this change nothing, m."""
     # Of spacings and offsets, whose points lie a little inside of their surfaces; of particles that give way; and of
     # those whose weights are limited.
     apart = max(SPACING / gap_spacing, 4.0 * OFFSET) + 0.02
-    weighty = np.sqrt(packing.radii.max() ** 2 + margin(radius))
-    return 1.001 * max(apart * radius, (OFFSET + CLEARANCE) * radius, weighty)
+    weighty = np.sqrt(part.largest**2 + margin(part.radius))
+    return 1.001 * max(apart * part.radius, (OFFSET + CLEARANCE) * part.radius, weighty)
 
 
-def _twins_on(interfaces, radius, seed, tally, gap_spacing):
-    """Pairs that fit on all surfaces, and the number of those that do not."""
-    parts, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0
+def _twins_on(interfaces, part, seed, tally, gap_spacing):
+    """Pairs that fit on all surfaces and belong to the part; of the whole the twins, and the pairs that do not fit."""
+    parts, number, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0, 0
+    radius = part.radius
     with stage("twins") as done:
         for points, normals, own in patterns(interfaces, radius, seed, tally, gap_spacing):
             done((own.max(initial=-1) + 1) / len(interfaces))
@@ -127,8 +151,12 @@ def _twins_on(interfaces, radius, seed, tally, gap_spacing):
             fits = offsets >= LEAST_OFFSET * radius
             width = interfaces.width(points[~fits], normals[~fits], own[~fits])
             left_out += int(np.sum(width < LEAST_SPACING * radius))
-            parts.append(_Twins(points[fits], normals[fits], offsets[fits]))
-    return _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True))), left_out
+            twins = _Twins(points[fits], normals[fits], offsets[fits])
+            good = _in_place(twins, interfaces.scene)
+            number += 2 * int(good.sum())
+            good &= part.holds(twins.points)
+            parts.append(_Twins(*(column[good] for column in twins)))
+    return _Twins(*(np.concatenate(column) for column in zip(*parts, strict=True))), number, left_out
 
 
 def margin(radius: float) -> float:
@@ -154,17 +182,21 @@ def _room(points, normals, own, interfaces, radius):
     return np.minimum(room, 0.5 * interfaces.way_to_wall(points, normals))
 
 
-def _twin_points(twins, scene, radius):
-    """Both sides of each pair that lies in the box and in two phases: centres, weights, and the pairs kept."""
+def _sides(twins):
+    """Centres of the twins within the interfaces and of those outside, two (k, 3) float arrays."""
     shift = twins.offsets[:, None] * twins.normals
-    inner, outer = twins.points - shift, twins.points + shift
+    return twins.points - shift, twins.points + shift
+
+
+def _in_place(twins, scene):
+    """Pairs of which each lies in the box, and the two in two phases."""
+    inner, outer = _sides(twins)
     good = scene.phase_at(inner) != scene.phase_at(outer)
     if not scene.periodic:
         near = NEAR_WALL * twins.offsets[:, None]
         for side in (inner, outer):
             good &= np.all((side > near) & (side < scene.size - near), axis=1)
-    weights = twins.offsets[good] ** 2 + EXCESS * radius**2
-    return np.concatenate([inner[good], outer[good]]), np.tile(weights, 2), good
+    return good
 
 
 def _cleared(packing, twins, radius, near):

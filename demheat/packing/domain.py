@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -101,7 +101,7 @@ def cut(
     return make_packing(local[kept], packing.radii[kept], sides, periodic, provenance, domain=domain)
 
 
-def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
+def replicate(packing: Packing, repeats: Sequence[int], *, keep: Callable | None = None) -> Packing:
     """Repeat a packing along its periodic axes.
 
     The larger packing is a legitimate periodic one, but holds no more information than one replica: a homogeneous
@@ -112,6 +112,8 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
     packing : Packing
     repeats : (3,) sequence of int
         Replicas along each axis; 1 where there are walls.
+    keep : callable (n, 3) float array, m -> (n,) bool array, optional
+        Which centres are kept: of the rest no memory is taken.
 
     Returns
     -------
@@ -140,23 +142,38 @@ def replicate(packing: Packing, repeats: Sequence[int]) -> Packing:
             f"repeats = {repeats!r} of a packing with periodic = {packing.periodic.tolist()}: must be 1 along axes "
             "with walls"
         )
-    check_memory("repeats", counts.tolist(), BYTES * packing.number * math.prod(counts.tolist()), power=3)
+    if keep is None:
+        check_memory("repeats", counts.tolist(), BYTES * packing.number * math.prod(counts.tolist()), power=3)
     cells = np.stack(np.meshgrid(*map(np.arange, counts), indexing="ij"), axis=-1).reshape(-1, 3)
     cells = cells[morton_order(cells + 0.5, counts.astype(float))]
     n, size = packing.number, packing.size * counts
-    centers = np.empty((len(cells) * n, 3))
-    for k, cell in enumerate(cells):
-        np.add(packing.centers, cell * packing.size, out=centers[k * n : (k + 1) * n])
+    if keep is None:
+        centers, radii = np.empty((len(cells) * n, 3)), np.tile(packing.radii, len(cells))
+        for k, cell in enumerate(cells):
+            np.add(packing.centers, cell * packing.size, out=centers[k * n : (k + 1) * n])
+    else:
+        centers, radii = _kept(packing, cells, keep)
     # Rounding may put the last replica's last centre on the far face, which is the first.
     beyond = packing.periodic & (centers >= size)
     centers[beyond] = 0.0
     provenance = {
         "algorithm": "replicate",
         "repeats": counts.tolist(),
-        "number": len(centers),
+        "number": packing.number * len(cells),
         "of": packing.provenance,
     }
-    return packing._replace(centers=centers, radii=np.tile(packing.radii, len(cells)), size=size, provenance=provenance)
+    return packing._replace(centers=centers, radii=radii, size=size, provenance=provenance)
+
+
+def _kept(packing, cells, keep):
+    """Centres and radii of replicas in some cells, those that are kept."""
+    centers, radii = [np.empty((0, 3))], [np.empty(0)]
+    for cell in cells:
+        moved = packing.centers + cell * packing.size
+        good = keep(moved)
+        centers.append(moved[good])
+        radii.append(packing.radii[good])
+    return np.concatenate(centers), np.concatenate(radii)
 
 
 def replica_counts(number: int, size: Sequence[float], replicas: int | None = None) -> np.ndarray:
@@ -194,15 +211,21 @@ def replica_counts(number: int, size: Sequence[float], replicas: int | None = No
     return counts.astype(int)
 
 
-def walled(packing: Packing) -> Packing:
+def walled(packing: Packing, mean: float | None = None) -> Packing:
     """The packing with walls in place of its periods, its outer particles drawn off them.
 
     Coordinates within `DRAWN[1]` mean radii of a face are squeezed towards the inside so that no centre is nearer to it
     than `DRAWN[0]`: cells at the wall are no slivers. Particles there overlap, and some reach beyond the walls: this
     serves tessellations, not laws of contacts.
+
+    Parameters
+    ----------
+    packing : Packing
+    mean : float, m, optional
+        Mean radius; default the packing's own.
     """
     check_packing(packing)
-    centers, mean = packing.centers.copy(), packing.radii.mean()
+    centers, mean = packing.centers.copy(), packing.radii.mean() if mean is None else mean
     for k in np.flatnonzero(packing.periodic):
         least, depth = np.array(DRAWN) * min(mean, 0.5 * packing.size[k] / DRAWN[1])
         x = centers[:, k]

@@ -40,10 +40,10 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> F
         heat[name] = float(solution.wall_heat[here].sum())
     # What enters a body in time need not leave it.
     by_walls = time is None and not scene.periodic
-    sampler, temperature_at, flux_at = _samplers(scene, network, solution)
+    sampler, temperature_at, flux_at = samplers(scene, network, solution)
     return Field(
         scene=scene,
-        mean_flux=(_between_walls if by_walls else mean_flux)(network, scene, solution),
+        mean_flux=(between_walls if by_walls else mean_flux)(network, scene, solution),
         fractions=np.bincount(network.phase, network.volumes, len(scene.materials)) / network.volumes.sum(),
         sampler=sampler,
         temperature_at=temperature_at,
@@ -52,7 +52,7 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> F
         wall_heat=heat,
         stats=solution.stats | _described(network) | stats,
         time=time,
-        through=lambda axis, position: _heat_through(network, solution, axis, position),
+        through=lambda axis, position: heat_through(network, solution, axis, position),
         estimator=estimator,
     )
 
@@ -69,12 +69,18 @@ def _described(network):
     return {"mean_radius": float(network.radii.mean()), "cached": made.get("cached"), **(network.stats or {})}
 
 
-def _between_walls(network, scene, solution):
+def between_walls(network, scene, solution):
     """Volume average of the flux density in a steady state, (3,) float array, W/m2.
 
     Between two walls the component along the load is the mean of the heat that enters at one and leaves at the other,
     over their area: the volume average by the divergence theorem, and right also where centres are held at wall
     temperature. Other components average the cells' fluxes.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    solution : Solution
     """
     # Not by BLAS here and below: the order of its sums is that of its threads.
     flux = np.einsum("i,ij->j", network.volumes, cell_fluxes(network, solution)) / scene.volume
@@ -109,8 +115,15 @@ class _Locator:
         return cell, offsets - np.where(self.periodic, self.size * np.round(offsets / self.size), 0.0)
 
 
-def _samplers(scene, network, solution):
-    """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
+def samplers(scene, network, solution):
+    """The three lazy parts of a Field: its samples, temperature_at and flux_at.
+
+    Parameters
+    ----------
+    scene : Scene
+    network : Network
+    solution : Solution
+    """
     fluxes = cache(lambda: cell_fluxes(network, solution))
     slopes = cache(lambda: _slopes(scene, network, fluxes()))
 
@@ -153,11 +166,18 @@ def _slopes(scene, network, fluxes):
     return -np.divide(fluxes, k, out=np.zeros_like(fluxes), where=k > 0)
 
 
-def _heat_through(network, solution, axis, position):
+def heat_through(network, solution, axis, position):
     """Heat that crosses the facets between cells on either side of a plane, along the axis, W.
 
     Cells are on the side of their centres; walls across the axis count as neighbours at their place. Between them every
     plane carries the same heat where none is stored, to the residual of the solver.
+
+    Parameters
+    ----------
+    network : Network
+    solution : Solution
+    axis : {0, 1, 2}
+    position : float, m
     """
     length, x, row = network.size[axis], network.centers[:, axis], row_numbers(network.indptr)
     step = x[network.indices] + image_shifts(network.image, network.size)[:, axis]

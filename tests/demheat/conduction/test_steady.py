@@ -5,7 +5,8 @@ from scipy.sparse.linalg import spsolve
 
 from demheat import Flux, Material, Scene, Sphere
 from demheat.build import network_of
-from demheat.conduction.steady import _residual, _system, matrix, solve_steady
+from demheat.conduction.balance import residual, system_of
+from demheat.conduction.steady import matrix, solve_steady
 from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 
@@ -35,7 +36,7 @@ def test_against_a_direct_solver(solver, load, k):
     scene = ball(k, **load)
     network = built(scene)
     solution = solve_steady(network, scene, solver=solver, tolerance=1e-11)
-    system = _system(network, scene, np.ones(len(network.volumes), bool))
+    system = system_of(network, scene, np.ones(len(network.volumes), bool))
     a, b = matrix(network, system.diagonal).tolil(), system.heat.copy()
     if scene.periodic:  # the level is free: hold one particle
         a[0, :], b[0] = 0.0, 0.0
@@ -53,9 +54,9 @@ def test_residual_is_that_of_the_returned_temperatures():
     network = built(scene)
     solution = solve_steady(network, scene, tolerance=1e-9)
     assert 0 < solution.stats["residual"] <= 1e-9
-    system = _system(network, scene, np.ones(len(network.volumes), bool))
-    now = np.linalg.norm(_residual(system, solution.temperature - system.level))
-    assert now < 1e-6 * np.linalg.norm(_residual(system, np.zeros(len(network.volumes))))
+    system = system_of(network, scene, np.ones(len(network.volumes), bool))
+    now = np.linalg.norm(residual(system, solution.temperature - system.level))
+    assert now < 1e-6 * np.linalg.norm(residual(system, np.zeros(len(network.volumes))))
 
 
 def test_heat_in_is_heat_out():

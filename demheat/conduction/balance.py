@@ -1,0 +1,173 @@
+"""The heat balance of a network under a steady load: its equations, what they leave over, and what walls receive."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+import demheat.threads  # noqa: F401 (chooses the threading layer)
+from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.films import Films, films_of
+from demheat.network.base import SIDES, Network
+from demheat.network.links_kernels import links_of, places_of
+
+
+class System(NamedTuple):
+    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty.
+
+    Attributes
+    ----------
+    network : Network
+    diagonal : (n,) float array, W/K
+    heat : (n,) float array, W
+    gradient : (3,) float array, K/m
+    ties : (w,) float array, W/K
+        Conductance to held walls and surroundings.
+    held : (w,) float array, K
+        Their temperature above the level.
+    level : float, K
+        Temperatures are solved for relative to it, which spares digits.
+    films : Films, optional
+    """
+
+    network: Network
+    diagonal: np.ndarray
+    heat: np.ndarray
+    gradient: np.ndarray
+    ties: np.ndarray
+    held: np.ndarray
+    level: float
+    films: Films | None = None
+
+
+def system_of(network, scene, reached, films=None):
+    """The equations of a network under a steady load.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    reached : (n,) bool array
+        Particles that have an equation.
+    films : Films, optional
+        By default those of the scene's loads.
+
+    Returns
+    -------
+    System
+    """
+    n = len(network.volumes)
+    gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
+    diagonal = conducted(network)
+    if scene.periodic:
+        received = np.empty(n)
+        kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
+        return System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
+    films = films_of(network, scene) if films is None else films
+    ties = films.ties(network.wall_conductance)
+    level = level_of(scene)
+    held = np.nan_to_num(films.outside - level)
+    heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
+    diagonal += np.bincount(network.wall_particle, ties, minlength=n)
+    cut_off = np.count_nonzero(heat[~reached])
+    if cut_off:
+        raise ValueError(
+            f"Scene.walls: {cut_off} particles receive an imposed flux but are cut off from every wall temperature; "
+            "no steady state exists"
+        )
+    diagonal[~reached] = 0.0
+    return System(network, diagonal, heat, gradient, ties, held, level, films)
+
+
+def level_of(scene):
+    """What temperatures are counted from between walls: their mean.
+
+    Parameters
+    ----------
+    scene : Scene
+    """
+    return float(np.mean(list(scene.imposed_temperatures.values())))
+
+
+def linear_start(network, scene, reached):
+    """Linear field between two opposite temperatures, else zero, relative to the level, (n,) float array, K.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    reached : (n,) bool array
+        As in `system_of`.
+    """
+    temperatures = {} if scene.periodic else scene.imposed_temperatures
+    start = np.zeros(len(reached))
+    for axis, letter in enumerate("xyz"):
+        if {letter + "-", letter + "+"} == set(temperatures):
+            low, high = temperatures[letter + "-"], temperatures[letter + "+"]
+            start = (high - low) * (network.centers[:, axis] / network.size[axis] - 0.5)
+    start[~reached] = 0.0
+    return start
+
+
+def conducted(network):
+    """Sum of the conductances of each particle's links, (n,) float array, W/K."""
+    total = np.empty(len(network.volumes))
+    kernels.row_sums(links_of(network), total)
+    return total
+
+
+def _imposed(network, scene):
+    """Heat that imposed fluxes bring in through each wall facet, W."""
+    return np.array([scene.wall_fluxes.get(name, 0.0) for name in SIDES])[network.wall_side] * network.wall_area
+
+
+def residual(system, x):
+    """Heat that each particle receives in excess, (n,) float array, W; none on islands, which have no equation.
+
+    Parameters
+    ----------
+    system : System
+    x : (n,) float array, K
+        Temperatures above the level.
+    """
+    r = np.empty_like(x)
+    kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
+    r[system.diagonal == 0.0] = 0.0
+    return r
+
+
+def throughput(system, x):
+    """Heat that passes through each particle, (n,) float array, W.
+
+    Parameters
+    ----------
+    system : System
+    x : (n,) float array, K
+        Temperatures above the level.
+    """
+    network, received, through = system.network, np.empty_like(x), np.empty_like(x)
+    kernels.flows(links_of(network), places_of(network), system.gradient, x, received, through)
+    if len(system.ties):
+        particle = network.wall_particle
+        through += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))
+    return through
+
+
+def at_walls(system, scene, x):
+    """Temperature and entering heat of each wall facet, two (w,) float arrays, K and W.
+
+    Parameters
+    ----------
+    system : System
+    scene : Scene
+    x : (n,) float array, K
+        Temperatures of the particles.
+    """
+    if scene.periodic:
+        return np.empty(0), np.empty(0)
+    network, inside = system.network, x[system.network.wall_particle]
+    imposed, conductance = _imposed(network, scene), network.wall_conductance
+    rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
+    is_held = np.isfinite(system.films.outside)
+    temperature = np.where(is_held, system.films.surface(conductance, inside), inside + rise)
+    heat = np.where(is_held, system.ties * (system.held - (inside - system.level)), imposed)
+    return temperature, np.where(np.isnan(heat), 0.0, heat)

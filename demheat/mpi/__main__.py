@@ -1,0 +1,124 @@
+"""`mpiexec -n 2 python -m demheat.mpi scene.toml --particles 1000000`.
+
+Exit status as that of `demheat`: 0; 1 if the solve was refused or failed; 2 for bad input, which one line names.
+"""
+
+from __future__ import annotations
+
+import sys
+import traceback
+import warnings
+
+import numpy as np
+
+from demheat.commands.options import Parser
+from demheat.files import read
+from demheat.mpi.engines import world
+
+# What all ranks raise alike, before anything heavy, and the exit status of each.
+STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, ImportError: 1}
+ALIKE = tuple(STATUS)
+STAGES = ("packing", "cells", "solve", "field")
+
+
+def main(words=None) -> int:
+    """Solve what a command line says, on every rank alike; the exit status.
+
+    Parameters
+    ----------
+    words : sequence of str, optional
+        Default: those of the process.
+    """
+    comm = None
+    try:
+        options = _parser().parse_args(words)
+        comm = world()
+        if comm.rank:
+            warnings.simplefilter("ignore")
+        _run(options, comm)
+    except ALIKE as error:
+        return _said(error, comm.rank if comm else 0)
+    except (RuntimeError, MemoryError) as error:
+        _said(error, 0)
+        comm.Abort(1)
+    except Exception:
+        # Other ranks would wait for this one.
+        traceback.print_exc()
+        comm.Abort(1)
+    return 0
+
+
+def _run(options, comm):
+    # What is heavy loads once MPI is known to be there.
+    from demheat import mpi
+    from demheat.mpi.solver import outlook
+
+    scene = read(options.scene)
+    say = print if comm.rank == 0 else _silent
+    say(f"{options.scene}: {options.particles} particles, {outlook(options.particles)}", flush=True)
+    knobs = {"seed": options.seed, "tolerance": options.tolerance, "replicas": options.replicas}
+    field = mpi.solve(scene, particles=options.particles, options=options.petsc, **knobs)
+    _say_answer(field, say)
+    if options.at:
+        points = np.array(options.at)
+        for point, value in zip(points.tolist(), field.temperature_at(points), strict=True):
+            say(f"  temperature   {value:.9g} at {point}")
+    if options.interval:
+        error = field.error
+        say(f"  expected      {error.lower:.9g} to {error.upper:.9g} W/(m K) ({error.how})")
+    if options.write:
+        own = field.samples
+        if comm.rank == 0:
+            np.savez(options.write, **own._asdict())
+        say(f"  written       {options.write}")
+
+
+def _say_answer(field, say):
+    stats = field.stats
+    try:
+        say(f"  conductivity  {field.conductivity:.12g} W/(m K)")
+    except (ValueError, KeyError):
+        say(f"  mean flux     {field.mean_flux.tolist()} W/m2")
+    for name, heat in field.wall_heat.items():
+        say(f"  heat at {name}    {heat:.9g} W into the body")
+    say(f"  unknowns      {stats['unknowns']}, residual {stats['residual']:.2g}, {stats['iterations']} iterations")
+    for name in STAGES:
+        wall, cpu, most = (stats[f"{name}_{unit}"] for unit in ("s", "cpu_s", "bytes"))
+        say(f"  {name:<13} {wall:.3g} s, {cpu:.3g} CPU-s on {stats['ranks']} ranks, {most / 2**30:.3g} GiB so far")
+    more = stats["bytes"] - stats["bytes_before"]
+    say(
+        f"  memory        {stats['bytes'] / 2**30:.3g} GiB at the peak, of all ranks: {more / stats['unknowns']:.0f} "
+        f"bytes an unknown, {stats['bytes_before'] / 2**30:.2g} GiB for Python and libraries besides",
+        flush=True,
+    )
+
+
+def _parser():
+    parser = Parser(prog="python -m demheat.mpi", description=__doc__.splitlines()[0], allow_abbrev=False)
+    parser.add_argument("scene", metavar="SCENE.toml")
+    parser.add_argument("--particles", type=int, default=1_000_000)
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--tolerance", type=float, default=1e-8)
+    parser.add_argument("--replicas", type=int, help="of a smaller packing along the shortest side; default: by size")
+    parser.add_argument("--at", type=float, nargs=3, action="append", metavar=("X", "Y", "Z"), help="in metres, again")
+    parser.add_argument("--interval", action="store_true", help="solve with fewer particles too, and tell the error")
+    parser.add_argument("--write", metavar="FILE.npz", help="samples of all particles")
+    parser.add_argument("--petsc", default="", metavar="OPTIONS", help="such as --petsc='-pc_type hypre'")
+    return parser
+
+
+def _silent(*_, **__):
+    pass
+
+
+def _said(error, rank):
+    """One line on standard error, by the first rank."""
+    told = " ".join(str(error).split()) or type(error).__name__
+    status = next((status for kind, status in STATUS.items() if isinstance(error, kind)), 1)
+    if rank == 0:
+        print(f"demheat: {told}", file=sys.stderr, flush=True)
+    return status
+
+
+if __name__ == "__main__":
+    sys.exit(main())

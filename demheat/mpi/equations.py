@@ -1,0 +1,171 @@
+"""The heat balance of all ranks' particles as PETSc's matrix, solved by its conjugate gradients and multigrid."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from demheat.conduction.balance import System, residual, throughput
+from demheat.mpi.cells import Cells
+from demheat.mpi.numbers import Halo
+
+# Rows that are handed over at once: some 20 MB.
+BLOCK = 65536
+# PETSc's own algebraic multigrid, by smoothed aggregates. All links count: leaving weak ones out takes a copy of the
+# matrix, and with square graphs of no level and a threshold of 0.05 the set-up of PETSc 3.18 was not seen to end.
+DEFAULTS = {"pc_type": "gamg", "pc_gamg_type": "agg", "pc_gamg_agg_nsmooths": "1", "pc_gamg_threshold": "-1"}
+PREFIX = "demheat_"
+# Solved anew so often: the heat that passes, which sets the limit, is known only once the solution nearly is.
+ROUNDS, MOST = 10, 20_000
+
+
+class Equations:
+    """A matrix of all ranks and what solves it; `free` gives its memory back.
+
+    Parameters
+    ----------
+    cells : Cells
+    system : System
+        Of what the rank sees.
+    numbers : (n,) int32 array
+    options : str
+        Of PETSc, such as "-pc_type hypre".
+    petsc : module
+    comm : mpi4py.MPI.Comm
+    """
+
+    def __init__(self, cells: Cells, system: System, numbers, options, petsc, comm):
+        self.petsc, self.comm, self.own = petsc, comm, cells.own
+        self.matrix = _matrix(cells, system, numbers, petsc, comm)
+        self.solver = _solver(self.matrix, options, petsc, comm)
+        self.r, self.x = self.matrix.createVecs()
+
+    def correction(self, r: np.ndarray, limit: float, most: int) -> tuple[np.ndarray, int]:
+        """What takes a residual below a limit, and the iterations that took.
+
+        Parameters
+        ----------
+        r : (own,) float array, W
+        limit : float, W
+            On its norm over all ranks.
+        most : int
+            Iterations.
+        """
+        self.r.array[:] = r
+        self.solver.setTolerances(rtol=1e-30, atol=limit, max_it=most)
+        self.solver.solve(self.r, self.x)
+        if self.solver.reason < 0 and self.solver.reason != self.petsc.KSP.ConvergedReason.DIVERGED_MAX_IT:
+            raise RuntimeError(f"demheat.mpi: PETSc gave up, reason {self.solver.reason} of its KSPConvergedReason")
+        return self.x.array_r.copy(), self.solver.its
+
+    def free(self) -> None:
+        """Give back the memory of the matrix and its multigrid."""
+        for each in (self.solver, self.matrix, self.r, self.x):
+            each.destroy()
+
+
+def solved(equations: Equations, system: System, halo: Halo, x: np.ndarray, tolerance: float):
+    """Temperatures above the level that leave no more than a part of the heat that passes.
+
+    Parameters
+    ----------
+    equations : Equations
+    system : System
+        Of what the rank sees.
+    halo : Halo
+    x : (own,) float array, K
+        To begin with.
+    tolerance : float
+        As of `demheat.conduction.steady.solve_steady`.
+
+    Returns
+    -------
+    x : (own,) float array, K
+    iterations : int
+    residual : float
+        Relative, recomputed.
+
+    Raises
+    ------
+    RuntimeError
+        If the residual misses the tolerance.
+    """
+    total = 0
+    for _ in range(ROUNDS):
+        size, r, unit = _left(system, halo, x, equations)
+        if size <= tolerance or total >= MOST:
+            break
+        change, count = equations.correction(r, 0.9 * tolerance * unit, MOST - total)
+        x, total = x + change, total + count
+    if not size <= tolerance:
+        raise RuntimeError(
+            f"demheat.mpi: relative residual {size:.2e} after {total} iterations, asked for {tolerance:.1e}"
+        )
+    return x, total, size
+
+
+def _left(system, halo, x, equations):
+    """Norm of the residual over that of the heat that passes, our part of the residual, and the latter norm."""
+    seen, own = halo.filled(x), equations.own
+    r, through = residual(system, seen)[:own], throughput(system, seen)[:own]
+    norm, passing = (math.sqrt(equations.comm.allreduce(float(np.sum(each**2)))) for each in (r, through))
+    return (norm / passing, r, passing) if passing > 0 else (float(norm > 0), r, norm)
+
+
+def _matrix(cells, system, numbers, petsc, comm):
+    """Rows of the rank's own particles, handed over block by block."""
+    network, own = cells.network, cells.own
+    matrix = petsc.Mat().createAIJ(((own, None), (own, None)), comm=comm)
+    matrix.setPreallocationNNZ(_lengths(network, numbers, own))
+    for start in range(0, own, BLOCK):
+        rows = np.arange(start, min(own, start + BLOCK))
+        matrix.setValuesIJV(*_rows(network, system.diagonal, numbers, rows), addv=True, rowmap=numbers[rows])
+    matrix.assemble()
+    for option in (petsc.Mat.Option.SYMMETRIC, petsc.Mat.Option.SPD):
+        matrix.setOption(option, True)
+    if system.network.periodic.any():
+        matrix.setNullSpace(petsc.NullSpace().create(constant=True, comm=comm))
+    return matrix
+
+
+def _lengths(network, numbers, own):
+    """Entries of each row in the rank's own columns, the diagonal besides, and in others'."""
+    beside, count = np.empty(own, np.int32), np.diff(network.indptr[: own + 1]).astype(np.int32)
+    for start in range(0, own, BLOCK):
+        rows = slice(start, min(own, start + BLOCK))
+        ends = network.indptr[rows.start : rows.stop + 1]
+        column = numbers[network.indices[ends[0] : ends[-1]]]
+        others = np.concatenate([[0], np.cumsum((column < numbers[0]) | (column >= numbers[0] + own))])
+        beside[rows] = np.diff(others[ends - ends[0]])
+    return count - beside + 1, beside
+
+
+def _rows(network, diagonal, numbers, rows):
+    """Some rows as PETSc takes them: pointers, columns and values, the diagonal last in each."""
+    begin, end = network.indptr[rows[0]], network.indptr[rows[-1] + 1]
+    last = network.indptr[rows + 1] - begin
+    columns = np.insert(numbers[network.indices[begin:end]], last, numbers[rows])
+    values = np.insert(-network.conductance[begin:end], last, diagonal[rows])
+    pointers = np.concatenate([[0], last + np.arange(1, len(rows) + 1)]).astype(np.int32)
+    return pointers, columns, values
+
+
+def _solver(matrix, options, petsc, comm):
+    known = petsc.Options()
+    for name, value in DEFAULTS.items():
+        known[PREFIX + name] = value
+    words = options.split()
+    known.insertString(" ".join("-" + PREFIX + word[1:] if _is_name(word) else word for word in words))
+    solver = petsc.KSP().create(comm)
+    solver.setOptionsPrefix(PREFIX)
+    solver.setType("cg")
+    solver.setNormType(petsc.KSP.NormType.UNPRECONDITIONED)
+    solver.setOperators(matrix)
+    solver.setFromOptions()
+    solver.setUp()
+    return solver
+
+
+def _is_name(word):
+    return word[0] == "-" and word[1:2].isalpha()

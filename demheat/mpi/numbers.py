@@ -1,0 +1,91 @@
+"""One number for each unknown of all ranks, and the temperatures of particles that a rank sees of others."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from demheat.mpi.slabs import Slabs
+from demheat.packing.base import wrap
+
+# Two ranks make one particle of the same numbers: so far apart, in radii, they are two.
+SAME = 1e-6
+NOBODY = -1
+
+
+def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:
+    """Global numbers of the particles that a rank sees: its own in one run, of others those that their owners tell.
+
+    Parameters
+    ----------
+    network : Network
+    own : int
+        Its first particles are the rank's own.
+    slabs : Slabs
+    comm : mpi4py.MPI.Comm
+
+    Returns
+    -------
+    (n,) int32 array
+        NOBODY at particles without a cell of their own, near the edge of what is seen.
+
+    Raises
+    ------
+    RuntimeError
+        If a cell of the rank touches such a particle.
+    """
+    first = comm.scan(own) - own
+    numbers = np.full(len(network.volumes), NOBODY, dtype=np.int32)
+    numbers[:own] = first + np.arange(own)
+    centers = wrap(network.centers[own:], network.size, np.broadcast_to(slabs.periodic, 3))
+    owner = slabs.owner(centers)
+    rows = [np.flatnonzero(owner == rank) for rank in range(comm.size)]
+    asked = comm.alltoall([centers[each] for each in rows])
+    told = comm.alltoall([_found(points, network.centers[:own], slabs) for points in asked])
+    for each, found, rank in zip(rows, told, range(comm.size), strict=True):
+        start = comm.bcast(first, root=rank)
+        numbers[own + each] = np.where(found >= 0, start + found, NOBODY)
+    if np.any(numbers[network.indices[: network.indptr[own]]] == NOBODY):
+        raise RuntimeError("demheat.mpi: a particle beside a rank's own is unknown to its owner")
+    return numbers
+
+
+def _found(points, own, slabs):
+    """Which of a rank's own particles lies at each point; -1 where none does."""
+    if not len(points):
+        return np.empty(0, dtype=np.int64)
+    x, slack = own[:, slabs.axis], SAME * slabs.unit
+    near = np.flatnonzero((x >= points[:, slabs.axis].min() - slack) & (x <= points[:, slabs.axis].max() + slack))
+    if not len(near):
+        return np.full(len(points), NOBODY)
+    away, place = cKDTree(own[near]).query(points)
+    return np.where(away <= slack, near[place], NOBODY)
+
+
+class Halo:
+    """What a rank sees of a quantity of which each rank has its own part.
+
+    Parameters
+    ----------
+    numbers : (n,) int32 array
+    own : int
+    petsc : module
+    comm : mpi4py.MPI.Comm
+    """
+
+    def __init__(self, numbers, own, petsc, comm):
+        self.own, self.known = own, np.flatnonzero(numbers[own:] != NOBODY) + own
+        self.size = len(numbers)
+        self.whole = petsc.Vec().createMPI((own, None), comm=comm)
+        self.beside = petsc.Vec().createSeq(len(self.known))
+        chosen = petsc.IS().createGeneral(numbers[self.known], comm=petsc.COMM_SELF)
+        self.scatter = petsc.Scatter().create(self.whole, chosen, self.beside, None)
+
+    def filled(self, values: np.ndarray) -> np.ndarray:
+        """Values of a rank's own particles, (own,) float array, with those of all it sees, NaN where nobody tells."""
+        self.whole.array[:] = values
+        self.scatter.scatter(self.whole, self.beside)
+        seen = np.full(self.size, np.nan)
+        seen[: self.own] = values
+        seen[self.known] = self.beside.array_r
+        return seen

@@ -1,0 +1,222 @@
+"""A scene solved by all ranks together: packing, cells, equations, field, each rank its slab."""
+
+from __future__ import annotations
+
+import os
+import resource
+import sys
+import time
+import warnings
+from contextlib import contextmanager
+from dataclasses import replace
+
+import numpy as np
+
+from demheat import dem
+from demheat.conduction.balance import at_walls, linear_start, system_of
+from demheat.conduction.steady import Solution, check_solver
+from demheat.dem.estimate import estimator_of
+from demheat.dem.options import Particles
+from demheat.field import Field
+from demheat.laws import Laguerre
+from demheat.limits import check_memory, free_memory
+from demheat.mpi.cells import cells_of, check_unknowns, part_of
+from demheat.mpi.engines import petsc, world
+from demheat.mpi.equations import Equations, solved
+from demheat.mpi.field import field_of
+from demheat.mpi.numbers import Halo, numbers_of
+from demheat.mpi.slabs import slabs_of
+from demheat.scene import Scene, check_scene
+from demheat.threads import limited
+
+# Least bytes that a particle takes at the peak, all ranks together: 1450 were found at 4e6 on two ranks, 1520 at 1e6.
+BYTES = 1400
+KNOWS = "demheat.mpi solves steady conduction in boxes without pores, by the discrete element method"
+
+
+def solve(
+    scene: Scene,
+    *,
+    law: Laguerre | None = None,
+    particles: int = 1_000_000,
+    seed: int = 0,
+    tolerance: float = 1e-8,
+    options: str = "",
+    replicas: int | None = None,
+    allow_few: bool = False,
+) -> Field:
+    """Steady conduction in a scene by the discrete element method, on all ranks of an MPI run.
+
+    To be called by every rank with the same arguments; what it returns, too, is to be asked by all of them at the same
+    time.
+
+    Parameters
+    ----------
+    scene : Scene
+        A box without pores; conductivities are numbers, walls do not radiate.
+    law : Laguerre, optional
+    particles, seed, tolerance, replicas, allow_few
+        As those of `demheat.solve`.
+    options : str
+        Of PETSc, such as "-pc_type hypre".
+
+    Returns
+    -------
+    Field
+        With `stats` of `demheat.solve` besides: ranks, bytes (at the peak, of all ranks), bytes_before (of Python and
+        libraries alone), and of each stage seconds of the slowest rank, CPU-seconds of all ranks and bytes at the peak
+        so far.
+
+    Raises
+    ------
+    ValueError
+        If an argument is not as described; if there are more ranks than slabs; or for more particles than fit into the
+        free memory, before any heavy work.
+    NotImplementedError
+        If the scene is another.
+    ImportError
+        If MPI or PETSc is missing.
+    RuntimeError
+        If the solver does not converge.
+    """
+    law = Laguerre() if law is None else law
+    wanted = Particles(particles=particles, seed=seed, replicas=replicas, allow_few=allow_few)
+    _check(scene, law, wanted, tolerance)
+    comm = world()
+    slabs_of(scene, particles, comm.size, comm.rank)
+    share = _on_this_machine(comm)
+    _check_memory(particles, share, comm)
+    with limited(max(1, _cores() // share)):
+        return _answer(scene, law, wanted, comm, tolerance=tolerance, options=options)
+
+
+def needed(particles: int, here: int, ranks: int) -> float:
+    """Bytes that a solve takes at its peak on one machine.
+
+    Parameters
+    ----------
+    particles : int
+    here, ranks : int
+        Ranks on this machine, and all of them.
+    """
+    return BYTES * float(particles) * here / ranks
+
+
+def outlook(particles: int) -> str:
+    """What a solve will take on this machine, in words.
+
+    Parameters
+    ----------
+    particles : int
+    """
+    comm = world()
+    here = _on_this_machine(comm)
+    gib = needed(particles, here, comm.size) / 2**30
+    return f"about {gib:.2g} GiB on this machine for {here} of {comm.size} ranks, {free_memory() / 2**30:.3g} are free"
+
+
+def _check(scene, law, wanted, tolerance):
+    check_scene(scene)
+    check_solver("auto", tolerance)
+    if not isinstance(law, Laguerre):
+        raise ValueError(f"law = {law!r}: must be a Laguerre, whose cells each rank makes for itself")
+    scene.require(KNOWS, steady=True, domain="box", pores=False, takes=("resistance", "exchange"))
+    if scene.radiates:
+        raise NotImplementedError(f"walls that radiate: {KNOWS}")
+    law.check(scene)
+    wanted.counts(scene, law)
+
+
+def _check_memory(particles, share, comm):
+    """Refuse on all ranks what does not fit where one of them is."""
+    refused = None
+    try:
+        check_memory("particles", particles, needed(particles, share, comm.size))
+    except ValueError as error:
+        refused = str(error)
+    refused = next(filter(None, comm.allgather(refused)), None)
+    if refused:
+        raise ValueError(refused)
+
+
+def _on_this_machine(comm):
+    """How many ranks share this machine."""
+    return comm.Split_type(sys.modules["mpi4py.MPI"].COMM_TYPE_SHARED).size
+
+
+def _cores():
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class _Costs:
+    """Seconds of each stage and bytes at the peak, of all ranks."""
+
+    def __init__(self, comm):
+        self.comm, self.stages = comm, {}
+        self.before = comm.allreduce(_peak())
+
+    @contextmanager
+    def of(self, name):
+        wall, cpu = time.perf_counter(), time.process_time()
+        yield
+        took = self.comm.allreduce(time.process_time() - cpu)
+        slowest = max(self.comm.allgather(time.perf_counter() - wall))
+        self.stages |= {f"{name}_s": slowest, f"{name}_cpu_s": took, f"{name}_bytes": self.comm.allreduce(_peak())}
+
+    def told(self):
+        return self.stages | {"bytes": self.comm.allreduce(_peak()), "bytes_before": self.before}
+
+
+def _peak():
+    """Bytes that this process has held at most."""
+    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+
+
+def _answer(scene, law, wanted, comm, **how):
+    costs, slabs = _Costs(comm), slabs_of(scene, wanted.particles, comm.size, comm.rank)
+    with costs.of("packing"):
+        packing = part_of(scene, law, wanted, slabs, comm)
+    with costs.of("cells"):
+        cells = cells_of(scene, law, packing, slabs, comm)
+        del packing
+        unknowns = check_unknowns(comm, cells.own)
+    with costs.of("solve"):
+        solution = _solved(scene, cells, slabs, comm, **how)
+    stats = {"law": law.name, "calibration": 1.0, "packing": cells.packing, "ranks": comm.size, "solver": "petsc"}
+    with costs.of("field"):
+        estimator = estimator_of(law, wanted, lambda law, wanted: _coarser(scene, law, wanted, comm, **how))
+        field = field_of(scene, cells, solution, slabs, comm, estimator=estimator, stats={})
+    mean = comm.allreduce(float(cells.network.radii[: cells.own].sum())) / unknowns
+    stats |= solution.stats | {"unknowns": unknowns, "mean_radius": mean} | costs.told()
+    if comm.rank == 0 and np.any(field.fractions == 0):
+        lost = np.flatnonzero(field.fractions == 0) - 1
+        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=3)
+    return replace(field, stats=stats)
+
+
+def _solved(scene, cells, slabs, comm, *, tolerance, options):
+    """Temperatures of all particles that a rank sees."""
+    network, own, engine = cells.network, cells.own, petsc()
+    reached = np.ones(len(network.volumes), dtype=bool)
+    numbers = numbers_of(network, own, slabs, comm)
+    halo = Halo(numbers, own, engine, comm)
+    system = system_of(network, scene, reached)
+    equations = Equations(cells, system, numbers, options, engine, comm)
+    first = linear_start(network, scene, reached)[:own]
+    x, iterations, size = solved(equations, system, halo, first, tolerance)
+    equations.free()
+    if scene.periodic:
+        x -= comm.allreduce(float(x @ network.volumes[:own])) / comm.allreduce(float(network.volumes[:own].sum()))
+    temperature = halo.filled(x) + system.level
+    stats = {"iterations": iterations, "residual": size}
+    return Solution(temperature, system.gradient, *at_walls(system, scene, temperature), stats)
+
+
+def _coarser(scene, law, wanted, comm, **how):
+    """A run with fewer particles, for the error; on every rank by itself where there are too few for slabs."""
+    try:
+        slabs_of(scene, wanted.particles, comm.size, comm.rank)
+    except ValueError:
+        same = {"seed": wanted.seed, "allow_few": wanted.allow_few, "tolerance": how["tolerance"]}
+        return dem.solve(scene, law=law, particles=wanted.particles, **same)
+    return _answer(scene, law, wanted, comm, **how)
