@@ -276,11 +276,7 @@ def solved(scene: Scene, n: int | None = None) -> dict:
 
     bed = scene.drawn(n)
     field, cost = measured(network, bed)
-    heat, held = field.heat_from_walls, field.at_walls
-    # Held grains are a little off the temperatures that hold them.
-    hot = heat > 0
-    levels = [heat[end] @ field.temperature[held.grain[end]] / heat[end].sum() for end in (hot, ~hot)]
-    found = bed.conductivity(heat[hot].sum() / (levels[0] - levels[1]))
+    found = bed.conductivity(field.wall_heat["x-"] / drop(field))
     return {"conductivity": float(found), "version": "", "unknowns": len(bed.radii)} | {
         "iterations": field.stats.get("iterations"),
         **cost,
@@ -302,3 +298,10 @@ def network(bed: Bed):
             first, second, radius=conductance * (1 / bed.solid[first] + 1 / bed.solid[second]) / 4
         )
     return grains.solve(packing, bed.solid, walls={"x-": 1.0, "x+": 0.0}, contact=contact, layer=bed.layer)
+
+
+def drop(field) -> float:
+    """Difference of the temperatures that held grains have, a little less than 1 K, weighted with their heat."""
+    heat, warmth = field.heat_from_walls, field.temperature[field.at_walls.grain]
+    hot, cold = heat > 0, heat < 0
+    return float(heat[hot] @ warmth[hot] / heat[hot].sum() - heat[cold] @ warmth[cold] / heat[cold].sum())

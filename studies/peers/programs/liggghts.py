@@ -163,7 +163,8 @@ def _heat(bed, grains):
 def _apart(bed, contacts):
     """Largest difference of the heat of a contact from `demheat.grains`, over the largest heat."""
     field = beds.network(bed)
-    ours = {(i, j): q for i, j, q in zip(field.pairs.first, field.pairs.second, field.heat, strict=True)}
+    heat = field.heat / beds.drop(field)
+    ours = {(i, j): q for i, j, q in zip(field.pairs.first, field.pairs.second, heat, strict=True)}
     pairs = np.sort(contacts[:, :2].astype(int) - 1, axis=1)
     if {tuple(pair) for pair in pairs.tolist()} != set(ours):
         raise RuntimeError(f"LIGGGHTS found {len(pairs)} contacts, not the {len(ours)} of the bed")
