@@ -305,3 +305,27 @@ def drop(field) -> float:
     heat, warmth = field.heat_from_walls, field.temperature[field.at_walls.grain]
     hot, cold = heat > 0, heat < 0
     return float(heat[hot] @ warmth[hot] / heat[hot].sum() - heat[cold] @ warmth[cold] / heat[cold].sum())
+
+
+def flows(bed: Bed, warmth) -> tuple[dict, np.ndarray]:
+    """Heat that `demheat.grains` has contacts and grains exchange at given temperatures.
+
+    Parameters
+    ----------
+    bed : Bed
+    warmth : (n,) array_like, K
+
+    Returns
+    -------
+    contacts : dict of (int, int) to float, W
+        From the second to the first grain of each pair of numbers that rise.
+    received : (n,) float array, W
+        By each grain.
+    """
+    pairs, warmth = network(bed).pairs, np.asarray(warmth)
+    heat = pairs.conductance * (warmth[pairs.second] - warmth[pairs.first])
+    n = len(bed.radii)
+    received = np.bincount(pairs.first, heat, n) - np.bincount(pairs.second, heat, n)
+    rise = np.sign(pairs.second - pairs.first)
+    couples = np.sort(np.column_stack((pairs.first, pairs.second)), axis=1)
+    return dict(zip(map(tuple, couples.tolist()), rise * heat, strict=True)), received

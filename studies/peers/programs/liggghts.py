@@ -74,10 +74,10 @@ def solve(scene, *, n=None) -> Found:
         kinds = _write(Path(folder), bed, step, count)
         _, cost = ran(["liggghts", "-in", "in.bed", "-log", "none"], folder=folder)
         grains, contacts = (_last(Path(folder, name)) for name in ("grains.dump", "contacts.dump"))
-    heat, apart = _heat(bed, grains), _apart(bed, contacts)
+    heat, apart = _heat(bed, grains), _apart(bed, grains, contacts)
     note = f"heat in and out {abs(np.diff(heat)[0]) / heat[0]:.0e} apart, of contacts from ours {apart:.0e}"
     found = bed.conductivity(float(np.mean(heat)))
-    return Found(found, cost, unknowns=len(bed.radii), iterations=count, note=f"{note}; {kinds} materials")
+    return Found(found, cost | {"whole": True}, unknowns=len(bed.radii), iterations=count, note=f"{note}; {kinds} materials")
 
 
 def _write(folder, bed, step, count):
@@ -160,15 +160,11 @@ def _heat(bed, grains):
     return [float(-received[bed.held == 1.0].sum()), float(received[bed.held == 0.0].sum())]
 
 
-def _apart(bed, contacts):
-    """Largest difference of the heat of a contact from `demheat.grains`, over the largest heat."""
-    field = beds.network(bed)
-    heat = field.heat / beds.drop(field)
-    ours = {(i, j): q for i, j, q in zip(field.pairs.first, field.pairs.second, heat, strict=True)}
+def _apart(bed, grains, contacts):
+    """Largest difference of the heat of a contact from ours at the same temperatures, over the largest heat."""
+    ours, _ = beds.flows(bed, grains[:, 1])
     pairs = np.sort(contacts[:, :2].astype(int) - 1, axis=1)
-    if {tuple(pair) for pair in pairs.tolist()} != set(ours):
+    if set(map(tuple, pairs.tolist())) != set(ours):
         raise RuntimeError(f"LIGGGHTS found {len(pairs)} contacts, not the {len(ours)} of the bed")
-    # Heat that goes into the first grain of a pair as the program has it: its sign is of no matter here.
-    theirs = np.abs(contacts[:, 3])
-    same = np.abs([ours[tuple(pair)] for pair in pairs.tolist()])
+    theirs, same = np.abs(contacts[:, 3]), np.abs([ours[pair] for pair in map(tuple, pairs.tolist())])
     return float(np.max(np.abs(theirs - same)) / same.max())
