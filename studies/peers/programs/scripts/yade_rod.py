@@ -1,4 +1,4 @@
-"""The rod of Yade's example conductionVerification.py: walls across x at 0, grains at 400 K; bed.json in, found.json out."""
+"""The rod of Yade's example conductionVerification.py: walls across x at 0, grains at 400 K; bed.json to found.json."""
 
 # ruff: noqa: F403, F405, B905 (as scripts of Yade do: O, Vector3 and the engines; Python of the system)
 import json
@@ -12,9 +12,7 @@ low, high = Vector3(0, 0, 0), Vector3(1.0, 0.008, 0.008)
 O.materials.append(FrictMat(young=1e6, poisson=0.5, frictionAngle=radians(3), density=2600, label="spheres"))
 O.materials.append(FrictMat(young=1e6, poisson=0.5, frictionAngle=0, density=0, label="walls"))
 O.bodies.append(aabbWalls([low, high], thickness=0, material="walls"))
-numbers = O.bodies.append(
-    pack.regularOrtho(pack.inAlignedBox(low, high), radius=0.003, gap=-1e-8, material="spheres")
-)
+numbers = O.bodies.append(pack.regularOrtho(pack.inAlignedBox(low, high), radius=0.003, gap=-1e-8, material="spheres"))
 for number in numbers:
     O.bodies[number].dynamic = False
 flow, thermal = FlowEngine(multithread=False), ThermalEngine()
