@@ -13,7 +13,7 @@ from demheat.scene import Layer, Material, Scene, Sphere, orthotropic
 from demheat.tensor import conductivity_tensor
 from studies.harness import methods
 from studies.harness.cost import measured
-from studies.harness.pick import finest, pick, present
+from studies.harness.pick import pick, present
 
 PAPER = {}
 ONE, OTHER = orthotropic(1.0, 4.0, 9.0, rotation=(0.3, -0.5, 0.8)), orthotropic(3.0, 1.0, 0.2, rotation=(1.0, 0.0, 2.0))
@@ -131,12 +131,17 @@ def _sphere(df):
     rows = pick(df, body="sphere")
     for side in ("below_voigt", "above_reuss"):
         yield f"sphere: {side.replace('_', ' ')}, least eigenvalue over the norm", rows[side].min(skipna=False), "> 0"
-    best = finest(pick(rows, name="fem"))
+    best = _finest(pick(rows, name="fem"))
     for name, limit in (("fft", 0.3), ("fem-p1", 3.0)):
-        other = finest(pick(rows, name=name))
-        if len(best) and len(other):
-            off = apart_percent(other.iloc[0], best.iloc[0])
+        other = _finest(pick(rows, name=name))
+        if best is not None and other is not None:
+            off = apart_percent(other, best)
             yield f"sphere: {name} from quadratic elements, both at their finest, %", off, limit
+
+
+def _finest(rows):
+    """The row with the most unknowns, if there is one."""
+    return rows.loc[rows["unknowns"].idxmax()] if len(rows) else None
 
 
 def table(df):
@@ -153,7 +158,7 @@ def plot(df):
 
     figure, axes = pyplot.subplots(figsize=(6.5, 4.8))
     rows = pick(df, body="sphere")
-    best = finest(pick(rows, name="fem")).iloc[0]
+    best = _finest(pick(rows, name="fem"))
     for name, group in rows.groupby("name", sort=False):
         group = group.sort_values("unknowns")
         off = np.array([apart_percent(row, best) for _, row in group.iterrows()])

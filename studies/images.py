@@ -125,15 +125,25 @@ def table(df):
     return pd.DataFrame(rows)
 
 
+def notes(df):
+    """Why one limit is missed, where it is."""
+    added = _abs(_added(df, _own(df), name="dem-plain", n=32, particles=100_000))
+    if added is not None and added > 0.5:
+        yield (
+            f"The DEM with 100 000 particles is {added:.2f} % from the image of 32^3, above the limit of .5 % that was "
+            "set before: three particles stand in a voxel, and facets cross its faces wherever they fall."
+        )
+
+
 def plot(df):
     """Errors against the voxel: of the image, and of methods on it."""
     from matplotlib import pyplot
 
-    from studies.harness.figures import BLACK, look
+    from studies.harness.figures import GREY, look
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8), sharex=True)
     own = _own(df)
-    left.plot(list(own), np.abs(list(own.values())), color=BLACK, linewidth=2, label="the image itself")
+    left.plot(list(own), np.abs(list(own.values())), color=GREY, linewidth=5, alpha=0.6, label="the image itself")
     most = df["particles"].max()
     for name in (*ON_VOXELS, "dem-plain"):
         rows = pick(df, name=name, parts=1).sort_values("n")
@@ -144,6 +154,8 @@ def plot(df):
         right.plot(known["n"], added, **look(name))
     for axes, title in ((left, "from the exact value of the spheres"), (right, "from the image's own value")):
         axes.set(xscale="log", yscale="log", xlabel="voxels along an edge", title=title)
+        axes.set_xticks(VOXELS, [str(n) for n in VOXELS])
+        axes.set_xticks([], minor=True)
     left.set_ylabel("|difference of the conductivity|, %")
     figure.suptitle("On an image of stairs the stairs are the larger error")
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)

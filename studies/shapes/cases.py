@@ -2,7 +2,8 @@
 
 # Coarse and fine: particles, voxels along an edge, element sizes in edges; a small body asks for more.
 SPENT = {"dem": (3_000, 30_000), "fft": (32, 64), "fem": (1 / 8, 1 / 16)}
-SPENT_ON_ELLIPSOID = {"dem": (20_000, 100_000), "fft": (64, 96), "fem": (1 / 4, 1 / 6)}
+# Of elements a sixth was to be the finest; from there on the ellipsoid's own surface sets theirs, down to some 1/25.
+SPENT_ON_ELLIPSOID = {"dem": (20_000, 100_000), "fft": (64, 96), "fem": (1 / 6, 1 / 45)}
 CONTRASTS, FRACTIONS = (0.01, 0.1, 10.0, 100.0), (0.3, 0.6)
 # The fibre whose temperature is looked at, too.
 CONTRAST, FRACTION = 10.0, 0.3

@@ -1,0 +1,48 @@
+"""What the rows of programs say together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from studies.peers.tables import ours
+
+# Error at which programs are compared by their costs, %.
+AIM = 0.1
+COMPARED = ("sphere 10", "sphere 0.01", "half 10", "dispersion 10")
+
+
+def same_mesh(df):
+    """Largest relative difference between linear elements of others and ours on the same mesh, by program.
+
+    Parameters
+    ----------
+    df : data frame
+        Rows that are ok.
+    """
+    mine = df[df["name"] == "fem-p1"].dropna(subset=["size"]) if "size" in df else df[:0]
+    known = {(row["scene"], row["size"]): row["conductivity"] for _, row in mine.iterrows()}
+    found = {}
+    for _, row in df[df["given"] == "mesh"].iterrows():
+        there = known.get((row["scene"], row["size"]))
+        if there is not None and row.get("order", 1) in (1, None):
+            apart = abs(row["conductivity"] / there - 1)
+            found[row["name"]] = max(apart, found.get(row["name"], 0.0))
+    return found
+
+
+def ahead(df):
+    """Least CPU time of other programs to an error over the least of ours, by body; infinite where no other gets there.
+
+    Parameters
+    ----------
+    df : data frame
+        Rows that are ok.
+    """
+    there = df[df["error_percent"].abs() <= AIM]
+    found = {}
+    for scene in COMPARED:
+        rows = there[there["scene"] == scene]
+        mine, others = rows[ours(rows)]["cpu_s"], rows[~ours(rows) & (rows["given"] != "network")]["cpu_s"]
+        if len(mine) and len(df[(df["scene"] == scene) & ~ours(df)]):
+            found[scene] = float(others.min() / mine.min()) if len(others) else np.inf
+    return found

@@ -1,0 +1,101 @@
+"""What the rows of programs say: errors by body, what each costs, what each cannot do."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+import pandas as pd
+
+from studies.harness import methods
+
+# What is given, in the order of the table.
+KINDS = {"image": "the image", "mesh": "our mesh", "body": "the body", "packing": "spheres", "network": "our matrix"}
+KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "particles": "{:g} particles"}
+# At most one part in so many of the known value is shown as such: the rest is rounding.
+NOTHING = 1e-9
+
+
+def title(name):
+    """How a method of ours, or a program of others, is called.
+
+    Parameters
+    ----------
+    name : str
+        Of a row.
+    """
+    if name in methods.found():
+        return methods.found()[name].title
+    return import_module(f"studies.peers.programs.{name}").TITLE
+
+
+def ours(df):
+    """True for rows of our own methods, (n,) bool Series."""
+    return df["name"].isin(methods.found())
+
+
+def resolution(row):
+    """What refines a row, in words.
+
+    Parameters
+    ----------
+    row : mapping
+    """
+    words = [form.format(row[knob]) for knob, form in KNOBS.items() if knob in row and row[knob] == row[knob]]
+    degree = [f"degree {row['order']:g}"] if row["name"] not in methods.found() and row.get("order", 0) > 0 else []
+    return ", ".join(words + degree)
+
+
+def lines(df):
+    """A line for each program and resolution, a column for each body: error of the conductivity, %; cost of one.
+
+    Parameters
+    ----------
+    df : data frame
+        Rows that are ok.
+
+    Returns
+    -------
+    data frame
+    """
+    found = []
+    df = df.assign(resolution=[resolution(row) for row in df.to_dict("records")])
+    for kind, words in KINDS.items():
+        rows = df[df["given"] == kind]
+        for (name, at), group in rows.groupby(["name", "resolution"], sort=False):
+            errors = {row["scene"]: _shown(row["error_percent"]) for _, row in group.iterrows()}
+            cost = group[["cpu_s", "peak_mib", "unknowns"]].median()
+            found.append({"given": words, "program": title(name), "resolution": at, **errors, **cost})
+    table = pd.DataFrame(found)
+    last = [column for column in ("unknowns", "cpu_s", "peak_mib") if column in table]
+    return table[[column for column in table if column not in last] + last]
+
+
+def _shown(error):
+    return 0.0 if abs(error) < NOTHING else error
+
+
+def cannot(names):
+    """Sentences: what programs cannot do, by their own files.
+
+    Parameters
+    ----------
+    names : iterable of str
+    """
+    for name in names:
+        module = import_module(f"studies.peers.programs.{name}")
+        limits = "; ".join(f"{what}: {why}" for what, why in module.CANNOT.items())
+        said = [f"cannot: {limits}" if limits else "", module.EXPLAINED]
+        if any(said):
+            yield f"**{module.TITLE}** ({module.GET}) " + ". ".join(filter(None, said))
+
+
+def versions(df):
+    """One sentence of the versions that ran.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    pairs = df[["name", "version"]].dropna().drop_duplicates()
+    said = [f"{title(name)} {version}" for name, version in pairs.itertuples(index=False) if version]
+    return "Versions: " + ", ".join(said) + "." if said else ""
