@@ -34,11 +34,11 @@ CASES = (
     {"scene": f"simple cubic, {RADIUS}", "n": 16},
     {"scene": f"body-centred, {RADIUS}", "n": 6},
     {"scene": f"body-centred, {RADIUS}", "n": 12},
-    {"scene": f"random bed, {RADIUS}", "n": None},
+    {"scene": f"random bed, {RADIUS}"},
     {"scene": f"chain, {AREA}", "n": 10},
     {"scene": f"simple cubic, {AREA}", "n": 8},
-    {"scene": f"random bed, {AREA}", "n": None},
-    {"scene": "random bed, disc", "n": None},
+    {"scene": f"random bed, {AREA}"},
+    {"scene": "random bed, disc"},
 )
 EXPLAINED = (
     "mixed: types conduct by the geometric mean of their conductivities; disc: Hertz's radius is below a circle's"

@@ -36,9 +36,9 @@ CASES = (
     {"scene": f"simple cubic, {LAW}", "n": 16},
     {"scene": f"body-centred, {LAW}", "n": 6},
     {"scene": f"body-centred, {LAW}", "n": 12},
-    {"scene": f"random bed, {LAW}", "n": None},
+    {"scene": f"random bed, {LAW}"},
     {"scene": "chain, disc", "n": 10},
-    {"scene": "random bed, disc", "n": None},
+    {"scene": "random bed, disc"},
 )
 EXPLAINED = "of a disc between half-spaces sqrt(pi) - 1 = 77 %: the root of the contact's area, not its radius"
 DENSITY, HELD = 1000.0, 1e30

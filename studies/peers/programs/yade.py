@@ -39,13 +39,13 @@ CASES = (
     {"scene": f"simple cubic, {WHOLE}", "n": 16},
     {"scene": f"body-centred, {WHOLE}", "n": 6},
     {"scene": f"body-centred, {WHOLE}", "n": 12},
-    {"scene": f"random bed, {WHOLE}", "n": None},
+    {"scene": f"random bed, {WHOLE}"},
     {"scene": f"chain, {KERN}", "n": 10},
     {"scene": f"unlike chain, {KERN}", "n": 10},
     {"scene": f"simple cubic, {KERN}", "n": 8},
     {"scene": f"body-centred, {KERN}", "n": 6},
-    {"scene": f"random bed, {KERN}", "n": None},
-    {"scene": "random bed, disc", "n": None},
+    {"scene": f"random bed, {KERN}"},
+    {"scene": "random bed, disc"},
 )
 EXPLAINED = "of a disc between half-spaces: contacts as wide as the grain, or cylinders from centre to centre"
 SCRIPTS = Path(__file__).parent / "scripts"
