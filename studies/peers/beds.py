@@ -75,12 +75,24 @@ class Scene(NamedTuple):
 
 
 def circle(d, r, s):
-    """Squared radius, m2, of the circle in which spheres of radii r and s cut each other; all (m,) float arrays, m."""
+    """Squared radius of the circle in which spheres cut each other, (m,) float array, m2.
+
+    Parameters
+    ----------
+    d, r, s : (m,) float arrays, m
+        Between the centres, and radii.
+    """
     return r**2 - ((d**2 + r**2 - s**2) / (2 * d)) ** 2
 
 
 def hertz(d, r, s):
-    """Squared contact radius, m2, of elastic spheres that overlap so far; all (m,) float arrays, m."""
+    """Squared contact radius of elastic spheres that overlap so far, (m,) float array, m2.
+
+    Parameters
+    ----------
+    d, r, s : (m,) float arrays, m
+        Between the centres, and radii.
+    """
     return (r + s - d) * r * s / (r + s)
 
 

