@@ -89,8 +89,10 @@ def beds(df):
         Rows that are ok.
     """
     rows = df[df["scene"].isin(BEDS)]
-    mixed = rows["mixed"].eq(True) if "mixed" in rows else False
-    for law, group in rows[~mixed].groupby(rows["scene"].str.split(", ").str[1]):
+    if rows.empty:
+        return
+    mixed = rows["mixed"].eq(True) if "mixed" in rows else rows["scene"].eq("")
+    for law, group in rows[~mixed].groupby(rows["scene"].map(lambda scene: BEDS[scene].law)):
         said = []
         for name, each in group.groupby("name"):
             worst, most = each["error_percent"].abs().max(), each["cpu_s"].max()
