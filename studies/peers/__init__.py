@@ -13,12 +13,13 @@ from demheat.referee import value_error
 from studies.harness import methods
 from studies.harness.pick import present
 from studies.peers import tables
-from studies.peers.cases import QUICK_SCENES, ours
+from studies.peers.cases import QUICK_SCENES, our_beds, ours
 from studies.peers.means import AIM, ahead, same_mesh
 
 HOME = Path(__file__).parent / "programs"
 PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != "__init__"))
-MODULES = {name: f"studies.peers.programs.{name}" for name in PROGRAMS}
+# Beds of grains are solved by no method, but by `demheat.grains`.
+MODULES = {name: f"studies.peers.programs.{name}" for name in PROGRAMS} | {"grains": "studies.peers.beds"}
 PAPER = {}
 TIMEOUT = 1800.0
 # What was asked for before any row was made: so many programs, each with so many bodies.
@@ -40,6 +41,8 @@ def _cases():
             yield {"name": name, "given": program(name).KIND, **case, "method": name}
     for name, kind, scene, knobs in ours():
         yield methods.case(name, given=kind, scene=scene, **knobs)
+    for scene, knobs in our_beds():
+        yield {"name": "grains", "given": "packing", "scene": scene, **knobs, "method": "grains"}
 
 
 CASES = list(_cases())
@@ -53,9 +56,13 @@ def QUICK(case):
 
 def run(name, given, scene, method, **knobs):
     """Solve a body, or its image, by one program."""
+    from studies.peers import beds
     from studies.peers.given import known
 
-    found = _ours(given, scene, method, knobs) if method not in MODULES else _theirs(name, scene, knobs)
+    if name == "grains":
+        found = beds.solved(beds.BEDS[scene], **knobs)
+    else:
+        found = _ours(given, scene, method, knobs) if method not in MODULES else _theirs(name, scene, knobs)
     return found | {"known": known(scene), "error_percent": 100 * value_error(found["conductivity"], known(scene))}
 
 
@@ -85,7 +92,11 @@ def _ours(kind, scene, method, knobs):
 
 def warm_up(name, given, scene, method, **knobs):
     """Load our solvers; a program of others has a process of its own."""
-    if method not in MODULES:
+    if method == "grains":
+        from studies.peers import beds
+
+        beds.solved(beds.BEDS[scene], 4)
+    elif method not in MODULES:
         knobs.pop("n", None)
         methods.warm_up(method, **knobs)
 
@@ -126,4 +137,4 @@ def table(df):
 
 def notes(df):
     """Versions, limits, and what conventions explain."""
-    yield from filter(None, [tables.versions(df), *tables.cannot(PROGRAMS)])
+    yield from filter(None, [tables.versions(df), *tables.beds(df[df["status"] == "ok"]), *tables.cannot(PROGRAMS)])

@@ -12,6 +12,11 @@ ON_BODIES = {
     "fem-p1": ("size", (0.08, 0.04, 0.025)),
     "fft": ("voxels", (32, 64, 128)),
 }
+# Laws that programs of grains print, and layers of grains or cells; at random there is one size.
+PRINTED = ("root of area", "Hertz radius", "Hertz area", "whole grain", "cylinder")
+BED_LAYERS = {
+    "chain": (10, 40), "unlike chain": (10,), "simple cubic": (8, 16), "body-centred": (6, 12), "random bed": (None,)
+}  # fmt: skip
 QUICK_SCENES = ("sphere 10", "layers off the grid")
 
 
@@ -25,3 +30,11 @@ def ours():
         for name, (knob, values) in ON_BODIES.items():
             for value in values:
                 yield name, "body", scene, {knob: value}
+
+
+def our_beds():
+    """Scene and layers of the beds that programs of grains have: the same by `demheat.grains`."""
+    for law in PRINTED:
+        for arrangement, layers in BED_LAYERS.items():
+            for n in layers:
+                yield f"{arrangement}, {law}", {"n": n} if n else {}

@@ -10,7 +10,7 @@ PANELS = ("sphere 10", "half 10", "pore", "dispersion 10")
 # What is exact is drawn at the edge, %.
 LEAST = 1e-6
 MARKERS = "o^sDvP*X<>phd"
-STYLES = {"image": "-", "mesh": "--", "body": "-.", "network": ":", "packing": ":"}
+STYLES = {"image": "-", "mesh": "--", "body": "-.", "network": ":"}
 
 
 def draw(df):
@@ -27,7 +27,7 @@ def draw(df):
     others = sorted(set(df.loc[~ours(df), "name"]))
     colours = dict(zip(others, pyplot.get_cmap("tab20")(range(20)), strict=False))
     for axes, scene in zip(panels.flat, PANELS, strict=True):
-        rows = df[df["scene"] == scene]
+        rows = df[(df["scene"] == scene) & (df["given"] != "packing")]
         for (name, kind), group in rows.groupby(["name", "given"]):
             group = group.sort_values("cpu_s")
             # A method of ours has one look; what it is given tells its line.

@@ -15,6 +15,8 @@ from demheat import Image, Layer, Material, Scene, Sphere
 from demheat.declared import load
 from demheat.gallery import coated_sphere, random_dispersion, scaled
 from references.voxels.paint import voxelise
+from studies.peers.beds import BEDS
+from studies.peers.beds import known as known_bed
 
 MATRIX = Material(1.0)
 WALLS = {"x-": 1.0, "x+": 0.0}
@@ -71,9 +73,9 @@ def scene(name: str) -> Scene:
     Parameters
     ----------
     name : str
-        One of SCENES.
+        One of SCENES, or of `studies.peers.beds.BEDS`.
     """
-    return SCENES[name][0]()
+    return BEDS[name] if name in BEDS else SCENES[name][0]()
 
 
 @cache
@@ -83,8 +85,10 @@ def known(name: str) -> float:
     Parameters
     ----------
     name : str
-        One of SCENES.
+        One of SCENES, or of `studies.peers.beds.BEDS`.
     """
+    if name in BEDS:
+        return known_bed(name)
     draw, witness = SCENES[name]
     knobs = {"accuracy": ACCURACY} if witness == "multipole" else {}
     return load(witness).solve(draw(), **knobs).conductivity

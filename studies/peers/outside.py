@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-import resource
+import signal
 import subprocess
 import sys
 import tempfile
@@ -17,6 +17,15 @@ ROOT = Path(__file__).resolve().parents[2]
 # Where programs in Python may have environments of their own, which `.peers/NAME` names.
 HOMES = Path(os.environ.get("DEMHEAT_PEERS", ROOT / ".peers"))
 LIMIT = 900.0
+# A process counts what its parent had in memory when it began: a small one stands between, and says what was used.
+BETWEEN = """
+import json, os, resource, sys
+status = os.spawnvp(os.P_WAIT, sys.argv[2], sys.argv[2:])
+used = resource.getrusage(resource.RUSAGE_CHILDREN)
+with open(sys.argv[1], "w") as out:
+    json.dump([used.ru_utime + used.ru_stime, used.ru_maxrss / 1024], out)
+sys.exit(status if status >= 0 else 128 - status)
+"""
 
 
 class Found(NamedTuple):
@@ -56,32 +65,36 @@ def ran(command, *, folder=None, stdin="", limit=LIMIT, environment=None) -> tup
     RuntimeError
         If it did not exit with 0; with the end of what it printed.
     """
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.perf_counter()
-    with tempfile.TemporaryFile("w+") as said, tempfile.TemporaryFile("w+") as complained:
+    start = time.perf_counter()
+    with (
+        tempfile.TemporaryFile("w+") as said,
+        tempfile.TemporaryFile("w+") as complained,
+        tempfile.NamedTemporaryFile("r") as used,
+    ):
         child = subprocess.Popen(
-            [str(word) for word in command],
+            [sys.executable, "-S", "-E", "-c", BETWEEN, used.name, *map(str, command)],
             cwd=folder,
             stdin=subprocess.PIPE,
             stdout=said,
             stderr=complained,
             text=True,
             env={**os.environ, **(environment or {})},
+            start_new_session=True,
         )
         try:
             child.communicate(stdin, timeout=limit)
         except subprocess.TimeoutExpired:
-            child.kill()
+            os.killpg(child.pid, signal.SIGKILL)
             child.communicate()
             raise RuntimeError(f"{Path(command[0]).name}: not done after {limit:.0f} s") from None
-        wall, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+        wall = time.perf_counter() - start
         said.seek(0), complained.seek(0)
         printed, errors = said.read(), complained.read()
-    if child.returncode:
-        tail = " ".join((errors or printed).split())[-400:]
-        raise RuntimeError(f"{Path(command[0]).name}: exit status {child.returncode}: {tail}")
-    cpu = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    # Of the largest child so far: rows run in processes of their own, each with one program.
-    return printed, {"wall_s": wall, "cpu_s": cpu, "peak_mib": after.ru_maxrss / 1024}
+        if child.returncode:
+            tail = " ".join((errors or printed).split())[-400:]
+            raise RuntimeError(f"{Path(command[0]).name}: exit status {child.returncode}: {tail}")
+        cpu, peak = json.load(used)
+    return printed, {"wall_s": wall, "cpu_s": cpu, "peak_mib": peak}
 
 
 def asked(python, script, given, **knobs) -> dict:

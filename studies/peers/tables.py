@@ -7,10 +7,13 @@ from importlib import import_module
 import pandas as pd
 
 from studies.harness import methods
+from studies.peers.beds import BEDS
 
 # What is given, in the order of the table.
 KINDS = {"image": "the image", "mesh": "our mesh", "body": "the body", "packing": "spheres", "network": "our matrix"}
 KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "particles": "{:g} particles"}
+# Ours on beds of grains: no method.
+GRAINS = "grains"
 # At most one part in so many of the known value is shown as such: the rest is rounding.
 NOTHING = 1e-9
 
@@ -23,6 +26,8 @@ def title(name):
     name : str
         Of a row.
     """
+    if name == GRAINS:
+        return "demheat.grains"
     if name in methods.found():
         return methods.found()[name].title
     return import_module(f"studies.peers.programs.{name}").TITLE
@@ -30,7 +35,7 @@ def title(name):
 
 def ours(df):
     """True for rows of our own methods, (n,) bool Series."""
-    return df["name"].isin(methods.found())
+    return df["name"].isin([*methods.found(), GRAINS])
 
 
 def resolution(row):
@@ -58,6 +63,7 @@ def lines(df):
     data frame
     """
     found = []
+    df = df[~df["scene"].isin(BEDS)]
     df = df.assign(resolution=[resolution(row) for row in df.to_dict("records")])
     for kind, words in KINDS.items():
         rows = df[df["given"] == kind]
@@ -72,6 +78,26 @@ def lines(df):
 
 def _shown(error):
     return 0.0 if abs(error) < NOTHING else error
+
+
+def beds(df):
+    """Sentences: how far programs are from what is known of beds of grains, by law and program.
+
+    Parameters
+    ----------
+    df : data frame
+        Rows that are ok.
+    """
+    rows = df[df["scene"].isin(BEDS)]
+    if rows.empty:
+        return
+    mixed = rows["mixed"].eq(True) if "mixed" in rows else rows["scene"].eq("")
+    for law, group in rows[~mixed].groupby(rows["scene"].map(lambda scene: BEDS[scene].law)):
+        said = []
+        for name, each in group.groupby("name"):
+            worst, most = each["error_percent"].abs().max(), each["cpu_s"].max()
+            said.append(f"{title(name)} {worst:.1e} % ({len(each)} beds, at most {most:.2g} CPU-s)")
+        yield f"Beds of grains, law '{law}', largest error: " + ", ".join(said) + "."
 
 
 def cannot(names):
