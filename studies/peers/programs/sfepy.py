@@ -1,4 +1,4 @@
-"""SfePy: finite elements in Python by terms of weak forms; linear or quadratic tetrahedra on the mesh that all are given.
+"""SfePy: finite elements in Python by terms of weak forms; linear or quadratic tetrahedra on the mesh that all get.
 
 The heat is that of the energy, its Laplace term evaluated at the solution; conjugate gradients of PETSc with an
 incomplete Cholesky factor, the first choice of its `ls.auto_iterative`, to 1e-12. Its own first choice of a direct

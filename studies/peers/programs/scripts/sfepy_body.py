@@ -1,4 +1,4 @@
-"""Conduction in a body by SfePy, run by a Python that has it: reads one JSON object, prints another as its last line."""
+"""Conduction in a body by SfePy, by a Python that has it: reads one JSON object, prints another as its last line."""
 
 import json
 import resource
