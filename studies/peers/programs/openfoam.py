@@ -26,8 +26,8 @@ GET = "apt: openfoam"
 CANNOT = {"pores in an image": "a diffusivity of 0 divides by zero; cells of pores would have to be cut out"}
 EXPLAINED = (
     "scheme linear: a face between phases conducts (k1 + k2) / 2, not 2 k1 k2 / (k1 + k2), so that no laminate across "
-    "the heat is exact. Tetrahedra: Gauss linear takes the middle of a face to lie between the centres of its cells, and "
-    "is 7 % off where all conducts alike, however fine; leastSquares is exact there, and less so where the gradient jumps"
+    "the heat is exact. Tetrahedra: Gauss linear takes the middle of a face to lie between the centres of its cells "
+    "and is 7 % off where all conducts alike, however fine; leastSquares is exact there, not where the gradient jumps"
 )
 SCHEMES, GRADIENTS = ("harmonic", "linear"), ("leastSquares", "Gauss linear")
 # Bodies whose rows compare the schemes, and those on tetrahedra.
@@ -51,7 +51,8 @@ HEAD = "FoamFile {{ version 2.0; format ascii; class {kind}; object {name}; }}\n
 CONTROL = """application laplacianFoam; startFrom latestTime; startTime 0; stopAt endTime; endTime {rounds}; deltaT 1;
 writeControl timeStep; writeInterval {rounds}; writeFormat ascii; writePrecision 15; timeFormat general;
 """
-SCHEMES_FILE = """ddtSchemes {{ default steadyState; }} gradSchemes {{ default {gradient}; }} divSchemes {{ default none; }}
+SCHEMES_FILE = """ddtSchemes {{ default steadyState; }} divSchemes {{ default none; }}
+gradSchemes {{ default {gradient}; }}
 laplacianSchemes {{ default Gauss {scheme} corrected; }}
 interpolationSchemes {{ default linear; }} snGradSchemes {{ default corrected; }}
 """
