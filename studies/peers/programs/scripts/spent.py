@@ -5,7 +5,10 @@ import time
 
 
 def start():
-    """Now."""
+    """Now; the peak of memory begins here."""
+    with open("/proc/self/clear_refs", "w") as file:
+        # Linux then sets VmHWM to what is resident.
+        file.write("5")
     return time.perf_counter(), _cpu(), _memory("VmRSS")
 
 
