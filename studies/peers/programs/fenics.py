@@ -2,8 +2,7 @@
 
 DOLFIN, the library before DOLFINx. The heat is that of the energy, assembled at the solution; solved by the default of
 its `solve`, a direct solver of PETSc. What it compiles it compiles before the clock starts, on a cube of six elements.
-Its tutorial's error of the Poisson equation is rounding (quadratic on quadratic elements), and is no case of ours.
-https://fenicsproject.org
+No case of its documentation is run. https://fenicsproject.org
 """
 
 from studies.peers import meshes

@@ -2,8 +2,8 @@
 
 The weak form as its users write it, solved by its default, UMFPACK, a direct solver. The heat is that of the energy,
 the integral of k grad T . grad T; the flux integrated over a wall, which its users take as often, is in the remark. It
-is off by more than the energy: the gradient of an element at the wall is one order worse. Of steady conduction its
-documentation prints pictures and no number. https://freefem.org
+is off by more than the energy: the gradient of an element at the wall is one order worse. No case of its
+documentation is run. https://freefem.org
 """
 
 import re

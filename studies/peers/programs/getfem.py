@@ -2,7 +2,7 @@
 
 The heat is that of the energy, assembled by its language of forms at the solution; solved as `Model.solve` does
 unless told otherwise, by a direct solver below 150,000 unknowns. Walls are held by its `simplification`, which takes
-their unknowns out. Of conduction its documentation prints no number. https://getfem.org
+their unknowns out. No case of its documentation is run. https://getfem.org
 """
 
 from studies.peers import meshes

@@ -5,7 +5,7 @@ names: `linear`, the tutorials' own, takes the mean of the two cells, `harmonic`
 tetrahedra the part of the gradient along a face is interpolated, too, from the last round's: `Gauss linear`, the
 tutorials' own, or `leastSquares`. Conjugate gradients with its incomplete Cholesky factor to 1e-12, in rounds until a
 residual begins below 1e-9. The heat is DT grad T integrated over the wall by its function object `surfaceFieldValue`.
-No page of its documentation prints a number of laplacianFoam. https://www.openfoam.com
+No case of its documentation is run. https://www.openfoam.com
 """
 
 import os

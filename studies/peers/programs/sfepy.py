@@ -2,8 +2,7 @@
 
 The heat is that of the energy, its Laplace term evaluated at the solution; conjugate gradients of PETSc with an
 incomplete Cholesky factor, the first choice of its `ls.auto_iterative`, to 1e-12. Its own first choice of a direct
-solver, MUMPS, ends the process with Debian's libmumps 5.5. Of conduction its documentation prints pictures and no
-number. https://sfepy.org
+solver, MUMPS, ends the process with Debian's libmumps 5.5. No case of its documentation is run. https://sfepy.org
 """
 
 from studies.peers import meshes

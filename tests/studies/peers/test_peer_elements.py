@@ -55,3 +55,29 @@ def test_what_programs_are_told(name, lines):
     mesh = meshes.conforming(scene, size=SIZE)
     text = program.script(scene, mesh, 1) if name == "freefem" else program.script(scene, mesh)
     assert [line for line in lines if line not in text] == []
+
+
+def test_calculix_own_results():
+    """As the suite prints them."""
+    text = """
+ temperatures for set NALL and time  0.1000000E+01
+
+         1  2.000000E+01
+
+ heat generation for set NALL and time  0.1000000E+01
+
+         1  1.500000E+01
+         2 -4.000000E+01
+         3  2.500000E+01
+
+ heat flux (elem, integ.pnt.,qx,qy,qz) for set EALL and time  0.1000000E+01
+
+         1   1  3.000000E+00  0.000000E+00  0.000000E+00
+"""
+    calculix = import_module("studies.peers.programs.calculix")
+    assert calculix.entering(text) == 40.0
+    if calculix.missing() or not calculix.SUITE.exists():
+        pytest.skip("CalculiX or its suite of tests is not installed")
+    found, documented, _ = calculix.own()
+    # Seven digits a node.
+    assert found == pytest.approx(documented, rel=1e-6)
