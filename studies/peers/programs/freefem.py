@@ -1,9 +1,8 @@
 """FreeFEM: finite elements by a language of its own; linear or quadratic tetrahedra on the mesh that all are given.
 
 The weak form as its users write it, solved by its default, UMFPACK, a direct solver. The heat is that of the energy,
-the integral of k grad T . grad T; the flux integrated over a wall, which its users take as often, is in the remark. It
-is off by more than the energy: the gradient of an element at the wall is one order worse. No case of its
-documentation is run. https://freefem.org
+the integral of k grad T . grad T; the flux integrated over a wall, which its users take as often, is in the remark: it
+is another at each wall. No case of its documentation is run. https://freefem.org
 """
 
 import re

@@ -1,7 +1,8 @@
 """GetDP: finite elements by formulations that its users write; linear or quadratic tetrahedra on the mesh that all get.
 
 The heat through a wall is the dual of the wall's temperature, a global quantity of its own, which is the reaction of
-the equations; solved by its default, MUMPS through PETSc, a direct solver. No case of its documentation is run. https://getdp.info
+the equations; solved by its default, MUMPS through PETSc, a direct solver. No case of its documentation is
+run. https://getdp.info
 """
 
 import re
