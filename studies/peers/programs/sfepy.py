@@ -1,0 +1,39 @@
+"""SfePy: finite elements in Python by terms of weak forms; linear or quadratic tetrahedra on the mesh that all get.
+
+The heat is that of the energy, its Laplace term evaluated at the solution; conjugate gradients of PETSc with an
+incomplete Cholesky factor, the first choice of its `ls.auto_iterative`, to 1e-12. Its own first choice of a direct
+solver, MUMPS, ends the process with Debian's libmumps 5.5. No case of its documentation is run. https://sfepy.org
+"""
+
+from studies.peers import meshes
+from studies.peers.python_elements import absent, solved, told_version
+
+TITLE = "SfePy"
+KIND = "mesh"
+GET = "apt: python3-sfepy, python3-petsc4py"
+CANNOT = {"meshes with triangles beside tetrahedra": "meshes with several cell kinds are not supported"}
+EXPLAINED = "none: the equations are those of our finite elements on the same mesh"
+CASES = meshes.cases()
+
+
+def missing():
+    """Why it cannot run here, or None."""
+    return absent("sfepy", "sfepy", "petsc4py")
+
+
+def version():
+    """As it says."""
+    return told_version("sfepy", "sfepy.__version__")
+
+
+def solve(scene, *, size, order=1):
+    """Solve a body.
+
+    Parameters
+    ----------
+    scene : Scene
+    size : float, m
+        Longest edge.
+    order : {1, 2}
+    """
+    return solved("sfepy", scene, size=size, order=order)
