@@ -1,0 +1,65 @@
+"""Programs that are packages of some Python: why one cannot run here, its version, and how its scripts are asked."""
+
+from __future__ import annotations
+
+import subprocess
+from functools import cache
+from pathlib import Path
+
+from studies.peers.outside import Found, asked, python_of
+
+SCRIPTS = Path(__file__).parent / "programs" / "scripts"
+
+
+def missing(name: str, get: str, module: str | None = None) -> str | None:
+    """Reason why a package cannot run here, in one line; None if it can.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    get : str
+        How it is installed.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    """
+    return None if python_of(name, module) else f"no Python here has {module or name} ({get})"
+
+
+@cache
+def version(name: str, distribution: str, module: str | None = None) -> str:
+    """Version of an installed distribution.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    distribution : str
+        As the package index knows it.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    """
+    code = f"from importlib.metadata import version; print(version({distribution!r}))"
+    return subprocess.run([python_of(name, module), "-c", code], capture_output=True, text=True, check=True).stdout[:-1]
+
+
+def found(name: str, given: dict, *, module: str | None = None, note="", **knobs) -> Found:
+    """What the script `with_NAME.py` answers to what it is given.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    given : dict
+        What can be written as JSON.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    note : str
+        Filled in from the answer.
+    **knobs
+        Of `outside.asked`.
+    """
+    answer = asked(python_of(name, module), SCRIPTS / f"with_{name}.py", given, **knobs)
+    return Found(
+        answer["conductivity"], answer["cost"], answer["unknowns"], answer["iterations"], note.format_map(answer)
+    )
