@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import subprocess
+import tempfile
 from functools import cache
 from pathlib import Path
 
+import numpy as np
+
+from studies.peers.given import image
 from studies.peers.outside import Found, asked, python_of
 
 SCRIPTS = Path(__file__).parent / "programs" / "scripts"
@@ -63,3 +67,26 @@ def found(name: str, given: dict, *, module: str | None = None, note="", **knobs
     return Found(
         answer["conductivity"], answer["cost"], answer["unknowns"], answer["iterations"], note.format_map(answer)
     )
+
+
+def found_on_image(name: str, scene, n: int, **more) -> Found:
+    """What the script `with_NAME.py` answers to the image of a body.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    scene : Scene
+        Between walls across x.
+    n : int
+        Voxels along each edge.
+    **more
+        What else the script is given.
+    """
+    drawn = image(scene, n)
+    values = [drawn.materials[label].conductivity for label in range(len(drawn.materials))]
+    given = {"conductivities": values, "walls": dict(scene.wall_temperatures), **more}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "image.npz"
+        np.savez(path, labels=drawn.labels, spacing=drawn.voxel[0])
+        return found(name, given | {"image": str(path)})
