@@ -71,7 +71,7 @@ def solved(mesh, values, walls, order):
 def folded(mesh, order):
     """Number of elements that are inside out at a point, as those may be that bend into a gap."""
     inside_out = ng.IfPos(ng.Det(ng.specialcf.JacobianMatrix(3)), 0.0, 1.0)
-    return sum(part != 0.0 for part in ng.Integrate(inside_out, mesh, order=2 * order, element_wise=True))
+    return sum(part != 0.0 for part in ng.Integrate(inside_out, mesh, order=max(10, 2 * order), element_wise=True))
 
 
 def main():
