@@ -1,8 +1,10 @@
 """FiPy: finite volumes on the image, a cell for each voxel, harmonic means on faces.
 
-Wall temperatures stand on the outer faces of the cells (`constrain`), so layers that end between voxels are exact.
-SciPy's conjugate gradients go down to 1e-10 of the right-hand side, without a preconditioner: FiPy's Jacobi factorises
-its diagonal anew at every iteration. The conductivity is the mean of the heat through both walls.
+Wall temperatures stand on the outer faces of the cells (`constrain`), so layers that end between voxels are exact. What
+does not conduct is held by a source of its own, as its manual fixes values inside of a domain. SciPy's conjugate
+gradients with FiPy's Jacobi go down to 1e-10 of the right-hand side; it solves with the diagonal as with any sparse
+matrix, at each iteration anew, which costs about as much as it saves at a contrast of 10 and saves half at 1000. The
+conductivity is the mean of the heat through both walls.
 https://www.ctcms.nist.gov/fipy, version 4.0.3.
 """
 

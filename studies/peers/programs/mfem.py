@@ -19,6 +19,7 @@ SCENES = (
     "homogeneous",
     "layers across",
     "layers off the grid",
+    "layers along",
     "sphere 10",
     "sphere 1000",
     "sphere 0.01",

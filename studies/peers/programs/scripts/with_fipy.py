@@ -13,7 +13,7 @@ from spent import Spent
 
 os.environ.setdefault("FIPY_SOLVERS", "scipy")
 from fipy import CellVariable, DiffusionTerm, Grid3D, ImplicitSourceTerm  # noqa: E402
-from fipy.solvers.scipy import LinearCGSolver  # noqa: E402
+from fipy.solvers.scipy import JacobiPreconditioner, LinearCGSolver  # noqa: E402
 
 TOLERANCE, MOST = 1e-10, 20_000
 
@@ -33,7 +33,7 @@ def solved(values, spacing, walls):
     if empty.value.any():
         # Held by a source, as its manual does inside of a domain: nothing else would fix them.
         equation = equation - ImplicitSourceTerm(coeff=empty) + empty * t.value[0]
-    solver = LinearCGSolver(tolerance=TOLERANCE, iterations=MOST, precon=None)
+    solver = LinearCGSolver(tolerance=TOLERANCE, iterations=MOST, precon=JacobiPreconditioner())
     equation.solve(var=t, solver=solver)
     if solver.convergence.status_code != 0:
         raise RuntimeError(f"conjugate gradients: {solver.convergence.status_name}")
