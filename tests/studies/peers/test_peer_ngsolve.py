@@ -19,7 +19,7 @@ def test_a_body_becomes_parts_from_the_matrix_inwards():
 
 
 def test_other_shapes_are_refused():
-    cylinder = Cylinder((0.5, 0.5, 0.5), (0, 0, 1), 0.2, Material(2.0))
+    cylinder = Cylinder((0.5, 0.5, 0.5), 0.2, (0, 0, 1), Material(2.0))
     scene = Scene(given.SIZE, given.MATRIX, [cylinder], walls=given.WALLS)
     with pytest.raises(NotImplementedError, match="only spheres and layers"):
         ngsolve.asked_for(scene)
