@@ -18,7 +18,7 @@ from fipy.solvers.scipy import JacobiPreconditioner, LinearCGSolver  # noqa: E40
 TOLERANCE, MOST = 1e-10, 20_000
 
 
-def solved(values, spacing, walls):
+def _solved(values, spacing, walls):
     """Heat through both walls, W, and iterations."""
     counts = dict(zip(("nx", "ny", "nz"), values.shape, strict=True))
     mesh = Grid3D(**counts, dx=spacing, dy=spacing, dz=spacing)
@@ -50,7 +50,7 @@ def main():
     walls = given["walls"]
     clock = Spent()
     values = np.array(given["conductivities"])[labels]
-    (first, last), iterations = solved(values, spacing, walls)
+    (first, last), iterations = _solved(values, spacing, walls)
     sides = spacing * np.array(labels.shape)
     found = (first - last) / 2 / (walls["x-"] - walls["x+"]) * sides[0] / (sides[1] * sides[2])
     lost = abs(first + last) / abs(first)

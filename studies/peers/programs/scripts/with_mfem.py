@@ -14,7 +14,7 @@ from spent import Spent
 TOLERANCE, MOST = 1e-10, 20_000
 
 
-def meshed(labels, spacing, conducting):
+def _meshed(labels, spacing, conducting):
     """Mesh of the voxels that conduct, their attributes the labels and one."""
     sides = (spacing * n for n in labels.shape)
     # Not along a curve: voxels in the order of x, then y, then z.
@@ -27,7 +27,7 @@ def meshed(labels, spacing, conducting):
     return mfem.SubMesh.CreateFromDomain(mesh, mfem.intArray([i + 1 for i in np.flatnonzero(conducting).tolist()]))
 
 
-def walls_of(mesh, space, name):
+def _walls_of(mesh, space, name):
     """Unknowns on a wall, which MakeCartesian3D calls 5 (low x) or 3 (high x)."""
     marker = mfem.intArray([int(i == {"x-": 5, "x+": 3}[name]) for i in range(1, mesh.bdr_attributes.Max() + 1)])
     unknowns = mfem.intArray()
@@ -35,7 +35,7 @@ def walls_of(mesh, space, name):
     return unknowns
 
 
-def solved(mesh, values, walls, order):
+def _solved(mesh, values, walls, order):
     """Energy at the solution, iterations and free unknowns."""
     collection = mfem.H1_FECollection(order, 3)
     space = mfem.FiniteElementSpace(mesh, collection)
@@ -48,7 +48,7 @@ def solved(mesh, values, walls, order):
     load.Assign(0.0)
     held = []
     for name, value in walls.items():
-        unknowns = walls_of(mesh, space, name).ToList()
+        unknowns = _walls_of(mesh, space, name).ToList()
         held += unknowns
         for unknown in unknowns:
             t[unknown] = value
@@ -78,8 +78,8 @@ def main():
         labels, spacing = file["labels"], float(file["spacing"])
     walls, values = given["walls"], np.array(given["conductivities"])
     clock = Spent()
-    mesh = meshed(labels, spacing, values > 0)
-    energy, iterations, unknowns = solved(mesh, values.tolist(), walls, given["order"])
+    mesh = _meshed(labels, spacing, values > 0)
+    energy, iterations, unknowns = _solved(mesh, values.tolist(), walls, given["order"])
     found = energy / (walls["x-"] - walls["x+"]) ** 2 * labels.shape[0] / (labels.shape[1] * labels.shape[2] * spacing)
     print(json.dumps({"conductivity": found, "iterations": iterations, "unknowns": unknowns, "cost": clock.so_far()}))
 

@@ -16,7 +16,7 @@ TOLERANCE, MOST = 1e-10, 5000
 NEAR = 1e-9
 
 
-def solid(part, box):
+def _solid(part, box):
     """Solid of a part, cut to the box."""
     if part["kind"] == "sphere":
         return Sphere(Pnt(*part["center"]), part["radius"]) * Box(Pnt(0, 0, 0), Pnt(*box))
@@ -26,11 +26,11 @@ def solid(part, box):
     return Box(Pnt(*low), Pnt(*high))
 
 
-def drawn(box, parts):
+def _drawn(box, parts):
     """Geometry whose solids are named by the number of their part; what does not conduct is left out."""
     pieces, later = [], None
     for number, part in reversed(list(enumerate(parts))):
-        whole = solid(part, box)
+        whole = _solid(part, box)
         if part["conductivity"] > 0:
             piece = whole if later is None else whole - later
             piece.mat(str(number))
@@ -44,7 +44,7 @@ def drawn(box, parts):
     return OCCGeometry(shape)
 
 
-def solved(mesh, values, walls, order):
+def _solved(mesh, values, walls, order):
     """Temperature by conjugate gradients, the conductivity field, iterations and free unknowns."""
     conductivity = mesh.MaterialCF(values)
     space = ng.H1(mesh, order=order, dirichlet="low|high")
@@ -68,7 +68,7 @@ def solved(mesh, values, walls, order):
     return t, conductivity, inverse.iterations, sum(space.FreeDofs(False))
 
 
-def folded(mesh, order):
+def _folded(mesh, order):
     """Number of elements that are inside out at a point, as those may be that bend into a gap."""
     inside_out = ng.IfPos(ng.Det(ng.specialcf.JacobianMatrix(3)), 0.0, 1.0)
     return sum(part != 0.0 for part in ng.Integrate(inside_out, mesh, order=max(10, 2 * order), element_wise=True))
@@ -80,18 +80,18 @@ def main():
     ng.SetNumThreads(1)
     order, walls, box = given["order"], given["walls"], given["box"]
     clock = Spent()
-    geometry = drawn(box, given["parts"])
+    geometry = _drawn(box, given["parts"])
     mesh = ng.Mesh(geometry.GenerateMesh(mp=MeshingParameters(maxh=given["size"], parallel_meshing=False)))
     mesh.Curve(order)
     meshed = clock.so_far()
     values = {str(i): part["conductivity"] for i, part in enumerate(given["parts"]) if part["conductivity"] > 0}
-    t, conductivity, iterations, unknowns = solved(mesh, values, walls, order)
+    t, conductivity, iterations, unknowns = _solved(mesh, values, walls, order)
     # Twice the order of the gradients, and what curved elements add.
     power = ng.Integrate(conductivity * ng.grad(t) * ng.grad(t), mesh, order=2 * order + 2)
     found = power / (walls["x-"] - walls["x+"]) ** 2 * box[0] / (box[1] * box[2])
     answer = {"conductivity": found, "iterations": iterations, "unknowns": unknowns, "elements": mesh.ne}
     cost = clock.so_far()
-    print(json.dumps({**answer, "meshed": meshed, "cost": cost, "folded": folded(mesh, order)}))
+    print(json.dumps({**answer, "meshed": meshed, "cost": cost, "folded": _folded(mesh, order)}))
 
 
 if __name__ == "__main__":

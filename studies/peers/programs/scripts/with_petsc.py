@@ -19,7 +19,7 @@ MOST = 2000
 HYPRE = {"strong_threshold": 0.5, "coarsen_type": "HMIS", "interp_type": "ext+i", "P_max": 4, "agg_nl": 1}
 
 
-def solver_of(matrix, kind, tolerance):
+def _solver_of(matrix, kind, tolerance):
     """Conjugate gradients that stop at a true residual."""
     options = PETSc.Options()
     for name, value in HYPRE.items():
@@ -50,7 +50,7 @@ def main():
     matrix.setOption(PETSc.Mat.Option.SPD, True)
     b, x = (PETSc.Vec().createWithArray(parts[name], comm=PETSc.COMM_SELF) for name in ("b", "start"))
     clock = Spent()
-    solver = solver_of(matrix, given["solver"], given["tolerance"])
+    solver = _solver_of(matrix, given["solver"], given["tolerance"])
     solver.setUp()
     made = clock.so_far()
     solver.solve(b, x)
