@@ -52,7 +52,7 @@ class System(NamedTuple):
             mine = network.wall_side == SIDES.index(name)
             heat.append(network.wall_conductance[mine] @ (walls[name] - x[network.wall_particle[mine]]))
         sides = self.scene.size
-        return (heat[0] - heat[1]) / 2 / (walls["x-"] - walls["x+"]) * sides[0] / (sides[1] * sides[2])
+        return float((heat[0] - heat[1]) / 2 / (walls["x-"] - walls["x+"]) * sides[0] / (sides[1] * sides[2]))
 
 
 def cases(solvers):
