@@ -5,7 +5,7 @@ import sys
 
 import dolfin
 import numpy as np
-import spent
+from spent import Spent
 from dolfin import assemble, dot, ds, dx, grad
 
 
@@ -68,9 +68,9 @@ def main():
     mesh, groups = read(parts["points"], parts["cells"]), parts["groups"]
     phases = {int(phase): k for phase, k in given["phases"].items()}
     conductivity = np.array([phases[group] for group in groups.tolist()])
-    start = spent.start()
+    clock = Spent()
     energy, heat, unknowns = solve(mesh, conductivity, given)
-    cost = spent.since(start)
+    cost = clock.so_far()
     print()
     print(json.dumps({"energy": float(energy), "heat": float(heat), "unknowns": int(unknowns), "cost": cost}))
 

@@ -5,7 +5,7 @@ import sys
 
 import getfem
 import numpy as np
-import spent
+from spent import Spent
 
 # Of the walls in the file.
 HOT, COLD = 1, 2
@@ -16,7 +16,7 @@ def main():
     given = json.load(sys.stdin)
     getfem.util_trace_level(0)
     mesh = getfem.Mesh("import", "gmsh", f"{given['mesh']}.msh")
-    start = spent.start()
+    clock = Spent()
     field = getfem.MeshFem(mesh, 1)
     field.set_classical_fem(given["order"])
     per_cell = getfem.MeshFem(mesh, 1)
@@ -37,7 +37,7 @@ def main():
     energy = getfem.asm("generic", rule, 0, "k*Norm_sqr(Grad_t)", -1, model)
     heat = getfem.asm("generic", rule, 0, "k*Grad_t.Normal", HOT, model)
     held = sum(len(field.basic_dof_on_region(wall)) for wall in (HOT, COLD))
-    cost = spent.since(start)
+    cost = clock.so_far()
     unknowns = int(field.nbdof() - held)
     print(json.dumps({"energy": float(energy), "heat": float(heat), "unknowns": unknowns, "cost": cost}))
 

@@ -1,32 +1,36 @@
-"""What a part of a script costs; imported by scripts beside it, by whatever Python has their libraries."""
+"""What a part of a script costs, told from inside: its imports and what it read lie before it."""
 
 import resource
 import time
+from pathlib import Path
 
 
-def start():
-    """Now; the peak of memory begins here."""
-    with open("/proc/self/clear_refs", "w") as file:
-        # Linux then sets VmHWM to what is resident.
-        file.write("5")
-    return time.perf_counter(), _cpu(), _memory("VmRSS")
+class Spent:
+    """A clock that starts when it is made."""
 
+    def __init__(self):
+        try:
+            # Peaks are counted from here on, as the studies count ours.
+            Path("/proc/self/clear_refs").write_text("5")
+        except OSError:
+            pass
+        self.base = _mib("VmRSS")
+        self.wall, self.cpu = time.perf_counter(), _cpu()
 
-def since(before):
-    """Cost since `start`: wall and processor seconds, and growth of resident memory at its peak, MiB."""
-    wall, cpu, base = before
-    return {
-        "wall_s": time.perf_counter() - wall,
-        "cpu_s": _cpu() - cpu,
-        "peak_mib": _memory("VmHWM") - base,
-    }
+    def so_far(self):
+        """Seconds and the growth of resident memory at its peak: `wall_s`, `cpu_s`, `peak_mib`."""
+        wall, cpu = time.perf_counter() - self.wall, _cpu() - self.cpu
+        return {"wall_s": wall, "cpu_s": cpu, "peak_mib": max(_mib("VmHWM") - self.base, 0.0)}
 
 
 def _cpu():
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime
+    parts = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(part.ru_utime + part.ru_stime for part in parts)
 
 
-def _memory(name):
-    with open("/proc/self/status") as file:
-        return next(int(line.split()[1]) / 1024 for line in file if line.startswith(f"{name}:"))
+def _mib(name):
+    try:
+        lines = Path("/proc/self/status").read_text().splitlines()
+        return next(int(line.split()[1]) / 1024 for line in lines if line.startswith(name + ":"))
+    except OSError:
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
