@@ -1,0 +1,92 @@
+"""Programs that are packages of some Python: why one cannot run here, its version, and how its scripts are asked."""
+
+from __future__ import annotations
+
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from studies.peers.given import image
+from studies.peers.outside import Found, asked, python_of
+
+SCRIPTS = Path(__file__).parent / "programs" / "scripts"
+
+
+def missing(name: str, get: str, module: str | None = None) -> str | None:
+    """Reason why a package cannot run here, in one line; None if it can.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    get : str
+        How it is installed.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    """
+    return None if python_of(name, module) else f"no Python here has {module or name} ({get})"
+
+
+@cache
+def version(name: str, distribution: str, module: str | None = None) -> str:
+    """Version of an installed distribution.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    distribution : str
+        As the package index knows it.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    """
+    code = f"from importlib.metadata import version; print(version({distribution!r}))"
+    return subprocess.run([python_of(name, module), "-c", code], capture_output=True, text=True, check=True).stdout[:-1]
+
+
+def found(name: str, given: dict, *, module: str | None = None, note="", **knobs) -> Found:
+    """What the script `with_NAME.py` answers to what it is given.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    given : dict
+        What can be written as JSON.
+    module : str, optional
+        What is imported, if it is not called as the program.
+    note : str
+        Filled in from the answer.
+    **knobs
+        Of `outside.asked`.
+    """
+    answer = asked(python_of(name, module), SCRIPTS / f"with_{name}.py", given, **knobs)
+    return Found(
+        answer["conductivity"], answer["cost"], answer["unknowns"], answer["iterations"], note.format_map(answer)
+    )
+
+
+def found_on_image(name: str, scene, n: int, **more) -> Found:
+    """What the script `with_NAME.py` answers to the image of a body.
+
+    Parameters
+    ----------
+    name : str
+        Of the program.
+    scene : Scene
+        Between walls across x.
+    n : int
+        Voxels along each edge.
+    **more
+        What else the script is given.
+    """
+    drawn = image(scene, n)
+    values = [drawn.materials[label].conductivity for label in range(len(drawn.materials))]
+    given = {"conductivities": values, "walls": dict(scene.wall_temperatures), **more}
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "image.npz"
+        np.savez(path, labels=drawn.labels, spacing=drawn.voxel[0])
+        return found(name, given | {"image": str(path)})
