@@ -1,4 +1,4 @@
-"""TauFactor: finite volumes on the image, a cell for each voxel, harmonic means on faces, by over-relaxation on PyTorch.
+"""TauFactor: finite volumes on the image, a cell for each voxel, harmonic means on faces, over-relaxed on PyTorch.
 
 `MultiPhaseSolver` takes phases of any conductivities; `Solver` one that conducts beside one that does not. Both compute
 in single precision. They stop when the flux through slices across x differs by less than a share of it, here 1e-4 (its
@@ -16,9 +16,9 @@ KIND = "image"
 GET = "pip: taufactor, torch"
 CANNOT = {"several conducting phases in `Solver`": "labels must be 0 and 1; `MultiPhaseSolver` takes them"}
 EXPLAINED = (
-    "`MultiPhaseSolver` puts the walls half a voxel outside of the image, in more of the material of its first and last "
-    "slices, and divides by n + 1 voxels: a laminate is wrong, a homogeneous body or equal halves are not. `Solver` has "
-    "them on the faces"
+    "`MultiPhaseSolver` puts the walls half a voxel outside of the image, in more of the material of its first and "
+    "last slices, and divides by n + 1 voxels: a laminate is wrong, a homogeneous body or equal halves are not. "
+    "`Solver` has them on the faces"
 )
 SCENES = (
     "homogeneous",

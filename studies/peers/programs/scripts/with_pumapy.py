@@ -1,7 +1,7 @@
 """An image in PuMA's pumapy: finite volumes with insulated sides, or bricks on a periodic body.
 
-Reads one JSON object: `image` (an .npz of `labels`), `conductivities` by label, `by` ("fv" or "fe") and `unit` (W/(m K),
-in which conductivities are given to it); prints another.
+Reads one JSON object: `image` (an .npz of `labels`), `conductivities` by label, `by` ("fv" or "fe") and `unit`
+(W/(m K), in which conductivities are given to it); prints another.
 """
 
 import json
@@ -25,10 +25,12 @@ def main():
     os.chdir(Path(given["image"]).parent)
     clock = Spent()
     body = pumapy.Workspace.from_array(labels)
-    phases = pumapy.IsotropicConductivityMap()
+    fv = given["by"] == "fv"
+    phases = pumapy.IsotropicConductivityMap() if fv else pumapy.AnisotropicConductivityMap()
+    add = phases.add_material if fv else phases.add_isotropic_material
     for label, value in enumerate(given["conductivities"]):
-        phases.add_material((label, label), value / given["unit"])
-    knobs = {"side_bc": "s"} if given["by"] == "fv" else {"solver_type": "minres", "method": "fe"}
+        add((label, label), value / given["unit"])
+    knobs = {"side_bc": "s"} if fv else {"solver_type": "minres", "method": "fe"}
     found, *_ = pumapy.compute_thermal_conductivity(
         body, phases, "x", tolerance=TOLERANCE, maxiter=MOST, display_iter=False, **knobs
     )
