@@ -2,8 +2,8 @@
 
 "mlmg" is AMReX's multigrid, the default of its Python interface, with walls on the faces of the image; "pcg" HYPRE's
 conjugate gradients, with walls in the centres of the first and last voxels. The Python interface knows one conducting
-phase. Its C++ program takes several from an input file, `tortuosity.active_phases` and `tortuosity.phase_diffusivities`;
-the same code is in the Python package and hears them by AMReX's interface for C, which is how several phases get here
+phase. Its C++ program takes several from a file, `tortuosity.active_phases` and `tortuosity.phase_diffusivities`; the
+same code is in the Python package and hears them by AMReX's interface for C, which is how several phases get here
 ("pcg" only). MLMG to 1e-12, PCG to 1e-9 as it is.
 https://github.com/BASE-Laboratory/OpenImpala, version 4.4.9.
 """
@@ -18,7 +18,7 @@ KIND = "image"
 GET = "pip: openimpala"
 CANNOT = {'several conducting phases by "mlmg"': "it looks for a way through one phase alone and finds none"}
 EXPLAINED = (
-    "by PCG the walls are in the centres of the first and last voxels, n - 1 voxels apart, and it divides by n: a "
+    "by PCG walls are in the centres of the first and last voxels, n - 1 voxels apart, and it divides by n: a "
     "homogeneous body conducts n / (n - 1) of what it should, as its manual says. MLMG has a small part of the flux too "
     "much where an insulator meets a wall"
 )

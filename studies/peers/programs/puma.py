@@ -16,7 +16,7 @@ from studies.peers.outside import asked, python_of
 
 TITLE = "PuMA"
 KIND = "image"
-GET = "pip: git+https://github.com/nasa/puma@v3.2.2 (pumapy of the package index is another program)"
+GET = "pip: git+https://github.com/nasa/puma@v3.2.2 (the index has another pumapy)"
 CANNOT = {'walls by "fe"': "its bricks are of a periodic body"}
 EXPLAINED = "its walls are at the centres of the first and last voxels: a body half a voxel shorter at each end, over n - 1 voxels"
 SCENES = (

@@ -1,4 +1,4 @@
-"""An image in OpenPNM: a pore in each voxel, throats through the faces; or by PoreSpy's `tortuosity_fd` on such a network.
+"""An image in OpenPNM: a pore in each voxel, throats through the faces; or PoreSpy's `tortuosity_fd` on such.
 
 Reads one JSON object: `image` (an .npz of `labels` and `spacing`, m), `conductivities` by label and `by` ("boundary
 pores", "pores" or "tortuosity_fd"); prints another.
