@@ -19,8 +19,8 @@ GET = "pip: openimpala"
 CANNOT = {'several conducting phases by "mlmg"': "it looks for a way through one phase alone and finds none"}
 EXPLAINED = (
     "by PCG walls are in the centres of the first and last voxels, n - 1 voxels apart, and it divides by n: a "
-    "homogeneous body conducts n / (n - 1) of what it should, as its manual says. MLMG has a small part of the flux too "
-    "much where an insulator meets a wall"
+    "homogeneous body conducts n / (n - 1) of what it should, as its manual says. MLMG has a little too "
+    "much flux where an insulator meets a wall"
 )
 SEVERAL = (
     "layers across",

@@ -18,7 +18,10 @@ TITLE = "PuMA"
 KIND = "image"
 GET = "pip: git+https://github.com/nasa/puma@v3.2.2 (the index has another pumapy)"
 CANNOT = {'walls by "fe"': "its bricks are of a periodic body"}
-EXPLAINED = "its walls are at the centres of the first and last voxels: a body half a voxel shorter at each end, over n - 1 voxels"
+EXPLAINED = (
+    "its walls are at the centres of the first and last voxels: a body shorter by half a voxel at each end, over n - 1 "
+    "voxels; a homogeneous body or equal halves do not show it"
+)
 SCENES = (
     "homogeneous",
     "layers across",
