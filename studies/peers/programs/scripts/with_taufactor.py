@@ -11,7 +11,7 @@ import numpy as np
 import taufactor
 from spent import Spent
 
-MOST = 50_000
+MOST = 10_000
 
 
 def solver_of(labels, conductivities, name):
