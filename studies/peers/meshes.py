@@ -6,6 +6,7 @@ with the same elements all programs have the same equations: they must agree to 
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 
 import numpy as np
@@ -150,7 +151,7 @@ def by_heat(scene, heat) -> float:
     heat : float, W
     """
     length, *sides = scene.size
-    return heat * length / (np.prod(sides) * drop(scene))
+    return heat * length / (math.prod(sides) * drop(scene))
 
 
 def by_energy(scene, energy) -> float:

@@ -1,7 +1,8 @@
 """GetFEM: finite elements in Python over C++ by bricks of models; linear or quadratic tetrahedra on the mesh all get.
 
 The heat is that of the energy, assembled by its language of forms at the solution; solved as `Model.solve` does
-unless told otherwise. Walls are held by its `simplification`, which takes their unknowns out. No case of its documentation is run. https://getfem.org
+unless told otherwise. Walls are held by its `simplification`, which takes their unknowns out.
+No case of its documentation is run. https://getfem.org
 """
 
 from studies.peers import meshes
