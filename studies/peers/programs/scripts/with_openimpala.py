@@ -17,7 +17,7 @@ TOLERANCE = 1e-12
 PREFIX = b"tortuosity"
 
 
-def say(library, name, kind, c_type, values):
+def _say(library, name, kind, c_type, values):
     """What `tortuosity.NAME = VALUES` is in an input file, by AMReX's interface for C."""
     block = ctypes.c_void_p()
     library.amrex_new_parmparse(ctypes.byref(block), PREFIX)
@@ -26,12 +26,12 @@ def say(library, name, kind, c_type, values):
     library.amrex_delete_parmparse(block)
 
 
-def several(labels, conductivities):
+def _several(labels, conductivities):
     """Conductivity of several phases, W/(m K), and iterations: HYPRE's, to its own 1e-9."""
     library = ctypes.CDLL(_core.__file__)
     phases = [label for label, k in enumerate(conductivities) if k > 0]
-    say(library, b"active_phases", "int", ctypes.c_int, phases)
-    say(library, b"phase_diffusivities", "real", ctypes.c_double, [conductivities[label] for label in phases])
+    _say(library, b"active_phases", "int", ctypes.c_int, phases)
+    _say(library, b"phase_diffusivities", "real", ctypes.c_double, [conductivities[label] for label in phases])
     image = _core.VoxelImage.from_numpy(labels)
     kinds = _core.SolverType.PCG, "."
     solver = _core.TortuosityHypre(image, 1.0, phases[0], _core.Direction.X, *kinds)
@@ -39,7 +39,7 @@ def several(labels, conductivities):
     return solver.active_volume_fraction / tortuosity, solver.iterations
 
 
-def one(labels, conductivities, solver):
+def _one(labels, conductivities, solver):
     """Conductivity of one conducting phase, W/(m K), and iterations."""
     knobs = {"mlmg_eps": TOLERANCE} if solver == "mlmg" else {}
     phase = int(np.argmax(conductivities))
@@ -57,9 +57,9 @@ def main():
     with openimpala.Session():
         clock = Spent()
         if sum(k > 0 for k in conductivities) == 1:
-            found, iterations = one(labels, conductivities, given["solver"])
+            found, iterations = _one(labels, conductivities, given["solver"])
         else:
-            found, iterations = several(labels, conductivities)
+            found, iterations = _several(labels, conductivities)
         cost = clock.so_far()
     # AMReX prints a profile as the session ends.
     answer = {"conductivity": found, "iterations": iterations, "unknowns": labels.size}

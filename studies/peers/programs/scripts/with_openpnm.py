@@ -14,7 +14,7 @@ from spent import Spent
 TOLERANCE = 1e-10
 
 
-def network(values, h, by):
+def _network(values, h, by):
     """Conductances of two half voxels in a row, W/K; those that conduct nothing are taken out."""
     net = openpnm.network.Cubic(shape=values.shape, spacing=h)
     inside = net.Np
@@ -30,9 +30,9 @@ def network(values, h, by):
     return net
 
 
-def by_network(values, h, by):
+def _by_network(values, h, by):
     """Conductivity of a body of length 1, W/(m K), and the number of pores."""
-    net = network(values, h, by)
+    net = _network(values, h, by)
     phase = openpnm.phase.Phase(network=net)
     phase["throat.thermal_conductance"] = net["throat.conductance"]
     heat = openpnm.algorithms.FourierConduction(network=net, phase=phase)
@@ -44,7 +44,7 @@ def by_network(values, h, by):
     return float(heat.rate(pores=net.pores("left" + ending))[0]) * length / area, net.Np
 
 
-def by_porespy(values):
+def _by_porespy(values):
     """Conductivity of a body of one conducting phase, W/(m K), and the number of its voxels."""
     from porespy.simulations import tortuosity_fd
 
@@ -60,7 +60,7 @@ def main():
         labels, h = file["labels"], float(file["spacing"])
     clock = Spent()
     values, by = np.array(given["conductivities"])[labels], given["by"]
-    found, unknowns = by_porespy(values) if by == "tortuosity_fd" else by_network(values, h, by)
+    found, unknowns = _by_porespy(values) if by == "tortuosity_fd" else _by_network(values, h, by)
     answer = {"conductivity": found, "iterations": None, "unknowns": unknowns}
     print(json.dumps({**answer, "cost": clock.so_far()}))
 

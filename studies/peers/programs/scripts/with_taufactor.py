@@ -14,7 +14,7 @@ from spent import Spent
 MOST = 10_000
 
 
-def solver_of(labels, conductivities, name):
+def _solver_of(labels, conductivities, name):
     """A solver on its own labels, 0 where nothing is conducted, and what one of its units is in W/(m K)."""
     own = np.cumsum(np.array(conductivities) > 0) * (np.array(conductivities) > 0)
     numbered = own[labels].astype(np.uint8)
@@ -32,7 +32,7 @@ def main():
     with np.load(given["image"]) as file:
         labels = file["labels"]
     clock = Spent()
-    solver, unit = solver_of(labels, given["conductivities"], given["solver"])
+    solver, unit = _solver_of(labels, given["conductivities"], given["solver"])
     solver.solve(iter_limit=MOST, verbose=False, conv_crit=given["tolerance"])
     if not solver.converged:
         raise RuntimeError(f"flux differs along x by more than {given['tolerance']} after {MOST} iterations")
