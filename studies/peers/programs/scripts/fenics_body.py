@@ -5,8 +5,8 @@ import sys
 
 import dolfin
 import numpy as np
-from spent import Spent
 from dolfin import assemble, dot, ds, dx, grad
+from spent import Spent
 
 
 def read(points, cells):

@@ -4,7 +4,6 @@ import json
 import sys
 
 import numpy as np
-from spent import Spent
 from sfepy.base.base import Struct, output
 from sfepy.discrete import Equation, Equations, FieldVariable, Integral, Material, Problem
 from sfepy.discrete.conditions import Conditions, EssentialBC
@@ -12,6 +11,7 @@ from sfepy.discrete.fem import FEDomain, Field, Mesh
 from sfepy.solvers import Solver
 from sfepy.solvers.nls import Newton
 from sfepy.terms import Term
+from spent import Spent
 
 # Of PETSc's conjugate gradients, by the norm of the preconditioned residual.
 TOLERANCE = 1e-12
