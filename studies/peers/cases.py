@@ -1,5 +1,7 @@
 """What of our own stands beside the programs of others: methods on images, meshes and bodies, and their resolutions."""
 
+import math
+
 from studies.peers.given import SCENES
 
 VOXELS = (16, 32, 64, 128)
@@ -9,7 +11,9 @@ ON_IMAGES = ("fft-plain", "fem-p1")
 ON_BODIES = {
     "dem": ("particles", (2_000, 20_000, 100_000)),
     "fem": ("size", (0.15, 0.08, 0.05)),
-    "fem-p1": ("size", (0.08, 0.04, 0.025)),
+    # On the meshes of 0.08, 0.05 and 0.03 stand the elements of others.
+    "fem-p1": ("size", (0.08, 0.05, 0.03)),
+    "fem-straight": ("size", (0.08, 0.05)),
     "fft": ("voxels", (32, 64, 128)),
 }
 # Laws that programs of grains print, and layers of grains or cells; at random there is one size.
@@ -17,6 +21,9 @@ PRINTED = ("root of area", "Hertz radius", "Hertz area", "whole grain", "cylinde
 BED_LAYERS = {
     "chain": (10, 40), "unlike chain": (10,), "simple cubic": (8, 16), "body-centred": (6, 12), "random bed": (None,)
 }  # fmt: skip
+# What refines a program, and the sign with which it does; bodies at every resolution, at two, and at one.
+REFINES = {"n": 1, "voxels": 1, "particles": 1, "size": -1}
+EVERY, TWO = ("sphere 10",), ("half 10", "dispersion 10", "pore")
 QUICK_SCENES = ("sphere 10", "layers off the grid")
 
 
@@ -38,3 +45,36 @@ def our_beds():
         for arrangement, layers in BED_LAYERS.items():
             for n in layers:
                 yield f"{arrangement}, {law}", {"n": n} if n else {}
+
+
+def thinned(cases):
+    """Cases without those that say little more: one body at every resolution, some at the two coarsest, others at one.
+
+    Parameters
+    ----------
+    cases : list of dict
+
+    Returns
+    -------
+    list of dict
+    """
+    values = {}
+    for case in cases:
+        values.setdefault(_kind(case), set()).add(_fineness(case))
+    return [case for case in cases if sorted(values[_kind(case)]).index(_fineness(case)) < _levels(case["scene"])]
+
+
+def _kind(case):
+    """What two resolutions of one program share."""
+    return tuple((key, value) for key, value in case.items() if key not in REFINES and key != "scene")
+
+
+def _fineness(case):
+    return tuple(sign * case[knob] for knob, sign in REFINES.items() if knob in case)
+
+
+def _levels(scene):
+    """How many resolutions a body is worth; a bed of grains has its own numbers of layers, all exact."""
+    if scene in EVERY or scene not in SCENES:
+        return math.inf
+    return 2 if scene in TWO else 1

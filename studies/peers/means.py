@@ -10,25 +10,29 @@ from studies.peers.tables import ours
 AIM = 0.1
 # Who is given these does a part of the work, and has the cost of that alone.
 PARTS = ("network", "packing")
+# Ours of a degree; whose unknowns on a mesh are no nodes.
+ELEMENTS = {1: "fem-p1", 2: "fem-straight"}
+VOLUMES = ("openfoam",)
 COMPARED = ("sphere 10", "sphere 0.01", "half 10", "dispersion 10")
 
 
 def same_mesh(df):
-    """Largest relative difference between linear elements of others and ours on the same mesh, by program.
+    """Largest relative difference between elements of others and ours on the same mesh, by program.
 
     Parameters
     ----------
     df : data frame
         Rows that are ok.
     """
-    mine = df[df["name"] == "fem-p1"].dropna(subset=["size"]) if "size" in df else df[:0]
-    known = {(row["scene"], row["size"]): row["conductivity"] for _, row in mine.iterrows()}
     found = {}
-    for _, row in df[df["given"] == "mesh"].iterrows():
-        there = known.get((row["scene"], row["size"]))
-        if there is not None and row.get("order", 1) in (1, None):
-            apart = abs(row["conductivity"] / there - 1)
-            found[row["name"]] = max(apart, found.get(row["name"], 0.0))
+    for degree, name in ELEMENTS.items():
+        mine = df[(df["name"] == name) & (df["given"] == "body")]
+        known = {(row["scene"], row["size"]): row["conductivity"] for _, row in mine.iterrows()}
+        for _, row in df[(df["given"] == "mesh") & ~df["name"].isin(VOLUMES)].iterrows():
+            there = known.get((row["scene"], row["size"]))
+            if there is not None and row.get("order", 1) == degree:
+                apart = abs(row["conductivity"] / there - 1)
+                found[row["name"]] = max(apart, found.get(row["name"], 0.0))
     return found
 
 

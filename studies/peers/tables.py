@@ -12,8 +12,8 @@ from studies.peers.beds import BEDS
 # What is given, in the order of the table.
 KINDS = {"image": "the image", "mesh": "our mesh", "body": "the body", "packing": "spheres", "network": "our matrix"}
 KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "particles": "{:g} particles"}
-# Ours on beds of grains: no method.
-GRAINS = "grains"
+# Ours on beds of grains, and our linear solver: no methods.
+GRAINS, SOLVER = "grains", "ours"
 # At most one part in so many of the known value is shown as such: the rest is rounding.
 NOTHING = 1e-9
 
@@ -35,7 +35,7 @@ def title(name):
 
 def ours(df):
     """True for rows of our own methods, (n,) bool Series."""
-    return df["name"].isin([*methods.found(), GRAINS])
+    return df["name"].isin([*methods.found(), GRAINS, SOLVER])
 
 
 def resolution(row):
