@@ -16,7 +16,7 @@ from studies.peers.outside import asked, python_of
 
 TITLE = "PuMA"
 KIND = "image"
-GET = "pip: git+https://github.com/nasa/puma@v3.2.2 (the index has another pumapy)"
+GET = "source: nasa/puma v3.2.2 (`pip install pumapy` gets another program)"
 CANNOT = {'walls by "fe"': "its bricks are of a periodic body"}
 EXPLAINED = (
     "its walls are at the centres of the first and last voxels: a body shorter by half a voxel at each end, over n - 1 "
