@@ -135,6 +135,11 @@ def table(df):
     return tables.lines(df[df["status"] == "ok"])
 
 
+def sources(df):
+    """Programs, what they are given, and how they are installed."""
+    return tables.sources(PROGRAMS)
+
+
 def notes(df):
     """Versions, limits, and what conventions explain."""
     yield from filter(None, [tables.versions(df), *tables.beds(df[df["status"] == "ok"]), *tables.cannot(PROGRAMS)])

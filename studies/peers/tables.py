@@ -100,6 +100,20 @@ def beds(df):
         yield f"Beds of grains, law '{law}', largest error: " + ", ".join(said) + "."
 
 
+def sources(names):
+    """A line for each program: what it is given and how it is installed.
+
+    Parameters
+    ----------
+    names : iterable of str
+    """
+    modules = [import_module(f"studies.peers.programs.{name}") for name in names if name != SOLVER]
+    rows = [{"program": m.TITLE, "given": KINDS[m.KIND], "from": m.GET} for m in modules]
+    return pd.DataFrame(
+        sorted(rows, key=lambda row: (list(KINDS.values()).index(row["given"]), row["program"].lower()))
+    )
+
+
 def cannot(names):
     """Sentences: what programs cannot do, by their own files.
 
@@ -107,7 +121,7 @@ def cannot(names):
     ----------
     names : iterable of str
     """
-    for name in names:
+    for name in sorted(set(names) - {SOLVER}):
         module = import_module(f"studies.peers.programs.{name}")
         limits = "; ".join(f"{what}: {why}" for what, why in module.CANNOT.items())
         said = [f"cannot: {limits}" if limits else "", module.EXPLAINED]

@@ -1,8 +1,8 @@
 """MFEM by PyMFEM: hexahedra of order 1 or 2 on the image, one for each voxel.
 
 Its Cartesian mesh has an attribute for each label; voxels that do not conduct are left out (SubMesh). Solved as in its
-example 1, by conjugate gradients with Gauss-Seidel, down to 1e-10 of the preconditioned residual; the package of the Python index
-is without MPI and so without hypre. The conductivity is the energy. https://mfem.org, version 4.10.0.1.
+example 1, by conjugate gradients with Gauss-Seidel, down to 1e-10 of the preconditioned residual; the package
+of the Python index is without MPI and so without hypre. The conductivity is the energy. Version 4.10.0.1.
 Its documentation prints no value of a steady solution with its error that runs from the package alone: no `own`.
 """
 
