@@ -61,7 +61,7 @@ def thinned(cases):
     values = {}
     for case in cases:
         values.setdefault(_kind(case), set()).add(_fineness(case))
-    return [case for case in cases if sorted(values[_kind(case)]).index(_fineness(case)) < _levels(case["scene"])]
+    return [case for case in cases if sorted(values[_kind(case)]).index(_fineness(case)) < _levels(case)]
 
 
 def _kind(case):
@@ -73,8 +73,12 @@ def _fineness(case):
     return tuple(sign * case[knob] for knob, sign in REFINES.items() if knob in case)
 
 
-def _levels(scene):
+def _levels(case):
     """How many resolutions a body is worth; a bed of grains has its own numbers of layers, all exact."""
+    scene = case["scene"]
     if scene in EVERY or scene not in SCENES:
         return math.inf
+    # Elements of a higher degree on the same mesh or image: as well on any body as on one.
+    if case["given"] in ("mesh", "image") and case.get("order", 1) > 1:
+        return 0
     return 2 if scene in TWO else 1
