@@ -219,7 +219,7 @@ class Union(Solid):
             nearer = away < distance
             distance, normal = np.where(nearer, away, distance), np.where(nearer[:, None], outward, normal)
         # Inside, where that foot lies in another member.
-        hidden = np.flatnonzero(distance < 0)
+        hidden = np.flatnonzero(distance <= 0)
         feet = points[hidden] - distance[hidden, None] * normal[hidden]
         hidden = hidden[~self.bare(feet, normal[hidden])]
         if len(hidden):
