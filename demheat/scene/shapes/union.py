@@ -162,18 +162,17 @@ class Union(Solid):
 
     @cached_property
     def faces(self) -> list[Shape]:
-        """Of all members, those that lie in each other once: smooth surfaces, on parts of which the union's lies."""
+        """Of all members: smooth surfaces, of parts of which the union's is made."""
         return [face for shape in self.shapes for face in faces(shape)]
 
     @cached_property
     def _creases(self):
-        """Pairs of faces of members that are near each other."""
-        found = []
-        for one, other in combinations(self.shapes, 2):
-            (a, r), (b, s) = one.ball(), other.ball()
-            if not np.linalg.norm(a - b) > r + s:
-                found += [(face, across) for face in faces(one) for across in faces(other)]
-        return found
+        """Pairs of faces, by their numbers, of members that are near each other."""
+        owners = [number for number, shape in enumerate(self.shapes) for _ in faces(shape)]
+        balls = [shape.ball() for shape in self.shapes]
+        near = [[not np.linalg.norm(a - b) > r + s for b, s in balls] for a, r in balls]
+        pairs = combinations(range(len(owners)), 2)
+        return [(i, j) for i, j in pairs if owners[i] != owners[j] and near[owners[i]][owners[j]]]
 
     @cached_property
     def _on(self):
@@ -192,18 +191,6 @@ class Union(Solid):
         """
         away = self._nearness(points + self._on * normals)
         return (away > 0) & (away < 1.1 * self._on)
-
-    def creases_near(self, points: np.ndarray):
-        """Near points on its creases for each, one (n, 3) float array, m, for each pair of faces; NaN where none is.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        """
-        for one, other in self._creases:
-            found = crease(points, one, other)
-            found[~(np.abs(self._nearness(found)) < self._on)] = np.nan
-            yield found
 
     def _nearness(self, points):
         return np.min([shape.distance(points) for shape in self.shapes], axis=0)
@@ -231,15 +218,21 @@ class Union(Solid):
     def _depth(self, points):
         """Distance to the nearest point of the surface that is found, infinite without one, and the way there."""
         depth, way = np.full(len(points), np.inf), np.zeros((len(points), 3))
-        for face in self.faces:
-            distance, normal = face.surface(points)
+        away = np.empty((len(self.faces), len(points)))
+        for face, distance in zip(self.faces, away, strict=True):
+            distance[:], normal = face.surface(points)
             nearer = (distance <= 0) & (-distance < depth)
             nearer[nearer] = self.bare((points - distance[:, None] * normal)[nearer], normal[nearer])
             depth[nearer], way[nearer] = -distance[nearer], normal[nearer]
-        for found in self.creases_near(points):
-            away = np.linalg.norm(found - points, axis=1)
-            nearer = (away > self._on) & (away < depth)
-            depth[nearer], way[nearer] = away[nearer], ((found - points)[nearer]) / away[nearer, None]
+        for one, other in self._creases:
+            # A crease is no nearer than either of its faces.
+            near = np.flatnonzero(np.maximum(np.abs(away[one]), np.abs(away[other])) < depth)
+            if len(near):
+                step = crease(points[near], self.faces[one], self.faces[other]) - points[near]
+                length = np.linalg.norm(step, axis=1)
+                nearer = (length > self._on) & (length < depth[near])
+                nearer[nearer] = np.abs(self._nearness((points[near] + step)[nearer])) < self._on
+                depth[near[nearer]], way[near[nearer]] = length[nearer], step[nearer] / length[nearer, None]
         return depth, way
 
     def _distance(self, offsets):
