@@ -331,7 +331,9 @@ def _sampled(shape, scene, pitch):
     low, high = shape.bounds()
     if not scene.periodic:
         low, high = np.maximum(low, -BEYOND * pitch), np.minimum(high, np.array(scene.size) + BEYOND * pitch)
-    return surface_points(shape, low - pitch, high + pitch, pitch)
+    # What goes on through a periodic cell is looked at once along it.
+    ends = np.isfinite(low)
+    return surface_points(shape, np.where(ends, low - pitch, 0.0), np.where(ends, high + pitch, scene.size), pitch)
 
 
 def _ordered(samples, areas):
