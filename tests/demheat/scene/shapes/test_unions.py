@@ -166,6 +166,7 @@ def test_pairs_are_told_by_their_members():
         cell(*taken)
     for refused, words in (
         ([NECK, Sphere((0.5, 0.5, 0.7), 0.1, OTHER)], "overlap partially"),
+        ([NECK, Sphere((0.9, 0.5, 0.5), 0.1, OTHER)], "overlap partially"),
         ([NECK, Sphere(MIDDLE, 0.4, MATRIX)], "is hidden by"),
         ([NECK, balls(0.3, 0.15, 0.6)], "overlap partially"),
     ):
