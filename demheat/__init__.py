@@ -26,6 +26,7 @@ from demheat.scene import (
     Scene,
     Sphere,
     UniformSource,
+    Union,
     orthotropic,
 )
 
@@ -51,6 +52,7 @@ __all__ = [
     "Scene",
     "Sphere",
     "UniformSource",
+    "Union",
     "effective",
     "evolve",
     "on_progress",

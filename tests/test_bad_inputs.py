@@ -141,6 +141,7 @@ TABLE = [
     (demheat.Ellipsoid, {"center": (0.5,) * 3, "semi_axes": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "semi_axes": VECTOR, "material": MATERIAL, "rotation": TURN}),
     (demheat.HalfSpace, {"point": (0.5,) * 3, "outward": (0, 0, 1), "material": OTHER}, {"point": VECTOR, "outward": VECTOR, "material": MATERIAL}),
     (demheat.LevelSet, {"function": round_set, "limits": ((0.2,) * 3, (0.8,) * 3), "material": OTHER}, {"function": (None, 1.0, "a"), "limits": (None, "a", 0.5, ((0.2,) * 3,), ((0.8,) * 3, (0.2,) * 3)), "material": MATERIAL}),
+    (demheat.Union, {"shapes": (demheat.Sphere((0.5,) * 3, 0.2, OTHER),) * 2, "material": OTHER}, {"shapes": (None, "ab", 0.5, (), (1, 2), (demheat.Sphere((0.5,) * 3, 0.2, OTHER),), (demheat.Layer(0, 0.2, 0.4, OTHER),) * 2), "material": (*MATERIAL, METAL)}),
     (demheat.Flux, {}, {"value": NUMBER}),
     (demheat.Convection, {"coefficient": 1.0, "temperature": 1.0}, {"coefficient": (*POSITIVE, 1e300), "temperature": (*NUMBER, 1e300)}),
     (demheat.Radiation, {"emissivity": 0.5, "temperature": 1.0}, {"emissivity": (*POSITIVE, 1.01, 1e-300), "temperature": (*PART, 1e300)}),

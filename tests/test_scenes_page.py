@@ -9,7 +9,7 @@ import pytest
 from blocks import DOCS
 
 from demheat import Convection, Image, Layer, Material, Radiation, Scene, Sphere, evolve, gallery, orthotropic, solve
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Union
 from references import bracket, exact, fem, fft, multipole, series
 
 (TABLE,) = re.findall(
@@ -41,6 +41,7 @@ SCENES = {
     "boxes": body(Box(MIDDLE, (0.5, 0.4, 0.4), G, rotation=(0.0, 0.0, 0.5))),
     "half-spaces": body(HalfSpace(MIDDLE, (1.0, 0.5, 0.0), G)),
     "level sets": body(LevelSet(ball, ((0.1,) * 3, (0.9,) * 3), G)),
+    "unions": body(Union([Sphere((0.4, 0.5, 0.5), 0.25, G), Box((0.65, 0.5, 0.5), (0.4, 0.3, 0.3), G)], G)),
     "images": Scene.of_image(Image(np.indices((4, 4, 4)).sum(0) % 2, 0.25, {0: M, 1: G}), walls=PAIR, initial=0.0),
     "pores": body(Sphere(MIDDLE, 0.3, Material(0.0, **HEAVY))),
     "resistances": body(Sphere(MIDDLE, 0.3, G, resistance=0.1)),

@@ -41,6 +41,7 @@ from demheat.scene import (
     Scene,
     Sphere,
     UniformSource,
+    Union,
 )
 
 AXES = ("x", "y", "z")
@@ -73,7 +74,10 @@ SHAPES = {
         HalfSpace,
         {"point": (LENGTH, 3), "outward": (PLAIN, 3), "resistance": (RESISTANCE, 1)},
     ),
+    "union": (Union, {"shapes": "members", "resistance": (RESISTANCE, 1)}),
 }
+# Of a union, whose material they are of: no more than their own fields.
+MEMBERS = {name: SHAPES[name] for name in ("sphere", "cylinder", "ellipsoid", "box")}
 SOURCES = {
     "uniform": (UniformSource, {"power_density": (POWER_DENSITY, 1)}),
     "moving-cylinder": (
@@ -239,8 +243,8 @@ def _inclusions(table, materials, size):
     return placed
 
 
-def _parts(table, key, kinds, materials):
-    """A shape or a source of a table: its kind, then what that is made of."""
+def _parts(table, key, kinds, materials, material=None):
+    """A shape or a source of a table: its kind, then what that is made of; of a union members of its own material."""
     kind, fields = kinds[table.text(key, ..., among=tuple(kinds))]
     names = {name: PLAIN if isinstance(what, str) else what[0] for name, what in fields.items()}
     table.only({key: PLAIN, **names} | ({"material": PLAIN} if kinds is SHAPES else {}))
@@ -251,6 +255,9 @@ def _parts(table, key, kinds, materials):
             values[name] = _axis(table, name)
         elif what == "matrix":
             values[name] = table.value(name, list, "three rows of three numbers", default)
+        elif what == "members":
+            material = _material(table, "material", materials)
+            values[name] = [_parts(each, "shape", MEMBERS, {}, material) for each in table.tables(name)]
         elif what == "flag":
             values[name] = table.value(name, bool, "true or false", default)
         else:
@@ -258,6 +265,8 @@ def _parts(table, key, kinds, materials):
             values[name] = (table.number if length == 1 else table.vector)(name, quantity, default)
     if kinds is SHAPES:
         values["material"] = _material(table, "material", materials)
+    if kinds is MEMBERS:
+        values["material"] = material
     return table.made(kind, **values)
 
 

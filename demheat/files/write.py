@@ -124,8 +124,11 @@ def _inclusion(number, shape, names):
     kind = next((name for name, (known, _) in SHAPES.items() if type(shape) is known), None)
     if kind is None:
         raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {', '.join(SHAPES)} in a file")
-    resistance = shape.resistance or None
-    return {"shape": kind, **_plain(shape, material=names[shape.material], resistance=resistance, **_axis(shape))}
+    changed = _axis(shape) | {"material": names[shape.material], "resistance": shape.resistance or None}
+    if kind == "union":
+        # Of its material, without resistances: neither stands there again.
+        changed["shapes"] = tuple(_inclusion(number, each, {each.material: None}) for each in shape.shapes)
+    return {"shape": kind, **_plain(shape, **changed)}
 
 
 def _source(source):

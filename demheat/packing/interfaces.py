@@ -9,7 +9,7 @@ from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
 from demheat.packing import solids
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Scene, Shape, Sphere
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Scene, Shape, Sphere, Union
 from demheat.scene.shapes.base import TOUCH
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
@@ -222,6 +222,12 @@ def _(shape: Ellipsoid, scene):
 def _(shape: LevelSet, scene):
     # Its own opposite side is not told: twins that would lie beyond it are none.
     return [solids.SolidSurface(shape, scene, np.inf, solids.on_smooth, solids.by_volume)]
+
+
+@surfaces.register
+def _(shape: Union, scene):
+    depth = min(surface.depth for member in shape.shapes for surface in surfaces(member, scene))
+    return [solids.SolidSurface(shape, scene, depth, solids.on_union, solids.by_faces)]
 
 
 @surfaces.register

@@ -25,6 +25,8 @@ SQUARE = 0.75**0.25
 FEWEST_ROUND, FEWEST = 8, 12
 # Cells of the sampling along a spacing where points are spread out, and where planes are moved; rounds of the first.
 SPREAD, LIFTED, ROUNDS = 5, 4, 16
+# Of a width: faces this near to each other in a point are one there.
+ON = 1e-9
 # Cells beyond a wall in which points are spread out, too: those beside the wall then lie as elsewhere.
 BEYOND = 10
 
@@ -226,6 +228,11 @@ def on_smooth(shape, scene, spacing, rng):
     """
     samples, areas = _sampled(shape, scene, spacing / SPREAD)
     count = max(FEWEST, int(np.ceil(areas.sum() / (np.sqrt(0.75) * spacing**2))))
+    return _spread(shape, samples, areas, count, rng)
+
+
+def _spread(shape, samples, areas, count, rng):
+    """Points in the middles of their own parts of the samples of a surface, and normals."""
     samples, areas = _ordered(samples, areas)
     share = (np.arange(count) + rng.random()) / count
     points = samples[np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(samples) - 1)]
@@ -239,6 +246,51 @@ def on_smooth(shape, scene, spacing, rng):
     return points, shape.normal(points)
 
 
+def on_union(shape, scene, spacing, rng):
+    """Points in the middles of their own parts of each face of a union, so that half a spacing is left to its edges.
+
+    Parameters
+    ----------
+    shape : Union
+    scene : Scene
+    spacing : float, m
+    rng : numpy Generator
+        Where it begins.
+    """
+    samples, areas = _sampled(shape, scene, spacing / SPREAD)
+    own, found = _faced(shape, samples), [(np.empty((0, 3)), np.empty((0, 3)))]
+    for number in np.unique(own):
+        face, mine = shape.faces[number], own == number
+        count = max(1, round(areas[mine].sum() / (np.sqrt(0.75) * spacing**2)))
+        points, normals = _spread(face, samples[mine], areas[mine], count, rng)
+        bare = shape.bare(points, normals)
+        found.append((points[bare], normals[bare]))
+    return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+
+def by_faces(shape, scene, points, normals):
+    """Points moved inwards as by `by_volume`, each face of a union for itself: across a crease planes are others.
+
+    Parameters
+    ----------
+    shape : Union
+    scene : Scene
+    points, normals : (k, 3) float arrays, m and 1
+    """
+    samples, areas = _sampled_in(shape, scene, points)
+    own, sampled, moved = _faced(shape, points), _faced(shape, samples), points.copy()
+    for number in np.unique(own):
+        mine, there = own == number, sampled == number
+        moved[mine] = _lifted(shape.faces[number], points[mine], normals[mine], samples[there], areas[there])
+    return moved
+
+
+def _faced(shape, points):
+    """The face of a union that each point of its surface lies on, the first of those that go on in each other."""
+    away = np.stack([np.abs(face.distance(points)) for face in shape.faces])
+    return np.argmax(away <= away.min(axis=0) + ON * shape.width, axis=0)
+
+
 def by_volume(shape, scene, points, normals):
     """Points moved inwards so that over its own part of the surface each plane holds as much as the shape.
 
@@ -248,11 +300,21 @@ def by_volume(shape, scene, points, normals):
     scene : Scene
     points, normals : (k, 3) float arrays, m and 1
     """
+    return _lifted(shape, points, normals, *_sampled_in(shape, scene, points))
+
+
+def _sampled_in(shape, scene, points):
+    """Points of a surface between walls, if there are any, closer than those of a pattern, and their areas."""
     away, _ = cKDTree(points).query(points, k=2)
     samples, areas = _sampled(shape, scene, float(np.median(away[:, 1])) / LIFTED)
-    if not scene.periodic:
-        inside = np.all((samples > 0) & (samples < scene.size), axis=1)
-        samples, areas = samples[inside], areas[inside]
+    if scene.periodic:
+        return samples, areas
+    inside = np.all((samples > 0) & (samples < scene.size), axis=1)
+    return samples[inside], areas[inside]
+
+
+def _lifted(shape, points, normals, samples, areas):
+    """Points moved so that over the samples nearest to it each plane holds as much as the shape."""
     _, nearest = cKDTree(points).query(samples)
     there = normals[nearest]
     cosine = np.maximum(np.einsum("ij,ij->i", there, shape.normal(samples)), 0.25)
@@ -269,7 +331,9 @@ def _sampled(shape, scene, pitch):
     low, high = shape.bounds()
     if not scene.periodic:
         low, high = np.maximum(low, -BEYOND * pitch), np.minimum(high, np.array(scene.size) + BEYOND * pitch)
-    return surface_points(shape, low - pitch, high + pitch, pitch)
+    # What goes on through a periodic cell is looked at once along it.
+    ends = np.isfinite(low)
+    return surface_points(shape, np.where(ends, low - pitch, 0.0), np.where(ends, high + pitch, scene.size), pitch)
 
 
 def _ordered(samples, areas):

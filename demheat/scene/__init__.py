@@ -6,7 +6,7 @@ from demheat.scene.image import Image
 from demheat.scene.material import Material
 from demheat.scene.parts import STEFAN_BOLTZMANN, Convection, Flux, MovingCylinder, Radiation, UniformSource
 from demheat.scene.scene import Scene, check_scene
-from demheat.scene.shapes import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Shape, Sphere
+from demheat.scene.shapes import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Shape, Sphere, Union
 from demheat.scene.tensors import orthotropic
 
 __all__ = [
@@ -30,6 +30,7 @@ __all__ = [
     "Shape",
     "Sphere",
     "UniformSource",
+    "Union",
     "check_scene",
     "domain_volume",
     "orthotropic",

@@ -100,7 +100,7 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
     if shapes is not None and scene.image is None and not scene.only(*shapes):
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
         kind = scene.inclusions[number].kind
-        yield f"{'an' if kind[0] in 'aeiou' else 'a'} {kind}, Scene.inclusions[{number}]"
+        yield f"{'an' if kind[0] in 'aeio' else 'a'} {kind}, Scene.inclusions[{number}]"
     parents = np.zeros(1) if nested else scene.parents()
     if np.any(parents):
         number = int(np.flatnonzero(parents)[0])

@@ -61,7 +61,8 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """
     check_scene(scene)
     flag("curved", curved)
-    text = "sizes of elements are known on spheres and layers in a box, on cylinders, ellipsoids, boxes and half-spaces"
+    known = "cylinders, ellipsoids, boxes, half-spaces and unions of them"
+    text = f"sizes of elements are known on spheres and layers in a box, on {known}"
     # What surfaces resist and phases conduct does not change where they are.
     takes = ("resistance", "exchange", "anisotropy", "dependence")
     scene.require(text, domain="box", shapes=(Sphere, Layer, *KNOWN), takes=takes)

@@ -1,4 +1,4 @@
-"""Cylinders, ellipsoids, boxes and half-spaces as gmsh makes them, and how fine a mesh must be beside them."""
+"""Cylinders, ellipsoids, boxes, half-spaces and unions as gmsh makes them, and how fine a mesh must be beside them."""
 
 from __future__ import annotations
 
@@ -7,14 +7,14 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Shape
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Shape, Sphere, Union
 from demheat.scene.shapes.base import shifts
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.samples import surface_points
 from references.mesh.turns import GENERIC
 
 # What has a solid here, spheres and layers aside.
-KNOWN = (Cylinder, Ellipsoid, Box, HalfSpace)
+KNOWN = (Cylinder, Ellipsoid, Box, HalfSpace, Union)
 # Samples of a surface along its least length, at least, and along the longest edge of the box, at most.
 ALONG, FINEST = 4, 200
 # Steps downhill, to where two surfaces are nearest.
@@ -72,6 +72,26 @@ def _(shape: HalfSpace, occ, box, scale):
     return _placed(occ, tag, np.stack([*across(normal), normal], axis=1), middle)
 
 
+@add.register
+def _(shape: Sphere, occ, box, scale):
+    # Of a union: its poles off the planes of symmetry.
+    center = np.array(shape.center) / scale
+    tag = occ.addSphere(*center, shape.radius / scale)
+    occ.rotate([(3, tag)], *center, *GENERIC)
+    return tag
+
+
+@add.register
+def _(shape: Union, occ, box, scale):
+    first, *rest = ((3, add(member, occ, box, scale)) for member in shape.shapes)
+    pieces, _ = occ.fuse([first], rest)
+    if len(pieces) != 1:
+        raise NotImplementedError(
+            f"a union of shapes at {shape.center} is {len(pieces)} pieces: meshes know one; give each piece for itself"
+        )
+    return pieces[0][1]
+
+
 def sized(scene, size: float, planes, rules) -> np.ndarray:
     """Balls in which edges must be short beside the surfaces of solids, and between them and others.
 
@@ -127,7 +147,7 @@ def _beside(scene, number, planes, rules, size):
     gap = np.minimum(gap, _to_planes(scene, shape, points, planes, narrowest))
     width = np.sqrt(gap * least)
     # Flat faces need no more than a layer does: one element through it.
-    along = min(shape.sides) if isinstance(shape, Box) else on * least
+    along = min(min(part.sides) if isinstance(part, Box) else on * _least(part, box) for part in shape.parts)
     edge = np.minimum(along, np.where(gap < far * least, in_gap * width, np.inf))
     return _thinned(points, edge, size)
 
@@ -216,6 +236,10 @@ def _in_box(scene, x):
 
 def _least(shape, box):
     """Least length that a mesh must follow, m: half the width of what has one."""
+    if isinstance(shape, Union):
+        return min(_least(member, box) for member in shape.shapes)
+    if shape.fills_ball:
+        return shape.ball()[1]
     if isinstance(shape, Cylinder):
         return shape.radius if shape.length is None else min(shape.radius, shape.length / 2)
     if isinstance(shape, Ellipsoid):

@@ -8,5 +8,6 @@ from demheat.scene.shapes.half_space import HalfSpace
 from demheat.scene.shapes.layer import Layer
 from demheat.scene.shapes.level_set import LevelSet
 from demheat.scene.shapes.sphere import Sphere
+from demheat.scene.shapes.union import Union
 
-__all__ = ["Box", "Cylinder", "Ellipsoid", "HalfSpace", "Layer", "LevelSet", "Shape", "Sphere"]
+__all__ = ["Box", "Cylinder", "Ellipsoid", "HalfSpace", "Layer", "LevelSet", "Shape", "Sphere", "Union"]

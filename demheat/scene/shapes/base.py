@@ -18,7 +18,7 @@ TOUCH = 1e-12
 # What a class derived from a finished shape must leave as it is.
 GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
 GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
-GEOMETRY |= {"width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
+GEOMETRY |= {"parts", "width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
 
 
 class Shape(ABC):
@@ -136,6 +136,11 @@ class Shape(ABC):
         low, high = self.bounds()
         ends = np.isfinite(low)
         return float(np.min(high[ends] - low[ends], initial=np.inf))
+
+    @property
+    def parts(self) -> tuple[Shape, ...]:
+        """Shapes that it is the union of: itself, if it is none."""
+        return (self,)
 
     @property
     def kind(self) -> str:

@@ -12,8 +12,7 @@ import numpy as np
 from demheat.scene.inputs import moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import check_resistance
-from demheat.scene.shapes.samples import cells_on
-from demheat.scene.shapes.sections import below
+from demheat.scene.shapes.samples import CELLS, volume_by_cells
 from demheat.scene.shapes.solid import Solid
 
 # Of the longest side of its limits: step of the differences that make its gradient, and how near to 0 is on it.
@@ -22,8 +21,8 @@ STEP, ON = 1e-5, 1e-12
 STEPS, ALONG, LONGEST = 12, 6, 0.25
 # Sine of the angle to the normal from which on a nearer point is sought.
 ASIDE = 1e-6
-# Cells along the longest side by which the volume is found, and points along each side of a face that are looked at.
-CELLS, LOOKED_AT = 48, 25
+# Points along each side of a face that are looked at.
+LOOKED_AT = 25
 
 
 @dataclass(frozen=True)
@@ -98,23 +97,7 @@ class LevelSet(Solid):
     @cached_property
     def volume(self) -> float:
         """Volume, m3: in cells that the surface cuts by the plane nearest to their middles, of two sizes."""
-        fine, coarse = self._volume_by(CELLS), self._volume_by(CELLS // 2)
-        # What planes lack of a bent surface is of second order.
-        return fine + (fine - coarse) / 3
-
-    def _volume_by(self, cells):
-        low, high = self.bounds()
-        centers, sides = cells_on(self, low, high, float((high - low).max()) / cells)
-        distance, normal = self.surface(centers)
-        part, _ = below(normal, distance, sides)
-        # Whole cells: all columns of cells less those that are cut.
-        counts = np.rint((high - low) / sides).astype(int)
-        whole = 0
-        for x in range(counts[0]):
-            grid = np.meshgrid([x], np.arange(counts[1]), np.arange(counts[2]), indexing="ij")
-            whole += int(self._inside(low + (np.stack(grid, -1).reshape(-1, 3) + 0.5) * sides - self.center).sum())
-        whole -= int(self._inside(centers - self.center).sum())
-        return float(np.prod(sides) * (whole + part.sum()))
+        return volume_by_cells(self, *self.bounds())
 
     def turned(self, order: Sequence[int]) -> LevelSet:
         """The same set with axes order[0], order[1], order[2] as axes 0, 1, 2."""

@@ -30,7 +30,8 @@ def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: boo
 
     Exact for spheres, layers and what fills its bounds, and for one of these or a half-space beside a shape whose
     distance is exact. Of other convex shapes it takes those pairs that a plane is found to part, or of which one holds
-    balls or corners around the other; of what is not convex, those whose bounds are apart or in the other. What it
+    balls or corners around the other; of what is not convex, those whose bounds are apart or in the other; of
+    unions each member for itself. What it
     takes is certain, what it refuses may only be too near to tell.
 
     Parameters
@@ -77,11 +78,11 @@ def _check_pair(shapes, i, j, cell):
     first, second = shapes[i], shapes[j]
     if _crossed(first, second):
         raise ValueError(f"Scene.inclusions[{i}], [{j}]: layers along different axes cross each other")
-    if _apart(first, second, cell):
+    if all(_apart(one, other, cell) for one in first.parts for other in second.parts):
         return
-    if _holds(second, first, cell):
+    if _holds_all(second, first, cell):
         raise ValueError(f"Scene.inclusions[{i}] is hidden by inclusions[{j}]: list the outer one first")
-    if not _holds(first, second, cell):
+    if not _holds_all(first, second, cell):
         raise ValueError(
             f"Scene.inclusions[{i}] and [{j}] overlap partially{_unsure(first, second)}: inclusions must be disjoint, "
             "touching or fully nested"
@@ -120,6 +121,11 @@ def _apart(first, second, cell):
         for before, after in zip(_spans(first, cell), _spans(second, cell), strict=True)
     )
     return beside or (not _told(first, second) and parted(first, second, cell.box, cell.period, cell.tolerance))
+
+
+def _holds_all(outer, inner, cell):
+    """Whether each part of a shape lies in one part of another."""
+    return all(any(_holds(one, other, cell) for one in outer.parts) for other in inner.parts)
 
 
 def _holds(outer, inner, cell):

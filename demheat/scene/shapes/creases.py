@@ -1,0 +1,87 @@
+"""How deep points lie in a union of convex shapes: beside its faces, and beside creases where two members meet."""
+
+from __future__ import annotations
+
+from functools import singledispatch
+from itertools import product
+
+import numpy as np
+
+from demheat.scene.shapes.base import Shape
+from demheat.scene.shapes.box import Box
+from demheat.scene.shapes.cylinder import Cylinder
+from demheat.scene.shapes.ellipsoid import Ellipsoid
+from demheat.scene.shapes.half_space import HalfSpace
+from demheat.scene.shapes.sphere import Sphere
+
+# Steps to a crease, each to where the tangent planes of two faces cross; found 5 to 8 between spheres.
+ROUNDS = 12
+# Square of the sine of the angle between two faces below which they count as one, and have no crease.
+ALIKE = 1e-6
+# Where to look instead, in their distances: no direction in particular.
+ASIDE = np.array([0.48, 0.6, 0.64]) / 2
+
+
+@singledispatch
+def faces(shape: Shape) -> list[Shape]:
+    """Convex shapes with smooth surfaces whose common part a member of a union is; empty for what cannot be one.
+
+    Parameters
+    ----------
+    shape : Shape
+    """
+    return []
+
+
+@faces.register(Sphere)
+@faces.register(Ellipsoid)
+def _(shape):
+    return [shape]
+
+
+@faces.register
+def _(shape: Cylinder):
+    if shape.length is None:
+        return [shape]
+    half = 0.5 * shape.length * np.array(shape.axis)
+    ends = [HalfSpace(np.array(shape.center) + s * half, s * np.array(shape.axis), shape.material) for s in (-1, 1)]
+    return [Cylinder(shape.center, shape.radius, shape.axis, shape.material), *ends]
+
+
+@faces.register
+def _(shape: Box):
+    found = []
+    for (column, side), sign in product(zip(np.array(shape.rotation).T, shape.sides, strict=True), (-1, 1)):
+        normal = sign * column
+        found.append(HalfSpace(np.array(shape.center) + 0.5 * side * normal, normal, shape.material))
+    return found
+
+
+def crease(points: np.ndarray, one: Shape, other: Shape) -> np.ndarray:
+    """Where the surfaces of two faces cross, nearest to points or nearly so; anywhere if none is found.
+
+    Parameters
+    ----------
+    points : (n, 3) float array, m
+    one, other : Shape
+
+    Returns
+    -------
+    (n, 3) float array, m
+    """
+    here = points
+    for _ in range(ROUNDS):
+        (d, n), (e, m) = one.surface(here), other.surface(here)
+        away = here - points
+        p, q = np.einsum("ij,ij->i", n, away) - d, np.einsum("ij,ij->i", m, away) - e
+        cosine = np.einsum("ij,ij->i", n, m)
+        alike = 1.0 - cosine**2 < ALIKE
+        sine2 = np.where(alike, 1.0, 1.0 - cosine**2)
+        first, second = (p - cosine * q) / sine2, (q - cosine * p) / sine2
+        step = points + first[:, None] * n + second[:, None] * m
+        # As on the axis of two balls: from a point aside, of which the crease may be as near.
+        step[alike] = here[alike] + (np.abs(d) + np.abs(e))[alike, None] * ASIDE
+        if not np.any(np.abs(step - here) > 1e-14 * np.abs(step)):
+            return step
+        here = step
+    return here
