@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from studies.harness import methods
 from studies.harness.figures import look
+from studies.peers.means import PARTS
 from studies.peers.tables import ours, title
 
 PANELS = ("sphere 10", "half 10", "pore", "dispersion 10")
@@ -14,7 +15,7 @@ STYLES = {"image": "-", "mesh": "--", "body": "-.", "network": ":"}
 
 
 def draw(df):
-    """Four bodies.
+    """Four bodies; of each program what no other of its own rows beats.
 
     Parameters
     ----------
@@ -24,12 +25,13 @@ def draw(df):
     from matplotlib import pyplot
 
     figure, panels = pyplot.subplots(2, 2, figsize=(12, 9), sharex=True, sharey=True)
+    df = df[~df["given"].isin(PARTS)]
     others = sorted(set(df.loc[~ours(df), "name"]))
-    colours = dict(zip(others, pyplot.get_cmap("tab20")(range(20)), strict=False))
+    colours = {name: pyplot.get_cmap("tab20")(number % 20) for number, name in enumerate(others)}
     for axes, scene in zip(panels.flat, PANELS, strict=True):
-        rows = df[(df["scene"] == scene) & (df["given"] != "packing")]
+        rows = df[df["scene"] == scene]
         for (name, kind), group in rows.groupby(["name", "given"]):
-            group = group.sort_values("cpu_s")
+            group = front(group)
             # A method of ours has one look; what it is given tells its line.
             how = _ours(name) if name in methods.found() else _theirs(name, others.index(name), colours[name])
             label = {"label": f"{how.pop('label')}, {kind}"}
@@ -45,6 +47,18 @@ def draw(df):
     figure.legend(named.values(), named.keys(), loc="outside right upper", fontsize=8)
     figure.suptitle("Programs of others beside ours (thick)")
     return figure
+
+
+def front(rows):
+    """Rows that no other beats in error and cost at once, by rising cost.
+
+    Parameters
+    ----------
+    rows : data frame
+    """
+    rows = rows.sort_values("cpu_s")
+    error = rows["error_percent"].abs()
+    return rows[error < error.cummin().shift(fill_value=float("inf"))]
 
 
 def _ours(name):

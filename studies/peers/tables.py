@@ -12,6 +12,8 @@ from studies.peers.beds import BEDS
 # What is given, in the order of the table.
 KINDS = {"image": "the image", "mesh": "our mesh", "body": "the body", "packing": "spheres", "network": "our matrix"}
 KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "particles": "{:g} particles"}
+# Knobs that choose among ways.
+WAYS = ("by", "solver", "scheme", "gradient", "conforming", "density", "unit")
 # Ours on beds of grains, and our linear solver: no methods.
 GRAINS, SOLVER = "grains", "ours"
 # At most one part in so many of the known value is shown as such: the rest is rounding.
@@ -31,6 +33,19 @@ def title(name):
     if name in methods.found():
         return methods.found()[name].title
     return import_module(f"studies.peers.programs.{name}").TITLE
+
+
+def way(row):
+    """How a program of others was asked to do it, where it knows several ways; empty for ours.
+
+    Parameters
+    ----------
+    row : mapping
+    """
+    if row["name"] in methods.found():
+        return ""
+    said = {knob: row[knob] for knob in WAYS if knob in row and row[knob] == row[knob] and row[knob] is not None}
+    return ", ".join(value if isinstance(value, str) else f"{knob} {value}" for knob, value in said.items())
 
 
 def ours(df):
@@ -64,13 +79,15 @@ def lines(df):
     """
     found = []
     df = df[~df["scene"].isin(BEDS)]
-    df = df.assign(resolution=[resolution(row) for row in df.to_dict("records")])
+    records = df.to_dict("records")
+    df = df.assign(resolution=[resolution(row) for row in records], way=[way(row) for row in records])
     for kind, words in KINDS.items():
         rows = df[df["given"] == kind]
-        for (name, at), group in rows.groupby(["name", "resolution"], sort=False):
+        for (name, how, at), group in rows.groupby(["name", "way", "resolution"], sort=False):
             errors = {row["scene"]: _shown(row["error_percent"]) for _, row in group.iterrows()}
             cost = group[["cpu_s", "peak_mib", "unknowns"]].median()
-            found.append({"given": words, "program": title(name), "resolution": at, **errors, **cost})
+            called = {"program": ", ".join(filter(None, [title(name), how])), "resolution": at}
+            found.append({"given": words, **called, **errors, **cost})
     table = pd.DataFrame(found)
     last = [column for column in ("unknowns", "cpu_s", "peak_mib") if column in table]
     return table[[column for column in table if column not in last] + last]

@@ -1,0 +1,60 @@
+"""What the study of programs makes of its rows."""
+
+import pandas as pd
+import pytest
+
+from studies.peers import cases, figure, means, tables
+
+
+def rows(*found):
+    columns = ("name", "given", "scene", "size", "order", "conductivity", "error_percent", "cpu_s")
+    return pd.DataFrame([dict(zip(columns, row, strict=True)) for row in found])
+
+
+def test_a_row_that_another_beats_in_both_is_not_drawn():
+    drawn = figure.front(
+        rows(*(("a", "mesh", "b", 0.1, 1, 1.0, e, c) for e, c in ((3, 1), (-4, 2), (2, 3), (0.5, 2.5))))
+    )
+    assert drawn["cpu_s"].tolist() == [1, 2.5]
+
+
+def test_elements_of_one_degree_on_one_mesh_are_compared():
+    mine = [("fem-p1", "body", "s", 0.1, 1, 2.0, 0, 1), ("fem-straight", "body", "s", 0.1, 2, 1.0, 0, 1)]
+    there = [("getdp", "mesh", "s", 0.1, 1, 2.02, 0, 1), ("getdp", "mesh", "s", 0.1, 2, 1.03, 0, 1)]
+    # Of another size, body or kind: nothing to compare with.
+    other = [("getdp", "mesh", "s", 0.2, 1, 9.0, 0, 1), ("getdp", "mesh", "t", 0.1, 1, 9.0, 0, 1)]
+    volumes = [("openfoam", "mesh", "s", 0.1, None, 9.0, 0, 1)]
+    assert means.same_mesh(rows(*mine, *there, *other, *volumes)) == {"getdp": pytest.approx(0.03)}
+
+
+def test_who_is_ahead_at_an_error():
+    mine = [("fem", "body", "half 10", 0.1, 2, 1.0, 0.05, 2.0), ("fem", "body", "half 10", 0.2, 2, 1.0, 0.5, 0.1)]
+    other = [("ngsolve", "body", "half 10", 0.1, 3, 1.0, 0.09, 1.0)]
+    parts = [("petsc", "network", "half 10", 0.1, 1, 1.0, 0.0, 0.001)]
+    assert means.ahead(rows(*mine, *other, *parts)) == {"half 10": 0.5}
+    assert means.ahead(rows(*mine, ("ngsolve", "body", "half 10", 0.1, 3, 1.0, 0.2, 1.0))) == {"half 10": float("inf")}
+
+
+def test_one_body_is_seen_at_every_resolution():
+    every = [
+        {"name": "a", "given": "image", "scene": scene, "n": n, "order": order, "method": "a"}
+        for scene in ("sphere 10", "pore", "coated")
+        for n in (64, 16, 32)
+        for order in (1, 2)
+    ]
+    kept = {(case["scene"], case["n"], case["order"]) for case in cases.thinned(every)}
+    assert kept == {("sphere 10", n, order) for n in (16, 32, 64) for order in (1, 2)} | {
+        ("pore", 16, 1), ("pore", 32, 1), ("coated", 16, 1)
+    }  # fmt: skip
+
+
+def test_ways_of_one_program_are_told_apart():
+    found = pd.DataFrame(
+        [
+            {"name": "puma", "given": "image", "scene": "pore", "n": 16, "by": by, "error_percent": error}
+            | {"cpu_s": 1.0, "peak_mib": 1.0, "unknowns": 1.0}
+            for by, error in (("fv", 1.0), ("fe", 2.0))
+        ]
+    )
+    lines = tables.lines(found)
+    assert lines["program"].tolist() == ["PuMA, fv", "PuMA, fe"] and lines["pore"].tolist() == [1.0, 2.0]
