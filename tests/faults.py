@@ -15,7 +15,7 @@ from studies.harness import store
 
 ROOT = Path(__file__).parents[1]
 # What two rows of one case may differ in.
-COSTS = {*store.COST, "when", "load", "triad_gbs", "commit"}
+COSTS = {*store.COST, "when", "load", "triad_gbs", "commit", "beside"}
 STUDY = '''"""A study to be killed.
 
 Four rows, each of which starts a process of its own, as solvers do, and takes a while.

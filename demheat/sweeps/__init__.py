@@ -25,7 +25,7 @@ def sweep(
 
     Parameters
     ----------
-    function : callable (**case) -> number, text, dict, Field or Effective
+    function : callable (keywords of a case) -> number, text, dict, Field or Effective
         A dict holds numbers and text. Of a Field the row has `conductivity`, W/(m K), `unknowns`, `iterations` and
         `residual`; of what `effective` returns `k_xx` to `k_xy`, W/(m K), `accuracy` and `method`.
     cases : dict of lists, or list of dicts

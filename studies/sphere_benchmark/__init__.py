@@ -13,24 +13,14 @@ from contextlib import nullcontext
 
 import benchmark
 from studies.harness import methods
+from studies.sphere_benchmark.cases import GUEST, LADDERS, RELATIONS
 
 PAPER = {}
 TIMEOUT = 900.0
-# Where a case's method is not one of ours; see `guests`.
-GUEST = "guest"
 MODULES = {GUEST: "studies.sphere_benchmark.ways"}
 KEY = re.compile(rf"name=(.+),scene=([\w. -]+),step=(\d+),method={GUEST}")
-# The column of the knob, and its values; lengths in edges of the box.
-LADDERS = {
-    "dem": ("particles", (2_000, 20_000)),
-    "fem": ("size", (0.2, 0.1)),
-    "fft": ("voxels", (32, 64)),
-    "multipole": ("degree", (7,)),
-    "maxwell": (None, (None,)),
-}
 IN_TIME = ("dem", "fem")
 ROUND = ("cubic arrays", "coated spheres", "dispersions")
-RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")
 QUICK_SCENES = ("sc-third-s10", "laminate-off-grid", "slab-step")
 QUICK_RELATIONS = (("relation scaled", "fft"), ("relation scaled", "maxwell"))
 

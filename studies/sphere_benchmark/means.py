@@ -6,7 +6,7 @@ import numpy as np
 
 import benchmark
 from studies.harness.pick import present
-from studies.sphere_benchmark import GUEST, LADDERS, RELATIONS
+from studies.sphere_benchmark.cases import GUEST, LADDERS, RELATIONS
 
 # At the finest resolution, median and worst error of conductivities, %; patterns of squares have corners at which
 # fluxes are infinite, and no limit.

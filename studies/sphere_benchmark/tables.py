@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.sphere_benchmark import LADDERS
+from studies.sphere_benchmark.cases import LADDERS
 from studies.sphere_benchmark.means import finest, resolution_of, stepped, title_of
 
 

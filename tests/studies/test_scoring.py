@@ -17,6 +17,13 @@ EXCEPTIONS = {
     ("damage/means.py", "above_bound"): "distance to a bound",
     ("fig18_fields/rows.py", "field_row"): "level of the temperature in a periodic cell",
     ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
+    ("peers/means.py", "same_mesh"): "two programs on one mesh",
+    ("peers/programs/freefem.py", "solve"): "two outputs of one program",
+    ("peers/programs/getdp.py", "solve"): "two outputs of one program",
+    ("peers/programs/multivoro.py", "solve"): "two programs that cut the same cells",
+    ("peers/programs/openfoam.py", "solve"): "heat in and heat out",
+    ("peers/python_elements.py", "solved"): "two outputs of one program",
+    ("sphere_benchmark/rows.py", "_at_points"): "flux at points of a file, over the mean one",
     ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",
 }
 SCORING = ("temperature_error", "flux_error", "bound_violation", "conductivity_error", "value_error", "curve_error")

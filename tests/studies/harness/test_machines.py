@@ -47,7 +47,7 @@ def test_pages_and_the_list_say_it(tiny, capsys, monkeypatch):
     path = tiny.out / f"{tiny.name}.csv"
     study, rows = runner.load(tiny.name), list(tiny.rows().values())
     assert "machines" not in render(study, path)[1] and rows[0]["host"] == host()
-    store.write_rows(path, [rows[0], rows[1] | {"host": "another", "beside": "2"}])
+    store.write_rows(path, [rows[0] | {"beside": "0"}, rows[1] | {"host": "another", "beside": "2"}])
     df = read_frame(study, path)
     assert df["cpu_s"].notna().sum() == 1
     page = render(study, path)[1]
