@@ -157,6 +157,6 @@ def plot(df):
         axes.set_xticks(VOXELS, [str(n) for n in VOXELS])
         axes.set_xticks([], minor=True)
     left.set_ylabel("|difference of the conductivity|, %")
-    figure.suptitle("On an image of stairs the stairs are the larger error")
+    figure.suptitle(f"From 16 voxels an edge on the stairs are the larger error (DEM: {most:g} particles)")
     figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure

@@ -22,6 +22,11 @@ class Bound(NamedTuple):
     upper: float
     holds: str
 
+    @property
+    def certain(self) -> bool:
+        """Whether it holds of the scene as it is, not of isotropic bodies alone."""
+        return self.holds in ("all bodies", "this image")
+
 
 def bounds_of(scene) -> list[Bound]:
     """Bounds of a scene; empty where its volume fractions are not known in closed form, or its surfaces resist.

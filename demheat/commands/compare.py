@@ -22,6 +22,8 @@ from demheat.paths import replaced
 from demheat.slices import on_plane
 
 OUT = "demheat-out"
+# Of a bound: what tolerances of solvers may take a right value beyond it.
+ROUNDING = 1e-6
 # Pixels along the longer side of the slice in the picture.
 PIXELS = 121
 
@@ -109,8 +111,19 @@ def table(made, bounds) -> str:
         low, high = f"{bound.lower:.6g}", f"{bound.upper:.6g}"
         lines.append((bound.name, "", low, high, "", "", "", f"bounds of {bound.holds}"))
     told = [f"{row['method']} {row['status']}: {row['note']}" for row in made if row["status"] != "ok"]
-    told += [f"{row['method']}: {row['note']}" for row in made if row["status"] == "ok" and row["note"]]
+    answers = [row for row in made if row["status"] == "ok"]
+    told += [f"{row['method']}: {row['note']}" for row in answers if row["note"]]
+    told += [f"{row['method']}: {words}" for row in answers for words in _outside(_float(row["conductivity"]), bounds)]
     return "\n".join([aligned(lines), "", *told, "Costs include loading and compiling; `interval` in CPU-s."])
+
+
+def _outside(value, bounds):
+    """What is to be said of a value that no such body can have; a method in doubt is the value's, not the bound's."""
+    for bound in bounds:
+        room = ROUNDING * bound.upper
+        if bound.certain and not bound.lower - room <= value <= bound.upper + room:
+            side, limit = ("below", bound.lower) if value < bound.lower else ("above", bound.upper)
+            yield f"{value:.6g} is {side} {limit:.6g}, which is certain ({bound.name}): its error is no less than that"
 
 
 def picture(scene, made, bounds, path: Path) -> Path:

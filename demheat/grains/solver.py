@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+import warnings
 from collections.abc import Mapping, Sequence
 
 import numpy as np
@@ -97,6 +98,8 @@ def solve(
     else:
         held = at_walls(packing, solid, contact, gap, sides) if sides else None
     _check_reached(packing, held, sides)
+    if gap is not None and not len(pairs.first) and not sides:
+        warnings.warn("no two grains touch or are within reach of the gap: the bed conducts nothing", stacklevel=2)
     network, order = _network(packing, pairs, held)
     made = time.perf_counter()
     solution = solve_checked(network, scene, solver="auto", tolerance=tolerance)
@@ -140,7 +143,11 @@ def _load(packing, walls, gradient):
         return scene
     wrong = [name for name in scene.walls if name not in walls_of(packing)]
     if wrong:
-        raise ValueError(f"walls = {dict(scene.walls)}: must be among {', '.join(walls_of(packing)) or 'none'}")
+        there = ", ".join(walls_of(packing))
+        valid = (
+            f"must be among {there}" if there else "must be a gradient instead, as the packing is periodic all round"
+        )
+        raise ValueError(f"walls = {dict(scene.walls)}: {valid}")
     if set(scene.wall_temperatures) < set(scene.walls) or any(map(callable, scene.walls.values())):
         raise NotImplementedError(f"walls = {dict(scene.walls)}: grains know walls with constant temperatures only")
     return scene
