@@ -12,7 +12,7 @@ def bed(periodic):
 
 def test_a_bed_that_conducts_nothing_says_so():
     with pytest.warns(UserWarning, match="no two grains touch"):
-        assert grains.solve(bed(True), 10.0, gradient=(0, 0, 1), gap=grains.Gap(0.2)).conductivity == 0
+        assert grains.solve(bed(True), 10.0, gradient=(0, 0, 1), gap=grains.Gap(conductivity=0.2)).conductivity == 0
 
 
 def test_walls_of_a_periodic_packing():
