@@ -7,7 +7,7 @@ import numpy as np
 from studies.damage.cases import NEIGHBOURS, RADII, REMOVED, THRESHOLD
 from studies.damage.means import left, theory
 from studies.harness import methods
-from studies.harness.figures import BLACK, BLUE, GREY, ORANGE, look
+from studies.harness.figures import BLACK, BLUE, GREY, ORANGE, RED, SKY, look
 from studies.harness.pick import finest, pick
 
 
@@ -24,7 +24,7 @@ def draw(df):
     _spheres(one, pick(df, part="debonded"))
     _discs(two, pick(df, part="cracks"))
     _links(three, pick(df, part="links"))
-    figure.suptitle("Conductivity against damage, beside what is known exactly")
+    figure.suptitle("Conductivity against damage, beside what is known: multipoles, an exact series, bounds")
     return figure
 
 
@@ -44,8 +44,8 @@ def _discs(axes, rows):
     radii = np.linspace(0.02, max(RADII), 20)
     axes.plot(radii, [discs(each).conductivity for each in radii], color=BLACK, label="exact")
     axes.plot(radii, [penny_cracks(each**3) for each in radii], color=GREY, linestyle="--", label="dilute")
-    for particles, group in rows.groupby("particles"):
-        how = look("dem", label=f"DEM, {particles:g} particles", linestyle="", alpha=0.4 + 0.1 * np.log10(particles))
+    for (particles, group), marker, colour in zip(rows.groupby("particles"), "v^o", (SKY, ORANGE, RED), strict=False):
+        how = {"marker": marker, "color": colour, "linestyle": "", "label": f"DEM, {particles:g} particles"}
         axes.plot(group["radius"], group["k_ratio"], **how)
     axes.set(xlabel="radius of the disc over the cell", ylabel="conductivity over that without cracks")
     axes.set_title("Insulated discs across the load")
@@ -59,9 +59,10 @@ def _links(axes, rows):
     if len(rows):
         for (body, number), group in left(rows).groupby(level=["body", "number"]):
             where = group.index.get_level_values("removed")
-            colour = BLUE if body == "lattice" else ORANGE
-            axes.plot(where, group, "o", color=colour, label=f"{body} of {number:g}", alpha=0.6)
-    axes.axvline(1 - THRESHOLD, color=BLUE, linewidth=0.8, linestyle=":")
+            few = number == left(rows).loc[body].index.get_level_values("number").min()
+            colour, marker = BLUE if body == "lattice" else ORANGE, "x" if few else "o"
+            axes.plot(where, group, marker, color=colour, label=f"{body} of {number:g}", alpha=0.8)
+    axes.axvline(1 - THRESHOLD, color=BLUE, linewidth=0.8, linestyle=":", label="an infinite lattice falls apart")
     axes.set(xlabel="share of the links gone", ylabel="conductivity left", xlim=(0, max(REMOVED) + 0.05))
     axes.set_title("Links that are gone")
-    axes.legend()
+    axes.legend(fontsize=8)

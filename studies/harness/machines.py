@@ -26,23 +26,25 @@ def origins(rows):
 
 
 def of_one_machine(df):
-    """The rows, without the seconds of those that are not from the machine that made most of them.
+    """The rows, without the seconds of those that are not from the machine that made most of their part of the study.
 
     Parameters
     ----------
     df : data frame
+        Where a study has parts, as its column "part", these are never compared by seconds.
 
     Returns
     -------
     data frame
     """
     timings = [name for name in df if name in ("cpu_s", "wall_s") or name.endswith(("_cpu_s", "_wall_s"))]
-    found = origins(df.to_dict("records"))
-    timed = [origin for origin, seconds in zip(found, df[timings].notna().any(axis=1), strict=True) if seconds]
-    if len(set(timed)) < 2:
-        return df
-    chosen, _ = Counter(timed).most_common(1)[0]
-    return df.assign(**{name: df[name].where([origin == chosen for origin in found]) for name in timings})
+    found, parts = origins(df.to_dict("records")), df["part"].astype(str) if "part" in df else [""] * len(df)
+    timed = df[timings].notna().any(axis=1)
+    made = {part: Counter() for part in parts}
+    for part, origin, seconds in zip(parts, found, timed, strict=True):
+        made[part][origin] += bool(seconds)
+    chosen = [origin == made[part].most_common(1)[0][0] for part, origin in zip(parts, found, strict=True)]
+    return df if all(chosen) else df.assign(**{name: df[name].where(chosen) for name in timings})
 
 
 def said(df):

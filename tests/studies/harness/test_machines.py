@@ -86,3 +86,11 @@ def test_a_host_is_told_without_its_name():
     import platform
 
     assert len(host()) == 8 and int(host(), 16) >= 0 and platform.node() not in host()
+
+
+def test_parts_are_not_compared_by_seconds():
+    rows = [{"part": "a", "machine": "one"}, {"part": "b", "machine": "two"}, {"part": "b", "machine": "two"}]
+    df = machines.of_one_machine(pd.DataFrame([row | {"cpu_s": 1.0} for row in rows]))
+    assert df["cpu_s"].notna().all()
+    mixed = machines.of_one_machine(pd.DataFrame([row | {"cpu_s": 1.0, "part": "b"} for row in rows]))
+    assert mixed["cpu_s"].isna().tolist() == [True, False, False]
