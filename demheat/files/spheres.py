@@ -123,7 +123,8 @@ def _packed(table, path, factor, step, size):
     own = [scaled(side, factor) for side in packing.size.tolist()]
     if table.keys["offset"] is None and any(abs(a - b) > SAME * b for a, b in zip(own, size, strict=True)):
         box, wanted = (" x ".join(f"{side:.6g}" for side in sides) for sides in (own, size))
-        raise table.error("file", f"{told}: has a box of {box} m; must be {wanted} m, as size is, or have an offset")
+        valid = f"must be {wanted} m, as size is, by its unit, or have an offset"
+        raise table.error("file", f"{told}: has a box of {box} m; {valid}")
     return _placed(path, packing, factor)
 
 

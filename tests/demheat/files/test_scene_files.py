@@ -260,7 +260,7 @@ def test_a_foreign_extended_xyz(tmp_path):
 def test_the_box_of_a_packing_is_that_of_the_scene(tmp_path):
     """Else a unit was forgotten, or an offset must say where it lies."""
     (tmp_path / "d.liggghts").write_text(DUMP)
-    words = r"scene.toml:10: .*has a box of 1000 x 1000 x 1000 m; must be 1 x 1 x 1 m, as size is, or have an offset"
+    words = r"scene.toml:10: .*has a box of 1000 x 1000 x 1000 m; must be 1 x 1 x 1 m, as size is, by its unit"
     with pytest.raises(ValueError, match=words):
         files.read(written(tmp_path, ENTRY.format("d.liggghts", "")))
     entry = ENTRY.replace("size = [1, 1, 1]", "size = [2, 2, 2]")
