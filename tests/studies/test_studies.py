@@ -37,17 +37,24 @@ def test_the_studies_are_there():
     assert {"fig03_calibration", "packings"} <= set(NAMES)
 
 
-# Their quick rows take 15 to 52 CPU-seconds each, a third of all tests: `make test-slow`.
+# Their quick rows take 12 to 52 CPU-seconds each, together more than a third of all tests: `make test-slow`.
 SLOW = (
+    "brackets",
     "damage",
+    "estimates",
+    "fig12_15_sheet",
     "fig15_16_fields",
     "fig17_etc",
     "fig18_fields",
     "grains",
     "images",
+    "resistance",
+    "scaling",
     "shapes",
     "speed_error",
+    "sphere_benchmark",
     "stability",
+    "tuning",
     "zeta2",
 )
 
