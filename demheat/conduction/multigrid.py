@@ -41,29 +41,83 @@ def preconditioner(links, diagonal):
         Writes the correction for the residual r, of this norm, to z.
     """
     scale = 1.0 / diagonal.max()
-    aggregates, coarse = _coarser(links, diagonal, scale)
-    level, n, single = _level(links, diagonal, scale), len(diagonal), np.float32
-    load, x, y, received = (
-        np.empty(n, single),
-        np.empty(n, single),
-        np.empty(n, single),
-        np.empty(len(aggregates.start) - 1),
-    )
+    aggregates = aggregated(links, len(diagonal))
+    return cycle(links, diagonal, scale, aggregates, _below(kernels.galerkin(links, diagonal, scale, aggregates)))
+
+
+def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None):
+    """One symmetric cycle on the finest level, by what solves on the aggregates.
+
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+    scale : float, K/W
+        Of order one over the diagonal: what is in single precision has no units.
+    aggregates : Aggregates
+        Of the n rows.
+    coarse : callable (r) -> (aggregates,) float array
+        Solves the aggregates' equations, those of scale (diag(diagonal) - conductance), about.
+    seen : int, optional
+        Particles that links lead to, the rows' own being the first. Default: no others.
+    beside : callable (x), optional
+        Puts the others' values where x, (seen,) float32 array, has them.
+
+    Returns
+    -------
+    callable (r, norm, z)
+        As that of `preconditioner`.
+    """
+    level, n, single = level_of(links, diagonal, scale), len(diagonal), np.float32
+    load, y, x = np.empty(n, single), np.empty(n, single), np.zeros(n if seen is None else seen, single)
+    received = np.empty(len(aggregates.start) - 1)
 
     def apply(r, norm, z):
         kernels.scaled(r, 1.0 / norm, load)
         kernels.forward(level, load, x)
+        if beside:
+            beside(x)
         kernels.defect(level, x, y)
         kernels.restrict(aggregates, y, received)
         kernels.correct(aggregates, coarse(received), ENLARGED, x)
+        if beside:
+            beside(x)
         kernels.backward(level, load, x, y)
         kernels.scaled(y, scale * norm, z)
 
     return apply
 
 
-def _level(links, diagonal, scale):
-    """The matrix times a scale, arranged for sweeps."""
+def aggregated(links, n):
+    """Join the particles of n rows to aggregates.
+
+    Parameters
+    ----------
+    links : Links
+    n : int
+
+    Returns
+    -------
+    Aggregates
+    """
+    top, owner = np.empty(n), np.empty(n, np.int32)
+    kernels.strongest(links, top)
+    return kernels.members(owner, kernels.aggregate(links, top, MOST, owner))
+
+
+def level_of(links, diagonal, scale):
+    """The matrix times a scale, arranged for sweeps.
+
+    Parameters
+    ----------
+    links : Links
+    diagonal : (n,) float array, W/K
+    scale : float, K/W
+
+    Returns
+    -------
+    Level
+    """
     n, inverse = len(diagonal), np.zeros(len(diagonal), np.float32)
     inverse[diagonal > 0] = 1.0 / (scale * diagonal[diagonal > 0])
     small, m = np.min_scalar_type(int(np.diff(links.indptr).max(initial=0))), len(links.indices)
@@ -73,19 +127,16 @@ def _level(links, diagonal, scale):
     return level
 
 
-def _coarser(links, diagonal, scale):
-    """Aggregates of particles, and a cycle of pyamg's on them."""
+def _below(rows):
+    """A cycle of pyamg's on the aggregates, of the rows of their matrix."""
     import pyamg
 
-    top, owner = np.empty(len(diagonal)), np.empty(len(diagonal), np.int32)
-    kernels.strongest(links, top)
-    aggregates = kernels.members(owner, kernels.aggregate(links, top, MOST, owner))
-    pointers, columns, values = kernels.galerkin(links, diagonal, scale, aggregates)
-    count = len(aggregates.start) - 1
+    pointers, columns, values = rows
+    count = len(pointers) - 1
     a = sparse.csr_matrix((values, columns, pointers), shape=(count, count))
     with seeded():
         hierarchy = pyamg.ruge_stuben_solver(a, **CYCLE)
-    return aggregates, lambda r: _cycle(hierarchy, 0, r)
+    return lambda r: _cycle(hierarchy, 0, r)
 
 
 def _cycle(hierarchy, depth, r):

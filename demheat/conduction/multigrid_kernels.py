@@ -1,6 +1,7 @@
 """Compiled finest level of the multigrid preconditioner: aggregates, their Galerkin matrix, and Gauss-Seidel sweeps.
 
 Sweeps run within fixed blocks of rows and take the rest as it was, so that bits do not depend on the number of threads.
+Links may lead beyond the rows, to particles that are another's: vectors that are read there are longer than the rows.
 """
 
 from typing import NamedTuple
@@ -85,7 +86,7 @@ def _pick(i, links, top, owner, found, key):
     number, room = 0, len(found)
     for e in range(indptr[i], indptr[i + 1]):
         j, c = indices[e], conductance[e]
-        if owner[j] >= 0 or c <= 0.0 or j == i or c < STRONG * max(top[i], top[j]):
+        if j >= len(owner) or owner[j] >= 0 or c <= 0.0 or j == i or c < STRONG * max(top[i], top[j]):
             continue
         known = False
         for a in range(number):
@@ -106,7 +107,7 @@ def aggregate(links, top, most, owner):
     """Join particles that are strongly linked.
 
     In order of the rows each free one takes its strongest free neighbours, if they are a third of `most` or more;
-    what is left over joins the aggregate of its strongest neighbour.
+    what is left over joins the aggregate of its strongest neighbour. Only rows are joined.
 
     Parameters
     ----------
@@ -142,7 +143,7 @@ def aggregate(links, top, most, owner):
         best, c = np.int64(-1), 0.0
         for e in range(indptr[i], indptr[i + 1]):
             j = indices[e]
-            if owner[j] >= 0 and conductance[e] > max(c, STRONG * top[i]):
+            if j < len(owner) and owner[j] >= 0 and conductance[e] > max(c, STRONG * top[i]):
                 best, c = owner[j], conductance[e]
         if best < 0:
             best = count
@@ -189,6 +190,7 @@ def galerkin(links, diagonal, scale, aggregates):
     diagonal : (n,) float array, W/K
     scale : float, K/W
     aggregates : Aggregates
+        With the owners also of what is beyond the rows, which have numbers after those of the rows' own.
 
     Returns
     -------
@@ -201,7 +203,7 @@ def galerkin(links, diagonal, scale, aggregates):
     indptr, indices, conductance = links
     owner, start, rows = aggregates
     count = len(start) - 1
-    seen = np.full(count, -1, np.int64)
+    seen = np.full(max(count, owner.max() + 1), -1, np.int64)
     pointers = np.zeros(count + 1, np.int32)
     for c in range(count):
         seen[c] = c
@@ -279,7 +281,7 @@ def forward(level, r, x):
     x : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, inverse = level
-    n = len(x)
+    n = len(r)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(block * ROWS, min(n, (block + 1) * ROWS)):
             flow, begin = r[i], np.uint64(indptr[i])
@@ -300,7 +302,7 @@ def defect(level, x, d):
     d : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, _ = level
-    for i in prange(len(x)):
+    for i in prange(len(d)):
         flow, begin = np.float32(0.0), np.uint64(indptr[i])
         for e in range(begin + ends[i, 0], np.uint64(indptr[i + 1])):
             flow += values[e] * x[indices[begin + place[e]]]
@@ -337,7 +339,7 @@ def correct(aggregates, coarse, weight, x):
     x : (n,) float32 array, in and out
     """
     owner, _, _ = aggregates
-    for i in prange(len(x)):
+    for i in prange(len(owner)):
         if owner[i] >= 0:
             x[i] += np.float32(weight * coarse[owner[i]])
 
@@ -356,7 +358,7 @@ def backward(level, r, x, y):
     y : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, inverse = level
-    n = len(x)
+    n = len(r)
     for block in prange((n + ROWS - 1) // ROWS):
         for i in range(min(n, (block + 1) * ROWS) - 1, block * ROWS - 1, -1):
             flow, begin = r[i], np.uint64(indptr[i])

@@ -57,7 +57,7 @@ def dot(a, b):
 def _apply(links, diagonal, p, q, partial):
     """q = A p and the block sums of p.q."""
     indptr, indices, conductance = links
-    n = len(p)
+    n = len(q)
     for block in prange(len(partial)):
         total = 0.0
         for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
@@ -78,6 +78,7 @@ def apply(links, diagonal, p, q):
     links : Links
     diagonal : (n,) float array, W/K
     p : (n,) float array, K
+        Or longer, where links lead beyond the rows.
     q : (n,) float array, W, out
 
     Returns
@@ -85,7 +86,7 @@ def apply(links, diagonal, p, q):
     float, W K
         p.q.
     """
-    partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
+    partial = np.empty((len(q) + BLOCK - 1) // BLOCK)
     _apply(links, diagonal, p, q, partial)
     return partial.sum()
 

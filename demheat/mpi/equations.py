@@ -1,18 +1,23 @@
-"""The heat balance of all ranks' particles as PETSc's matrix, solved by its conjugate gradients and multigrid."""
+"""The heat balance of all ranks' particles, solved by PETSc's conjugate gradients and, below the finest level, multigrid.
+
+The finest level is that of one process, each rank's rows a block of it: the network is read as it is, and there is no
+second copy of the matrix. What all ranks' aggregates exchange is a matrix of PETSc's, on an eighth of the unknowns.
+"""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from scipy import sparse
 
+from demheat.conduction import multigrid_kernels, steady_kernels
 from demheat.conduction.balance import System, residual, throughput
-from demheat.mpi.cells import Cells
+from demheat.conduction.multigrid import aggregated, cycle
 from demheat.mpi.numbers import Halo
+from demheat.network.links_kernels import Links
 
-# Rows that are handed over at once: some 20 MB.
-BLOCK = 65536
-# PETSc's own algebraic multigrid, by smoothed aggregates; other thresholds and aggregates take as much memory.
+# PETSc's own algebraic multigrid below the finest level, by smoothed aggregates.
 DEFAULTS = {"pc_type": "gamg", "pc_gamg_type": "agg", "pc_gamg_agg_nsmooths": "1", "pc_gamg_threshold": "0.01"}
 PREFIX = "demheat_"
 # Solved anew so often: the heat that passes, which sets the limit, is known only once the solution nearly is.
@@ -20,24 +25,30 @@ ROUNDS, MOST = 10, 20_000
 
 
 class Equations:
-    """A matrix of all ranks and what solves it; `free` gives its memory back.
+    """The rows of a rank's own particles and what solves those of all; `free` gives its memory back.
 
     Parameters
     ----------
-    cells : Cells
     system : System
-        Of what the rank sees.
-    numbers : (n,) int32 array
+        Of what the rank sees, its own particles first.
+    halo : Halo
     options : str
         Of PETSc, such as "-pc_type hypre".
     petsc : module
     comm : mpi4py.MPI.Comm
     """
 
-    def __init__(self, cells: Cells, system: System, numbers, options, petsc, comm):
-        self.petsc, self.comm, self.own = petsc, comm, cells.own
-        self.matrix = _matrix(cells, system, numbers, petsc, comm)
-        self.solver = _solver(self.matrix, options, petsc, comm)
+    def __init__(self, system: System, halo: Halo, options, petsc, comm):
+        self.petsc, self.comm, self.own = petsc, comm, halo.own
+        _know(options, petsc)
+        rows = own_rows(system, self.own)
+        sizes = ((self.own, None), (self.own, None))
+        self.matrix = petsc.Mat().createPython(sizes, _Balance(*rows, halo), comm=comm)
+        self.below = _Below(petsc, comm, constant=bool(system.network.periodic.any()))
+        self.cycle = _Cycle(preconditioner(*rows, halo, self.below, comm))
+        if self.below.constant:
+            self.matrix.setNullSpace(petsc.NullSpace().create(constant=True, comm=comm))
+        self.solver = _solver(self.matrix, self.cycle, petsc, comm)
         self.r, self.x = self.matrix.createVecs()
 
     def correction(self, r: np.ndarray, limit: float, most: int) -> tuple[np.ndarray, int]:
@@ -52,6 +63,8 @@ class Equations:
             Iterations.
         """
         self.r.array[:] = r
+        # In single precision numbers are of order one.
+        self.cycle.norm = self.r.norm()
         self.solver.setTolerances(rtol=1e-30, atol=limit, max_it=most)
         self.solver.solve(self.r, self.x)
         if self.solver.reason < 0 and self.solver.reason != self.petsc.KSP.ConvergedReason.DIVERGED_MAX_IT:
@@ -59,9 +72,64 @@ class Equations:
         return self.x.array_r.copy(), self.solver.its
 
     def free(self) -> None:
-        """Give back the memory of the matrix and its multigrid."""
-        for each in (self.solver, self.matrix, self.r, self.x):
+        """Give back the memory of the multigrid."""
+        for each in (self.solver, self.matrix, self.below, self.r, self.x):
             each.destroy()
+        self.cycle.apply_to = None
+
+
+def own_rows(system: System, own: int):
+    """Links and diagonal of a rank's own rows, without copies.
+
+    Parameters
+    ----------
+    system : System
+        Of what the rank sees.
+    own : int
+
+    Returns
+    -------
+    links : Links
+        Their indices lead to all that the rank sees.
+    diagonal : (own,) float array, W/K
+    """
+    network = system.network
+    end = network.indptr[own]
+    return Links(network.indptr[: own + 1], network.indices[:end], network.conductance[:end]), system.diagonal[:own]
+
+
+def preconditioner(links: Links, diagonal: np.ndarray, halo, below, comm):
+    """One symmetric cycle for the equations of all ranks: that of one process, whose aggregates end at the slab's ends.
+
+    Parameters
+    ----------
+    links, diagonal
+        As `own_rows` gives them.
+    halo : Halo
+    below : object
+        Its `takes(pointers, columns, values)` is given a rank's rows of the matrix of all ranks' aggregates, with the
+        columns' numbers among all; its `solve(r)` returns about what solves them, (aggregates,) float array.
+    comm : mpi4py.MPI.Comm
+
+    Returns
+    -------
+    callable (r, norm, z)
+        As `demheat.conduction.multigrid.preconditioner` has it, of a rank's own parts.
+    """
+    own, scale = len(diagonal), 1.0 / max(comm.allgather(float(diagonal.max())))
+    aggregates = aggregated(links, own)
+    count = len(aggregates.start) - 1
+    first = comm.scan(count) - count
+    # Aggregates of others come after the rank's own.
+    theirs = halo.filled(np.where(aggregates.owner < 0, np.nan, aggregates.owner + float(first)))[own:]
+    known = np.isfinite(theirs)
+    numbers, place = np.unique(theirs[known].astype(np.int64), return_inverse=True)
+    owner = np.full(own + len(theirs), -1, np.int32)
+    owner[:own] = aggregates.owner
+    owner[own:][known] = count + place
+    pointers, columns, values = multigrid_kernels.galerkin(links, diagonal, scale, aggregates._replace(owner=owner))
+    below.takes(pointers, np.concatenate([first + np.arange(count), numbers])[columns], values)
+    return cycle(links, diagonal, scale, aggregates, below.solve, seen=len(owner), beside=halo.update)
 
 
 def solved(equations: Equations, system: System, halo: Halo, x: np.ndarray, tolerance: float):
@@ -112,56 +180,85 @@ def _left(system, halo, x, equations):
     return (norm / passing, r, passing) if passing > 0 else (float(norm > 0), r, norm)
 
 
-def _matrix(cells, system, numbers, petsc, comm):
-    """Rows of the rank's own particles, handed over block by block."""
-    network, own = cells.network, cells.own
-    matrix = petsc.Mat().createAIJ(((own, None), (own, None)), comm=comm)
-    matrix.setPreallocationNNZ(_lengths(network, numbers, own))
-    for start in range(0, own, BLOCK):
-        rows = np.arange(start, min(own, start + BLOCK))
-        matrix.setValuesIJV(*_rows(network, system.diagonal, numbers, rows), addv=True, rowmap=numbers[rows])
-    matrix.assemble()
-    for option in (petsc.Mat.Option.SYMMETRIC, petsc.Mat.Option.SPD):
-        matrix.setOption(option, True)
-    if system.network.periodic.any():
-        matrix.setNullSpace(petsc.NullSpace().create(constant=True, comm=comm))
-    return matrix
+class _Balance:
+    """The product of all ranks' matrix with a vector, as PETSc asks for it."""
+
+    def __init__(self, links, diagonal, halo):
+        self.links, self.diagonal, self.halo, self.seen = links, diagonal, halo, np.zeros(halo.size)
+
+    def mult(self, _, x, y):
+        """PETSc's name for y = A x."""
+        self.seen[: self.halo.own] = x.array_r
+        self.halo.update(self.seen)
+        steady_kernels.apply(self.links, self.diagonal, self.seen, y.array)
 
 
-def _lengths(network, numbers, own):
-    """Entries of each row in the rank's own columns, the diagonal besides, and in others'."""
-    beside, count = np.empty(own, np.int32), np.diff(network.indptr[: own + 1]).astype(np.int32)
-    for start in range(0, own, BLOCK):
-        rows = slice(start, min(own, start + BLOCK))
-        ends = network.indptr[rows.start : rows.stop + 1]
-        column = numbers[network.indices[ends[0] : ends[-1]]]
-        others = np.concatenate([[0], np.cumsum((column < numbers[0]) | (column >= numbers[0] + own))])
-        beside[rows] = np.diff(others[ends - ends[0]])
-    return count - beside + 1, beside
+class _Cycle:
+    """The preconditioner, as PETSc asks for it."""
+
+    def __init__(self, apply_to):
+        self.apply_to, self.norm = apply_to, 1.0
+
+    def apply(self, _, r, z):
+        """PETSc's name for z = M r."""
+        self.apply_to(r.array_r, self.norm, z.array)
 
 
-def _rows(network, diagonal, numbers, rows):
-    """Some rows as PETSc takes them: pointers, columns and values, the diagonal last in each."""
-    begin, end = network.indptr[rows[0]], network.indptr[rows[-1] + 1]
-    last = network.indptr[rows + 1] - begin
-    columns = np.insert(numbers[network.indices[begin:end]], last, numbers[rows])
-    values = np.insert(-network.conductance[begin:end], last, diagonal[rows])
-    pointers = np.concatenate([[0], last + np.arange(1, len(rows) + 1)]).astype(np.int32)
-    return pointers, columns, values
+class _Below:
+    """The aggregates' equations, by a preconditioner of PETSc's."""
+
+    def __init__(self, petsc, comm, *, constant):
+        self.petsc, self.comm, self.constant = petsc, comm, constant
+
+    def takes(self, pointers, columns, values):
+        """Rows of the matrix, as `preconditioner` has them."""
+        petsc, count = self.petsc, len(pointers) - 1
+        total = self.comm.allreduce(count)
+        rows = sparse.csr_matrix((values, columns, pointers), shape=(count, total))
+        rows.sort_indices()
+        csr = rows.indptr.astype(petsc.IntType), rows.indices.astype(petsc.IntType), rows.data
+        self.matrix = petsc.Mat().createAIJ(((count, None), (count, None)), csr=csr, comm=self.comm)
+        for option in (petsc.Mat.Option.SYMMETRIC, petsc.Mat.Option.SPD):
+            self.matrix.setOption(option, True)
+        if self.constant:
+            self.matrix.setNullSpace(petsc.NullSpace().create(constant=True, comm=self.comm))
+        self.solver = petsc.PC().create(self.comm)
+        self.solver.setOptionsPrefix(PREFIX)
+        self.solver.setOperators(self.matrix)
+        self.solver.setFromOptions()
+        self.solver.setUp()
+        self.r, self.x = self.matrix.createVecs()
+
+    def solve(self, r):
+        self.r.array[:] = r
+        self.solver.apply(self.r, self.x)
+        return self.x.array_r
+
+    def destroy(self):
+        for each in (self.solver, self.matrix, self.r, self.x):
+            each.destroy()
 
 
-def _solver(matrix, options, petsc, comm):
+def _know(options, petsc):
+    """Tell PETSc its options."""
     known = petsc.Options()
     for name, value in DEFAULTS.items():
         known[PREFIX + name] = value
     words = options.split()
     known.insertString(" ".join("-" + PREFIX + word[1:] if _is_name(word) else word for word in words))
+
+
+def _solver(matrix, cycle, petsc, comm):
     solver = petsc.KSP().create(comm)
     solver.setOptionsPrefix(PREFIX)
     solver.setType("cg")
     solver.setNormType(petsc.KSP.NormType.UNPRECONDITIONED)
     solver.setOperators(matrix)
     solver.setFromOptions()
+    # After the options, which are those of the preconditioner below.
+    outer = solver.getPC()
+    outer.setType("python")
+    outer.setPythonContext(cycle)
     solver.setUp()
     return solver
 

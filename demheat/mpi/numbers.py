@@ -62,6 +62,19 @@ def _found(points, own, slabs):
     return np.where(away <= slack, near[place], NOBODY)
 
 
+def linked(network, own: int) -> np.ndarray:
+    """Particles that a rank's own rows link to, and its own, (n,) bool array.
+
+    Parameters
+    ----------
+    network : Network
+    own : int
+    """
+    found = np.arange(len(network.volumes)) < own
+    found[network.indices[: network.indptr[own]]] = True
+    return found
+
+
 class Halo:
     """What a rank sees of a quantity of which each rank has its own part.
 
@@ -83,9 +96,13 @@ class Halo:
 
     def filled(self, values: np.ndarray) -> np.ndarray:
         """Values of a rank's own particles, (own,) float array, with those of all it sees, NaN where nobody tells."""
-        self.whole.array[:] = values
-        self.scatter.scatter(self.whole, self.beside)
         seen = np.full(self.size, np.nan)
         seen[: self.own] = values
-        seen[self.known] = self.beside.array_r
+        self.update(seen)
         return seen
+
+    def update(self, seen: np.ndarray) -> None:
+        """Put the others' values where a rank sees them, (size,) float array; its own are those of `seen` itself."""
+        self.whole.array[:] = seen[: self.own]
+        self.scatter.scatter(self.whole, self.beside)
+        seen[self.known] = self.beside.array_r

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import ctypes
+import gc
 import os
 import resource
 import sys
 import time
 import warnings
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 import numpy as np
@@ -24,7 +26,7 @@ from demheat.mpi.cells import cells_of, check_unknowns, part_of
 from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
-from demheat.mpi.numbers import Halo, numbers_of
+from demheat.mpi.numbers import NOBODY, Halo, linked, numbers_of
 from demheat.mpi.slabs import slabs_of
 from demheat.scene import Scene, check_scene
 from demheat.threads import limited
@@ -159,12 +161,20 @@ class _Costs:
     def of(self, name):
         wall, cpu = time.perf_counter(), time.process_time()
         yield
+        give_back()
         took = self.comm.allreduce(time.process_time() - cpu)
         slowest = max(self.comm.allgather(time.perf_counter() - wall))
         self.stages |= {f"{name}_s": slowest, f"{name}_cpu_s": took, f"{name}_bytes": self.comm.allreduce(_peak())}
 
     def told(self):
         return self.stages | {"bytes": self.comm.allreduce(_peak()), "bytes_before": self.before}
+
+
+def give_back() -> None:
+    """Return freed memory to the system: what one stage has freed would else stand beside what the next one takes."""
+    gc.collect()
+    with suppress(OSError, AttributeError):
+        ctypes.CDLL(None).malloc_trim(0)
 
 
 def _peak():
@@ -199,12 +209,15 @@ def _solved(scene, cells, slabs, comm, *, tolerance, options):
     network, own, engine = cells.network, cells.own, petsc()
     reached = np.ones(len(network.volumes), dtype=bool)
     numbers = numbers_of(network, own, slabs, comm)
-    halo = Halo(numbers, own, engine, comm)
     system = system_of(network, scene, reached)
-    equations = Equations(cells, system, numbers, options, engine, comm)
+    # Iterations need what own rows link to, a third of what is seen of the neighbours or less.
+    beside = Halo(np.where(linked(network, own), numbers, NOBODY), own, engine, comm)
+    equations = Equations(system, beside, options, engine, comm)
     first = linear_start(network, scene, reached)[:own]
-    x, iterations, size = solved(equations, system, halo, first, tolerance)
+    x, iterations, size = solved(equations, system, beside, first, tolerance)
     equations.free()
+    give_back()
+    halo = Halo(numbers, own, engine, comm)
     if scene.periodic:
         x -= comm.allreduce(float(x @ network.volumes[:own])) / comm.allreduce(float(network.volumes[:own].sum()))
     temperature = halo.filled(x) + system.level

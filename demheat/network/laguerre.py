@@ -211,6 +211,7 @@ class _Columns:
 
 
 LINKS = (np.uint32, np.uint8, float, float)  # indices, image, area, distance
+AREA = 2  # of these
 WALLS = (np.int64, np.int64, float, float)  # particle, side, area, distance
 FACETS = ("neighbour", "image", "area", "distance")  # of a Cut
 
@@ -308,19 +309,24 @@ def _kept(cut, good):
 
 
 def _matched(number, links, spacing):
-    """Links that both of their cells see, with one area: pointers, indices, image, area, distance."""
-    indices, image, area, distance = links
+    """Links that both of their cells see, with one area: pointers, indices, image, area, distance.
+
+    The list of columns is used up: of the largest arrays there are, none is kept twice.
+    """
     indptr = np.concatenate([[0], np.cumsum(number, dtype=np.int64)])
-    matched = np.empty(len(area))
-    match_links(indptr, indices, image, area, matched)
-    keep = matched > 0.0
-    if keep.all():
-        return indptr, indices, image, matched, distance
-    lost = area[~keep].max()
-    if lost > 1e-7 * spacing**2:
-        raise RuntimeError(f"laguerre: a facet of {lost:.2e} m2 is seen by one of its two cells only")
-    indptr = np.concatenate([[0], np.cumsum(keep)])[indptr]
-    return indptr, indices[keep], image[keep], matched[keep], distance[keep]
+    matched = np.empty(len(links[AREA]))
+    match_links(indptr, *links[: AREA + 1], matched)
+    lost = np.flatnonzero(matched == 0.0)
+    if len(lost):
+        largest = links[AREA][lost].max()
+        if largest > 1e-7 * spacing**2:
+            raise RuntimeError(f"laguerre: a facet of {largest:.2e} m2 is seen by one of its two cells only")
+        indptr -= np.searchsorted(lost, indptr)
+    links[AREA] = matched
+    del matched
+    for k in range(len(links)) if len(lost) else ():
+        links[k] = np.delete(links[k], lost)
+    return indptr, *links
 
 
 def _with_normals(facets, side, centers, wall):

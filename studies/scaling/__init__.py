@@ -5,12 +5,14 @@ spends on an inclusion and adds inclusions: equal spheres, three tenths of the v
 in a ratio of 10. `goal` sets the scene of 5000 spheres beside one sphere with as many particles, and each method's
 conductivity beside the multipoles'. `elements` refines one cell of 83 spheres, with one thread and with two. `before`
 runs the same 8e6 particles with the code of an earlier commit, taken from the history, right after today's: what they
-cost is compared, not what they say, for the network beside interfaces was made more accurate in between.
+cost is compared, not what they say, for the network beside interfaces was made more accurate in between. `strong` and
+`weak` are of `demheat.mpi`, one thread to a rank: one body on one rank and on two, and as many particles for each rank.
 """
 
 from studies.harness import methods
 from studies.harness.pick import largest, pick, present
 from studies.scaling.means import errors, fitted
+from studies.scaling.model import left_out, rows_of
 
 NUMBERS = (100, 300, 1000, 3000, 10_000, 20_000)
 MOST = {"multipole": 20_000, "fem": 300}  # inclusions; beyond them minutes become hours
@@ -20,6 +22,8 @@ KINDS = (("equal", 0.5), ("polydisperse", 0.3), ("polydisperse", 0.5))
 PARTICLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 8_000_000)
 VOXELS = (64, 128, 256, 512)
 THREADS = (1, 2)
+RANKS = (1, 2)
+STRONG, WEAK = (20_000, 1_000_000), (500_000, 1_000_000)  # particles of all ranks, and of each
 BEFORE = "b4da0d3"
 ACCURACY = 1e-4  # of the multipoles
 PAPER = {}
@@ -63,6 +67,12 @@ def _cases():
             yield methods.case("fft", part="elements", voxels=voxels, cores=threads)
     yield methods.case("multipole", part="elements", accuracy=ACCURACY)
     yield methods.case("dem", part="time", particles=PARTICLES[-1], seed=0)
+    for ranks in RANKS:
+        for particles in STRONG:
+            yield methods.case("dem", part="strong", number=1, particles=particles, seed=0, ranks=ranks)
+        for particles in WEAK:
+            case = {"part": "weak", "number": ranks, "particles": ranks * particles}
+            yield methods.case("dem", **case, seed=0, ranks=ranks)
     for kind, fraction in KINDS:
         for number in (1000, GOAL):
             for name in ("dem", "fft"):
@@ -79,15 +89,17 @@ def QUICK(case):
         return case["number"] <= NUMBERS[0] and case["name"] != "fem"
     if case["part"] == "elements":
         return case.get("particles", 0) <= 10_000 and case.get("voxels", 0) <= 64
-    return False
+    return case["part"] == "strong" and case["particles"] == STRONG[0]
 
 
 def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
     """One row of a part."""
     import tempfile
 
-    from studies.scaling import rows, whole
+    from studies.scaling import ranks, rows, whole
 
+    if part in ("strong", "weak"):
+        return ranks.row(number, knobs["particles"], knobs["seed"], knobs["ranks"])
     if method == "dem":
         # Stages are called one by one, with the law that the method fixes.
         knobs = {key: value for key, value in knobs.items() if key not in methods.found()[name].knobs}
@@ -108,6 +120,8 @@ def warm_up(name, part, number=None, kind=None, fraction=None, *, method, **knob
     """Make the dispersion, load and compile."""
     from studies.scaling import rows
 
+    if part in ("strong", "weak"):
+        return
     if part == "elements":
         rows.cell()
     elif number is not None:
@@ -122,7 +136,7 @@ def claims(df):
     Limits are the project's aims, set before any row was there.
     """
     df = errors(df)
-    yield from present([*_coarse(df), *_exponents(df), *_goal(df), *_engine(df)])
+    yield from present([*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)])
 
 
 def _coarse(df):
@@ -181,6 +195,31 @@ def _engine(df):
         yield "Second solve, in another process: wall seconds", rows["second_s"].iloc[0], 20.0
 
 
+def _ranked(df):
+    """Two ranks beside one: the same answer, seconds that halve or stay, and how well the model knows a row."""
+    ok = df[df["status"] == "ok"]
+    for particles in STRONG:
+        one, two = (pick(ok, part="strong", particles=particles, ranks=ranks) for ranks in RANKS)
+        if len(one) and len(two):
+            apart = two["k_body"].iloc[0] / one["k_body"].iloc[0] - 1.0
+            yield f"MPI, {particles} particles: conductivity of two ranks against one, relative", abs(apart), 1e-8
+            more = two["iterations"].iloc[0] / one["iterations"].iloc[0]
+            yield f"MPI, {particles} particles: iterations of two ranks over those of one", more, 1.2
+    full = rows_of(df)
+    for part, particles, share in (("strong", STRONG[1:], 0.5), ("weak", WEAK, 1.0)):
+        for each in particles:
+            one = pick(full, part=part, particles=each, ranks=1)
+            two = pick(full, part=part, particles=each if part == "strong" else 2 * each, ranks=2)
+            if len(one) and len(two):
+                gained = share * one["wall_s"].iloc[0] / two["wall_s"].iloc[0]
+                yield f"MPI, {part}, {each} particles{' a rank' * (part == 'weak')}: efficiency, CPU", gained, ">= 0.7"
+    if len(full):
+        yield "MPI: peak memory per unknown, bytes", (full["peak_mib"] * 2**20 / full["unknowns"]).max(), 900.0
+    off = left_out(full)
+    if off:
+        yield "MPI: the model's error on the CPU time of a row left out, %", max(map(abs, off)), 25.0
+
+
 def table(df):
     """CPU and wall seconds of every row, of the DEM by stages, then fits.
 
@@ -188,7 +227,10 @@ def table(df):
     coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
     vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
     Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more. The last lines say what 1e9 unknowns
-    would take if the fits went on.
+    would take if the fits went on, and what more cores would make of it by a model: work, messages and sums fitted to
+    `strong` and `weak` (`studies/scaling/model.py`), on a network that is assumed, of 2 microseconds and, for each node
+    of 64 cores, 25 GB/s, which was not measured. `demheat.mpi` cuts slabs; bricks are the model's only, and so are more
+    unknowns than 32 bits number. Figures from the literature are other people's, for other equations and machines.
     """
     from studies.scaling.tables import lines
 
@@ -196,7 +238,7 @@ def table(df):
 
 
 def plot(df):
-    """Costs of methods and stages as lines of slope one and others; two threads."""
+    """Costs of methods and stages as lines of slope one and others; two threads; two ranks, and many by the model."""
     from studies.scaling.figure import draw
 
     return draw(df[df["status"] == "ok"])

@@ -7,16 +7,21 @@ import numpy as np
 from studies.harness import methods
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, ORANGE, PINK, RED, SKY, look
 from studies.harness.pick import pick
+from studies.scaling import model
 from studies.scaling.means import STAGES, efficiencies, fitted, of_stages
 
 COLOUR = dict(zip(STAGES, (GREY, ORANGE, BLUE, PINK, GREEN, RED, SKY, BLACK), strict=True))
 
 
 def draw(df):
-    """Four panels."""
+    """Four panels, and two more of rows on ranks where there are some."""
     from matplotlib import pyplot
 
-    figure, axes = pyplot.subplots(2, 2, figsize=(13, 10))
+    ranked = model.rows_of(df)
+    figure, axes = pyplot.subplots(3 if len(ranked) else 2, 2, figsize=(13, 15 if len(ranked) else 10))
+    if len(ranked):
+        _ranked(axes[2, 0], ranked)
+        _many(axes[2, 1], model.plans(ranked))
     _inclusions(axes[0, 0], df)
     _stages(axes[0, 1], pick(df, part="inclusions", name="dem"), "number", "inclusions, 50 particles each")
     threaded = pick(df, part="elements", name="dem")
@@ -70,3 +75,35 @@ def _threads(ax, df):
     ax.axvline(0.8, color=GREY, linestyle=":")
     ax.set(xlabel="wall time of one thread over two, halved", title="Two threads, finest cell of both", xlim=(0, 1.1))
     ax.invert_yaxis()
+
+
+def _ranked(ax, rows):
+    """Seconds of the slowest rank, stage by stage."""
+    rows = rows.sort_values(["part", "unknowns", "ranks"])
+    words = [f"{row['part']}, {row['unknowns']:.2g} on {row['ranks']:.0f}" for _, row in rows.iterrows()]
+    left = np.zeros(len(rows))
+    for stage, colour in zip(("packing", "cells", "solve", "field"), (GREY, BLUE, RED, SKY), strict=True):
+        seconds = rows[f"{stage}_wall_s"].to_numpy(float)
+        ax.barh(words, seconds, left=left, color=colour, label=stage)
+        left += seconds
+    ax.set(xlabel="wall time, s", title="demheat.mpi: unknowns on one rank and on two")
+    ax.legend()
+    ax.invert_yaxis()
+
+
+def _many(ax, plans):
+    """What many cores would take, if bricks were built."""
+    if not plans:
+        ax.set_axis_off()
+        return
+    bricks = [plan for plan in plans if plan["shape"] == "bricks"]
+    for unknowns, style in zip(model.SIZES, ("-", "--"), strict=True):
+        here = [plan for plan in bricks if plan["unknowns"] == unknowns]
+        cores = [plan["cores"] for plan in here]
+        for what, colour in (("all", BLACK), ("cells", BLUE), ("iterate", RED), ("twins", ORANGE)):
+            label = f"{unknowns:.0e}: {what}"
+            ax.plot(cores, [plan[what] for plan in here], style, marker="o", markersize=4, color=colour, label=label)
+        ax.axvline(model.most_slabs(unknowns), color=GREY, linestyle=":")
+    ax.set(xscale="log", yscale="log", xlabel="cores", ylabel="wall time, s")
+    ax.set_title("By the model, network assumed (dotted: most slabs)")
+    ax.legend(ncols=2)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
+from studies.scaling import model
 from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
+from studies.scaling.published import PUBLISHED
 
 # Characters of a note on the page; the rows' file has them all.
 NOTE = 100
@@ -17,12 +19,13 @@ def lines(df):
 
     df = df.reindex(columns=[*dict.fromkeys([*df.columns, *COLUMNS])])
     solved = errors(df[df["part"].isin(("inclusions", "kinds", "goal", "elements"))])
-    return pd.DataFrame([_line(row) for _, row in solved.iterrows()] + [*_before(df), *_fits(df)])
+    made = [_line(row) for _, row in solved.iterrows()] + [*_before(df), *_ranked(df), *_fits(df), *_many(df)]
+    return pd.DataFrame(made)
 
 
 COLUMNS = (
     *("number", "spheres", "kind", "fraction", "particles", "voxels", "cores", "k_ratio", "unknowns", "peak_mib"),
-    *("product_gbs", "triad_here_gbs"),
+    *("product_gbs", "triad_here_gbs", "ranks"),
 )
 
 
@@ -58,6 +61,55 @@ def _before(df):
                 | {"GiB": cost["peak_mib"] / 1024, "bytes each": cost["peak_mib"] * 2**20 / cost["unknowns"]}
                 | {"note": note}
             )
+
+
+def _ranked(df):
+    """Rows on the ranks of an MPI run."""
+    for _, row in df[df["part"].isin(("strong", "weak"))].iterrows():
+        line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": f"{row['ranks']:.0f} ranks"}
+        if row["status"] != "ok":
+            yield line | {"note": _cut(row["note"])}
+            continue
+        line |= {"unknowns": row["unknowns"], "threads": row["ranks"], "CPU, s": row["cpu_s"], "wall, s": row["wall_s"]}
+        line |= {"GiB": row["peak_mib"] / 1024, "bytes each": row["peak_mib"] * 2**20 / row["unknowns"]}
+        stages = ("packing", "cells", "solve", "field")
+        line["stages, CPU s"] = ", ".join(f"{name} {row[f'{name}_cpu_s']:.2g}" for name in stages)
+        sent = f"{row['messages']:.0f} messages, {row['message_bytes'] / 1e6:.3g} MB and {row['reductions']:.0f} sums"
+        iterations = f"{row['iterations']:.0f} iterations in {row['iterate_wall_s']:.2g} s"
+        yield line | {"note": f"{iterations}; each rank {sent}; triad {row['triad_rank_gbs']:.2g} GB/s"}
+
+
+def _many(df):
+    """What many cores would take by the model, and what others have published."""
+    rows = model.rows_of(df)
+    plans = model.plans(rows)
+    if plans:
+        fit = model.fitted(rows)
+        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; {fit.messages:.0f} messages to a "
+        text += f"neighbour, {fit.sums:.0f} sums in each; {fit.held:.0f} bytes for a particle seen"
+        yield {"what": "model, fitted", "method": LOOK["dem"][0], "of": f"{len(rows)} rows", "note": text}
+    off = model.left_out(rows)
+    if off:
+        text = f"all seconds {min(off):+.0f} to {max(off):+.0f} %"
+        yield {"what": "model, a row left out", "method": LOOK["dem"][0], "of": f"{len(off)} rows", "note": text}
+    for plan in plans:
+        text = (
+            f"{plan['iterations']:.0f} iterations {plan['iterate']:.2g} s, of that messages {plan['messages']:.2g} and "
+        )
+        text += f"sums {plan['sums']:.2g}; cells {plan['cells']:.2g}, every rank's twins {plan['twins']:.2g}"
+        what = f"model, {plan['shape']}" + ("" if plan["shape"] == "slabs" else ", not built")
+        if plan["unknowns"] >= model.COUNTED:
+            text += "; needs PETSc with 64-bit numbers"
+        line = {"what": what, "method": LOOK["dem"][0], "of": f"{plan['cores']} cores", "unknowns": plan["unknowns"]}
+        yield line | {
+            "threads": plan["cores"],
+            "wall, s": plan["all"],
+            "GiB": plan["gib"],
+            "note": text + "; GiB a core",
+        }
+    for each in PUBLISHED if len(rows) else ():
+        line = {"what": "literature", "method": each.source, "of": each.what}
+        yield line | {"unknowns": each.unknowns, "threads": each.cores, "note": "others' equations and machines"}
 
 
 def _fits(df):

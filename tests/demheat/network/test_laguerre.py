@@ -121,7 +121,7 @@ def test_a_facet_that_one_of_its_cells_does_not_see_is_rounding_or_an_error():
     def matched(area):
         """Two cells joined by a facet, of which the first sees one more, to itself through a face of the box."""
         indices, image = np.array([0, 1, 0], np.uint32), np.array([22, 13, 13], np.uint8)
-        columns = indices, image, np.array([area, 1e-4, 1e-4]), np.full(3, 0.005)
+        columns = [indices, image, np.array([area, 1e-4, 1e-4]), np.full(3, 0.005)]
         return _matched(np.array([2, 1], np.int32), columns, spacing)
 
     indptr, indices, image, area, distance = matched(0.9e-7 * spacing**2)
