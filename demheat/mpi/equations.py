@@ -1,4 +1,4 @@
-"""The heat balance of all ranks' particles, solved by PETSc's conjugate gradients and, below the finest level, multigrid.
+"""The heat balance of all ranks' particles, by PETSc's conjugate gradients and, below the finest level, its multigrid.
 
 The finest level is that of one process, each rank's rows a block of it: the network is read as it is, and there is no
 second copy of the matrix. What all ranks' aggregates exchange is a matrix of PETSc's, on an eighth of the unknowns.

@@ -85,8 +85,8 @@ def _many(df):
     plans = model.plans(rows)
     if plans:
         fit = model.fitted(rows)
-        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; {fit.messages:.0f} messages to a "
-        text += f"neighbour, {fit.sums:.0f} sums in each; {fit.held:.0f} bytes for a particle seen"
+        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; each {fit.messages:.0f} messages "
+        text += f"to a neighbour, {fit.sums:.0f} sums; {fit.held:.0f} bytes for a particle seen"
         yield {"what": "model, fitted", "method": LOOK["dem"][0], "of": f"{len(rows)} rows", "note": text}
     off = model.left_out(rows)
     if off:
@@ -94,9 +94,11 @@ def _many(df):
         yield {"what": "model, a row left out", "method": LOOK["dem"][0], "of": f"{len(off)} rows", "note": text}
     for plan in plans:
         text = (
-            f"{plan['iterations']:.0f} iterations {plan['iterate']:.2g} s, of that messages {plan['messages']:.2g} and "
+            f"{plan['iterations']:.0f} iterations {plan['iterate']:.2g} s, of these messages {plan['messages']:.2g}, "
         )
-        text += f"sums {plan['sums']:.2g}; cells {plan['cells']:.2g}, every rank's twins {plan['twins']:.2g}"
+        text += (
+            f"sums {plan['sums']:.2g}; cells {plan['cells']:.2g}, every rank's twins {plan['twins']:.2g}; GiB a core"
+        )
         what = f"model, {plan['shape']}" + ("" if plan["shape"] == "slabs" else ", not built")
         if plan["unknowns"] >= model.COUNTED:
             text += "; needs PETSc with 64-bit numbers"
@@ -105,7 +107,7 @@ def _many(df):
             "threads": plan["cores"],
             "wall, s": plan["all"],
             "GiB": plan["gib"],
-            "note": text + "; GiB a core",
+            "note": text,
         }
     for each in PUBLISHED if len(rows) else ():
         line = {"what": "literature", "method": each.source, "of": each.what}
