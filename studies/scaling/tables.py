@@ -82,36 +82,31 @@ def _ranked(df):
 def _many(df):
     """What many cores would take by the model, and what others have published."""
     rows = model.rows_of(df)
-    plans = model.plans(rows)
+    plans, off = model.plans(rows), model.left_out(rows)
     if plans:
         fit = model.fitted(rows)
-        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; each {fit.messages:.0f} messages "
-        text += f"to a neighbour, {fit.sums:.0f} sums; {fit.held:.0f} bytes for a particle seen"
+        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; each {fit.messages:.0f} "
+        text += f"messages to a neighbour, {fit.sums:.0f} sums; {fit.held:.0f} bytes for a particle seen"
         yield {"what": "model, fitted", "method": LOOK["dem"][0], "of": f"{len(rows)} rows", "note": text}
-    off = model.left_out(rows)
     if off:
         text = f"all seconds {min(off):+.0f} to {max(off):+.0f} %"
         yield {"what": "model, a row left out", "method": LOOK["dem"][0], "of": f"{len(off)} rows", "note": text}
-    for plan in plans:
-        text = (
-            f"{plan['iterations']:.0f} iterations {plan['iterate']:.2g} s, of these messages {plan['messages']:.2g}, "
-        )
-        text += (
-            f"sums {plan['sums']:.2g}; cells {plan['cells']:.2g}, every rank's twins {plan['twins']:.2g}; GiB a core"
-        )
-        what = f"model, {plan['shape']}" + ("" if plan["shape"] == "slabs" else ", not built")
-        if plan["unknowns"] >= model.COUNTED:
-            text += "; needs PETSc with 64-bit numbers"
-        line = {"what": what, "method": LOOK["dem"][0], "of": f"{plan['cores']} cores", "unknowns": plan["unknowns"]}
-        yield line | {
-            "threads": plan["cores"],
-            "wall, s": plan["all"],
-            "GiB": plan["gib"],
-            "note": text,
-        }
+    yield from map(_planned, plans)
     for each in PUBLISHED if len(rows) else ():
         line = {"what": "literature", "method": each.source, "of": each.what}
         yield line | {"unknowns": each.unknowns, "threads": each.cores, "note": "others' equations and machines"}
+
+
+def _planned(plan):
+    built = plan["shape"] == "slabs" and plan["unknowns"] < model.COUNTED
+    line = {"what": f"model, {plan['shape']}" + ("" if built else ", not built"), "method": LOOK["dem"][0]}
+    line |= {"of": f"{plan['cores']} cores", "unknowns": plan["unknowns"], "threads": plan["cores"]}
+    stages = ("twins", "cells", "setup", "iterate", "field")
+    text = "GiB a core; seconds of stages: " + ", ".join(f"{name} {plan[name]:.2g}" for name in stages)
+    text += f"; of {plan['iterations']:.0f} iterations messages {plan['messages']:.2g}, sums {plan['sums']:.2g}"
+    if plan["unknowns"] >= model.COUNTED:
+        text += "; needs PETSc with 64-bit numbers"
+    return line | {"wall, s": plan["all"], "GiB": plan["gib"], "note": text}
 
 
 def _fits(df):
