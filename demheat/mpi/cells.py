@@ -103,12 +103,12 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) 
     RuntimeError
         If what is seen of the neighbours is too thin for a cell.
     """
-    seen, own = _seen(packing, slabs)
+    (seen, own), provenance = _seen(packing, slabs), packing.provenance
+    del packing
     local, low = seen.size.copy(), np.zeros(3)
     low[slabs.axis], high = slabs.seen
     local[slabs.axis] = high - low[slabs.axis]
-    inside = np.clip(seen.centers - low, 0.0, local)
-    facets = laguerre(inside, seen.radii**2, local, periodic=seen.periodic)
+    facets = laguerre(np.clip(seen.centers - low, 0.0, local), seen.radii**2, local, periodic=seen.periodic)
     own = int(np.count_nonzero(facets.volumes[:own] > 0))
     seen, facets = drop_empty_cells(seen, facets)
     facets = _without_cuts(facets, own, slabs)
@@ -118,7 +118,7 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) 
     filled = comm.allreduce(float(network.volumes[:own].sum())) / scene.volume - 1.0
     if abs(filled) > DEFECT:
         raise RuntimeError(f"demheat.mpi: the cells of all ranks fill the body with a relative defect of {filled:.2e}")
-    return Cells(network, own, packing.provenance)
+    return Cells(network, own, provenance)
 
 
 def _seen(packing, slabs):

@@ -44,6 +44,7 @@ class Equations:
         rows = own_rows(system, self.own)
         sizes = ((self.own, None), (self.own, None))
         self.matrix = petsc.Mat().createPython(sizes, _Balance(*rows, halo), comm=comm)
+        self.matrix.setUp()
         self.below = _Below(petsc, comm, constant=bool(system.network.periodic.any()))
         self.cycle = _Cycle(preconditioner(*rows, halo, self.below, comm))
         if self.below.constant:

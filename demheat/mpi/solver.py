@@ -185,10 +185,10 @@ def _peak():
 def _answer(scene, law, wanted, comm, **how):
     costs, slabs = _Costs(comm), slabs_of(scene, wanted.particles, comm.size, comm.rank)
     with costs.of("packing"):
-        packing = part_of(scene, law, wanted, slabs, comm)
+        made = [part_of(scene, law, wanted, slabs, comm)]
     with costs.of("cells"):
-        cells = cells_of(scene, law, packing, slabs, comm)
-        del packing
+        # Handed over and not kept: what a rank sees of it is a copy.
+        cells = cells_of(scene, law, made.pop(), slabs, comm)
         unknowns = check_unknowns(comm, cells.own)
     with costs.of("solve"):
         solution = _solved(scene, cells, slabs, comm, **how)

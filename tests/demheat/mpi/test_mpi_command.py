@@ -1,33 +1,27 @@
 """The command on two ranks where MPI and PETSc are installed, and one line where they are not."""
 
-import os
 import re
 import shlex
 import subprocess
 import sys
-from importlib.util import find_spec
 
 import pytest
-from blocks import DOCS
+from blocks import DOCS, blocks
 
 from demheat import files, gallery, solve
 from demheat.mpi.__main__ import main
+from studies.scaling import ranks
 
-# Debian's petsc4py is found where PYTHONPATH names it, see the page.
-HERE = find_spec("mpi4py") is not None and find_spec("petsc4py") is not None
 PAGE = (DOCS / "mpi.md").read_text(encoding="utf-8")
-# Any user, on any number of cores; waiting ranks leave them to others.
-FREE = {
-    **dict.fromkeys(("OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"), "1"),
-    "OMPI_MCA_rmaps_base_oversubscribe": "1",
-    "OMPI_MCA_mpi_yield_when_idle": "1",
-}
 PARTICLES = 4000
 
 
 def ran(command, folder):
-    words = shlex.split(command.replace(" python ", f" {sys.executable} ", 1))
-    return subprocess.run(words, cwd=folder, capture_output=True, text=True, env={**os.environ, **FREE})
+    """Run a command of the page by the Python that has MPI and PETSc, this one or another."""
+    if ranks.missing():
+        pytest.skip(ranks.missing())
+    words = shlex.split(command.replace(" python ", f" {ranks.python()} ", 1))
+    return subprocess.run(words, cwd=folder, capture_output=True, text=True, env=ranks.environment())
 
 
 @pytest.fixture
@@ -49,22 +43,39 @@ def test_an_unknown_option_is_one_line(capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
-@pytest.mark.skipif(not HERE, reason="needs mpi4py and petsc4py")
-def test_the_commands_of_the_page_give_what_one_process_gives(folder):
-    commands = [line for line in PAGE.splitlines() if line.startswith("mpiexec ")]
-    assert len(commands) >= 2
+COMMANDS = [line for line in PAGE.splitlines() if line.startswith("mpiexec ")]
+
+
+def test_the_page_has_commands():
+    assert len(COMMANDS) >= 3 and any("--petsc=" in command for command in COMMANDS)
+
+
+# Some seconds each, most of it for two Pythons to begin.
+SLOW = [pytest.param(each, marks=pytest.mark.slow) for each in COMMANDS[1:]]
+
+
+@pytest.mark.parametrize("command", [*COMMANDS[:1], *SLOW])
+def test_the_commands_of_the_page_give_what_one_process_gives(command, folder):
     scene = files.read(folder / "scene.toml")
-    for command in commands:
-        command = re.sub(r"--particles \d+", f"--particles {PARTICLES}", command) + " --tolerance 1e-11"
-        done = ran(command, folder)
-        assert done.returncode == 0, done.stderr
-        found = float(re.search(r"conductivity +(\S+)", done.stdout)[1])
-        # Rounding, and what is left of either's residual.
-        assert found == pytest.approx(solve(scene, particles=PARTICLES, tolerance=1e-11).conductivity, rel=1e-9)
-        assert re.search(r"\d+ bytes an unknown", done.stdout)
+    done = ran(re.sub(r"--particles \d+", f"--particles {PARTICLES}", command) + " --tolerance 1e-11", folder)
+    assert done.returncode == 0, done.stderr
+    found = float(re.search(r"conductivity +(\S+)", done.stdout)[1])
+    # Rounding, and what is left of either's residual.
+    assert found == pytest.approx(solve(scene, particles=PARTICLES, tolerance=1e-11).conductivity, rel=1e-9)
+    assert re.search(r"\d+ bytes an unknown", done.stdout)
 
 
-@pytest.mark.skipif(not HERE, reason="needs mpi4py and petsc4py")
+@pytest.mark.slow
+def test_the_block_of_python_on_the_page(folder):
+    """Run as a script on two ranks, smaller."""
+    (block,) = (each for each in blocks("mpi.md") if each.kind == "python")
+    (folder / "script.py").write_text(block.text.replace("1_000_000", str(PARTICLES)))
+    done = ran("mpiexec -n 2 python script.py", folder)
+    assert done.returncode == 0, done.stderr
+    lines = done.stdout.splitlines()
+    assert len(lines) == 2 and lines[0] == lines[1]
+
+
 @pytest.mark.parametrize(
     ("words", "status", "told"),
     [("--particles 200", 2, "slabs of 200 particles"), ("--particles 1000000000000", 2, "GiB of memory or more")],
