@@ -37,7 +37,8 @@ def made_up(fit=FIT):
             row |= {"messages": fit.messages * row["iterations"] * blocks.neighbours}
             row |= {"message_bytes": fit.rim * row["iterations"] * blocks.cut, "reductions": 4 * row["iterations"]}
             rows.append(row)
-    return pd.DataFrame(rows)
+    # Columns of other parts.
+    return pd.DataFrame(rows).assign(kind=np.nan, fraction=np.nan, k_ratio=np.nan)
 
 
 def test_constants_of_rows_that_are_made_of_them():
@@ -118,7 +119,7 @@ def test_without_mpi_a_row_says_so(monkeypatch):
     case = next(case for case in scaling.CASES if case["part"] == "strong")
     row = runner.compute_row(scaling, case)
     assert (row["status"], row["note"]) == ("unsupported", "no mpiexec here")
-    lines = tables.lines(pd.DataFrame([row]))
+    lines = tables.lines(pd.DataFrame([row]).assign(cpu_s=np.nan, wall_s=np.nan, kind=np.nan, fraction=np.nan))
     assert lines["note"].tolist() == ["no mpiexec here"]
 
 
@@ -143,6 +144,7 @@ def test_a_row_of_spheres():
     assert set(scene.walls) == {"y-", "y+"}
 
 
+@pytest.mark.slow
 def test_a_row_on_two_ranks():
     if ranks.missing():
         pytest.skip(ranks.missing())
