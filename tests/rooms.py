@@ -366,8 +366,6 @@ LAYERS = {
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
     "studies.__main__": ("demheat.fresh", "studies"),
-    # Programs in a Python of their own are found and run in one way.
-    "studies.scaling.ranks": ("studies.peers.outside", "studies.scaling"),
 }
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references", "benchmark")

@@ -9,8 +9,9 @@ import subprocess
 from functools import cache
 from pathlib import Path
 
-from studies.peers.outside import HOMES, ROOT, ran
-
+ROOT = Path(__file__).resolve().parents[2]
+# Where programs in Python may have environments of their own, as the study `peers` has it.
+HOMES = Path(os.environ.get("DEMHEAT_PEERS", ROOT / ".peers"))
 # Debian's PETSc, where nothing else is said.
 DEBIAN = "/usr/lib/petscdir/petsc*/*-real"
 # Any user; as many ranks as are asked for; one thread in each; ranks that wait leave the core to others.
@@ -72,12 +73,16 @@ def row(number: int, particles: int, seed: int, ranks: int) -> dict:
     if why:
         raise NotImplementedError(why)
     given = {"number": number, "particles": particles, "seed": seed}
-    command = [shutil.which("mpiexec"), "-n", ranks, python(), on_ranks.__file__]
-    printed, _ = ran(command, stdin=json.dumps(given), limit=LIMIT, environment=environment())
+    command = [shutil.which("mpiexec"), "-n", str(ranks), python(), on_ranks.__file__]
+    how = {"input": json.dumps(given), "timeout": LIMIT, "env": environment()}
+    done = subprocess.run(command, capture_output=True, text=True, **how)
+    if done.returncode:
+        tail = " ".join((done.stderr or done.stdout).split())[-400:]
+        raise RuntimeError(f"on_ranks.py: exit status {done.returncode}: {tail}")
     try:
-        return json.loads(printed.strip().splitlines()[-1])
+        return json.loads(done.stdout.strip().splitlines()[-1])
     except (IndexError, ValueError):
-        raise RuntimeError(f"on_ranks.py: printed no JSON, but {printed[-200:]!r}") from None
+        raise RuntimeError(f"on_ranks.py: printed no JSON, but {done.stdout[-200:]!r}") from None
 
 
 def environment() -> dict:

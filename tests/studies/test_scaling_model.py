@@ -5,6 +5,8 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from blocks import DOCS
+from matplotlib import pyplot
 from numpy.testing import assert_allclose
 
 from studies import scaling
@@ -110,8 +112,17 @@ def test_claims_table_and_figure():
     lines = tables.lines(df)
     assert set(lines["what"]) >= {"strong", "weak", "model, fitted", "model, bricks, not built", "literature"}
     assert lines["note"].str.contains("64-bit").sum() == 4
-    drawn = figure.draw(df)
+
+
+def test_the_figure_has_two_panels_more():
+    """Beside rows of other parts, those that are kept."""
+    kept = table.read_frame(scaling, DOCS.parent / "results" / "scaling.csv")
+    kept = kept[~kept["part"].isin(("strong", "weak"))]
+    assert len(figure.draw(kept).axes) == 4
+    drawn = figure.draw(pd.concat([kept, made_up()], ignore_index=True))
+    # Four lines for each size, and where its slabs end.
     assert len(drawn.axes) == 6 and len(drawn.axes[5].lines) == 10
+    pyplot.close("all")
 
 
 def test_without_mpi_a_row_says_so(monkeypatch):
