@@ -5,8 +5,8 @@ import numpy as np
 from demheat.laws import RULES
 from demheat.network.base import Network
 
-# Rows connected at once: bounds the scratch memory (some 1.5 kB a row).
-BLOCK = 65536
+# Rows connected at once: bounds the scratch memory (some 1.5 kB a row, 25 MB).
+BLOCK = 16384
 
 
 def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
