@@ -12,6 +12,7 @@ from pathlib import Path
 from demheat.referee import value_error
 from studies.harness import methods
 from studies.harness.pick import present
+from studies.harness.table import markdown
 from studies.peers import tables
 from studies.peers.cases import QUICK_SCENES, our_beds, ours, thinned
 from studies.peers.means import AIM, ahead, same_mesh
@@ -140,6 +141,12 @@ def sources(df):
     return tables.sources(PROGRAMS)
 
 
+def abilities(df):
+    """What each can and cannot: the best |error| of each program on what may be asked, %, of the rows above."""
+    return tables.abilities(df)
+
+
 def notes(df):
-    """Versions, limits, and what conventions explain."""
+    """What each can and cannot, versions, limits, and what conventions explain."""
+    yield from [abilities.__doc__, markdown(abilities(df))]
     yield from filter(None, [tables.versions(df), *tables.beds(df[df["status"] == "ok"]), *tables.cannot(PROGRAMS)])

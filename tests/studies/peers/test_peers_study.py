@@ -58,3 +58,17 @@ def test_ways_of_one_program_are_told_apart():
     )
     lines = tables.lines(found)
     assert lines["program"].tolist() == ["PuMA, fv", "PuMA, fe"] and lines["pore"].tolist() == [1.0, 2.0]
+
+
+def test_abilities_are_the_best_of_each_body_and_the_worst_of_bodies():
+    found = pd.DataFrame(
+        [
+            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": -3.0},
+            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": 1.0},
+            {"name": "fem", "given": "body", "scene": "layers along", "status": "ok", "error_percent": -2.0},
+            {"name": "fem", "given": "body", "scene": "pore", "status": "unsupported", "error_percent": None},
+            {"name": "fem", "given": "body", "scene": "coated", "status": "failed", "error_percent": None},
+        ]
+    )
+    (line,) = tables.abilities(found).to_dict("records")
+    assert (line["layers on the grid"], line["pore"], line["coat"], line["sphere"]) == ("2", "refused", "", "")
