@@ -16,18 +16,22 @@ KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "p
 WAYS = ("by", "solver", "scheme", "gradient", "conforming", "density", "unit")
 # Ours on beds of grains, and our linear solver: no methods.
 GRAINS, SOLVER = "grains", "ours"
+# Beds whose contacts conduct as discs between half-spaces do, which no program's own law is.
+DISC = ", disc"
 # What is asked of a program, and the bodies whose rows answer it.
 ABILITIES = {
     "one phase": ("homogeneous",),
     "layers on the grid": ("layers across", "layers along"),
     "layers off it": ("layers off the grid",),
-    "sphere": ("sphere 10", "sphere 0.01"),
+    "sphere": ("sphere 10",),
+    "contrast 0.01": ("sphere 0.01",),
     "contrast 1000": ("sphere 1000",),
     "pore": ("pore",),
     "narrow gaps": ("half 10",),
     "coat": ("coated",),
-    "12 spheres": ("dispersion 10", "dispersion 0.1"),
-    "beds of grains": tuple(BEDS),
+    "12 spheres": ("dispersion 10",),
+    "grains, its law": tuple(name for name in BEDS if not name.endswith(DISC)),
+    "grains, discs": tuple(name for name in BEDS if name.endswith(DISC)),
 }
 # At most one part in so many of the known value is shown as such: the rest is rounding.
 NOTHING = 1e-9
