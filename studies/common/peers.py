@@ -96,7 +96,13 @@ REPLICA = 130_000
 
 
 def laguerre_network(scene, particles, seed):
-    """The network of a scene on replicas of a small packing."""
+    """The network of a scene on replicas of a small packing.
+
+    Parameters
+    ----------
+    scene : Scene
+    particles, seed : int
+    """
     from demheat.build import network_of
     from demheat.laws import Laguerre
     from demheat.packing.cache import replicated
@@ -110,7 +116,13 @@ def laguerre_network(scene, particles, seed):
 
 
 def matrix_of(network, scene):
-    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W."""
+    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    """
     from demheat.conduction.steady import matrix
     from demheat.network.base import row_numbers
     from demheat.scene import WALLS
