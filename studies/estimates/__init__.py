@@ -27,6 +27,11 @@ BESIDE, FEW = (
 )
 MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reached"}
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "half of the interval over the error": "one limit for all methods: an interval is no blanket",
+    "an entry outside of its interval": "a twentieth is what intervals of 95 % may miss",
+}
 TIMEOUT = 1800.0
 
 
@@ -82,7 +87,7 @@ def claims(df):
         yield f"{title}: what is said of the temperature over its error, median", over(df, name, "t_").median(), "<= 5"
     right = asked["inside"].eq(True) & (asked["worst_percent"] <= 100 * ACCURACY)
     yield f"effective: share of {len(asked)} unseen scenes right to {100 * ACCURACY:g} %", right.mean(), ">= 0.95"
-    wrong = asked["inside"].eq(False)
+    wrong = ~asked[asked["worst_percent"].notna()]["inside"].eq(True)
     yield "effective: share of scenes with an entry outside of its interval", wrong.mean(), "<= 0.05"
 
 
