@@ -72,7 +72,7 @@ def test_the_finest_cell_is_judged_by_the_multipoles():
 
     df = cell_rows()
     value, limit = judged(df)
-    assert value == pytest.approx(1.0) and limit == 0.1
+    assert value == pytest.approx(1.0) and limit == 0.01
     # Without them nothing is known, and nothing holds.
     assert np.isnan(judged(df[df["name"] != "multipole"])[0])
 
