@@ -114,7 +114,8 @@ def claims(df):
 def _claims(df):
     solves = df[df["name"] != "lattice"]
     finite = solves[solves["contrast"] < math.inf]
-    wrong = (finite["status"] == "ok") & finite["warning"].isna() & ~_right(finite)
+    answered = finite[finite["status"] == "ok"]
+    wrong = answered["warning"].isna() & ~_right(answered)
     yield f"Numbers more than {LIMIT:g} % wrong ({QUICK_LIMIT:g} % where coarse) without a warning", _count(wrong), "= 0"
     refused = solves[solves["status"] == "unsupported"]
     yield "Refusals without a reason", _count(refused["note"] == ""), "= 0"

@@ -29,7 +29,6 @@ MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reac
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
-    "half of the interval over the error": "one limit for all methods: an interval is no blanket",
     "an entry outside of its interval": "a twentieth is what intervals of 95 % may miss",
 }
 TIMEOUT = 1800.0
@@ -67,7 +66,10 @@ def run(part, scene, seed, method):
 
 
 def claims(df):
-    """The exact value lies inside, and the interval is not a blanket."""
+    """The exact value lies inside, and the interval is not a blanket: half of it five times the error at most.
+
+    Of the DEM as in the paper two was asked for when one was known.
+    """
     from studies.estimates.means import inside, over, present
 
     asked, df = pick(df, part="effective"), pick(df, part="unseen")
@@ -80,7 +82,8 @@ def claims(df):
     for name in filter(partial(present, df), (*NAMES, *BESIDE)):
         title = found()[name].title
         yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
-        yield f"{title}: half of the interval over the error, median", over(df, name).median(), "<= 5"
+        most = 2 if name == "dem-calibrated" else 5
+        yield f"{title}: half of the interval over the error, median", over(df, name).median(), most
     for name in filter(partial(present, df), NAMES):
         title = found()[name].title
         yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
