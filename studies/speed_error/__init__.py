@@ -16,8 +16,6 @@ from studies.speed_error.cases import TIMEOUT, all_cases
 
 CASES = list(all_cases())
 PAPER = {}
-# Limits that are far from the values, and why they are no nearer.
-REASONS = {"over that of Voro++": "who is cheaper is what is asked"}
 
 __all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "by_accuracy", "claims", "notes", "plot", "run", "table", "warm_up"]
 # Methods of a quick run, at their coarsest, on scenes besides the first.
@@ -75,7 +73,8 @@ def claims(df):
 
     A kernel must not be slower than its peer. Costs of a quick run are too small to judge. Limits of the laws were set
     before they were fitted: of scenes left out nine errors in ten within a factor of 10, nine costs within 3. When
-    values were known the tessellation came down from 40 microseconds, schemes from 1e-6, the beam from .1 %.
+    values were known the tessellation came down from 40 microseconds and once Voro++, schemes from 1e-6, the beam from
+    .1 %.
     """
     from studies.speed_error.verdicts import all_claims
 
