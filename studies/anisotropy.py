@@ -169,12 +169,19 @@ def plot(df):
     figure, axes = pyplot.subplots(figsize=(6.5, 4.8))
     rows = pick(df, body="sphere")
     best = _finest(pick(rows, name="fem"))
+    axes.grid(visible=True, which="both", axis="y")
     for name, group in rows.groupby("name", sort=False):
         group = group.sort_values("unknowns")
         off = np.array([apart_percent(row, best) for _, row in group.iterrows()])
         # The finest elements are what others are compared with.
         axes.plot(group["unknowns"][off > 0], off[off > 0], **look(name))
     axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel="tensor apart from finest quadratic elements, %")
-    axes.set_title("a sphere of one orthotropic material in another")
+    near = [f"{_words(name)} {apart_percent(_finest(pick(rows, name=name)), best):.2g} %" for name in ("fft", "fem-p1")]
+    figure.suptitle("A sphere of one orthotropic material in another, at the finest:")
+    axes.set_title(f"{' and '.join(near)} from quadratic elements")
     axes.legend()
     return figure
+
+
+def _words(name):
+    return methods.found()[name].title

@@ -138,7 +138,10 @@ def _rounds(df):
 
 
 def table(df):
-    """Errors in %, of the temperature over the span; `from_linear` is the relative distance from the linear scene."""
+    """Errors in %, of the temperature over the span; `from_linear` is the relative distance from the linear scene.
+
+    CPU seconds of the DEM are without its packing.
+    """
     columns = ["body", "factor", "name", "particles", "edge", "conductivity", "error_percent", "rms_percent"]
     return df[[*columns, "from_linear", "rounds", "iterations", "unknowns", "cpu_s"]]
 
@@ -159,5 +162,7 @@ def plot(df):
             axes.plot(rows["unknowns"], np.maximum(rows["rms_percent"], 1e-12), **style)
         axes.set(xscale="log", yscale="log", xlabel="unknowns", title=body)
     panels[0].set_ylabel("rms error of the temperature, % of the span")
-    panels[0].legend(fontsize=8)
+    exact = pick(df, body="layers", name="dem")["rms_percent"].max()
+    figure.suptitle(f"Particles: layers exact to {exact:.0e} %, the sphere as its linear problem, whatever the factor")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

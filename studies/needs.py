@@ -153,7 +153,11 @@ def claims(df):
     nearer, from 1e-8, 3e-2 and 5e-3.
     """
     solved = df[df["method"] != "multipole"]
-    yield "Tensor by one set-up against three solves: largest relative difference", solved["once_error"].max(skipna=False), 1e-12
+    yield (
+        "Tensor by one set-up against three solves: largest relative difference",
+        solved["once_error"].max(skipna=False),
+        1e-12,
+    )
     for size, limit in (("coarse", 3e-3), ("full", 8e-4)):
         rows = pick(solved, size=size)
         if len(rows):

@@ -116,7 +116,11 @@ def _claims(df):
     finite = solves[solves["contrast"] < math.inf]
     answered = finite[finite["status"] == "ok"]
     wrong = answered["warning"].isna() & ~_right(answered)
-    yield f"Numbers more than {LIMIT:g} % wrong ({QUICK_LIMIT:g} % where coarse) without a warning", _count(wrong), "= 0"
+    yield (
+        f"Numbers more than {LIMIT:g} % wrong ({QUICK_LIMIT:g} % where coarse) without a warning",
+        _count(wrong),
+        "= 0",
+    )
     refused = solves[solves["status"] == "unsupported"]
     yield "Refusals without a reason", _count(refused["note"] == ""), "= 0"
     taken = solves[solves["contrast"] == math.inf]["status"] != "unsupported"

@@ -40,7 +40,9 @@ def _cases():
 CASES = list(_cases())
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
-REASONS = {"homogeneous cube": "iterated to 1e-12 of the heat; a temperature is off by that times a part of the condition"}
+REASONS = {
+    "homogeneous cube": "iterated to 1e-12 of the heat; a temperature is off by that times a part of the condition"
+}
 
 
 def QUICK(case):

@@ -120,7 +120,8 @@ def table(df):
 
     "exact in" says where between the bounds the exact value is, 0 the lower and 1 the upper; of drawn scenes the least
     and the greatest of each kind. Elements, unknowns of temperature and flux, CPU seconds and memory are of one
-    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds.
+    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds; of the
+    DEM with its packing, unless that was kept.
     """
     from studies.brackets.tables import lines
 

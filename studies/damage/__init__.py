@@ -132,14 +132,23 @@ def _link_claims(rows):
 
 
 def table(df):
-    """Errors against exact values, %; of links the mean of k over that of the whole body, beside the theory."""
-    from studies.damage.tables import lines
+    """Spheres that have come off: errors against exact values, %, by the share of them."""
+    from studies.damage import tables
 
-    return lines(df)
+    return tables.of_spheres(df)
 
 
 def notes(df):
-    """Why one limit is missed, where it is."""
+    """Tables of discs and of links; why one limit is missed, where it is."""
+    from studies.damage import tables
+    from studies.harness.table import markdown
+
+    for words, made in (
+        ("Discs: errors against exact values, %, by their radius.", tables.of_discs(df)),
+        ("Links: mean of k over that of the whole body, by the share that is gone.", tables.of_links(df)),
+    ):
+        if len(made):
+            yield from (markdown(made), words)
     rows = pick(df, part="debonded", name="fem")
     missed = rows.groupby("size")["error_percent"].apply(lambda errors: errors.abs().max()) if len(rows) else rows
     if len(missed) > 1 and missed.iloc[0] > LIMITS["fem"][1]:

@@ -92,8 +92,8 @@ def claims(df):
     """C_t does not drift without walls or with links at them; with the paper's walls it does.
 
     Where walls do not matter C_t is held to 1 % from 3000 particles on and 0.3 % from 1e5; with the paper's walls the
-    printed scatter is the yardstick, and 0.806 at 1e5, to three times that: it is not reproduced. Of LSA packings in the
-    periodic cell the range was held to 1 % before it was known, differences that are rounding to 1e-6, and C_t of
+    printed scatter is the yardstick, and 0.806 at 1e5, to three times that: it is not reproduced. Of LSA packings in
+    the periodic cell the range was held to 1 % before it was known, differences that are rounding to 1e-6, and C_t of
     replicas to 1 %.
     """
     plain = df[unchanged(df)]

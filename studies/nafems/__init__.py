@@ -147,8 +147,7 @@ def _levels(df):
     limits = {
         ("T3", "dem"): {3_000: 1.0, 100_000: 0.1},
         ("T4", "dem"): {3_000: 0.4, 100_000: 0.04},
-        # Moved after a first run, from .05 and .005, and of bricks from .3: the depth to which the wave comes, 17 mm, is
-        # one coarse edge.
+        # Moved after a first run, from .05 and .005, and of bricks from .3: the wave comes 17 mm deep, one coarse edge.
         ("T3", "fem"): {EDGES["fem"][1]: 0.6, EDGES["fem"][2]: 0.04},
         ("T4", "fem"): {EDGES["fem"][1]: 0.3, EDGES["fem"][2]: 0.04},
         ("T3", "fem-bricks"): {EDGES["fem-bricks"][0]: 2.5, EDGES["fem-bricks"][1]: 0.6},

@@ -39,7 +39,7 @@ NEUTRAL_LIMITS = {
 REASONS = {
     "sphere in a cube, DEM": "by second order from the limit with 3000 particles",
     "neutral spheres, multipoles": "rounding: fields are linear, and no order of a multipole is there",
-    "Hasselman and Johnson": "one limit for all fractions: the formula knows no neighbours, and is off the more of them",
+    "Hasselman and Johnson": "one limit for all fractions: the formula knows no neighbours, and is off by them",
 }
 TIMEOUT = 3600.0
 

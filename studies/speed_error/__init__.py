@@ -86,8 +86,8 @@ def table(df):
 
     Of each method that resolution counts from which on every finer one stays within the target. Errors of fields are
     root mean squares at 400 random points, in % of the span and of the mean flux; their costs count the asking.
-    "DEM's cost over it" is of CPU time with the packing made on the spot, then with the packing from the cache. "any
-    shape" is the cheapest without multipoles, which know spheres alone.
+    Seconds of the DEM count its packing. "DEM's cost over it" is of CPU time with the packing made on the spot, then
+    with the packing from the cache. "any shape" is the cheapest without multipoles, which know spheres alone.
     """
     from studies.speed_error.tables import lines
 

@@ -54,7 +54,7 @@ def claims(df):
     Limits are those of the question: half as much again as the best value's error, two standard errors of the mean.
     Orders are held to half a power of theory's. All of them were set before the rows were there; what does not hold
     stands as FAIL: see docs/decisions/order.md. The fewest particles, on which quick rows are, say nothing of bias.
-    When values were known the doubt of witnesses came down from .5, that of the layer and of volumes from 1e-6 and 1e-8.
+    When values were known the doubt of witnesses came down from .5, the layer from 1e-6, volumes from 1e-8.
     """
     from studies.tuning import means
 

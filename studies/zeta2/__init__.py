@@ -107,8 +107,8 @@ def warm_up(part, method, first=0, cells=1, **where):
 def claims(df):
     """Multipoles and voxels on arrays and cells; what equilibrium and a gap change; bounds; S2's slope.
 
-    Means of cells are judged in their standard errors, three of which pass once in 370 times by chance. Voxels were held
-    to 1 to 1.5 % on arrays half full, 10 % on dilute ones and 2 % on random cells whatever their number; when values
+    Means of cells are judged in their standard errors, three of which pass once in 370 times by chance. Voxels were
+    held to 1 to 1.5 % on arrays half full, 10 % on dilute ones and 2 % on random cells whatever their number; when values
     were known limits of finer grids came down to less than three times these, as did that of the lattice sums from
     1e-8, of means from 4 %, of the truncation from 3e-4 and of Torquato's estimate from 1 %.
     """

@@ -17,7 +17,7 @@ import numpy as np
 import pytest
 
 from studies.__main__ import study_names
-from studies.harness import runner, store
+from studies.harness import runner
 
 RESULTS = Path(__file__).parents[2] / "results"
 DEALS, KEPT, NEAR = 6, 0.9, 3.0
@@ -27,7 +27,7 @@ TO_MEND = ()
 # Claims that no order of the rows and no change of the results make fail, and how they could.
 EXCEPTIONS = {
     "Cells of 6 D against cells of 9 D": "two means that should not differ: any others dealt to both do not either",
-    "100000 particles: values that lower": "a win in every family is rare by chance; with fewer particles the claim fails",
+    "100000 particles: values that lower": "a win in every family is rare by chance; with fewer particles it fails",
 }
 
 
@@ -41,7 +41,7 @@ def claims_of(name):
 
 
 def _light(study):
-    """A study without claims whose every judgement takes many seconds: laws are fitted anew, and have tests of theirs."""
+    """A study without claims whose judgement takes seconds each time: laws are fitted anew, and have their tests."""
     if study.__name__.endswith("speed_error"):
         from studies.speed_error import verdicts
 
@@ -80,7 +80,9 @@ def _spoiled(study, df):
 
 def without_rows(name):
     study, df, own, _ = claims_of(name)
-    nothing = {key for rows in (df.iloc[:0], dealt.gone(study, df)) for key, c in dealt.judged(study, rows).items() if c.ok}
+    nothing = {
+        key for rows in (df.iloc[:0], dealt.gone(study, df)) for key, c in dealt.judged(study, rows).items() if c.ok
+    }
     return sorted(claim.sentence for key, claim in own.items() if not np.isfinite(claim.value) or key in nothing)
 
 
