@@ -201,10 +201,10 @@ def table(df):
 
     Seconds of the DEM count its packing, made on the spot: beyond 130 000 particles that repeats a smaller one as often
     as `packing` says, so that its own seconds do not grow. GiB are the peak over what was there before. Errors are
-    those of k against the multipoles' of the same spheres; coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
-    vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
-    Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more. The last lines say what 1e9 unknowns
-    would take if the fits went on.
+    those of k against the multipoles' of the same spheres; coarse rows are there for their costs. "of triad" is the
+    bandwidth of the product of the network's matrix with a vector over that of the triad, a = b + s c on arrays too
+    large for caches, right after it with as many threads. Exponents are fitted to rows of 1000 inclusions or 50 000
+    unknowns and more. The last lines say what 1e9 unknowns would take if the fits went on.
     """
     from studies.scaling.tables import lines
 

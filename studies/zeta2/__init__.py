@@ -38,7 +38,6 @@ RANDOM_LIMITS = {128: 4.0, 256: 1.2}
 REASONS = {
     "Rayleigh's lattice sums": "zeta_2 comes from a_3 with an amplification of up to 200, of rounding 1e-14 and more",
     "in standard errors": "three standard errors pass once in 370 times by chance, whatever is found",
-    "difference in standard errors": "three standard errors pass once in 370 times by chance",
 }
 
 
@@ -108,9 +107,9 @@ def claims(df):
     """Multipoles and voxels on arrays and cells; what equilibrium and a gap change; bounds; S2's slope.
 
     Means of cells are judged in their standard errors, three of which pass once in 370 times by chance. Voxels were
-    held to 1 to 1.5 % on arrays half full, 10 % on dilute ones and 2 % on random cells whatever their number; when values
-    were known limits of finer grids came down to less than three times these, as did that of the lattice sums from
-    1e-8, of means from 4 %, of the truncation from 3e-4 and of Torquato's estimate from 1 %.
+    held to 1 to 1.5 % on arrays half full, 10 % on dilute ones and 2 % on random cells whatever their number; when
+    values were known limits of finer grids came down to less than three times these, as did that of the lattice sums
+    from 1e-8, of means from 4 %, of the truncation from 3e-4 and of Torquato's estimate from 1 %.
     """
     yield from present([*_arrays(df), *_random(df), *_statistics(df), *_bounds(df), *_surfaces(df)])
 

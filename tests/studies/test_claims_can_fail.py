@@ -73,9 +73,13 @@ def holding_anyhow(name):
 
 
 def _spoiled(study, df):
-    """All results at once; then one after the other, for ratios, and since others may leave nothing to be judged."""
+    """All results at once; halves of them, for ratios of two; each alone, as others may leave nothing to be judged."""
     yield from (dealt.spoiled(study, df, how) for how in dealt.SPOILS)
-    yield from (dealt.spoiled(study, df, "tenfold", [name]) for name in dealt.results(study, df))
+    names = [name for name in dealt.results(study, df) if df[name].notna().any()]
+    for bit in range(len(names).bit_length()):
+        for side in (0, 1):
+            yield dealt.spoiled(study, df, "tenfold", [n for k, n in enumerate(names) if k >> bit & 1 == side])
+    yield from (dealt.spoiled(study, df, "tenfold", [name]) for name in names)
 
 
 def without_rows(name):
