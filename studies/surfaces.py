@@ -107,7 +107,10 @@ def _orders(rows, first, last):
 
 
 def table(df):
-    """Mean error over packings, %, of each method and contrast against the number of particles, and the order."""
+    """Error, %, of each method and contrast against the number of particles, and the order.
+
+    Of the default that is the mean over three packings up to 100 000 particles; all else is of one packing.
+    """
     import pandas as pd
 
     rows = []

@@ -180,7 +180,9 @@ def notes(df):
 
 
 def table(df):
-    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
+    """C_t by number of particles, mean over four packings, of costly ones two, of what is changed one.
+
+    Scatter is the coefficient of variation at 1e5, %.
 
     Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
     C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.

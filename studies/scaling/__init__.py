@@ -204,7 +204,8 @@ def table(df):
     those of k against the multipoles' of the same spheres; coarse rows are there for their costs. "of triad" is the
     bandwidth of the product of the network's matrix with a vector over that of the triad, a = b + s c on arrays too
     large for caches, right after it with as many threads. Exponents are fitted to rows of 1000 inclusions or 50 000
-    unknowns and more. The last lines say what 1e9 unknowns would take if the fits went on.
+    unknowns and more, each with its standard error. The last lines say what 1e9 unknowns would take if the fits went
+    on.
     """
     from studies.scaling.tables import lines
 
