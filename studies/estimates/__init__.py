@@ -83,7 +83,7 @@ def claims(df):
         title = found()[name].title
         yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
         most = 2 if name == "dem-calibrated" else 5
-        yield f"{title}: half of the interval over the error, median", over(df, name).median(), most
+        yield f"{title}: half of the interval over the error, median", over(df, name).median(), f"<= {most}"
     for name in filter(partial(present, df), NAMES):
         title = found()[name].title
         yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
