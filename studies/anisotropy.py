@@ -141,11 +141,12 @@ def _sphere(df):
     for side in ("below_voigt", "above_reuss"):
         yield f"sphere: {side.replace('_', ' ')}, least eigenvalue over the norm", rows[side].min(skipna=False), "> 0"
     best = _finest(pick(rows, name="fem"))
+    whole = "voxels" in rows and (rows["voxels"] == VOXELS[-1]).any()
     for name, (coarse, fine) in APART.items():
         other = _finest(pick(rows, name=name))
         if best is not None and other is not None:
             off = apart_percent(other, best)
-            limit = fine if VOXELS[-1] in rows["voxels"].to_list() else coarse
+            limit = fine if whole else coarse
             yield f"sphere: {name} from quadratic elements, both at their finest, %", off, limit
 
 
