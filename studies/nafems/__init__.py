@@ -233,7 +233,7 @@ def notes(df):
     """Why orders are missed, where they are."""
     words = {
         ("T3", "fem"): "the wave is 17 mm deep, the coarsest edges are 33 mm and the finest 8 mm",
-        ("T4", "dem"): "its largest errors are beside the corner where the base's temperature meets a film",
+        ("T4", "dem"): "why is not known; beyond 10 000 particles there is one packing each",
     }
     for (which, name), why in words.items():
         found = order_of(df, which, name) if finest_there(df, which, name) else None
