@@ -22,22 +22,25 @@ SEEDS = (0, 1, 2)
 PRESSURE = 120.0
 
 
-def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS):
+def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
     """Cases of the network: every packing under every kind of walls.
 
     Parameters
     ----------
     numbers : sequence of int
-        Of particles.
+        Of particles, all replicas together.
     held, packings : sequence of str
         Of `HELD` and `PACKINGS`.
     seeds : sequence of int
+    replicas : int
+        Along each axis, of a smaller packing; for periodic cells.
     """
+    repeated = {} if replicas == 1 else {"replicas": replicas}
     for number in numbers:
         for packing in packings:
             for walls in held:
                 here = {"name": NAME, "packing": packing, "held": walls, "particles": number}
-                yield from (here | {"seed": seed, "method": "dem"} for seed in seeds)
+                yield from (here | {"seed": seed} | repeated | {"method": "dem"} for seed in seeds)
 
 
 def calibrations(held):
@@ -45,22 +48,25 @@ def calibrations(held):
     return ("cell",) if held == "periodic" else ("flux", "isothermal")
 
 
-def packed(size, packing, held, particles, seed):
+def packed(size, packing, held, particles, seed, replicas=1):
     """Packing in a box, kept in the cache: one for all scenes of its shape.
 
     Parameters
     ----------
     size : (3,) sequence of float, m
-    packing, held, particles, seed
+        Of all replicas together.
+    packing, held, particles, seed, replicas
         Of a case.
 
     Returns
     -------
     Packing
+        Of one replica.
     """
     from demheat.packing.cache import grown, relaxed
 
-    here = {"size": size, "periodic": held == "periodic", "seed": seed}
+    here = {"size": [side / replicas for side in size], "periodic": held == "periodic", "seed": seed}
+    particles //= replicas**3
     if packing == "lsa":
         return grown(particles, pressure=PRESSURE, domain="box", **here)
     return relaxed(particles, **here)
@@ -115,7 +121,7 @@ def calibrated(packing, law, held):
     return found
 
 
-def solved(scenes, packing, held):
+def solved(scenes, packing, held, replicas=1):
     """Fields of scenes of one box by one packing, with C_t = 1, and its C_t.
 
     Parameters
@@ -123,7 +129,9 @@ def solved(scenes, packing, held):
     scenes : dict of str to Scene
         Periodic ones for `held = "periodic"`, else walled ones; loaded along y.
     packing : Packing
+        Of one replica, on which C_t is calibrated: without walls all replicas have the same.
     held : {"center", "surface", "periodic"}
+    replicas : int
 
     Returns
     -------
@@ -132,10 +140,12 @@ def solved(scenes, packing, held):
         C_t, and the unknowns, iterations and residual of the last solve.
     """
     from demheat import dem
+    from demheat.packing.domain import replicate
 
     law = unscaled(packing, held)
     row = calibrated(packing, law, held)
-    fields = {name: dem.solve(scene, law=law, packing=packing) for name, scene in scenes.items()}
+    whole = replicate(packing, (replicas,) * 3) if replicas > 1 else packing
+    fields = {name: dem.solve(scene, law=law, packing=whole) for name, scene in scenes.items()}
     last = list(fields.values())[-1]
     return fields, row | {name: last.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
 

@@ -57,7 +57,7 @@ def _conductivity(ax, third, network, first):
         ax.plot(mean.index, mean, **look("dem-calibrated", linestyle="", marker="x"))
     ax.set(xscale="log", xlabel=ACROSS, ylabel="effective conductivity / matrix")
     ax.set_title("Fig. 14 of the paper with the exact curve")
-    ax.legend(loc="lower right")
+    ax.legend(loc="upper left")
 
 
 def _errors(ax, third):
