@@ -7,7 +7,7 @@ import numpy as np
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, PINK
 
 
-def draw_variants(ax, made, names, printed=None):
+def draw_variants(ax, made, names, printed=None, unit="%"):
     """Errors of all variants at the largest number of particles, with intervals, side by side at each place.
 
     Colours are the walls, full markers LSA and open ones relaxed packings, squares the paper's calibration by a flux.
@@ -20,7 +20,8 @@ def draw_variants(ax, made, names, printed=None):
     names : sequence of str
         Places along the axis.
     printed : float, optional
-        Error that the paper prints, %, drawn as a band.
+        Error that the paper prints, drawn as a band.
+    unit : str
     """
     most = max(number for _, number in made)
     shown = [key for key in made if key[1] == most]
@@ -33,7 +34,7 @@ def draw_variants(ax, made, names, printed=None):
         label = variant.words.replace(" packing", "")
         ax.errorbar(x, mean, half, linestyle="", capsize=2, markersize=5, linewidth=1, label=label, **style)
     if printed:
-        ax.axhspan(-printed, printed, color=GREY, alpha=0.15, linewidth=0, label=f"+-{printed:g} %, printed")
+        ax.axhspan(-printed, printed, color=GREY, alpha=0.15, linewidth=0, label=f"+-{printed:g} {unit}, printed")
     ax.axhline(0.0, color=BLACK, linewidth=0.8)
     ax.set_xticks(range(len(names)), names)
     ax.grid(axis="x", visible=False)

@@ -40,7 +40,7 @@ def parted(df):
     network, others : data frame
         Of the network those with numbers only.
     """
-    ours = df["name"] == NAME
+    ours = df["name"] == NAME if "name" in df else np.zeros(len(df), dtype=bool)
     return df[ours & (df["status"] == "ok")] if "status" in df else df[ours], df[~ours]
 
 
@@ -145,7 +145,7 @@ def best_variant(made, among=None):
     return min(ranked, key=lambda key: worst_error(made[key], among)) if ranked else None
 
 
-def told_of(made, among=None, measure="error"):
+def told_of(made, among=None, measure="error", unit="%"):
     """A sentence on the best and the worst variant, made of rows; empty without any.
 
     Parameters
@@ -154,6 +154,7 @@ def told_of(made, among=None, measure="error"):
         As those of `best_variant`.
     measure : str
         What the values are, in a word.
+    unit : str
     """
     first = best_variant(made, among)
     if first is None:
@@ -164,8 +165,8 @@ def told_of(made, among=None, measure="error"):
     count = f"{min(packings)}" if len(packings) == 1 else f"{min(packings)} to {max(packings)}"
     return (
         f"Of {len(rank)} variants of the paper's network with {first[1]} particles (means over {count} packings) the "
-        f"best is: {least[1][0].words}, largest {measure} {least[0]:.2g} %; the worst: {most[1][0].words}, "
-        f"{most[0]:.2g} %."
+        f"best is: {least[1][0].words}, largest {measure} {least[0]:.2g} {unit}; the worst: {most[1][0].words}, "
+        f"{most[0]:.2g} {unit}."
     )
 
 

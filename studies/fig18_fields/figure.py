@@ -8,8 +8,9 @@ from demheat import referee
 from studies.common.paper_network import NAME
 from studies.common.paper_variants import parted
 from studies.fig18_fields.errors import BOUNDARIES, error_pictures, network_errors, shown, with_errors, witness
-from studies.fig18_fields.rows import POINTS, circles, spheres_in
+from studies.fig18_fields.rows import POINTS
 from studies.fig18_fields.tables import COMPARED, label
+from studies.harness.cells import numbers, picture
 from studies.harness.figures import BLACK, LOOK, PINK
 from studies.harness.methods import resolution
 from studies.harness.pick import pick
@@ -67,7 +68,7 @@ def _pictures(figure, df, network):
             axis.set_title(_titled(row), fontsize=9)
         if others:
             figure.colorbar(last, ax=axes[line], shrink=0.75, label=ERRORS[kind])
-        _dress(axes[line])
+        _dress(axes[line], pick(df, name="arrangement").iloc[0])
         axes[line][0].set_title(f"{kind}: {_titled(truth)}", fontsize=9)
     figure.suptitle(f"The plane x = L/2, {BOUNDARIES[boundary]}", fontsize=11)
     _mark(axes[0][0])
@@ -89,15 +90,20 @@ def _titled(row):
     return f"{label(row)},\n{resolution(row)}"
 
 
-def _dress(axes):
+def _dress(axes, place):
     """No ticks; outlines of the spheres; the load goes from left to right."""
     from matplotlib.patches import Circle
 
     for axis in axes:
         axis.set(xticks=[], yticks=[])
         axis.grid(False)
-        for y, z, radius in circles(spheres_in("walls")):
-            axis.add_patch(Circle((y, z), radius, fill=False, color="white", linewidth=0.7))
+        if isinstance(place.get("circles"), str):
+            for y, z, radius in numbers(place["circles"]).reshape(-1, 3):
+                axis.add_patch(Circle((y, z), radius, fill=False, color="white", linewidth=0.7))
+        else:  # rows of before have the distances of pixels only
+            gap = picture(place["slice_gap"])
+            middle = (np.arange(len(gap)) + 0.5) / len(gap)
+            axis.contour(middle, middle, gap, levels=[0.0], colors="white", linewidths=0.7)
     axes[0].set_xlabel("y: 25 C at the left, 35 C at the right", fontsize=9)
     axes[0].set_ylabel("z", fontsize=9)
 

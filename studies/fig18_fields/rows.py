@@ -44,6 +44,7 @@ def arrangement_row():
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
     row["slice_face"] = cell(face / scene.size[0], decimals=4)
+    row |= {"circles": cell(circles(scene), decimals=5)}
     return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], decimals=4)}
 
 
