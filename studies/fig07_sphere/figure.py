@@ -31,7 +31,7 @@ def draw(df):
     _by_unknowns(axes[1, 0], df, "at_10s", "Error of the centre at 10 s, means over packings")
     _by_unknowns(axes[1, 1], df, "worst", "Its largest error in time")
     axes[1, 0].plot(PAPER["particles"], PAPER["centre_10s"], "*", color=BLACK, markersize=11, label="DEM of the paper")
-    axes[1, 0].legend(fontsize=8)
+    axes[1, 0].legend(fontsize=8, loc="lower left")
     if made:
         draw_variants(axes[0, 2], made, ["error_10s"], PAPER["centre_10s"], "K")
         axes[0, 2].set(
@@ -66,7 +66,7 @@ def _errors(ax, df):
     ax.plot(10.0, PAPER["centre_10s"], "*", color=BLACK, markersize=11, label="DEM of the paper")
     ax.set(xlabel="time, s", ylabel="|error| of the centre, K", yscale="log", ylim=(1e-4, 30.0))
     ax.set_title("Its error, finest row of each")
-    ax.legend(fontsize=8, ncols=2, loc="lower left")
+    ax.legend(fontsize=8, ncols=3, loc="upper center", bbox_to_anchor=(0.5, -0.12))
 
 
 def _finest(df):

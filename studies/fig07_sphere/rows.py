@@ -58,7 +58,7 @@ def cube(packing, made, particles, seed):
 def network_row(packing, held, particles, seed, *, times):
     """Errors of the centre in time, by both calibrations.
 
-    All links scale with C_t, so that a march with C_t = 1 is at C_t t where one with C_t is at t: one march serves both.
+    All links scale with C_t, so that a march with C_t = 1 is at C_t t where one with C_t is at t: one serves both.
 
     Parameters
     ----------
