@@ -33,10 +33,10 @@ def packed(values, step):
     values = np.asarray(values, dtype=float)
     if values.ndim != 2 or values.shape[0] != values.shape[1] or not np.isfinite(values).all():
         raise ValueError(f"picture of shape {values.shape}: must be square, of finite numbers")
-    whole = np.diff(np.round(values / step).astype("<i4"), axis=1, prepend=0)
+    whole = np.ascontiguousarray(np.diff(np.round(values / step), axis=1, prepend=0.0), dtype="<i4")
     # The four bytes of all differences one after the other: high ones hardly differ.
     planes = np.ascontiguousarray(whole.view(np.uint8).reshape(-1, 4).T)
-    text = f"{len(values)}:{step:g}:" + base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode("ascii")
+    text = f"{len(values)}:{float(step)!r}:" + base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode("ascii")
     if len(text) > LONGEST:
         raise ValueError(f"picture of {len(text)} characters: a cell has {LONGEST} at most; use a larger step")
     return text

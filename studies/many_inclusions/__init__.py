@@ -214,8 +214,8 @@ def table(df):
     """Errors, %, and costs. For the DEM these include its packing; `bytes` are those of the peak per unknown.
 
     Elements per inclusion are those whose centres lie in one, twins among them, as far as rows count them. Of FFT
-    `s_per_iteration` is wall time and `in_fft` the part of it that the transforms take. `steady` is one solve of the spheres between walls, beside plain pyamg's
-    Ruge-Stueben and smoothed aggregation on the same matrix (CPU seconds).
+    `s_per_iteration` is wall time and `in_fft` the part of it that the transforms take. `steady` is one solve of the
+    spheres between walls, beside plain pyamg's Ruge-Stueben and smoothed aggregation on the same matrix (CPU seconds).
     """
     from studies.many_inclusions.tables import lines
 

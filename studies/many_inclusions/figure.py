@@ -9,7 +9,7 @@ from studies.harness import methods
 from studies.harness.figures import BLACK, GREY, PINK, look
 
 FLOOR = 1e-4  # per cent; smaller errors are drawn there
-COSTS = {"cpu_s": ("CPU time, s", 1), "peak_mib": ("peak memory, GiB", 1024)}
+COSTS = {"cpu_s": ("CPU time", "s", 1), "peak_mib": ("peak memory", "GiB", 1024)}
 
 
 def draw(df, network, paper):
@@ -31,15 +31,10 @@ def draw(df, network, paper):
     panels = 2 + bool(counted) + bool(network)
     figure, axes = pyplot.subplots(1, panels, figsize=(5.3 * panels, 6), squeeze=False)
     axes = axes[0]
-    for ax, (cost, (name, unit)) in zip(axes, COSTS.items(), strict=False):
-        _by_cost(ax, df, cost, unit)
-        ax.set(
-            xscale="log",
-            yscale="log",
-            xlabel=name,
-            ylabel="|error| of k, %",
-            title=f"83 spheres: {name[:-3].strip(',')}",
-        )
+    for ax, (cost, (name, unit, size)) in zip(axes, COSTS.items(), strict=False):
+        _by_cost(ax, df, cost, size)
+        ax.set(xscale="log", yscale="log", xlabel=f"{name}, {unit}", ylabel="|error| of k, %")
+        ax.set_title(f"83 spheres: error against {name}")
     handles, labels = axes[0].get_legend_handles_labels()
     figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9)
     if counted:
