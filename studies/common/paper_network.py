@@ -6,9 +6,10 @@ too: spheres may overlap and be pushed apart ("relaxed"); temperatures may act a
 no walls at all ("periodic", where the scene has an equal that is); and C_t may be calibrated between two isothermal
 walls. In a periodic cell there is one calibration, under the mean gradient ("cell").
 
-All links scale with C_t, so that one solve with C_t = 1 serves both calibrations: a steady temperature does not depend
+All links scale with C_t, so that one solve serves both calibrations: the particles' steady temperatures do not depend
 on it, fluxes and the conductivity are in proportion. A row is one packing under one kind of walls: conductivities and
 fluxes in it are those with C_t = 1, and `ct_flux`, `ct_isothermal` or `ct_cell` are what they are to be multiplied by.
+Solved is with the last of these, as what is read between particles goes with their flux.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ def packed(size, packing, held, particles, seed, replicas=1):
     return relaxed(particles, **here)
 
 
-def unscaled(packing, held):
+def unit_law(packing, held):
     """The paper's law with C_t = 1 on a packing, its gap found once.
 
     Parameters
@@ -122,7 +123,7 @@ def calibrated(packing, law, held):
 
 
 def solved(scenes, packing, held, replicas=1):
-    """Fields of scenes of one box by one packing, with C_t = 1, and its C_t.
+    """Fields of scenes of one box by one packing, and its C_t.
 
     Parameters
     ----------
@@ -136,18 +137,34 @@ def solved(scenes, packing, held, replicas=1):
     Returns
     -------
     fields : dict of str to Field
+        With the last of C_t, whose value is in their stats as "calibration".
     row : dict
         C_t, and the unknowns, iterations and residual of the last solve.
     """
+    from dataclasses import replace
+
     from demheat import dem
     from demheat.packing.domain import replicate
 
-    law = unscaled(packing, held)
+    law = unit_law(packing, held)
     row = calibrated(packing, law, held)
+    law = replace(law, factor=list(row.values())[-1])
     whole = replicate(packing, (replicas,) * 3) if replicas > 1 else packing
     fields = {name: dem.solve(scene, law=law, packing=whole) for name, scene in scenes.items()}
     last = list(fields.values())[-1]
     return fields, row | {name: last.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
+
+
+def unscaled(field, matrix):
+    """Conductivity with C_t = 1 over the matrix's.
+
+    Parameters
+    ----------
+    field : Field
+        From `solved`.
+    matrix : float, W/(m K)
+    """
+    return field.conductivity / (matrix * field.stats["calibration"])
 
 
 def warm_up(held):

@@ -6,6 +6,8 @@ of the same radii and volume, of LSA one of as many particles.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from demheat import referee
@@ -58,7 +60,7 @@ def cube(packing, made, particles, seed):
 def network_row(packing, held, particles, seed, *, times):
     """Errors of the centre in time, by both calibrations.
 
-    All links scale with C_t, so that a march with C_t = 1 is at C_t t where one with C_t is at t: one serves both.
+    All links scale with C_t, so that a march with half of C_t takes twice the time: one serves both calibrations.
 
     Parameters
     ----------
@@ -76,10 +78,11 @@ def network_row(packing, held, particles, seed, *, times):
 
     made = ball(packing, particles, seed)
     box = cube(packing, made, particles, seed)
-    row = paper_network.calibrated(box, paper_network.unscaled(box, held), held)
-    factors = {way: row[f"ct_{way}"] for way in paper_network.calibrations(held)}
+    row = paper_network.calibrated(box, paper_network.unit_law(box, held), held)
+    own = row["ct_isothermal"]
+    factors = {way: row[f"ct_{way}"] / own for way in paper_network.calibrations(held)}
     reached = sorted({factor * time for factor in factors.values() for time in times})
-    law = paper_network.unscaled(made, held)
+    law = replace(paper_network.unit_law(made, held), factor=own)
     fields, centre = dem.evolve(sphere(), reached, law=law, packing=made, accuracy=ACCURACY["dem"]), {}
     for time, field in zip(reached, fields, strict=True):
         centre[time] = float(field.temperature_at(CENTER)[0])

@@ -13,7 +13,7 @@ packings, walls and calibrations, at the paper's number (`studies/common/paper_n
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.common import paper_network
-from studies.common.paper_network import NAME
+from studies.common.paper_network import NAME, unscaled
 from studies.common.paper_variants import best_variant, parted, variant_errors, variants, worst_error
 from studies.harness import methods
 from studies.harness.pick import extrapolated, pick, present, worst
@@ -94,7 +94,7 @@ def _network(packing, held, particles, seed):
     }
     made = paper_network.packed((EDGE,) * 3, packing, held, particles, seed)
     fields, row = paper_network.solved(scenes, made, held)
-    return row | {f"k_{where}": field.conductivity / methods.MATRIX for where, field in fields.items()}
+    return row | {f"k_{where}": unscaled(field, methods.MATRIX) for where, field in fields.items()}
 
 
 def label(scene, contrast):

@@ -15,7 +15,7 @@ import numpy as np
 
 from demheat import referee
 from studies.common import paper_network, silica_epoxy
-from studies.common.paper_network import NAME
+from studies.common.paper_network import NAME, unscaled
 from studies.common.paper_variants import parted
 from studies.fig17_etc.means import all_axes, bounds_of, change, walls_less_gradient, witness
 from studies.harness import methods
@@ -131,7 +131,7 @@ def _network(packing, held, particles, seed):
     scenes = _scenes(held)
     made = paper_network.packed(scenes["0.2"].size, packing, held, particles, seed)
     fields, row = paper_network.solved(scenes, made, held)
-    return row | {f"k_{where}": field.conductivity / silica_epoxy.EPOXY.conductivity for where, field in fields.items()}
+    return row | {f"k_{where}": unscaled(field, silica_epoxy.EPOXY.conductivity) for where, field in fields.items()}
 
 
 # zeta_2 to some 1e-6 with gaps of 0.02 diameters: terms fall as (1/2.04)^(2 order).

@@ -89,7 +89,7 @@ def field_row(boundary, *, method, fine=False, **knobs):
 
 
 def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
-    """The same by the paper's network with C_t = 1: the flux is that of the particles, averaged over halos.
+    """The same by the paper's network: the flux is that of the particles, averaged over halos, and with C_t = 1.
 
     Parameters
     ----------
@@ -110,8 +110,10 @@ def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
     made = paper_network.packed(scene.size, packing, held, particles, seed, replicas)
     fields, row = paper_network.solved({"k": scene}, made, held, replicas)
     field = fields["k"]
-    row |= {"load": boundary, "k": field.conductivity / silica_epoxy.EPOXY.conductivity}
-    return row | looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points), fine=fine)
+    row |= {"load": boundary, "k": paper_network.unscaled(field, silica_epoxy.EPOXY.conductivity)}
+    factor = field.stats["calibration"]
+    found = looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points) / factor, fine=fine)
+    return row | found | {"mean_flux": found["mean_flux"] / factor}
 
 
 def looked(field, boundary, flux_at=None, *, fine=False):

@@ -80,7 +80,8 @@ def told(df, paper):
         said = [
             "The paper's network with halos of 11 mean radii, in all its variants: errors as above, means over "
             "packings with their 95 % intervals (Student's); the best has the least error of the flux at its worst "
-            "point. Temperatures do not depend on C_t.",
+            "point. The particles' temperatures do not depend on C_t; what is read between them goes with their flux, "
+            "that of the C_t found isothermally.",
             markdown(pd.DataFrame(lines_of(made, NETWORK, ["worst_q"]))),
         ]
     place = pick(others, name="arrangement").iloc[0]

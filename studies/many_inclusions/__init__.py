@@ -16,7 +16,7 @@ import tempfile
 
 from demheat import referee
 from studies.common import paper_network, silica_epoxy
-from studies.common.paper_network import NAME
+from studies.common.paper_network import NAME, unscaled
 from studies.common.paper_variants import parted, values, variant_errors, variants
 from studies.harness import methods
 from studies.harness.converged import converged
@@ -94,7 +94,7 @@ def run(name, gap=None, highest=None, *, method, **knobs):
 def _network(made, packing, held, particles, seed, replicas=1):
     one = paper_network.packed(made.size, packing, held, particles, seed, replicas)
     fields, row = paper_network.solved({"k": made}, one, held, replicas)
-    k = fields["k"].conductivity / silica_epoxy.EPOXY.conductivity
+    k = unscaled(fields["k"], silica_epoxy.EPOXY.conductivity)
     return row | {"k_spheres": k, "number": len(made.inclusions), "inside": _inside(fields["k"])}
 
 
