@@ -141,10 +141,10 @@ def network_errors(df):
     place = pick(others, name="arrangement")
     place, made = (place.iloc[0] if len(place) else None), []
     for _, row in network.iterrows():
-        truth = witness(others, row["load"])
+        truth = witness(others, row["under"])
         for way in calibrations(row["held"]) if truth is not None else ():
             one = _scaled(row, way)
-            made.append(one | at_points(one, truth) | _over_plane(one, truth, _away(place, row["load"])))
+            made.append(one | at_points(one, truth) | _over_plane(one, truth, _away(place, row["under"])))
     return pd.DataFrame(made)
 
 
@@ -153,7 +153,7 @@ def _scaled(row, way):
     factor = row[f"ct_{way}"]
     fluxes = [name for name in row.index if name[:2] in ("q_", "qx", "qy", "qz") or name == "mean_flux"]
     variant = Variant(row["packing"], row["held"], way)
-    more = {"variant": variant, "factor": factor, "boundary": row["load"]}
+    more = {"variant": variant, "factor": factor, "boundary": row["under"]}
     return dict(row) | {name: factor * row[name] for name in fluxes} | more
 
 

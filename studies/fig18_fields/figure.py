@@ -15,7 +15,7 @@ from studies.harness.figures import BLACK, LOOK, PINK
 from studies.harness.methods import resolution
 from studies.harness.pick import pick
 
-LOGARITHMIC = {"temperature": (1e-3, 1.0), "flux": (0.1, 100.0)}
+LOGARITHMIC = {"temperature": (1e-3, 10.0), "flux": (0.1, 100.0)}
 WORDS = {"temperature": "(T - 25 C)/10 K, %", "flux": "|flux|/mean flux, %"}
 ERRORS = {"temperature": "|error|, % of the span", "flux": "|error|, % of the mean flux"}
 
@@ -64,7 +64,7 @@ def _pictures(figure, df, network):
         for axis, row in zip(axes[line][1:], others, strict=True):
             error = np.abs(error_pictures(row, truth, fine=fine)[line])
             last = axis.imshow(np.clip(error, low, high), **look, norm=LogNorm(low, high), cmap="magma")
-            axis.set_xlabel(f"rms {referee.rms(error):.2g} %, largest {error.max():.2g} %", fontsize=9)
+            axis.set_xlabel(f"rms {referee.rms(error):.2g} %, largest {error.max():.3g} %", fontsize=9)
             axis.set_title(_titled(row), fontsize=9)
         if others:
             figure.colorbar(last, ax=axes[line], shrink=0.75, label=ERRORS[kind])

@@ -101,7 +101,7 @@ def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
     Returns
     -------
     dict
-        With `load`, its boundary condition.
+        With `under`, its boundary condition.
     """
     from demheat.sampling.halo import halo_flux
 
@@ -110,7 +110,7 @@ def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
     made = paper_network.packed(scene.size, packing, held, particles, seed, replicas)
     fields, row = paper_network.solved({"k": scene}, made, held, replicas)
     field = fields["k"]
-    row |= {"load": boundary, "k": paper_network.unscaled(field, silica_epoxy.EPOXY.conductivity)}
+    row |= {"under": boundary, "k": paper_network.unscaled(field, silica_epoxy.EPOXY.conductivity)}
     factor = field.stats["calibration"]
     found = looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points) / factor, fine=fine)
     return row | found | {"mean_flux": found["mean_flux"] / factor}

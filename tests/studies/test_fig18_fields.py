@@ -89,7 +89,7 @@ def network(flux):
         "packing": "lsa",
         "held": "center",
         "seed": 0,
-        "load": "walls",
+        "under": "walls",
     }
     base |= {"boundary": np.nan, "particles": 1000, "ct_flux": 0.5, "ct_isothermal": 0.6, "mean_flux": flux}
     base |= {f"q_{x}": flux for x in "ABCD"} | {f"qy_{x}": -flux for x in "ABCD"} | {"qz_C": 0.0}
