@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from studies.common.paper_variants import best_variant
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, PINK
 
 
 def draw_variants(ax, made, names, printed=None, unit="%"):
-    """Errors of all variants at the largest number of particles, with intervals, side by side at each place.
+    """Errors of all variants at the largest number of particles that all have, with intervals, side by side at each place.
 
     Colours are the walls, full markers LSA and open ones relaxed packings, squares the paper's calibration by a flux.
 
@@ -23,7 +24,7 @@ def draw_variants(ax, made, names, printed=None, unit="%"):
         Error that the paper prints, drawn as a band.
     unit : str
     """
-    most = max(number for _, number in made)
+    most = best_variant(made)[1]
     shown = [key for key in made if key[1] == most]
     for place, key in enumerate(shown):
         variant, style = key[0], _style(key[0])
@@ -38,8 +39,14 @@ def draw_variants(ax, made, names, printed=None, unit="%"):
     ax.axhline(0.0, color=BLACK, linewidth=0.8)
     ax.set_xticks(range(len(names)), names)
     ax.grid(axis="x", visible=False)
-    ax.annotate(f"{most} particles", (0.02, 0.97), xycoords="axes fraction", fontsize=8, color=GREY, va="top")
-    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=7)
+    ax.legend(
+        loc="upper center",
+        bbox_to_anchor=(0.5, -0.13),
+        ncols=2,
+        fontsize=7,
+        title=f"{most} particles",
+        title_fontsize=8,
+    )
 
 
 def _style(variant):

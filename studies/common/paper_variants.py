@@ -163,8 +163,9 @@ def told_of(made, among=None, measure="error", unit="%"):
     least, most = rank[0], rank[-1]
     packings = {each.number for key, found in made.items() if key[1] == first[1] for each in found.values()}
     count = f"{min(packings)}" if len(packings) == 1 else f"{min(packings)} to {max(packings)}"
+    over = "one packing each" if packings == {1} else f"means over {count} packings"
     return (
-        f"Of {len(rank)} variants of the paper's network with {first[1]} particles (means over {count} packings) the "
+        f"Of {len(rank)} variants of the paper's network with {first[1]} particles ({over}) the "
         f"best is: {least[1][0].words}, largest {measure} {least[0]:.2g} {unit}; the worst: {most[1][0].words}, "
         f"{most[0]:.2g} {unit}."
     )
