@@ -9,7 +9,7 @@ from studies.harness.figures import BLACK, BLUE, GREEN, GREY, PINK
 
 
 def draw_variants(ax, made, names, printed=None, unit="%"):
-    """Errors of all variants at the largest number of particles that all have, with intervals, side by side at each place.
+    """Errors of all variants at the largest number of particles that all have, with intervals, side by side.
 
     Colours are the walls, full markers LSA and open ones relaxed packings, squares the paper's calibration by a flux.
 
@@ -39,14 +39,8 @@ def draw_variants(ax, made, names, printed=None, unit="%"):
     ax.axhline(0.0, color=BLACK, linewidth=0.8)
     ax.set_xticks(range(len(names)), names)
     ax.grid(axis="x", visible=False)
-    ax.legend(
-        loc="upper center",
-        bbox_to_anchor=(0.5, -0.13),
-        ncols=2,
-        fontsize=7,
-        title=f"{most} particles",
-        title_fontsize=8,
-    )
+    place = {"loc": "upper center", "bbox_to_anchor": (0.5, -0.13), "ncols": 2}
+    ax.legend(**place, fontsize=7, title=f"{most} particles", title_fontsize=8)
 
 
 def _style(variant):
