@@ -45,7 +45,13 @@ def parted(df):
 
 
 def variants(held=HELD, packings=PACKINGS):
-    """All variants there are under some kinds of walls."""
+    """All variants there are under some kinds of walls.
+
+    Parameters
+    ----------
+    held, packings : sequence of str
+        Of `paper_network.HELD` and `PACKINGS`.
+    """
     return [Variant(p, walls, way) for p in packings for walls in held for way in calibrations(walls)]
 
 

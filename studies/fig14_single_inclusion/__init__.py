@@ -98,7 +98,13 @@ def _network(packing, held, particles, seed):
 
 
 def label(scene, contrast):
-    """Scene in a word, as columns of the network's rows end."""
+    """Scene in a word, as columns of the network's rows end.
+
+    Parameters
+    ----------
+    scene : {"third", "half"}
+    contrast : float
+    """
     return f"{contrast:g}" if scene == "third" else scene
 
 
