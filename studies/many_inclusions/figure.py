@@ -69,13 +69,18 @@ def _per_inclusion(ax, df, paper):
 
 
 def _network(ax, network, paper):
-    """Signed errors of the network by packing, with intervals."""
-    for packing, face in (("lsa", PINK), ("relaxed", "white")):
+    """Signed errors of the network by packing, with intervals, side by side."""
+    numbers = sorted({number for _, number in network})
+    for packing, face, aside in (("lsa", PINK, 0.95), ("relaxed", "white", 1.05)):
         found = {number: each["spheres"] for (variant, number), each in network.items() if variant.packing == packing}
         mean, half = ([getattr(each, name) for each in found.values()] for name in ("mean", "half"))
-        style = {"color": PINK, "marker": "o", "markerfacecolor": face, "capsize": 3}
-        ax.errorbar(list(found), mean, np.nan_to_num(half), label=f"{PACKED[packing]} packings", **style)
+        style = {"color": PINK, "marker": "o", "markerfacecolor": face, "capsize": 3, "linewidth": 1}
+        places = aside * np.array(list(found))
+        ax.errorbar(places, mean, np.nan_to_num(half), label=f"{PACKED[packing]} packings", **style)
     ax.axhspan(-paper["dem_fft"], paper["dem_fft"], color=GREY, alpha=0.15, label="DEM against FFT in the paper")
     ax.axhline(0.0, color=BLACK, linewidth=0.8)
     ax.set(xscale="log", xlabel="particles", ylabel="error of k, %", title="The paper's network, periodic cell")
+    ax.set_xticks(numbers, [f"{number:.3g}" for number in numbers])
+    ax.minorticks_off()
+    ax.set_xlim(0.7 * numbers[0], 1.5 * numbers[-1])
     ax.legend(fontsize=8)
