@@ -244,8 +244,8 @@ def evolve(
     TypeError
         If neither `evolve` nor the law knows a keyword.
     NotImplementedError
-        For contact laws with wall "surface" where a round wall is loaded or the body a sphere, and for conforming
-        packings of inclusions in round bodies; for implicit integrators where a wall radiates.
+        For contact laws with wall "surface" where the round wall of a cylinder is loaded, and for conforming packings
+        of inclusions in round bodies; for implicit integrators where a wall radiates.
     RuntimeError
         If steps or linear solves do not converge.
 

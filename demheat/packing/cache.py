@@ -28,6 +28,8 @@ RELAX = (
     *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
 )
 LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")
+# Of what is asked for, what no packing that is made depends on.
+IDLE = ("progress", "allow_few")
 
 
 def cache_folder() -> Path:
@@ -185,7 +187,7 @@ def _of_shape(maker, modules, request, size, radii, periodic, folder):
     radii = Gaussian() if radii is None else distribution(radii)
     key = {"algorithm": maker.__name__, "code": code_hash(*modules), "shape": shape.tolist()}
     key |= {"radii": repr(radii), "periodic": periodic.tolist()}
-    key |= {name: value for name, value in request.items() if name != "progress"}
+    key |= {name: value for name, value in request.items() if name not in IDLE}
 
     def make():
         return maker(size=shape, radii=radii, periodic=periodic, **request)

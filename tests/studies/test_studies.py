@@ -127,6 +127,6 @@ def test_a_row_in_its_own_process():
     study = runner.load("fig14_single_inclusion")
     case = runner.find_case(study, "name=exact,scene=third,contrast=10.0,method=exact")
     row = runner.spawn_row("fig14_single_inclusion", study, case)
-    # Rayleigh's method, McPhedran and McKenzie (1978), to the digits printed in studies/fig14_single_inclusion.py.
+    # Rayleigh's method, McPhedran and McKenzie (1978), to the digits printed in studies/fig14_single_inclusion.
     assert row["status"] == "ok" and row["k_ratio"] == pytest.approx(1.395734838, abs=5e-10)
     assert row["wall_s"] > 0 and row["peak_by"] in ("VmHWM", "ru_maxrss")
