@@ -65,6 +65,8 @@ LAYERS = {
     "demheat.blocks": (),
     "demheat.progress": (),
     "demheat.limits": (),
+    # Ranks of an MPI run, for whoever computes on them.
+    "demheat.ranks": ("demheat.limits",),
     "demheat.vtk": (),
     "demheat.paths": (),
     "demheat.machine": (),
@@ -251,9 +253,11 @@ LAYERS = {
         "demheat.sampling",
         "demheat.build",
         "demheat.dem",
+        "demheat.ranks",
         "demheat.mpi",
     ),
-    "demheat.mpi.__main__": ("demheat.files", "demheat.commands.options", "demheat.mpi"),
+    # Other methods on ranks are found by their names.
+    "demheat.mpi.__main__": ("demheat.declared", "demheat.files", "demheat.commands.options", "demheat.mpi"),
     "demheat.__main__": ("demheat.commands",),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),
@@ -329,6 +333,7 @@ LAYERS = {
         "demheat.process_state",
         "demheat.progress",
         "demheat.limits",
+        "demheat.ranks",
         "references.threads",
         "references.voxels",
         "references.fft",
