@@ -67,6 +67,7 @@ LAYERS = {
     "demheat.limits": (),
     # Ranks of an MPI run, for whoever computes on them.
     "demheat.ranks": ("demheat.limits",),
+    "demheat.petsc": (),
     "demheat.vtk": (),
     "demheat.paths": (),
     "demheat.machine": (),
@@ -254,6 +255,7 @@ LAYERS = {
         "demheat.build",
         "demheat.dem",
         "demheat.ranks",
+        "demheat.petsc",
         "demheat.mpi",
     ),
     # Other methods on ranks are found by their names.
@@ -311,6 +313,8 @@ LAYERS = {
         "demheat.process_state",
         "demheat.progress",
         "demheat.limits",
+        "demheat.ranks",
+        "demheat.petsc",
         "references.times",
         "references.mesh",
         "references.fem",

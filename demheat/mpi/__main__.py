@@ -26,7 +26,7 @@ from demheat.mpi.engines import world
 STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, ImportError: 1}
 ALIKE = tuple(STATUS)
 # Words of the command line and the keywords of `solve` that they are.
-KNOBS = {name: name for name in ("particles", "seed", "replicas", "voxels", "tolerance")} | {"petsc": "options"}
+KNOBS = {name: name for name in ("particles", "seed", "replicas", "voxels", "size", "tolerance")} | {"petsc": "options"}
 
 
 def main(words=None) -> int:
@@ -91,7 +91,8 @@ def _solver(name):
 
 
 def _has_ranks(name):
-    return find_spec(f"{path_of(found()[name].module)}.ranks") is not None
+    method = found()[name]
+    return method.call == "solve" and find_spec(f"{path_of(method.module)}.ranks") is not None
 
 
 def _on_ranks():
@@ -131,11 +132,12 @@ def _say_answer(field, say):
 def _parser():
     parser = Parser(prog="python -m demheat.mpi", description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("scene", metavar="SCENE.toml")
-    parser.add_argument("--method", default="dem", metavar="NAME", help="dem, which is the default, or fft")
+    parser.add_argument("--method", default="dem", metavar="NAME", help="dem, which is the default, fft or fem")
     parser.add_argument("--particles", type=int, help="of dem; default: 1000000")
     parser.add_argument("--voxels", type=int, help="of fft, along the longest side; default: 128, or an image's")
+    parser.add_argument("--size", type=float, metavar="METRES", help="of fem, the longest edge; default: by the body")
     parser.add_argument("--seed", type=int)
-    parser.add_argument("--tolerance", type=float, help="default: 1e-8 of dem, 1e-5 of fft")
+    parser.add_argument("--tolerance", type=float, help="default: 1e-8 of dem, 1e-5 of fft, 1e-9 of fem")
     parser.add_argument("--replicas", type=int, help="of a smaller packing along the shortest side; default: by size")
     parser.add_argument("--at", type=float, nargs=3, action="append", metavar=("X", "Y", "Z"), help="in metres, again")
     parser.add_argument("--interval", action="store_true", help="solve with fewer particles too, and tell the error")
