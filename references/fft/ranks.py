@@ -95,7 +95,8 @@ def solve(
         if box.inclusions and comm.rank == 0:
             warn_of_thin(box, knobs.rule, shape)
     slope, level = linear_part(box)
-    known = Grid(box, order=order, voxels=held, slope=slope, level=level, planes=(slab.low - 1, shape[0]))
+    planes = slab.low - 1, shape[0]
+    known = Grid(box, order=order, voxels=held, slope=slope, level=level, sharp=False, planes=planes)
     units = units_of(known)
     with costs.of("solve"):
         solution = _solution(known, units, knobs, slab)
