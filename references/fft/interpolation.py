@@ -158,7 +158,7 @@ def _neighbours(grid, points):
             away.append((part[:, axis] - side) * spacing[axis])
             weight = weight * (part[:, axis] if side else 1.0 - part[:, axis])
         if grid.planes:
-            index[0] = (index[0] - held) % shape[0]
+            index[0] = (index[0] - held) % shape[0] if grid.scene.periodic else index[0] - held
         yield index, weight, away, mirrored
 
 

@@ -99,6 +99,8 @@ def test_slabs_are_painted_as_the_whole(scene, laminate):
         np.testing.assert_allclose(held.fractions, whole.fractions, rtol=1e-14, atol=1e-16)
 
 
+# Few voxels warn of gaps.
+@pytest.mark.filterwarnings("ignore::UserWarning")
 @pytest.mark.parametrize(("scene", "rule"), [(CELL, "laminate"), (WALLS, "laminate"), (WALLS, "plain")])
 @pytest.mark.parametrize("number", [1, 3])
 def test_ranks_find_the_field_of_one_process(scene, rule, number, on_threads):
@@ -110,7 +112,8 @@ def test_ranks_find_the_field_of_one_process(scene, rule, number, on_threads):
         field = ranks.solve(scene, **knobs)
         # Of one point most ranks have none.
         assert field.temperature_at(points[0]) == field.temperature_at(points)[0]
-        return field, field.temperature_at(points), field.flux_at(points), field.samples
+        # Python 3.11 makes cached properties one thread at a time, of all objects: not `field.samples`.
+        return field, field.temperature_at(points), field.flux_at(points), field.sampler()
 
     whole = fft.solve(scene, threads=1, **knobs)
     for field, temperature, flux, samples in on_threads(number, work):
