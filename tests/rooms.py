@@ -259,7 +259,13 @@ LAYERS = {
         "demheat.mpi",
     ),
     # Other methods on ranks are found by their names.
-    "demheat.mpi.__main__": ("demheat.declared", "demheat.files", "demheat.commands.options", "demheat.mpi"),
+    "demheat.mpi.__main__": (
+        "demheat.declared",
+        "demheat.files",
+        "demheat.commands.options",
+        "demheat.ranks",
+        "demheat.mpi",
+    ),
     "demheat.__main__": ("demheat.commands",),
     # The old place of what lies in a folder now.
     "demheat.halo": ("demheat.sampling.halo",),

@@ -16,6 +16,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
+from demheat import ranks
 from demheat.commands.options import Parser
 from demheat.declared import found, path_of
 from demheat.files import read
@@ -41,7 +42,7 @@ def main(words=None) -> int:
     try:
         options = _parser().parse_args(words)
         # What is heavy loads once MPI is known to be there.
-        comm = world() if options.method == "dem" else _solver(options.method)[0].world()
+        comm = world() if options.method == "dem" else ranks.found(instead="demheat solve")[0].COMM_WORLD
         if comm.rank:
             warnings.simplefilter("ignore")
         _run(options, comm)

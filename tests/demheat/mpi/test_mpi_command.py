@@ -109,7 +109,6 @@ def test_periodic_cells_give_what_one_process_gives(method, tmp_path):
         ("--voxels 8", 2, "--voxels: no option of method dem"),
         ("--method fftt", 2, "--method fftt: no such method; did you mean 'fft'"),
         ("--method multipole", 1, "--method multipole: not on ranks, as are dem, fem, fft"),
-        ("--method fem --order 3", 2, "unrecognized arguments"),
         pytest.param("--method fft-links", 1, "rule 'links': fft on ranks solves", marks=NEEDS_FFT),
         pytest.param("--method fft --voxels 1290", 2, "GiB of memory or more", marks=NEEDS_FFT),
     ],
