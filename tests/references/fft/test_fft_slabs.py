@@ -123,6 +123,8 @@ def test_ranks_find_the_field_of_one_process(scene, rule, number, on_threads):
         for name, heat in whole.wall_heat.items():
             assert field.wall_heat[name] == pytest.approx(heat, rel=1e-11)
         assert field.stats["unknowns"] == whole.stats["unknowns"]
+        # Only they show what preconditions; rounding may make one more.
+        assert abs(field.stats["iterations"] - whole.stats["iterations"]) <= 1
         # Of the field a tolerance of 1e-9 leaves as much.
         np.testing.assert_allclose(temperature, whole.temperature_at(points), rtol=0, atol=1e-8)
         np.testing.assert_allclose(flux, whole.flux_at(points), rtol=0, atol=1e-7)
