@@ -22,21 +22,17 @@ from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.pencils import Pencils, most_ranks
 from references.fft.rules import warn_of_thin
 from references.fft.slabs import Slab, SlabSystem, painted, slab_of
+from references.fft.solver import OWN, UNSAID, USUAL
 from references.fft.units import Units, linear_part, mean_flux, order_of, problem_of, units_of, wall_heat
 from references.threads import Team
 from references.voxels.paint import grid_shape
 
 # Least bytes that a voxel takes: four vectors, its phase, and three fields of the transform, two if all is in place.
 BYTES = {True: 50, False: 58}
-# The same of a voxel's own tensor, in a scene that has one.
-OWN = 70
-USUAL = 128
 KNOWS = (
     "fft on ranks solves scheme 'cg' with rule 'laminate' or 'plain' where all phases conduct; fft.solve does the "
     "others on one machine"
 )
-# Knobs that a field's `stats` leaves out.
-UNSAID = ("max_iterations", "threads")
 
 
 def solve(
