@@ -252,10 +252,9 @@ def _of_platonic(df):
         )
     yield (
         f"The Platonic law at A, B, C: {'; '.join(said)}. It is worse with 20000 than with 5000 since its error of the "
-        "heat capacity does not fall with the number: it follows the mean number of contacts, which the gap is to "
-        "bring to 7.2 in the bulk (8 to 9 % too large there, study table1_platonic), and which near the sheet's faces, where "
-        "all particles of a coarse packing are, is another one. All laws get the same power, so temperatures lack what "
-        "the capacity is too large by."
+        "heat capacity does not fall with the number: with the gap that gives 7.2 contacts it is 8 to 9 % in the bulk "
+        "(study table1_platonic), and another one near the sheet's faces, where all particles of a coarse packing are. "
+        "All laws get the same power, so temperatures lack what the capacity is too large by."
     )
 
 

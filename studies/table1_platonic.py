@@ -134,7 +134,7 @@ def _printed_claims(df):
 
 
 def _by_rule(letter, neighbours):
-    """A line of the table from the printed corners by the paper's rule: linear between them, the outer lines carried on."""
+    """A line of the table from the printed corners by the paper's rule: linear between them, and beyond the last."""
     corners = {"s": (4, 6, 8, 12, 20), "f": (0, 4, 6, 8, 12)}[letter]
     values = [PAPER.get(f"{letter}_{n}", 0.0) for n in corners]
     left = int(np.clip(np.searchsorted(corners, neighbours) - 1, 0, len(corners) - 2))
