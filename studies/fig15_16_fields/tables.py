@@ -143,8 +143,8 @@ def _of_smoothing(exact, paper):
         said.append(f"{mean:.0f} at {letter} ({off:+.1f} %; printed {paper[f'q_{letter}_150k']:.0f})")
     return (
         f"The exact flux averaged over halos of .103 L, 11 mean radii of 1.5e5 particles, is {' and '.join(said)}: "
-        "smoothing accounts for B and not for C. C is .08 L below a wall with a temperature; a halo as wide reaches the "
-        "particles at the wall, whose flux by eq. 20 lacks their links to it (study fig10_halo)."
+        "smoothing accounts for B and not for C. C is .08 L below a wall with a temperature; a halo as wide reaches "
+        "the particles at the wall, whose flux by eq. 20 lacks their links to it (study fig10_halo)."
     )
 
 
@@ -154,8 +154,8 @@ def _of_size(same, most, paper):
     last = same.iloc[-1]
     return (
         f"With 5e5 particles a halo of 11 radii, .069 L, ends before that wall: ours gives {most['q_C']:.0f} at C, the "
-        f"paper {paper['q_C_500k']:.0f}. Halos as wide in metres as with 1.5e5 particles reach it: {found} particles; at B "
-        f"{last['q_B']:.0f} with {last['particles']:.0f}, printed {paper['q_B_500k']:.0f}."
+        f"paper {paper['q_C_500k']:.0f}. Halos as wide in metres as with 1.5e5 particles reach it: {found} particles; "
+        f"at B {last['q_B']:.0f} with {last['particles']:.0f}, printed {paper['q_B_500k']:.0f}."
     )
 
 
