@@ -251,7 +251,9 @@ def _profile(warm, off, df, t):
         warm.plot(at, values, marker, color=colour, fillstyle="none", markersize=5)
         label = f"{name}, {row['particles']:.0f} particles"
         look = {"color": colour, "linewidth": 1, "markersize": 3, "label": label}
-        off.plot(at, np.maximum(np.abs(errors), 1e-5), marker + "-", **look)
+        sizes = np.abs(errors)
+        # Where the heat has not come yet there is nothing to be off.
+        off.plot(at, np.where(sizes > 1e-5, sizes, np.nan), marker + "-", **look)
     warm.set_title(f"{1e3 * t:g} ms")
     off.set(xlabel="x / L", yscale="log", ylim=(1e-5, 10))
 
@@ -273,5 +275,8 @@ def _shown_and_hidden(axes, df):
     shown = ["temperature, 50 ms", "temperature, 100 ms", "steady conductivity", "heat capacity", "diffusivity"]
     axes.set_xticks(range(5), shown)
     axes.set(yscale="log", ylim=(1e-4, 300), ylabel="error, %")
-    axes.set_title("Largest error that the transient shows (left), and errors that it hides (right), %")
+    axes.set_title(
+        "What the transient shows (left), and errors of the network's constants (right): their quotient shows"
+    )
     axes.grid(False, axis="x")
+    axes.set_axisbelow(True)

@@ -118,8 +118,8 @@ def in_words(df):
     rise = 100 * referee.value_error(found["ct_1e6"], found["ct_1e5"])
     asked = 100 * referee.value_error(PAPER["ct_1e6"], PAPER["ct_1e5"])
     yield (
-        f"From 1e5 to 1e6 elements C_t rises by {asked:.1f} % as printed, by {rise.min():.1f} to {rise.max():.1f} % with "
-        "the sets."
+        f"From 1e5 to 1e6 elements C_t rises by {asked:.1f} % as printed, by {rise.min():.1f} to {rise.max():.1f} % "
+        "with the sets."
     )
     for spread, what in ((PAPER["spread"], "As printed"), (PAPER["spread"] / 2, "With half the printed spread")):
         rows = pick(found, spread=spread, links=PAPER["links"], mean="arithmetic")
