@@ -70,6 +70,8 @@ def test_the_claims_ask_all_sets():
     assert not [text for text in judged if text.startswith("All that")] and len(judged) == 1
 
 
+# So few particles are wider than the gap beside the sphere.
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions:UserWarning")
 def test_a_row_of_a_small_packing(monkeypatch):
     monkeypatch.setattr(rows, "NUMBER", 300)
     monkeypatch.setattr(rows, "RATIOS", (2.0,))
