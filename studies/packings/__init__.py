@@ -161,8 +161,8 @@ def notes(df):
     yield markdown(_means(df, ["cpu_s", "us_per_collision", "bytes_per_sphere"]))
     yield (
         "Contacts and isotropy: rattlers and backbone_z are at a gap of 1e-4; gap_7.5 is the detection gap of 7.5 "
-        "neighbours, under_2 the part of the spheres that then have fewer than two; deviations of the fabric tensor and "
-        "of <n_i^4> in standard deviations of independent links."
+        "neighbours, under_2 the part of the spheres that then have fewer than two; deviations of the fabric tensor "
+        "and of <n_i^4> in standard deviations of independent links."
     )
     yield markdown(_means(df, ["rattlers", "backbone_z", "gap_7.5", "under_2", "fabric_sd", "fourth_sd"]))
 
