@@ -87,7 +87,7 @@ def shown(df):
     ----------
     df : data frame
     """
-    found = ranked(df).drop_duplicates(["spread", "links", "mean"])
+    found = ranked(df).drop_duplicates(["spread", "links", "mean"], ignore_index=True)
     found = found.assign(
         sphere_range=[f"{a:.2f} to {b:.2f}" for a, b in zip(found["sphere_low"], found["sphere_high"], strict=True)],
     )
