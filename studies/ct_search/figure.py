@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.ct_search.means import LIMITS, PAPER, SPHERE, TOLERANCES, ranked
+from studies.ct_search.means import LIMITS, PAPER, TOLERANCES, ranked
 from studies.harness.figures import BLACK
 from studies.harness.pick import pick
 
@@ -12,7 +12,7 @@ from studies.harness.pick import pick
 PANELS = {
     "C_t at 1e5 (printed .806)": ("number", "ct_1e5", "{:.3f}"),
     "C_t at 1e6 (printed .834)": ("number", "ct_1e6", "{:.3f}"),
-    f"One sphere, {SPHERE:.1e}, % (at most {PAPER['sphere']:g})": ("number", "sphere", "{:.2f}"),
+    f"One sphere, 1.5e5, % (at most {PAPER['sphere']:g})": ("number", "sphere", "{:.2f}"),
     f"Fewer than 2 links, % (at most {LIMITS['under_2']:g})": ("number", "under_2", "{:.2f}"),
     "Own flux, by number, % (27)": ("number", "cov_0", "{:.0f}"),
     "Own flux, by volume, % (27)": ("volume", "cov_0", "{:.0f}"),
