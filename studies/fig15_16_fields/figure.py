@@ -79,9 +79,9 @@ def _pictured(df):
     return exact, [rows.loc[rows["unknowns"].idxmax()] for _, rows in groups]
 
 
-def _title(row):
-    words = resolution(row)
-    name = label(row)
+def _title(row, *, halo):
+    words, name = resolution(row), label(row)
+    name = name if halo else name.split(", halo")[0]
     # A column is some 20 letters wide.
     return (name if len(name) < 22 else name.replace(", ", ",\n", 1)) + (f",\n{words}" if words else "")
 
@@ -99,7 +99,7 @@ def _side_by_side(figure, axes, name, exact, others):
     signed = SymLogNorm(linear, vmin=-most, vmax=most)
     for axis, row, error in zip(axes[0], (exact, *others), (0.0, *errors), strict=True):
         fields = axis.imshow(_like(truth, error) + error, **look, **scale)
-        axis.set_title(_title(row), fontsize=9)
+        axis.set_title(_title(row, halo=name == "flux"), fontsize=9)
     for axis, row, error in zip(axes[1][1:], others, errors, strict=True):
         misses = axis.imshow(error, **look, norm=signed, cmap="RdBu_r")
         axis.set_xlabel(_said(row, name), fontsize=8)
@@ -128,9 +128,9 @@ def _like(truth, error):
 def _said(row, name):
     """The errors of the table below a picture."""
     if name == "temperature":
-        return f"rms {row['temperature_rms']:.2g} %, largest {row['temperature_max']:.2g} %"
+        return f"rms {row['temperature_rms']:.2g} %, largest {row['temperature_max']:.3g} %"
     band = max(row["flux_max"], row["flux_max_band"])
-    return f"rms away {row['flux_rms']:.2g} %, in the band {row['flux_rms_band']:.2g} %,\nlargest {band:.2g} %"
+    return f"rms away {row['flux_rms']:.2g} %, in the band {row['flux_rms_band']:.2g} %,\nlargest {band:.3g} %"
 
 
 def _mark(axis, points):
@@ -158,7 +158,7 @@ def _errors_at_points(axis, df, paper, points):
         place = np.arange(len(points)) + 0.8 * ((number + 0.5) / len(bars) - 0.5)
         axis.plot(place, values, **look | {"linestyle": ""}, label=name)
     _whole_decades(axis.set_ylim, np.array([value for _, values, _ in bars for value in values]))
-    axis.set(xticks=range(len(points)), xticklabels=list(points), yscale="log", ylabel="|error|, % of the exact flux")
+    axis.set(xticks=range(len(points)), xticklabels=list(points), yscale="log", ylabel="|error|, %")
     axis.set_title("Flux at the points of Table 2")
     axis.grid(False, axis="x")
 
