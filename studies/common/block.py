@@ -14,11 +14,22 @@ from demheat.scene import Material, Scene
 LENGTH, CONDUCTIVITY, COLD, HOT = 0.1, 33.0, 25.0, 35.0
 
 
-def scene_of(walls):
-    """Block under the same mean gradient between two walls ("held") or in a periodic cell ("periodic")."""
+def scene_of(walls, conductivity=CONDUCTIVITY):
+    """Block under a mean gradient of 100 K/m.
+
+    Parameters
+    ----------
+    walls : {"held", "periodic"}
+        Between two walls, or a periodic cell.
+    conductivity : float, W/(m K)
+
+    Returns
+    -------
+    Scene
+    """
     gradient = (0.0, (HOT - COLD) / LENGTH, 0.0)
     load = {"gradient": gradient} if walls == "periodic" else {"walls": {"y-": COLD, "y+": HOT}}
-    return Scene(size=(LENGTH,) * 3, matrix=Material(CONDUCTIVITY), **load)
+    return Scene(size=(LENGTH,) * 3, matrix=Material(conductivity), **load)
 
 
 def contact_field(scene, packing, law, split):

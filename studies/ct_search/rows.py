@@ -87,7 +87,8 @@ def _law(packing, links, mean, **more):
 
 def _in_cell(packing, links, mean):
     """C_t without walls, scatter of the flux along the load in halos, links."""
-    scene = scene_of("periodic")
+    # Of conductivity 1, as `calibration` wants it.
+    scene = scene_of("periodic", 1.0)
     law, (indptr, indices, gap) = _law(packing, links, mean, factor=1.0)
     row = {"gap": gap, "under_2": coordination(packing, indptr, indices).under_2}
     row["ct_cell"] = calibration(network_of(scene, packing, law), scene)
@@ -102,7 +103,7 @@ def _in_cell(packing, links, mean):
 
 def _in_block(packing, links, mean):
     """C_t by the paper's load, and with it the errors of one sphere, %, by contrast."""
-    scene = scene_of("held")
+    scene = scene_of("held", 1.0)
     law, (_, _, gap) = _law(packing, links, mean, factor=1.0)
     ct = calibration(network_of(scene, packing, law), scene, loading="flux")
     row, law = {"ct_block": ct}, Calibrated(gap=gap, mean=mean, factor=ct)
