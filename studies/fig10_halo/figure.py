@@ -76,7 +76,7 @@ def _near_wall(axes, df):
     rows = _largest(df, split="half")
     middle = (DEPTHS[1:] + DEPTHS[:-1]) / 2
     for ratio, (label, colour) in HALOS.items():
-        for text in rows[f"wall_{ratio:g}"].dropna() if f"wall_{ratio:g}" in rows else ():
+        for text in rows[f"near_{ratio:g}"].dropna() if f"near_{ratio:g}" in rows else ():
             axes.plot(middle, numbers(text), "o-", color=colour, markersize=3, label=label)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel="depth below the wall, mean radii", ylabel="mean flux / 3300 W/m2")

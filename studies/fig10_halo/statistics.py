@@ -60,7 +60,7 @@ def by_radius(field, fluxes):
 
 
 def near_wall(field, fluxes):
-    """Mean flux by the depth below the two walls with a temperature, in halos, as cells `wall_RATIO`.
+    """Mean flux by the depth below the two walls with a temperature, in halos, as cells `near_RATIO`.
 
     Parameters
     ----------
@@ -86,7 +86,7 @@ def near_wall(field, fluxes):
             np.histogram(depth, DEPTHS, weights=part * y)[0]
             for y in (-fluxes[ratio][inside, 1] / PAPER["flux"], np.ones(len(part)))
         )
-        row[f"wall_{ratio:g}"] = cell(np.divide(sums, weights, out=np.full(len(sums), np.nan), where=weights > 0))
+        row[f"near_{ratio:g}"] = cell(np.divide(sums, weights, out=np.full(len(sums), np.nan), where=weights > 0))
     return row
 
 

@@ -88,8 +88,8 @@ def test_the_flux_by_depth_below_a_wall():
         halo_rows.scene_of("held"), np.zeros(3), np.ones(1), lambda: samples, None, None, stats={"mean_radius": radius}
     )
     row = {name: numbers(cell) for name, cell in statistics.near_wall(field, {4.0: flux}).items()}
-    assert_allclose(row["wall_4"], [1.0] * 3 + [2.0] * 13)
-    assert list(row) == ["wall_4"]
+    assert_allclose(row["near_4"], [1.0] * 3 + [2.0] * 13)
+    assert list(row) == ["near_4"]
 
 
 def test_all_four_weightings_are_held_against_what_is_printed():
