@@ -106,8 +106,8 @@ def in_words(df):
     own, wide = (_over_bulk(numbers(rows[f"near_{r}"].iloc[0])) for r in (0, 11))
     yield (
         f"Mean flux below a wall with a temperature, over that of the bulk: within one mean radius of it {own[0]:.2f}, "
-        f"since eq. 20 has no links to walls; with halos of 11 {wide[0]:.3f} there, and {wide[8]:.3f} at a depth of 8 to 9 "
-        "mean radii, where point C of Table 2 is with 1.5e5 elements: the paper's flux there is 4 % low."
+        f"since eq. 20 has no links to walls; with halos of 11 {wide[0]:.3f} there, and {wide[8]:.3f} at a depth of 8 "
+        "to 9 mean radii, where point C of Table 2 is with 1.5e5 elements: the paper's flux there is 4 % low."
     )
 
 
