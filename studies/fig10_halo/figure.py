@@ -80,7 +80,7 @@ def _near_wall(axes, df):
             axes.plot(middle, numbers(text), "o-", color=colour, markersize=3, label=label)
     axes.axhline(1.0, color=BLACK, linewidth=0.8)
     axes.set(xlabel="depth below the wall, mean radii", ylabel="mean flux / 3300 W/m2")
-    axes.set_title("Walls with a temperature")
+    axes.set_title("Flux below a wall with a temperature")
     if axes.get_legend_handles_labels()[0]:
         axes.legend(loc="lower right")
 
