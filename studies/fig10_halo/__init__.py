@@ -8,7 +8,8 @@ tessellation and needs no halo. Fluxes are components along the load, in units o
 radii, 0 being the particle's own flux; halos end at walls. The coefficient of variation (CoV) is the standard deviation
 over the mean, by number of particles or by volume; over all particles, or over the bulk, which is farther from every
 wall than the halo's radius (and 2 mean radii, where particles touch the wall) and counts if it is as wide as a halo.
-"periodic" is a cell without walls. Below a wall with a temperature the mean flux is kept by depth. Costs are those of the halos of 11 radii; for "laguerre", of its fluxes.
+"periodic" is a cell without walls. Below a wall with a temperature the mean flux is kept by depth. Costs are those of
+the halos of 11 radii; for "laguerre", of its fluxes.
 """
 
 from demheat import referee
