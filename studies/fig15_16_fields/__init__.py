@@ -32,7 +32,7 @@ RATIOS = (4.0, 11.0)
 # Halos as large in metres as those of 11 mean radii with the paper's 1.5e5 elements, in mean radii.
 SAME_SIZE = {number: round(RATIOS[-1] * (number / PAPERS) ** (1 / 3), 2) for number in (*NUMBERS[:-1], MOST)}
 # Halos over which the exact field is averaged, in edges of the cube; that of 11 radii of 1.5e5 particles is .103.
-HALOS = (0.03, 0.05, 0.07, 0.09, 0.103, 0.12)
+HALOS = (0.05, 0.069, 0.103)
 # Longest edges, m. Linear elements of 3.5 mm are some 1e5 tetrahedra, as in the paper.
 SIZES = {"fem-p1": (0.006, 0.0035), "fem": (0.01, 0.006, 0.004, 0.003)}
 VOXELS = (32, 64, 128)

@@ -6,7 +6,8 @@ import numpy as np
 
 # Irrational numbers whose multiples fill an interval evenly; two, so that angle and radius are not alike.
 GOLDEN, PLASTIC = (5**0.5 - 1) / 2, 0.7548776662466927
-POINTS = 2_000
+# Beside the sphere a mean of so many is off by .1 %.
+POINTS = 5_000
 
 
 def ball(number=POINTS):
