@@ -20,6 +20,8 @@ TAIL = (
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20
+# Letters of one cell at most: a picture of 200 x 200 numbers has 300 000, above what the csv module reads by default.
+csv.field_size_limit(2**24)
 
 
 def case_key(case):

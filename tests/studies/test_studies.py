@@ -40,6 +40,7 @@ def test_the_studies_are_there():
 # Their quick rows take 12 to 52 CPU-seconds each, together more than a third of all tests: `make test-slow`.
 SLOW = (
     "brackets",
+    "ct_search",
     "damage",
     "estimates",
     "fig12_15_sheet",
