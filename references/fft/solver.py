@@ -246,12 +246,13 @@ def _checked(scheme, rule, precision, tolerance, max_iterations, threads):
 
 def _check_load(scene):
     check_scene(scene)
+    takes = ("exchange", "anisotropy", "image")
+    scene.require("on voxels temperatures jump nowhere, and conductivities are constants", steady=True, takes=takes)
     scene.require(
         "fft.solve knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
         "homogeneous problem is inverted by sines and cosines here",
-        steady=True,
         walls="one isothermal pair",
-        takes=("anisotropy", "image"),
+        takes=takes[1:],
     )
 
 
