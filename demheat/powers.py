@@ -23,7 +23,7 @@ def power(base, exponent) -> np.ndarray:
     -------
     float array
     """
-    # The one power of NumPy that has no other code for some processors (numpy's issue 25269).
+    # The one power of NumPy that has no other code for some processors: github.com/numpy/numpy/issues/25269.
     return np.float_power(base, exponent)
 
 
