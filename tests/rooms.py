@@ -55,7 +55,8 @@ LAYERS = {
     ),
     "demheat.scene.narrows": ("demheat.scene.shapes",),
     "demheat.scene": ("demheat.scene",),
-    "demheat.addition": (),
+    "demheat.powers": (),
+    "demheat.addition": ("demheat.powers",),
     "demheat.error": ("demheat.scene",),
     "demheat.field": ("demheat.scene", "demheat.error"),
     "demheat.tensor": ("demheat.scene", "demheat.field"),
@@ -80,6 +81,7 @@ LAYERS = {
     # Nouns know nothing of those who draw them: `plot` loads this by its name.
     "demheat.pictures": ("demheat.scene", "demheat.field", "demheat.slices"),
     "demheat.packing": (
+        "demheat.powers",
         "demheat.addition",
         "demheat.scene",
         "demheat.threads",
@@ -91,7 +93,13 @@ LAYERS = {
         "demheat.paths",
         "demheat.packing",
     ),
-    "demheat.gallery": ("demheat.addition", "demheat.scene", "demheat.limits", "demheat.packing.dispersion"),
+    "demheat.gallery": (
+        "demheat.powers",
+        "demheat.addition",
+        "demheat.scene",
+        "demheat.limits",
+        "demheat.packing.dispersion",
+    ),
     "demheat.network": (
         "demheat.scene",
         "demheat.laws",

@@ -23,7 +23,7 @@ from pathlib import Path
 
 import numpy as np
 
-from demheat.files.source import nearest, shown
+from demheat.files.source import nearest_file, shown
 from demheat.limits import check_free
 from demheat.paths import checked_path
 from demheat.scene import Image, Material
@@ -111,8 +111,7 @@ def _check_there(path: Path):
         return
     if path.exists():
         raise ValueError(f"{path}: must be a regular file, no folder, device or pipe")
-    beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
-    raise ValueError(f"{path}: there is no such file{nearest(path.name, beside)}")
+    raise ValueError(f"{path}: there is no such file{nearest_file(path)}")
 
 
 def _npy(path):

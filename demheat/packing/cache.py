@@ -19,12 +19,14 @@ from demheat.packing.io import npz
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
+from demheat.powers import cube_root
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 3
 ARRAYS = ("centers", "radii", "size", "periodic", "provenance", "domain")
 RELAX = (
     "demheat.scene.bodies",
+    "demheat.powers",
     *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
 )
 LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")
@@ -196,7 +198,7 @@ def _of_shape(maker, modules, request, size, radii, periodic, folder):
     # Stretched by the 1e-12 that rounding the shape took, so that the box is met exactly; volumes keep phi.
     stretch = sides / shape
     return unit._replace(
-        centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * np.cbrt(np.prod(stretch)), size=sides
+        centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * cube_root(np.prod(stretch)), size=sides
     )
 
 

@@ -57,12 +57,13 @@ def checked(scheme, rule, precision, tolerance, max_iterations, threads) -> Knob
 def check_load(scene: Scene) -> None:
     """Raise NotImplementedError if the load is another than those that are solved."""
     check_scene(scene)
+    takes = ("exchange", "anisotropy", "image")
+    scene.require("on voxels temperatures jump nowhere, and conductivities are constants", steady=True, takes=takes)
     scene.require(
         "fft.solve knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
         "homogeneous problem is inverted by sines and cosines here",
-        steady=True,
         walls="one isothermal pair",
-        takes=("anisotropy", "image"),
+        takes=takes[1:],
     )
 
 
