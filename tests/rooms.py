@@ -238,6 +238,34 @@ LAYERS = {
         "demheat.files",
         "demheat.commands",
     ),
+    # Parts of a body that are made by themselves, for those who work on several, or on one after the other.
+    "demheat.tiles": (
+        "demheat.scene",
+        "demheat.laws",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction.steady",
+        "demheat.sampling",
+        "demheat.dem.options",
+        "demheat.tiles",
+    ),
+    # A solve that is larger than the memory: slabs one after the other, kept on disk.
+    "demheat.streamed": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.limits",
+        "demheat.paths",
+        "demheat.progress",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+        "demheat.build",
+        "demheat.dem",
+        "demheat.tiles",
+        "demheat.streamed",
+    ),
     # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
     "demheat.mpi": (
         "demheat.scene",
@@ -251,6 +279,7 @@ LAYERS = {
         "demheat.sampling",
         "demheat.build",
         "demheat.dem",
+        "demheat.tiles",
         "demheat.mpi",
     ),
     "demheat.mpi.__main__": ("demheat.files", "demheat.commands.options", "demheat.mpi"),

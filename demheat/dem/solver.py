@@ -17,6 +17,7 @@ from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
+from demheat.dem.memory import MIB, announced, expected
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
@@ -157,11 +158,18 @@ def solve_axes(
 
 def _answers(scenes, law, wanted, **knobs):
     """Solve scenes that differ in their loads only, as they were checked; `knobs` are those of the linear solver."""
+    needed = expected(scenes[0], law, wanted)
+    with announced("DEM", needed):
+        return _solved(scenes, law, wanted, needed / MIB, **knobs)
+
+
+def _solved(scenes, law, wanted, expected_mib, **knobs):
+    """The fields, one for each scene."""
     counts = wanted.counts(scenes[0], law)
     begun = time.perf_counter()
     with Helper(parts_of(law, wanted.particles)) as helper:
         packing = wanted.packed(scenes[0], counts)
-        spent = {"packing_s": time.perf_counter() - begun}
+        spent = {"expected_mib": expected_mib, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
         networks = networks_of(scenes, packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy

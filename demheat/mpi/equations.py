@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from demheat.conduction.balance import System, residual, throughput
-from demheat.mpi.cells import Cells
 from demheat.mpi.numbers import Halo
+from demheat.tiles.cells import Cells
 
 # Rows that are handed over at once: some 20 MB.
 BLOCK = 65536
