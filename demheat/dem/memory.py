@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from contextlib import AbstractContextManager, nullcontext
-
 import numpy as np
 
 from demheat.dem.options import Particles
 from demheat.laws import Calibrated, Laguerre, Platonic
-from demheat.limits import GIB, SMALL
 from demheat.packing.conforming import faces
-from demheat.progress import stage
 from demheat.scene import Scene
 
 MIB = 2**20
@@ -42,16 +38,4 @@ def expected(
     if law.conforming and scene.inclusions:
         unit = np.cbrt(0.75 / np.pi * PHI * scene.volume / number)
         unknowns += TWINS * float(faces(scene).sum()) / unit**2
-    return (BYTES[law.name] if each is None else each) * unknowns
-
-
-def announced(name: str, needed: float) -> AbstractContextManager:
-    """A stage that says what a large computation will take; of a small one nothing is said.
-
-    Parameters
-    ----------
-    name : str
-    needed : float
-        Bytes.
-    """
-    return stage(f"{name}, about {needed / GIB:.2g} GiB") if needed > SMALL else nullcontext()
+    return float((BYTES[law.name] if each is None else each) * unknowns)

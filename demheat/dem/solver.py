@@ -17,11 +17,11 @@ from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
-from demheat.dem.memory import MIB, announced, expected
+from demheat.dem.memory import MIB, expected
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
-from demheat.progress import stage
+from demheat.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 import warnings
-from dataclasses import replace
 
 import numpy as np
 
@@ -12,12 +11,12 @@ from demheat import dem
 from demheat.build import warn_of_twins
 from demheat.conduction.steady import check_solver, solve_checked
 from demheat.dem.estimate import estimator_of
-from demheat.dem.memory import MIB, announced, expected
+from demheat.dem.memory import MIB, expected
 from demheat.dem.options import Particles
 from demheat.field import Field
 from demheat.laws import Laguerre
 from demheat.limits import check_memory, check_room
-from demheat.progress import stage
+from demheat.progress import announced, stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import whole
 from demheat.streamed.equations import joined, number_all
@@ -131,14 +130,14 @@ def _answer(scene, law, wanted, parts, tolerance, needed):
         parts.store.drop_matrix()
     spent = {"cells_s": cut - begun, "solve_s": time.perf_counter() - cut}
     estimator = estimator_of(law, wanted, lambda law, wanted: _coarser(scene, law, wanted, tolerance))
+    stats = {"law": law.name, "calibration": 1.0, "slabs": len(parts.cuts), "folder": str(parts.store.folder)}
+    stats |= {"expected_mib": needed / MIB, **solution.stats, **made, **spent}
     with stage("field"):
-        field = field_of(parts, solution, estimator=estimator, stats={})
-    stats = {"law": law.name, "calibration": 1.0, "slabs": len(parts.cuts)} | made
-    stats |= {"folder": str(parts.store.folder), "expected_mib": needed / MIB}
+        field = field_of(parts, solution, estimator=estimator, stats=stats)
     if np.any(field.fractions == 0):
         lost = np.flatnonzero(field.fractions == 0) - 1
         warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=4)
-    return replace(field, stats=solution.stats | stats | spent)
+    return field
 
 
 def _cut(law, wanted, parts):

@@ -11,6 +11,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.limits import check_memory
+from demheat.progress import announced
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import chosen, finite, whole
 from demheat.scene.turned import turned as turned_scene
@@ -19,6 +20,7 @@ from references.fft import cg, eyre_milton
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.link_kernels import Links
+from references.fft.memory import expected
 from references.fft.problem import Problem, SolvedGrid
 from references.fft.rules import LEAST_LINKED, automatic, warn_of_thin
 from references.threads import Team, thread_count
@@ -31,10 +33,7 @@ PRECISIONS = {"float64": np.float64, "float32": np.float32}
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
-# Least bytes that a voxel takes, in double precision.
-BYTES = {"cg": 30, "eyre-milton": 48}
-# The same of a voxel's own tensor, in a scene that has one: six numbers and its place, twice while they are sorted.
-OWN = 70
+MIB = 2**20
 # Voxels along the longest side, where an image does not say.
 USUAL = 128
 # Knobs that a field's `stats` leaves out.
@@ -167,11 +166,16 @@ def _solved(scenes, voxels, knobs):
     _check_tensors(scenes[0], knobs.scheme, knobs.rule)
     for box, shape in zip(boxes, shapes, strict=True):
         _check_grid(box, knobs.rule, shape)
-    # What each solution keeps, on top of the first.
-    bytes_each = BYTES[knobs.scheme] + 8 * (len(scenes) - 1) * {"cg": 1, "eyre-milton": 3}[knobs.scheme]
-    bytes_each += OWN if scenes[0].anisotropic else 0
-    needed = bytes_each * math.prod(grid) * np.dtype(PRECISIONS[knobs.precision]).itemsize / 8
+    itemsize = np.dtype(PRECISIONS[knobs.precision]).itemsize
+    how = {"loads": len(scenes), "anisotropic": scenes[0].anisotropic}
+    needed = expected(knobs.scheme, knobs.rule, itemsize, **how) * math.prod(grid)
     check_memory("voxels", voxels or grid, needed, power=3)
+    with announced("FFT", needed):
+        return _painted(scenes, boxes, shapes, orders, knobs, {"expected_mib": needed / MIB})
+
+
+def _painted(scenes, boxes, shapes, orders, knobs, said):
+    """The fields, on voxels that are painted once; `said` is of their stats."""
     # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
     painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
     if scenes[0].inclusions:
@@ -181,11 +185,11 @@ def _solved(scenes, voxels, knobs):
         same = turned(painted, [orders[0].index(axis) for axis in order])
         # Only in a periodic cell is the load's axis any one.
         kept = kept if scene.periodic else {}
-        fields.append(_loaded(scene, box, order, same, knobs, kept))
+        fields.append(_loaded(scene, box, order, same, knobs, kept, said))
     return fields
 
 
-def _loaded(scene, box, order, painted, knobs, kept):
+def _loaded(scene, box, order, painted, knobs, kept, said):
     """The Field of a scene on painted voxels."""
     slope, level = _linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
@@ -193,14 +197,14 @@ def _loaded(scene, box, order, painted, knobs, kept):
     if scene.mean_conductivities.min() == 0:
         grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
         if not grid.bodies.passing.any():
-            return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs)
+            return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs, said)
     _check_scheme(box, knobs.scheme, knobs.rule)
     with Team(knobs.threads) as team:
         problem = kept.get("problem") or _problem(grid, units, knobs, team)
         kept["problem"] = problem
         problem = problem._replace(team=team, gradient=_direction(grid, units))
         solution = SOLVERS[knobs.scheme](problem, kept=kept.setdefault("scheme", {}))
-    return _field(scene, grid, units, solution, knobs)
+    return _field(scene, grid, units, solution, knobs, said)
 
 
 class _Knobs(NamedTuple):
@@ -349,7 +353,7 @@ def _links(grid, units):
     return found
 
 
-def _field(scene, grid, units, solution, knobs):
+def _field(scene, grid, units, solution, knobs, said):
     """The solution in the user's units and axes; what is costly is made when asked for."""
     mean_flux = np.empty(3)
     mean_flux[list(grid.order)] = 0.0 - units.flux * solution.mean_flux
@@ -376,7 +380,7 @@ def _field(scene, grid, units, solution, knobs):
         flux_at=lambda points: flux_at(whole(), points),
         wall_temperature=scene.wall_temperatures,
         wall_heat={} if scene.periodic else _wall_heat(scene, units, solution),
-        stats={**found, **asked, "voxels": shape},
+        stats={**found, **asked, **said, "voxels": shape},
         estimator=partial(estimated, solve=partial(solve, **knobs._asdict())),
     )
 
