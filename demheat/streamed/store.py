@@ -122,11 +122,11 @@ def checked_folder(folder) -> Path:
     """A path where a folder may be made, or ValueError."""
     try:
         path = Path(folder)
-        free = not path.exists() or (path.is_dir() and not any(path.iterdir()))
-    except (TypeError, ValueError, OSError):
+        free = "\0" not in str(path) and (not path.exists() or (path.is_dir() and not any(path.iterdir())))
+    except (TypeError, OSError):
         raise ValueError(f"folder = {folder!r}: must be the name of a folder, new or empty") from None
     if not free:
-        raise ValueError(f"folder = {str(folder)!r}: is there and not empty; must be new or empty")
+        raise ValueError(f"folder = {str(folder)!r}: must be the name of a folder, new or empty")
     return path
 
 

@@ -95,7 +95,7 @@ def test_too_much_is_refused_before_anything_is_made(tmp_path, monkeypatch):
 
 def test_a_folder_must_be_new_or_empty(tmp_path):
     (tmp_path / "mine").write_text("of value")
-    with pytest.raises(ValueError, match=r"folder = .*: is there and not empty; must be new or empty"):
+    with pytest.raises(ValueError, match=r"folder = .*: must be the name of a folder, new or empty"):
         streamed.solve(WALLS, folder=tmp_path, particles=3000)
     with pytest.raises(ValueError, match=r"folder = .*cannot be made"):
         Store(tmp_path / "mine" / "below")
