@@ -9,9 +9,9 @@ import numpy as np
 
 from demheat import dem
 from demheat.build import warn_of_twins
-from demheat.conduction.steady import check_solver, solve_checked
+from demheat.conduction.steady import AMG_UNKNOWNS, check_solver, solve_checked
 from demheat.dem.estimate import estimator_of
-from demheat.dem.memory import MIB, expected
+from demheat.dem.memory import MIB, unknowns
 from demheat.dem.options import Particles
 from demheat.field import Field
 from demheat.laws import Laguerre
@@ -21,14 +21,13 @@ from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import whole
 from demheat.streamed.equations import joined, number_all
 from demheat.streamed.field import field_of
+from demheat.streamed.memory import expected, on_disk
 from demheat.streamed.store import Parts, Store, checked_folder
 from demheat.tiles.cells import cells_of, check_filled, conformed, packed
 from demheat.tiles.slabs import most_slabs, slabs_of
 
 KNOWS = "demheat.streamed solves steady conduction in boxes without pores, by the discrete element method"
-# Bytes at the peak for each unknown, besides Python and libraries; and on disk.
-BYTES, ON_DISK = 400, 1000
-# The solve takes as much memory as the cells of a third of the body or so: more slabs would cost time alone.
+# From a million particles on the solve takes about as much memory as the cells of so many slabs: more would cost time.
 USUAL = 4
 
 
@@ -91,9 +90,10 @@ def solve(
     wanted = Particles(particles=particles, seed=seed, replicas=replicas)
     _check(scene, law, wanted, tolerance)
     path, cuts = checked_folder(folder), _cuts(scene, wanted.particles, slabs)
-    needed = expected(scene, law, wanted, each=BYTES)
+    number = unknowns(scene, law, wanted)
+    needed = expected(number, cuts[0])
     check_memory("particles", wanted.particles, needed)
-    check_room("folder", path, ON_DISK / BYTES * needed)
+    check_room("folder", path, on_disk(number, cuts[0]))
     with announced("DEM in slabs", needed):
         return _answer(scene, law, wanted, Parts(scene, Store(path), cuts, []), tolerance, needed)
 
@@ -124,7 +124,8 @@ def _answer(scene, law, wanted, parts, tolerance, needed):
     cut = time.perf_counter()
     network = joined(parts)
     try:
-        solution = solve_checked(network, scene, solver="auto", tolerance=tolerance)
+        by_size = "amg-single" if len(network.volumes) > AMG_UNKNOWNS else "cg"
+        solution = solve_checked(network, scene, solver=by_size, tolerance=tolerance)
     finally:
         del network
         parts.store.drop_matrix()
@@ -136,30 +137,31 @@ def _answer(scene, law, wanted, parts, tolerance, needed):
         field = field_of(parts, solution, estimator=estimator, stats=stats)
     if np.any(field.fractions == 0):
         lost = np.flatnonzero(field.fractions == 0) - 1
-        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=4)
+        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=3)
     return field
 
 
 def _cut(law, wanted, parts):
     """Make the network of each slab and write it; what a field's `stats` say of all."""
-    scene, volume, radii = parts.scene, 0.0, 0.0
+    scene, volume = parts.scene, 0.0
     counts = wanted.counts(scene, law)
     with stage("slabs") as done:
         for slabs in parts.cuts:
             done(slabs.rank / len(parts.cuts))
-            packing = conformed(*packed(scene, wanted, counts, slabs), scene, law, wanted, slabs)
+            packing, radii = packed(scene, wanted, counts, slabs)
+            packing = conformed(packing, radii, scene, law, wanted, slabs)
             if law.conforming and slabs.rank == 0:
                 warn_of_twins(packing, wanted.particles)
             cells = cells_of(scene, law, packing, slabs)
             volume += float(cells.network.volumes[: cells.own].sum())
-            radii += float(cells.network.radii[: cells.own].sum())
             parts.store.write(slabs.rank, cells)
             parts.own.append(cells.own)
-            made = {"packing": packing.provenance}
+            # Twins aside, whose radii are raised by slabs.
+            made = {"packing": packing.provenance, "mean_radius": float(radii.mean())}
             # Before the next is made.
             del packing, cells
     check_filled(volume, scene)
-    return made | {"mean_radius": radii / sum(parts.own)}
+    return made
 
 
 def _coarser(scene, law, wanted, tolerance):

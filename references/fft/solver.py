@@ -171,15 +171,15 @@ def _solved(scenes, voxels, knobs):
     needed = expected(knobs.scheme, knobs.rule, itemsize, **how) * math.prod(grid)
     check_memory("voxels", voxels or grid, needed, power=3)
     with announced("FFT", needed):
-        return _painted(scenes, boxes, shapes, orders, knobs, {"expected_mib": needed / MIB})
+        # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
+        painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
+        if scenes[0].inclusions:
+            warn_of_thin(boxes[0], knobs.rule, shapes[0])
+        return _fields(scenes, boxes, orders, painted, knobs, {"expected_mib": needed / MIB})
 
 
-def _painted(scenes, boxes, shapes, orders, knobs, said):
-    """The fields, on voxels that are painted once; `said` is of their stats."""
-    # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
-    painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
-    if scenes[0].inclusions:
-        warn_of_thin(boxes[0], knobs.rule, shapes[0])
+def _fields(scenes, boxes, orders, painted, knobs, said):
+    """The fields on voxels that are painted; `said` is of their stats."""
     kept, fields = {}, []
     for scene, order, box in zip(scenes, orders, boxes, strict=True):
         same = turned(painted, [orders[0].index(axis) for axis in order])

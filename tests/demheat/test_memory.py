@@ -2,28 +2,32 @@
 
 import pytest
 
-from demheat import Laguerre, Layer, Material, Scene, gallery, on_progress, progress, solve
-from demheat.dem.memory import BYTES, expected
+from demheat import Laguerre, Layer, Material, Scene, gallery, limits, on_progress, progress, solve
+from demheat.dem.memory import expected, unknowns
 from demheat.dem.options import Particles
 
 SCENE = gallery.sphere_in_cube(5.0)
 
 
-def test_it_goes_with_particles_and_twins():
-    plain, twins = Laguerre(conforming=False), Laguerre()
-    few, many = (Particles(particles=n, seed=0) for n in (10_000, 1_000_000))
-    assert expected(SCENE, plain, many) == 100 * expected(SCENE, plain, few) == BYTES["laguerre"] * 1e6
-    # A third of a square of the edge and more of surface: of 1e6 particles 34 521 twins more than gave way (docs/mpi).
-    unknowns = expected(SCENE, twins, many) / BYTES["laguerre"]
-    assert unknowns == pytest.approx(1_034_521, rel=5e-3)
-    assert expected(SCENE, twins, few) / BYTES["laguerre"] == pytest.approx(
-        solve(SCENE, particles=10_000).stats["unknowns"], rel=0.05
-    )
+def wanted(number):
+    return Particles(particles=number, seed=0)
 
 
-def test_layers_as_wide_as_the_box_count_as_such():
+def test_unknowns_are_particles_and_twins():
+    assert unknowns(SCENE, Laguerre(conforming=False), wanted(1000)) == 1000
+    # As docs/decisions/mpi.md has it, and a small one.
+    assert unknowns(SCENE, Laguerre(), wanted(10**6)) == pytest.approx(1_034_521, rel=5e-3)
+    field = solve(SCENE, particles=3000)
+    assert unknowns(SCENE, Laguerre(), wanted(3000)) == pytest.approx(field.stats["unknowns"], rel=0.1)
+    # A layer's faces end with the box.
     layer = Scene((1.0, 1.0, 1.0), Material(1.0), [Layer(0, 0.4, 0.6, Material(5.0))], gradient=(1.0, 0.0, 0.0))
-    assert 1.0 < expected(layer, Laguerre(), Particles(particles=10**6, seed=0)) / BYTES["laguerre"] / 1e6 < 1.1
+    assert 1.0 < unknowns(layer, Laguerre(), wanted(10**6)) / 10**6 < 1.1
+
+
+def test_bytes_are_those_that_were_found():
+    # Of the whole solves of docs/decisions/memory.md: 212 thousand and 1.03 million unknowns.
+    assert expected(211_820) / 211_820 == pytest.approx(929, rel=0.01)
+    assert expected(1_034_501) / 1_034_501 == pytest.approx(678, rel=0.01)
 
 
 def test_a_field_knows_it_and_a_large_solve_says_it(monkeypatch):
@@ -39,5 +43,14 @@ def test_a_field_knows_it_and_a_large_solve_says_it(monkeypatch):
     finally:
         on_progress(None)
     needed = field.stats["expected_mib"]
-    assert 1000 * BYTES["laguerre"] < needed * 2**20 < 2000 * BYTES["laguerre"]
+    assert needed * 2**20 == expected(unknowns(SCENE, Laguerre(), wanted(1000)))
     assert f"DEM, about {needed / 1024:.2g} GiB" in heard
+
+
+def test_a_refusal_names_what_would_do(monkeypatch):
+    monkeypatch.setattr(limits, "free_memory", lambda: 2.0**33)
+    told = r"particles = 100000000: takes 46.6 GiB .* 8 GiB are free; must be at most about 1.72e\+07 here"
+    with pytest.raises(ValueError, match=told + r", or demheat\.streamed\.solve"):
+        solve(SCENE, particles=10**8)
+    with pytest.raises(ValueError, match=told + "$"):
+        solve(SCENE, particles=10**8, law="platonic")

@@ -21,7 +21,7 @@ CELL, WALLS = gallery.simple_cubic(10.0), gallery.sphere_in_cube(10.0)
     ],
 )
 def test_the_peak_is_as_it_was_said(scene, knobs):
-    fft.solve(scene, voxels=8, **knobs)  # compiled
+    fft.solve(scene, voxels=16, **knobs)  # compiled
     tracemalloc.start()
     try:
         field = fft.solve(scene, voxels=96, tolerance=0.3, threads=1, **knobs)
