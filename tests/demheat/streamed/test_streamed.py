@@ -4,6 +4,7 @@ import weakref
 
 import numpy as np
 import pytest
+from blocks import blocks
 
 from demheat import Image, Layer, Material, Radiation, Scene, Sphere, limits, solve, streamed
 from demheat.streamed import solver
@@ -117,3 +118,11 @@ def test_other_scenes_are_refused(scene, tmp_path):
     with pytest.raises(NotImplementedError):
         streamed.solve(scene, folder=tmp_path / "new", particles=3000)
     assert not (tmp_path / "new").exists()
+
+
+def test_the_lines_of_the_manual_run(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = next(block.text for block in blocks("methods.md") if "streamed" in block.text)
+    names = {}
+    exec(text.replace("10_000_000", "3000"), names)
+    assert names["field"].conductivity == pytest.approx(42.64, rel=1e-3) and (tmp_path / "slabs").is_dir()
