@@ -75,9 +75,9 @@ def test_one_slab_is_in_memory_at_a_time(tmp_path, monkeypatch):
 def test_slabs_are_as_many_as_the_particles_allow(tmp_path):
     assert streamed.solve(WALLS, folder=tmp_path / "a", particles=3000).stats["slabs"] == 4
     # Of so few that a slab would be thinner than what it sees of others.
-    assert streamed.solve(WALLS, folder=tmp_path / "b", particles=500).stats["slabs"] == 3
-    with pytest.raises(ValueError, match=r"slabs = 4: slabs of 500 particles .* must be at most 3"):
-        streamed.solve(WALLS, folder=tmp_path / "c", particles=500, slabs=4)
+    assert streamed.solve(WALLS, folder=tmp_path / "b", particles=500).stats["slabs"] == 2
+    with pytest.raises(ValueError, match=r"slabs = 3: slabs of 500 particles .* must be at most 2"):
+        streamed.solve(WALLS, folder=tmp_path / "c", particles=500, slabs=3)
 
 
 def test_its_error_is_told_by_fewer_particles(tmp_path):
