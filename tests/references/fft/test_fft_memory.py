@@ -16,7 +16,6 @@ CELL, WALLS = gallery.simple_cubic(10.0), gallery.sphere_in_cube(10.0)
         (CELL, {"scheme": "cg", "rule": "plain"}),
         (WALLS, {"scheme": "cg", "rule": "plain", "precision": "float32"}),
         (WALLS, {"scheme": "cg", "rule": "links"}),
-        (CELL, {"scheme": "cg", "rule": "links", "precision": "float32"}),
         (CELL, {"scheme": "eyre-milton", "rule": "plain"}),
     ],
 )
