@@ -91,9 +91,10 @@ def solve(
     _check(scene, law, wanted, tolerance)
     path, cuts = checked_folder(folder), _cuts(scene, wanted.particles, slabs)
     number = unknowns(scene, law, wanted)
-    needed = expected(number, cuts[0])
-    check_memory("particles", wanted.particles, needed)
+    # The packing may be in the cache: what it would take is said, not asked for.
+    check_memory("particles", wanted.particles, expected(number, cuts[0]))
     check_room("folder", path, on_disk(number, cuts[0]))
+    needed = expected(number, cuts[0], wanted.particles / wanted.counts(scene, law).prod())
     with announced("DEM in slabs", needed):
         return _answer(scene, law, wanted, Parts(scene, Store(path), cuts, []), tolerance, needed)
 

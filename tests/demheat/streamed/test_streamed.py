@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 from blocks import blocks
 
-from demheat import Image, Layer, Material, Radiation, Scene, Sphere, limits, solve, streamed
+from demheat import Image, Layer, Material, Radiation, Scene, Sphere, gallery, limits, solve, streamed
 from demheat.streamed import solver
+from demheat.streamed.memory import expected, on_disk
 from demheat.streamed.store import Store
+from demheat.tiles.slabs import slabs_of
 
 A, B = Material(10.0), Material(100.0)
 # A sphere across the first face, one across the face between two slabs.
@@ -94,6 +96,20 @@ def test_too_much_is_refused_before_anything_is_made(tmp_path, monkeypatch):
     with pytest.raises(ValueError, match=r"folder = .*: would hold .* 1 GiB are free there; must be on a larger disk"):
         streamed.solve(WALLS, folder=tmp_path / "new", particles=10**7)
     assert not (tmp_path / "new").exists()
+
+
+def test_what_is_expected_is_what_was_found():
+    """The measured solves of docs/decisions/memory.md: what they took, in bytes an unknown, memory and disk."""
+    for particles, number, slabs, memory, disk in (
+        (200_000, 211_820, 4, 603, 540),
+        (200_000, 211_820, 8, 536, 790),
+        (1_000_000, 1_034_501, 4, 300, 464),
+    ):
+        cut = slabs_of(gallery.sphere_in_cube(5.0), particles, slabs, 0)
+        assert expected(number, cut) / number == pytest.approx(memory, rel=0.05)
+        # The folder held the matrix, too, for a while: 13.6 links of 13 bytes, centres.
+        assert on_disk(number, cut) / number == pytest.approx(disk + 205, rel=0.05)
+        assert expected(number, cut, particles) == max(expected(number, cut), 530 * particles)
 
 
 def test_a_folder_must_be_new_or_empty(tmp_path):
