@@ -168,7 +168,8 @@ def _read(labels):
     for start in range(0, labels.shape[0], thick):
         whole = np.asarray(labels[start : start + thick])
         for part in slabs(whole.shape):
-            yield slice(start + part.start, start + part.stop), whole[part]
+            slab = whole[part]
+            yield slice(start + part.start, start + part.start + len(slab)), slab
 
 
 def _smallest(low, high):
