@@ -164,7 +164,7 @@ def _read(labels):
     """Slabs of labels and where they lie; of an array in chunks each is read once, a layer of them at a time."""
     chunk = getattr(labels, "chunks", None) or (1,)
     layer = chunk[0] if isinstance(chunk[0], Integral) else 1
-    thick = -(-_thickness(labels.shape) // layer) * layer
+    thick = layer * max(1, _thickness(labels.shape) // layer)
     for start in range(0, labels.shape[0], thick):
         whole = np.asarray(labels[start : start + thick])
         for part in slabs(whole.shape):
