@@ -18,6 +18,7 @@ HOMES = {
     "matplotlib": ("studies", "demheat.pictures"),
     "tifffile": ("demheat.files.images",),
     "nrrd": ("demheat.files.images",),
+    "zarr": ("demheat.files.images",),
     "distributed": ("demheat.cluster",),
     "dask": ("demheat.cluster",),
     "cloudpickle": ("demheat.sweeps",),

@@ -249,6 +249,34 @@ LAYERS = {
         "demheat.files",
         "demheat.commands",
     ),
+    # Parts of a body that are made by themselves, for those who work on several, or on one after the other.
+    "demheat.tiles": (
+        "demheat.scene",
+        "demheat.laws",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction.steady",
+        "demheat.sampling",
+        "demheat.dem.options",
+        "demheat.tiles",
+    ),
+    # A solve that is larger than the memory: slabs one after the other, kept on disk.
+    "demheat.streamed": (
+        "demheat.scene",
+        "demheat.field",
+        "demheat.laws",
+        "demheat.limits",
+        "demheat.paths",
+        "demheat.progress",
+        "demheat.packing",
+        "demheat.network",
+        "demheat.conduction",
+        "demheat.sampling",
+        "demheat.build",
+        "demheat.dem",
+        "demheat.tiles",
+        "demheat.streamed",
+    ),
     # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
     "demheat.mpi": (
         "demheat.scene",
@@ -264,6 +292,7 @@ LAYERS = {
         "demheat.dem",
         "demheat.ranks",
         "demheat.petsc",
+        "demheat.tiles",
         "demheat.mpi",
     ),
     # Other methods on ranks are found by their names.

@@ -25,7 +25,7 @@ CYCLE = {
 }
 
 
-def preconditioner(links, diagonal):
+def preconditioner(links, diagonal, coarse=np.float64):
     """One symmetric cycle for A = diag(diagonal) - conductance.
 
     Parameters
@@ -34,6 +34,8 @@ def preconditioner(links, diagonal):
         Symmetric, conductances >= 0.
     diagonal : (n,) float array, W/K
         At least the sum of each row; rows with zero have no equation.
+    coarse : {numpy.float64, numpy.float32}
+        Precision of the levels below the finest.
 
     Returns
     -------
@@ -41,7 +43,7 @@ def preconditioner(links, diagonal):
         Writes the correction for the residual r, of this norm, to z.
     """
     scale = 1.0 / diagonal.max()
-    aggregates, coarse = _coarser(links, diagonal, scale)
+    aggregates, solve = _coarser(links, diagonal, scale, coarse)
     level, n, single = _level(links, diagonal, scale), len(diagonal), np.float32
     load, x, y, received = (
         np.empty(n, single),
@@ -55,7 +57,7 @@ def preconditioner(links, diagonal):
         kernels.forward(level, load, x)
         kernels.defect(level, x, y)
         kernels.restrict(aggregates, y, received)
-        kernels.correct(aggregates, coarse(received), ENLARGED, x)
+        kernels.correct(aggregates, solve(received), ENLARGED, x)
         kernels.backward(level, load, x, y)
         kernels.scaled(y, scale * norm, z)
 
@@ -73,7 +75,7 @@ def _level(links, diagonal, scale):
     return level
 
 
-def _coarser(links, diagonal, scale):
+def _coarser(links, diagonal, scale, precision):
     """Aggregates of particles, and a cycle of pyamg's on them."""
     import pyamg
 
@@ -85,14 +87,19 @@ def _coarser(links, diagonal, scale):
     a = sparse.csr_matrix((values, columns, pointers), shape=(count, count))
     with seeded():
         hierarchy = pyamg.ruge_stuben_solver(a, **CYCLE)
-    return aggregates, lambda r: _cycle(hierarchy, 0, r)
+    if precision == np.float64:
+        return aggregates, lambda r: _cycle(hierarchy, 0, r)
+    # What is solved directly stays as it is: it is small, and nearly singular.
+    for level in hierarchy.levels[:-1]:
+        level.A, level.P, level.R = (matrix.astype(precision) for matrix in (level.A, level.P, level.R))
+    return aggregates, lambda r: _cycle(hierarchy, 0, r.astype(precision)).astype(float)
 
 
 def _cycle(hierarchy, depth, r):
     """One V-cycle from zero; pyamg's own solver computes norms besides."""
     level = hierarchy.levels[depth]
     if depth == len(hierarchy.levels) - 1:
-        return hierarchy.coarse_solver(level.A, r)
+        return hierarchy.coarse_solver(level.A, r.astype(float, copy=False)).astype(r.dtype, copy=False)
     x = np.zeros_like(r)
     level.presmoother(level.A, x, r)
     x += level.P @ _cycle(hierarchy, depth + 1, level.R @ (r - level.A @ x))

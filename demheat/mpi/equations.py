@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from demheat.conduction.balance import System, residual, throughput
-from demheat.mpi.cells import Cells
 from demheat.mpi.numbers import Halo
 from demheat.petsc import solver_of
+from demheat.tiles.cells import Cells
 
 # Rows that are handed over at once: some 20 MB.
 BLOCK = 65536

@@ -19,10 +19,10 @@ from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Halo, numbers_of
-from demheat.mpi.slabs import slabs_of
 from demheat.ranks import Costs, check_fits, cores, here
 from demheat.scene import Scene, check_scene
 from demheat.threads import limited
+from demheat.tiles.slabs import slabs_of
 
 # Least bytes that a particle takes at the peak, all ranks together: 1450 were found at 4e6 on two ranks, 1520 at 1e6.
 BYTES = 1400

@@ -19,10 +19,11 @@ from references.fft.cg import nodes_of, solved
 from references.fft.checks import Knobs, check_grid, check_load, checked, rule_of
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
+from references.fft.memory import OWN
 from references.fft.pencils import Pencils, most_ranks
 from references.fft.rules import warn_of_thin
 from references.fft.slabs import Slab, SlabSystem, painted, slab_of
-from references.fft.solver import OWN, UNSAID, USUAL
+from references.fft.solver import UNSAID, USUAL
 from references.fft.units import Units, linear_part, mean_flux, order_of, problem_of, units_of, wall_heat
 from references.threads import Team
 from references.voxels.paint import grid_shape

@@ -10,6 +10,7 @@ import numpy as np
 
 from demheat.field import Field
 from demheat.limits import check_memory
+from demheat.progress import announced
 from demheat.scene import Scene
 from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
@@ -17,6 +18,7 @@ from references.fft import cg, eyre_milton
 from references.fft.checks import PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
+from references.fft.memory import expected
 from references.fft.problem import SolvedGrid
 from references.fft.rules import warn_of_thin
 from references.fft.units import direction, linear_part, mean_flux, order_of, problem_of, units_of, wall_heat
@@ -24,10 +26,7 @@ from references.threads import Team
 from references.voxels.bodies import bodies, settle
 from references.voxels.paint import grid_shape, turned, voxelise
 
-# Least bytes that a voxel takes, in double precision.
-BYTES = {"cg": 30, "eyre-milton": 48}
-# The same of a voxel's own tensor, in a scene that has one: six numbers and its place, twice while they are sorted.
-OWN = 70
+MIB = 2**20
 # Voxels along the longest side, where an image does not say.
 USUAL = 128
 # Knobs that a field's `stats` leaves out.
@@ -156,25 +155,30 @@ def _solved(scenes, voxels, knobs):
     knobs = rule_of(scenes[0], grid, knobs)
     for box, shape in zip(boxes, shapes, strict=True):
         check_grid(box, knobs.rule, shape)
-    # What each solution keeps, on top of the first.
-    bytes_each = BYTES[knobs.scheme] + 8 * (len(scenes) - 1) * {"cg": 1, "eyre-milton": 3}[knobs.scheme]
-    bytes_each += OWN if scenes[0].anisotropic else 0
-    needed = bytes_each * math.prod(grid) * np.dtype(PRECISIONS[knobs.precision]).itemsize / 8
+    itemsize = np.dtype(PRECISIONS[knobs.precision]).itemsize
+    how = {"loads": len(scenes), "anisotropic": scenes[0].anisotropic}
+    needed = expected(knobs.scheme, knobs.rule, itemsize, **how) * math.prod(grid)
     check_memory("voxels", voxels or grid, needed, power=3)
-    # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
-    painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
-    if scenes[0].inclusions:
-        warn_of_thin(boxes[0], knobs.rule, shapes[0])
+    with announced("FFT", needed):
+        # Links do not use the laminates, but their fractions are cut as finely and their fields ask which voxels are.
+        painted = voxelise(boxes[0], shapes[0], laminate=knobs.rule != "plain")
+        if scenes[0].inclusions:
+            warn_of_thin(boxes[0], knobs.rule, shapes[0])
+        return _fields(scenes, boxes, orders, painted, knobs, {"expected_mib": needed / MIB})
+
+
+def _fields(scenes, boxes, orders, painted, knobs, said):
+    """The fields on voxels that are painted; `said` is of their stats."""
     kept, fields = {}, []
     for scene, order, box in zip(scenes, orders, boxes, strict=True):
         same = turned(painted, [orders[0].index(axis) for axis in order])
         # Only in a periodic cell is the load's axis any one.
         kept = kept if scene.periodic else {}
-        fields.append(_loaded(scene, box, order, same, knobs, kept))
+        fields.append(_loaded(scene, box, order, same, knobs, kept, said))
     return fields
 
 
-def _loaded(scene, box, order, painted, knobs, kept):
+def _loaded(scene, box, order, painted, knobs, kept, said):
     """The Field of a scene on painted voxels."""
     slope, level = linear_part(box)
     grid = Grid(box, order=order, voxels=painted, slope=slope, level=level, sharp=knobs.rule == "links")
@@ -182,17 +186,17 @@ def _loaded(scene, box, order, painted, knobs, kept):
     if scene.mean_conductivities.min() == 0:
         grid = grid._replace(bodies=bodies(box, painted, slope, linked=grid.sharp))
         if not grid.bodies.passing.any():
-            return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs)
+            return _field(scene, grid, units, _at_rest(painted.phase.shape), knobs, said)
     check_scheme(box, knobs.scheme, knobs.rule)
     with Team(knobs.threads) as team:
         problem = kept.get("problem") or problem_of(grid, units, knobs, team)
         kept["problem"] = problem
         problem = problem._replace(team=team, gradient=direction(grid, units))
         solution = SOLVERS[knobs.scheme](problem, kept=kept.setdefault("scheme", {}))
-    return _field(scene, grid, units, solution, knobs)
+    return _field(scene, grid, units, solution, knobs, said)
 
 
-def _field(scene, grid, units, solution, knobs):
+def _field(scene, grid, units, solution, knobs, said):
     """The solution in the user's units and axes; what is costly is made when asked for."""
 
     @cache
@@ -217,7 +221,7 @@ def _field(scene, grid, units, solution, knobs):
         flux_at=lambda points: flux_at(whole(), points),
         wall_temperature=scene.wall_temperatures,
         wall_heat=wall_heat(scene, units, solution),
-        stats={**found, **asked, "voxels": shape},
+        stats={**found, **asked, **said, "voxels": shape},
         estimator=partial(estimated, solve=partial(solve, **knobs._asdict())),
     )
 

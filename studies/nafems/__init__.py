@@ -122,10 +122,10 @@ def claims(df):
 
     Orders expected are two for the DEM, in the spacing, and three for quadratic elements where nothing is singular, and
     half a power less is asked for; in the corner of the plate the base's temperature meets a film, which costs elements
-    one power more. They are judged where all resolutions are there. What is printed is right to half of its last digit: 0.05 K
-    of 927.0, 0.005 K of the others. When values
-    were known limits more than three times as large were brought nearer: of the plate from 2, .3 and .05, of the bar
-    from .05, of the radiating end from 1e-6, of heat from 1e-8 and 1e-10.
+    one power more. They are judged where all resolutions are there. What is printed is right to half of its last digit:
+    0.05 K of 927.0, 0.005 K of the others. When values were known limits more than three times as large were brought
+    nearer: of the plate from 2, .3 and .05, of the bar from .05, of the radiating end from 1e-6, of heat from 1e-8 and
+    1e-10.
     """
     yield from present([*_printed(df), *_radiating(df), *_levels(df), *_orders(df), *_heat(df)])
 
