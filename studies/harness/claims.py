@@ -13,9 +13,9 @@ from studies.harness.sound import cost_columns, faults
 from studies.harness.store import case_key
 
 OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": float.__gt__, "=": float.__eq__}
-# How often costs that do not count are drawn anew, by a factor of up to a thousand either way: twice is rarely blind to
-# a cost (a rank may stay as it was), three times costs little.
-DRAWS, DECADES = 3, 3.0
+# Costs that do not count are drawn anew, each by a factor of one to three decades up, then by the same one down: the
+# largest and the least of some move by that. Twice, for ranks may stay as they were.
+DRAWS, DECADES = 2, (1.0, 3.0)
 COSTLY = "rests on costs that do not count"
 UNFINISHED = "rows are missing"
 
@@ -144,9 +144,11 @@ def _unmoved(study, df, claims):
         return same
     rng = np.random.default_rng(0)
     for _ in range(DRAWS):
-        factors = np.where(unsound[:, None], 10.0 ** rng.uniform(-DECADES, DECADES, (len(df), len(columns))), 1.0)
-        shaken = df.assign(**{name: df[name] * factors[:, k] for k, name in enumerate(columns)})
-        same &= set(map(_key, _yielded(study, shaken, quiet=True)[0]))
+        shape = len(df), len(columns)
+        powers = rng.uniform(*DECADES, shape) * rng.choice((-1.0, 1.0), shape) * unsound[:, None]
+        for sign in (1.0, -1.0):
+            shaken = {name: df[name] * 10.0 ** (sign * powers[:, k]) for k, name in enumerate(columns)}
+            same &= set(map(_key, _yielded(study, df.assign(**shaken), quiet=True)[0]))
     return same
 
 

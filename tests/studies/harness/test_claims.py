@@ -24,7 +24,7 @@ def study(monkeypatch):
         yield "ours: worst error", ours["error_percent"].max(), 1.0
         yield "dearest of ours, s", ours["cpu_s"].max(), 10.0
         yield "least time of theirs over ours", theirs["cpu_s"].min() / ours["cpu_s"].min(), ">= 1"
-        yield "theirs are cheaper, cases", float((theirs["cpu_s"].to_numpy() < ours["cpu_s"].to_numpy()).sum()), 3
+        yield "theirs are cheaper, cases", (theirs["cpu_s"] < ours["cpu_s"].min()).sum(), 3
         yield "theirs: memory, MiB", theirs["peak_mib"].max(), 100.0
         yield "theirs: worst error", theirs["error_percent"].max(), 0.1
 
