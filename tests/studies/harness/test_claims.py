@@ -110,7 +110,7 @@ def test_half_of_the_rows_make_a_page(tiny):
         '{"name": "more", "x": 3.0}, {"name": "last", "x": 4.0}',
         **{'df["square"].max()': needed, 'axes.plot(df["x"]': f"axes.plot([{needed}] * len(df)"},
     )
-    tiny.ran()
+    tiny.made()
     path = tiny.out / f"{tiny.name}.csv"
     lines = path.read_text().splitlines(keepends=True)
     path.write_text("".join(lines[:3]))

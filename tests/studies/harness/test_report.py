@@ -30,6 +30,9 @@ class Page(HTMLParser):
         if tag not in VOID:
             self.stack.append(tag)
 
+    def handle_startendtag(self, tag, attrs):
+        self.handle_starttag(tag, attrs)
+
     def handle_endtag(self, tag):
         assert self.stack.pop() == tag
 
@@ -50,7 +53,7 @@ def reported(tiny, monkeypatch):
             'yield "squares are small"': 'yield "ninth < tenth", 1.0, 2.0\n    yield "squares are small"',
         }
     )
-    tiny.ran()
+    tiny.made()
     monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name, "brackets"])
     first = ((tiny.name, "squares are"), (tiny.name, "no such"), ("brackets", "Median"))
     chosen = SimpleNamespace(

@@ -10,8 +10,8 @@ GOOD = {"commit": "0123456789", "noise": "0.02"}
 
 @pytest.fixture
 def stored(tiny):
-    """Two rows made here, as if of a clean commit and a quiet machine; `change` alters the second."""
-    tiny.ran()
+    """Two rows, as if of a clean commit and a quiet machine; `change` alters the second."""
+    tiny.made()
     path = tiny.out / f"{tiny.name}.csv"
 
     def change(**columns):
@@ -71,7 +71,7 @@ def test_the_command_lists_them_and_fails(stored, capsys):
 
 def test_many_rows_are_named_on_demand(tiny, capsys):
     tiny.write(", ".join(f'{{"name": "more", "x": {k}.0}}' for k in range(3, 8)))
-    tiny.ran()
+    tiny.made()
     store.write_rows(tiny.out / f"{tiny.name}.csv", [row | GOOD | {"code": "x"} for row in tiny.rows().values()])
     words = ["check", tiny.name, "--out", str(tiny.out)]
     assert main(words) == 1
