@@ -61,6 +61,19 @@ def test_costs_that_do_not_count_are_not_judged(study, wrong):
     assert found["theirs: worst error"] == "FAIL" and found["dearest of ours, s"] == "ok"
 
 
+@pytest.mark.parametrize("number", [0, 1, 2])
+def test_any_row_may_be_the_dearest_or_the_cheapest(study, number):
+    """One that is neither as it stands could be either, had it been measured well."""
+
+    def of_all(df):
+        yield "dearest", df["cpu_s"].max(), 10.0
+        yield "cheapest", df["cpu_s"].min(), ">= 1"
+
+    study.claims = of_all
+    found = verdicts(study, frame(noise=(number, 0.5)))
+    assert found["dearest"] == found["cheapest"] == "not judged"
+
+
 def test_a_ratio_of_two_costs_that_do_not_count(study):
     """Both would change by the same factor if it were one for all."""
     df = frame().assign(commit="abc+")

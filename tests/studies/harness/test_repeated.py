@@ -77,6 +77,16 @@ def test_what_references_keep_is_forgotten(monkeypatch):
     assert all(each.imported() is old for each, (_, old) in zip(modules, before, strict=True))
 
 
+def test_each_call_works_all_of_it_out(monkeypatch):
+    module = ModuleType("references.kept_by_a_test")
+    module.tables = functools.lru_cache(lambda: object())
+    module.tables.__module__ = module.__name__
+    monkeypatch.setitem(sys.modules, module.__name__, module)
+    seen = []
+    repeated.measured_again(lambda: seen.append(module.tables()) or {}, {}, most=3, seconds=60.0)
+    assert len({id(each) for each in seen}) == len(seen) == 3
+
+
 @pytest.mark.parametrize("kept", [False, True])
 def test_packings_of_a_first_run_are_not_free_in_the_next(kept, tmp_path, monkeypatch):
     monkeypatch.setenv("DEMHEAT_CACHE", str(tmp_path))
