@@ -20,9 +20,9 @@ a { color: #0a58a5; } code { overflow-wrap: anywhere; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
 th, td { padding: .25rem .6rem; border-bottom: 1px solid #ddd; text-align: left; vertical-align: top; }
 th, td[style] { white-space: nowrap; }
-td { min-width: 2rem; max-width: 30rem; }
+.scroll table { width: max-content; } td { max-width: min(30rem, 55vw); }
 th { background: #f3f3f3; }
-img { max-width: 100%; height: auto; }
+img { max-width: 100%; min-width: 36rem; height: auto; } p:has(> img) { overflow-x: auto; }
 details { border: 1px solid #ccc; border-radius: .4rem; margin: .5rem 0; padding: 0 .8rem; }
 summary { cursor: pointer; padding: .6rem 0; overflow-wrap: anywhere; }
 summary b { margin-right: .4rem; } summary small { display: block; color: #555; }
@@ -90,12 +90,13 @@ def _first(name, claim):
 
 
 def _mapped(figures, there):
-    rows = "".join(
-        f'<tr><td>{escape(paper)}</td><td>{escape(what)}</td><td><a href="#{name}">{name}</a></td></tr>'
-        for paper, what, name in figures
-        if name in there
-    )
-    return f'<div class="scroll"><table><tr><th>paper</th><th>what</th><th>study</th></tr>{rows}</table></div>'
+    papers = dict.fromkeys(paper for paper, _, name in figures if name in there)
+    return "".join(f"<h3>{escape(each)}</h3><ul>{_of_paper(each, figures, there)}</ul>" for each in papers)
+
+
+def _of_paper(paper, figures, there):
+    lines = [(what, name) for each, what, name in figures if each == paper and name in there]
+    return "".join(f'<li>{escape(what)}: <a href="#{name}">{name}</a></li>' for what, name in lines)
 
 
 def _chapter(each, folder):
