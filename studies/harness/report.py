@@ -146,7 +146,7 @@ def readme(found, first, figures):
     """
     there = {each.name for each in found}
     claims = [
-        f"| {each.verdict} | {each.sentence} | {each.value:.3g} | {each.limit} | [{name}]({name}.md) |"
+        f"| {each.verdict} | {_cell(each.sentence)} | {each.value:.3g} | {each.limit} | [{name}]({name}.md) |"
         for name, each in first
     ]
     mapped = [f"| {paper} | {what} | [{name}]({name}.md) |" for paper, what, name in figures if name in there]
@@ -172,6 +172,10 @@ def readme(found, first, figures):
             "",
         ]
     )
+
+
+def _cell(text):
+    return text.replace("|", "\\|")
 
 
 def _line(each):
