@@ -15,6 +15,8 @@ HOMES = {
     # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
     "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
+    "markdown_it": ("studies.harness.html",),
+    "PIL": ("studies.harness.pictures",),
     "matplotlib": ("studies", "demheat.pictures"),
     "tifffile": ("demheat.files.images",),
     "nrrd": ("demheat.files.images",),

@@ -11,12 +11,12 @@ from pathlib import Path
 from demheat import paths
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
-COST = ("wall_s", "cpu_s", "peak_mib", "base_mib", "peak_by")
+COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
 TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,
-    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions", "load", "beside"),
-    "triad_gbs",
+    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions"),
+    *("load", "beside", "noise", "triad_gbs"),
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20
