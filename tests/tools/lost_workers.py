@@ -19,8 +19,8 @@ from typing import NamedTuple
 from studies.harness.store import read_rows
 
 ROOT = Path(__file__).resolve().parents[2]
-# What differs between two runs of one row besides seconds: memory, the hour, what else went on meanwhile.
-MEASURED = {"peak_mib", "base_mib", "peak_by", "when", "load", "beside", "triad_gbs", "host"}
+# What differs between two runs of one row besides seconds: memory, the hour, what else went on meanwhile or before.
+MEASURED = {"peak_mib", "base_mib", "peak_by", "when", "load", "beside", "triad_gbs", "host", "packing_cached"}
 # How Dask's nannies start their workers.
 WORKER = b"multiprocessing.spawn"
 # Between two looks at what runs, s.
