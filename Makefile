@@ -12,7 +12,7 @@ run: .venv/ready
 
 full: .venv/ready
 	.venv/bin/pip $(PIP) -e '.[test,peers]'
-	$(PY) -m studies run --out results
+	$(PY) -m studies run --out results --clean --wait 3600
 
 # The manual, without a network; `make test` builds it too.
 docs: .venv/ready

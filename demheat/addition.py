@@ -7,6 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.powers import cube_root
+
 # Jams near a volume fraction of 0.38; well before that nearly every trial is refused.
 MOST_FILLED = 0.35
 # Trials drawn at once, and those in a row after which a sphere has no room.
@@ -75,7 +77,7 @@ class _Cells:
 
     def __init__(self, radii, size, periodic):
         n, self.size, self.period = len(radii), size, size if periodic else None
-        side = max(2 * float(np.max(radii, initial=0.0)), float(np.cbrt(np.prod(size) / max(n, 1))))
+        side = max(2 * float(np.max(radii, initial=0.0)), cube_root(np.prod(size) / max(n, 1)))
         self.dims = np.maximum(1, np.floor(size / side)).astype(np.int64)
         # One more, infinitely far away, stands in slots that are free.
         self.centers, self.radii = np.full((n + 1, 3), np.inf), np.append(radii, 0.0)

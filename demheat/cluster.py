@@ -5,6 +5,7 @@ Queue, scheduler, workers and dashboard are Dask's; here is only what a row need
 
 from __future__ import annotations
 
+import asyncio
 import os
 import uuid
 from collections import Counter
@@ -14,6 +15,8 @@ from contextlib import contextmanager
 # Dask gives a task up after a few workers have died under it. It is sent again so often: what itself kills a worker
 # would go round for ever.
 SENT_AGAIN = 5
+# For workers to end when all is done, s: on a busy machine they take some.
+PATIENCE = 60
 MISSING = "a cluster needs Dask: pip install 'demheat[distributed]'"
 
 
@@ -47,6 +50,7 @@ def cluster(scheduler: str | None = None, workers: int | None = None):
         with distributed.LocalCluster(dashboard_address="127.0.0.1:0", **knobs) as local:
             with distributed.Client(local) as client:
                 yield client
+                local.sync(_ended, local)
         return
     try:
         client = distributed.Client(scheduler, timeout=10)
@@ -54,6 +58,11 @@ def cluster(scheduler: str | None = None, workers: int | None = None):
         raise ValueError(f"scheduler = {scheduler!r}: must be the address of a Dask scheduler: {error}") from None
     with client:
         yield client
+
+
+async def _ended(local):
+    """End the workers of a cluster after their work. Dask itself kills those that take over four seconds, and warns."""
+    await asyncio.gather(*(nanny.close(timeout=PATIENCE) for nanny in local.workers.values()))
 
 
 def completed(client, function: Callable, tasks: Sequence[tuple], *, label: str) -> Iterator[tuple[int, object]]:

@@ -10,6 +10,7 @@ import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
 from demheat.limits import check_memory
+from demheat.powers import power
 from demheat.scene import Layer, Material, Scene, Sphere
 from demheat.scene.inputs import axis_number, chosen, finite, flag, vector, whole
 from demheat.scene.material import check_material
@@ -223,7 +224,7 @@ def random_dispersion(
     gap : float
         Least distance between two surfaces, and between a surface and a wall, in diameters.
     seed : int
-        Of NumPy's default generator; the same seed gives the same spheres.
+        Of NumPy's default generator; the same seed gives the same spheres, on any x86-64 processor.
     edge : float, m
     matrix, inclusion : Material
     **load
@@ -285,6 +286,7 @@ def dispersion(
         Least distance between two surfaces, and between a surface and a wall, in diameters of the sphere of mean
         volume.
     seed : int
+        As that of `random_dispersion`, with the same C library: collisions grow its last bits.
     edge : float, m
     matrix, inclusion : Material
         By default silica in epoxy, contrast 7.692.
@@ -303,7 +305,7 @@ def dispersion(
     finite("ratio", ratio, "a number between 1 and 100", lambda v: 1 <= v <= 100)
     load, size = {"periodic": True} | load, _cube(edge, matrix=matrix, inclusion=inclusion)
     flag("periodic", load["periodic"])
-    radii = float(ratio) ** np.linspace(0.0, 1.0, count)
+    radii = power(float(ratio), np.linspace(0.0, 1.0, count))
     how = {"fraction": fraction, "gap": gap, "seed": seed, "periodic": load["periodic"]}
     centers, radii = placed(int(count), size=size, radii=radii, **how)
     spheres = [Sphere(center, radius, inclusion) for center, radius in zip(centers, radii, strict=True)]

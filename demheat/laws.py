@@ -168,8 +168,8 @@ class _Contacts:
         check_numbers(scene)
         scene.require(ON_FACETS, takes=self.takes)
         if self.wall == "surface":
-            what = "wall 'surface' knows flat walls only; pass wall='center', or law 'laguerre'"
-            scene.require(what, walls="flat", takes=("exchange", "image"))
+            what = "wall 'surface' knows flat walls and that of a sphere; pass wall='center', or law 'laguerre'"
+            scene.require(what, walls="flat or a sphere's", takes=("exchange", "image"))
         else:
             scene.require(
                 f"law {self.name!r} with wall 'center' holds the centres of the particles at a wall at its temperature:"

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,7 +26,7 @@ GROUPS = (
 )
 
 
-def check_memory(name: str, value, needed: float, *, power: float = 1.0) -> None:
+def check_memory(name: str, value, needed: float, *, power: float = 1.0, remedy: str = "") -> None:
     """Refuse what would need more memory than is free.
 
     Parameters
@@ -37,6 +38,8 @@ def check_memory(name: str, value, needed: float, *, power: float = 1.0) -> None
         Bytes, at least.
     power : float
         Bytes go with this power of the value.
+    remedy : str
+        For the message: what else would do.
 
     Raises
     ------
@@ -54,8 +57,33 @@ def check_memory(name: str, value, needed: float, *, power: float = 1.0) -> None
     gib = min(needed, 10**300) / GIB
     raise ValueError(
         f"{name} = {_short(value)}: takes {gib:.3g} GiB of memory or more, and {free / GIB:.3g} GiB are free; must be "
-        f"{fits} here"
+        f"{fits} here{remedy}"
     )
+
+
+def check_room(name: str, folder: Path, needed: float) -> None:
+    """Refuse what would need more room than its disk has.
+
+    Parameters
+    ----------
+    name : str
+        Of the argument, for the message.
+    folder : Path
+        There or not.
+    needed : float
+        Bytes.
+
+    Raises
+    ------
+    ValueError
+        With what is needed and what is free.
+    """
+    there = next(each for each in (folder, *folder.absolute().parents) if each.exists())
+    if needed > SMALL and needed > (free := shutil.disk_usage(there).free):
+        raise ValueError(
+            f"{name} = {_short(str(folder))}: would hold {needed / GIB:.3g} GiB, and {free / GIB:.3g} GiB are free "
+            "there; must be on a larger disk, or particles fewer"
+        )
 
 
 def check_steps(name: str, value, steps: float, seconds: float, *, remedy: str) -> None:

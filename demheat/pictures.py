@@ -78,7 +78,7 @@ def of_field(field, *, axis: int | None = None, at: float | None = None, pixels:
     figure, panels = _figure(2)
     size = np.linalg.norm(found.flux, axis=-1)
     for panel, values, cmap, label in (
-        (panels[0], found.temperature, "inferno", "temperature"),
+        (panels[0], found.temperature, "inferno", _warmth(scene)),
         (panels[1], size, "viridis", "size of the flux, W/m2"),
     ):
         # A few corners with a flux without bound would hide all else.
@@ -126,7 +126,7 @@ def of_comparison(scene, entries, bounds, temperature=None):
     if temperature is not None:
         axis = across_of(scene)
         image = _shown(panels[1], scene, axis, temperature, {"cmap": "inferno"})
-        figure.colorbar(image, ax=panels[1], shrink=0.8, label="temperature")
+        figure.colorbar(image, ax=panels[1], shrink=0.8, label=_warmth(scene))
         panels[1].set_title(f"{AXES[axis]} = {_length(scene, scene.size[axis] / 2)}")
     return figure
 
@@ -138,6 +138,11 @@ def across_of(scene) -> int:
     else:
         load = next((AXES.index(name[0]) for name in scene.walls or {} if name[0] in AXES), 0)
     return 1 if load == 2 else 2
+
+
+def _warmth(scene):
+    """The label of temperatures: a scene does not know its scale, but where only differences count, or kelvin alone."""
+    return "temperature, K" if scene.periodic or scene.radiates else "temperature, K or C"
 
 
 def _limits(entries):

@@ -14,11 +14,13 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from typing import NamedTuple
 
 # Seconds that a stage may last in silence, between two reports of it, and until somebody else speaks for it.
 SILENT, PAUSE, WAIT = 2.0, 0.2, 1.0
+# Bytes from which on a computation says what it takes.
+LARGE = 2**28
 CLEAR = "\r\x1b[K"
 
 
@@ -130,6 +132,22 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
         if not stack:
             _open.pop(thread, None)
             _clear(thread)
+
+
+def announced(name: str, needed: float):
+    """A stage that tells the memory that a large computation will take; of a small one nothing is said.
+
+    Parameters
+    ----------
+    name : str
+    needed : float
+        Bytes.
+
+    Returns
+    -------
+    context manager
+    """
+    return stage(f"{name}, about {needed / 2**30:.2g} GiB") if needed > LARGE else nullcontext()
 
 
 def in_parts(name: str):

@@ -1,4 +1,4 @@
-"""Command line of the studies: list, run, render, row, jobs, gather, report."""
+"""Command line of the studies: list, run, render, row, jobs, gather, check, report."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ from pathlib import Path
 
 import studies
 from demheat import fresh
-from studies.harness import jobs, runner
+from studies import contents
+from studies.harness import jobs, quiet, runner, sound
 from studies.harness.cluster import spreading
 from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
@@ -20,6 +21,10 @@ DEFAULT_OUT, STORED = Path("out"), Path("results")
 INTERRUPTED = 130
 # Processes on one machine: more is a slip.
 MOST_WORKERS = 1024
+# Seconds that a run waits in all for others to leave the machine to it; a clean run is given hours.
+PATIENCE = 60
+# Rows with one fault that `check` names; all of them on demand.
+NAMED = 3
 
 
 def main(words=None):
@@ -41,13 +46,18 @@ def main(words=None):
 
 def _parser():
     parser = argparse.ArgumentParser(prog="python -m studies", description=__doc__)
-    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | jobs | gather | report")
+    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | jobs | gather | check | report")
     names = actions.add_parser("list", help="name the studies, and say whether stored rows are those of this code")
     names.set_defaults(action=_list)
     run = actions.add_parser("run", help="bring studies up to date (all, if none is named) and judge their claims")
     run.add_argument("names", nargs="*", metavar="NAME")
     run.add_argument("--quick", action="store_true", help="only the quick rows")
-    run.add_argument("--force", action="store_true", help="repeat rows that could be reused")
+    again = run.add_mutually_exclusive_group()
+    again.add_argument("--force", action="store_true", help="repeat rows that could be reused")
+    words = "also repeat rows that were made on uncommitted changes or in noise, see `check`"
+    again.add_argument("--clean", dest="force", action="store_const", const="unsound", help=words)
+    words = f"wait so long, in all, for a quiet machine; default {PATIENCE}"
+    run.add_argument("--wait", metavar="SECONDS", type=_seconds, default=PATIENCE, help=words)
     run.add_argument("--method", metavar="MODULE|PROGRAM", help="rows of a method that is not ours, beside those there")
     where = run.add_mutually_exclusive_group()
     where.add_argument("--scheduler", metavar="ADDRESS", help="make rows on the Dask cluster of tcp://HOST:PORT")
@@ -71,12 +81,17 @@ def _parser():
     gather.add_argument("name", metavar="NAME")
     gather.add_argument("files", metavar="FILE", nargs="+")
     gather.set_defaults(action=_gather)
-    report = actions.add_parser("report", help="write DIR/README.md, the pages of all studies found there")
+    check = actions.add_parser("check", help="list stale, dirty and noisy rows; exit status 1 if there are any")
+    check.add_argument("names", nargs="*", metavar="NAME")
+    check.add_argument("--rows", action="store_true", help="name every one of them")
+    check.set_defaults(action=_check)
+    words = "write the pages of all studies found in DIR, DIR/README.md and, in one, DIR/index.html"
+    report = actions.add_parser("report", help=words)
     words = "also write the tables marked in these pages anew"
     report.add_argument("--page", metavar="FILE", type=Path, nargs="+", default=[], help=words)
     report.set_defaults(action=_report)
-    for each in (names, run, render, array, gather, report):
-        where = STORED if each is names and STORED.is_dir() else DEFAULT_OUT
+    for each in (names, run, render, array, gather, check, report):
+        where = STORED if each in (names, check) and STORED.is_dir() else DEFAULT_OUT
         each.add_argument("--out", default=where, metavar="DIR", type=Path, help=f"default {where}")
     return parser
 
@@ -116,6 +131,8 @@ def _run(arguments):
         knobs["method"] = arguments.method
         runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
+    # Rows side by side would wait for each other.
+    knobs["compute"] = quiet.quietly(runner.spawn_row, seconds=arguments.wait, say=_say)
     with spreading(arguments.scheduler, arguments.workers, _say) as spread:
         for name in chosen:
             path = runner.run_study(name, arguments.out, spread=spread, **knobs)
@@ -138,6 +155,16 @@ def _number(word):
     return int(word)
 
 
+def _seconds(word):
+    try:
+        found = float(word)
+    except ValueError:
+        found = -1.0
+    if not 0 <= found < float("inf"):
+        raise argparse.ArgumentTypeError(f"{word!r}: must be a number of seconds, 0 or more")
+    return found
+
+
 def _render(arguments):
     name = arguments.names[0]
     runner.load(name)
@@ -153,8 +180,9 @@ def _show(name, path):
 
     claims, text = render(runner.load(name), path)
     print(text)
-    failed = [claim for claim in claims if not claim.ok]
-    print(f"{name}: {len(claims) - len(failed)} of {len(claims)} claims hold")
+    failed, open_ = [claim for claim in claims if claim.failed], sum(bool(claim.why) for claim in claims)
+    rest = f", {open_} not judged" if open_ else ""
+    print(f"{name}: {sum(claim.ok and not claim.why for claim in claims)} of {len(claims)} claims hold{rest}")
     print(f"figure {path.with_suffix('.png')}, rows {path}")
     for claim in failed:
         print(f"FAIL: {claim.sentence}: {claim.value:.4g}, limit {claim.limit}", file=sys.stderr)
@@ -194,26 +222,42 @@ def _gather(arguments):
     return 0
 
 
-def _report(arguments):
-    from studies.harness.readme import fill
-    from studies.harness.store import replaced
-    from studies.harness.table import render
+def _check(arguments):
+    chosen, every = arguments.names or study_names(), []
+    for name in chosen:
+        study, path = runner.load(name), runner.csv_of(name, arguments.out)
+        if not path.exists() and not arguments.names:
+            continue
+        if not path.exists():
+            raise ValueError(f"no {path}; run the study first")
+        found = sound.checked(study, path)
+        every += found.values()
+        print(f"{name:24} {len(found):4} rows: {sound.told(sound.counted(found.values()))}")
+        for wrong in dict.fromkeys(filter(None, found.values())):
+            keys = [key for key, each in found.items() if each == wrong]
+            shown = len(keys) if arguments.rows else NAMED
+            more = [f"and {len(keys) - shown} more"] if len(keys) > shown else []
+            print(*(f"    {', '.join(wrong)}: {word}" for word in [*keys[:shown], *more]), sep="\n")
+    print(f"{arguments.out}: {len(every)} rows: {sound.told(sound.counted(every))}")
+    return int(any(every))
 
-    status, pages = 0, []
-    for name in study_names():
-        path = arguments.out / f"{name}.csv"
-        if path.exists():
-            claims, text = render(runner.load(name), path)
-            pages.append(text)
-            status |= any(not claim.ok for claim in claims)
-    if not pages:
-        raise ValueError(f"no results in {arguments.out}; run a study first")
-    target = arguments.out / "README.md"
-    with replaced(target) as temporary:
-        temporary.write_text("\n".join(pages), encoding="utf-8")
+
+def _report(arguments):
+    from studies.harness import report
+    from studies.harness.readme import fill
+
+    found = report.chapters(study_names(), arguments.out)
+    paths = report.write(found, arguments.out, contents)
     for page in arguments.page:
         fill(page, arguments.out)
-    print(f"{len(pages)} studies in {target}; " + ("a claim FAILED" if status else "every claim holds"))
+    claims = [claim for each in found for claim in each.claims]
+    status = any(claim.failed for claim in claims) or any(each.problem for each in found)
+    for each in found:
+        if each.problem:
+            print(each.problem, file=sys.stderr)
+    print(f"{len(found)} studies in {' and '.join(map(str, paths))}; {report.total(found)}")
+    verdict = "a claim FAILED" if any(claim.failed for claim in claims) else "no claim failed"
+    print(f"{len(claims)} claims: {verdict}, {sum(bool(claim.why) for claim in claims)} not judged")
     return int(status)
 
 

@@ -25,6 +25,14 @@ KNOBS = {
     "fft": {"method": "fft", "rule": "laminate"},
     "fft-plain": {"method": "fft", "rule": "plain"},
 }
+# How far the sphere's tensors are to be from the best one's at most, %, coarse and at the finest.
+APART = {"fft": (0.3, 0.1), "fem-p1": (3.0, 2.5)}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "homogeneous": "rounding: sums over some 1e5 elements may lose four digits of sixteen",
+    "layers": "equations are iterated to 1e-8 of the heat; the conductivity errs by less, as its square or by luck",
+    "symmetric": "loads are iterated one by one to 1e-8, and entries between two of them have no square",
+}
 # Entries of a symmetric tensor.
 ENTRIES = ("xx", "yy", "zz", "yz", "xz", "xy")
 
@@ -112,6 +120,8 @@ def claims(df):
     """What is exact is so to the equations' tolerance; what is not lies between the bounds and comes together.
 
     Limits were set before the rows; that of the sphere after a first look at another sphere, where .01 % were apart.
+    All were brought nearer when the values were known: from 1e-7 and 1e-6 % of what is exact, 1e-5 of the symmetry and
+    .3 and 3 % of the sphere.
     """
     yield from present([*_exact(df), *_sphere(df)])
 
@@ -119,12 +129,11 @@ def claims(df):
 def _exact(df):
     for name in KNOBS:
         off = pick(df, body="homogeneous", name=name)["error_percent"].max(skipna=False)
-        yield f"homogeneous, {name}: error of the tensor, %", off, 1e-7
+        yield f"homogeneous, {name}: error of the tensor, %", off, 1e-10
     for name in ("fem", "fem-p1", "fft"):
         off = pick(df, body="layers", name=name)["error_percent"].max(skipna=False)
-        yield f"layers, {name}: error of the tensor, %", off, 1e-6
-    yield "all: largest part of a tensor that is not symmetric", df["asymmetry"].max(skipna=False), 1e-5
-    yield "all: least principal conductivity, W/(m K)", df["least"].min(skipna=False), "> 0"
+        yield f"layers, {name}: error of the tensor, %", off, 1e-8
+    yield "all: largest part of a tensor that is not symmetric", df["asymmetry"].max(skipna=False), 1e-6
 
 
 def _sphere(df):
@@ -132,10 +141,12 @@ def _sphere(df):
     for side in ("below_voigt", "above_reuss"):
         yield f"sphere: {side.replace('_', ' ')}, least eigenvalue over the norm", rows[side].min(skipna=False), "> 0"
     best = _finest(pick(rows, name="fem"))
-    for name, limit in (("fft", 0.3), ("fem-p1", 3.0)):
+    whole = "voxels" in rows and (rows["voxels"] == VOXELS[-1]).any()
+    for name, (coarse, fine) in APART.items():
         other = _finest(pick(rows, name=name))
         if best is not None and other is not None:
             off = apart_percent(other, best)
+            limit = fine if whole else coarse
             yield f"sphere: {name} from quadratic elements, both at their finest, %", off, limit
 
 
@@ -159,12 +170,19 @@ def plot(df):
     figure, axes = pyplot.subplots(figsize=(6.5, 4.8))
     rows = pick(df, body="sphere")
     best = _finest(pick(rows, name="fem"))
+    axes.grid(visible=True, which="both", axis="y")
     for name, group in rows.groupby("name", sort=False):
         group = group.sort_values("unknowns")
         off = np.array([apart_percent(row, best) for _, row in group.iterrows()])
         # The finest elements are what others are compared with.
         axes.plot(group["unknowns"][off > 0], off[off > 0], **look(name))
     axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel="tensor apart from finest quadratic elements, %")
-    axes.set_title("a sphere of one orthotropic material in another")
+    near = [f"{_words(name)} {apart_percent(_finest(pick(rows, name=name)), best):.2g} %" for name in ("fft", "fem-p1")]
+    figure.suptitle("A sphere of one orthotropic material in another, at the finest:")
+    axes.set_title(f"{' and '.join(near)} from quadratic elements")
     axes.legend()
     return figure
+
+
+def _words(name):
+    return methods.found()[name].title

@@ -3,8 +3,11 @@
 Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799), figure 8 and eq. 18, corrected; the scene and the methods
 are those of figure 7. Errors are at the methods' own points: all particles of the DEM, all quadrature points of the
 finite elements; root mean squares are weighted by volume. Fields at 2 and 5 s stand beside it: the error is largest
-while the heat has not reached the centre. The slice is the plane z = R, on a grid of points that are no particles.
+while the heat has not reached the centre. The slice is the plane z = R, on a grid of points that are no particles: the
+temperature of the paper's network with 1e5 and 1e6 elements, as it shows it, and how far that is off the exact field.
 """
+
+from functools import partial
 
 import numpy as np
 
@@ -16,7 +19,18 @@ from studies.harness.pick import pick, present
 from studies.harness.store import printed
 
 TIMES = (2.0, 5.0, 10.0)
-CASES = list(sphere_in_time.cases())
+# Points along a side of the slice; at sizes that are not drawn in a full run, fewer.
+SIDE, COARSE = 81, 41
+
+
+def _cases():
+    """Those of figure 7, and the paper's network with 1e6 elements, which its figure 8 shows."""
+    cases = list(sphere_in_time.cases())
+    shown = {"law": "calibrated", "particles": NUMBERS[-1], "seed": 0, "method": "dem"}
+    return cases if shown in cases else [*cases, shown]
+
+
+CASES = _cases()
 QUICK = sphere_in_time.quick
 PAPER = printed("fig07_sphere")
 TIMEOUT = 3600.0
@@ -24,23 +38,27 @@ TIMEOUT = 3600.0
 
 def run(method, **knobs):
     """Errors over the whole field, by radius, and on the slice."""
-    row = sphere_in_time.marched(TIMES, _look, method=method, **knobs)
+    row = sphere_in_time.marched(TIMES, partial(_look, side=_side(**knobs)), method=method, **knobs)
     # One packing's picture is enough for a number of particles.
     return row | ({"slice_error": None} if knobs.get("seed") else {})
 
 
-def _look(field, exact):
+def _side(particles=0, size=np.inf, **_):
+    return SIDE if particles >= sphere_in_time.PAPERS or size == SIZES[2][-1] else COARSE
+
+
+def _look(field, exact, side=COARSE):
     off, t = referee.temperature_error(field, exact, unit="K"), f"{field.time:g}"
     r, (at, largest) = sphere_in_time.radii(off.points), referee.worst(off.values)
     row = {f"worst_{t}": abs(largest), f"rms_{t}": off.rms, f"worst_r_{t}": r[at]}
     if field.time < TIMES[-1]:
         return row
     middle, mean, size = sphere_in_time.in_shells(r, off.values, off.weights)
-    grid, _ = sphere_in_time.slice_grid()
+    grid, _ = sphere_in_time.slice_grid(side)
     sliced = referee.temperature_error(field, exact, grid, unit="K")
     volume = abs(referee.value_error(off.weights.sum(), field.scene.volume))
     cells = {"profile_r": middle, "profile_error": mean, "profile_worst": size}
-    row |= {"volume_error": volume, "slice_worst": sliced.max}
+    row |= {"volume_error": volume, "slice_worst": sliced.max, "slice_side": side}
     return row | {name: cell(values) for name, values in cells.items()} | {"slice_error": cell(sliced.values, ".3g")}
 
 
@@ -50,17 +68,17 @@ def warm_up(method, **knobs):
 
 
 def claims(df):
-    """The whole field by Laguerre and by finite elements; orders; volume and heat.
+    """The whole field by Laguerre, by finite elements and by the paper's network; orders; volume and heat.
 
-    The limits of `fig07_sphere`, a sixth and a twentieth of the 1.93 K that the paper's centre is off, hold here for
-    every particle. The order expected is two.
+    Limits are two to three times what was found; the paper's 1.93 K at the centre, its largest difference with 1e5
+    elements, is asked of its network within a half, and of 1000 particles of Laguerre. The order expected is two.
     """
     df = sphere_in_time.solved(df)
     yield from present([*_accuracy(df), *_rest(df)])
 
 
 def _accuracy(df):
-    for number, limit in ((100_000, 0.3), (1_000_000, 0.1)):
+    for number, limit in ((100_000, 0.1), (1_000_000, 0.02)):
         rows = pick(df, law="laguerre", particles=number)
         value = rows["worst_10"].max(skipna=False) if len(rows) else None
         yield f"Laguerre, {number:.0e} particles, 10 s: largest error of any particle, K", value, limit
@@ -68,6 +86,10 @@ def _accuracy(df):
     small = pick(df, law="laguerre", particles=NUMBERS[0])["worst_10"].max(skipna=False)
     text = f"Laguerre, {NUMBERS[0]} particles, 10 s: largest error, K, below the paper's with 1e5 elements"
     yield text, small, f"< {PAPER['centre_10s']}"
+    network = pick(df, law="calibrated", particles=int(PAPER["particles"]))["worst_10"].max(skipna=False)
+    ratio = network / PAPER["centre_10s"]
+    text = "Contacts, calibrated, 1e5 particles, 10 s: largest error of any particle beside the paper's 1.93 K, factor"
+    yield text, None if ratio != ratio else max(ratio, 1 / ratio), 1.5
     # Found 0.17 to 0.18 K at the coarsest edge.
     curved = pick(df, order=2, size=SIZES[2][0])["worst_10"].max(skipna=False)
     yield "FEM, P2, edges of 12 mm, 10 s: largest error, K", curved, 0.4
@@ -88,20 +110,34 @@ def table(df):
     `worst_r_10` is the radius (in R) of the largest at 10 s, `slice_worst` the largest on the slice then, between
     particles too.
     """
-    df = sphere_in_time.solved(df)
     shown = [f"{kind}_{t:g}" for kind in ("worst", "rms") for t in TIMES]
-    shown += ["worst_r_10", "slice_worst", "volume_error", "unknowns", "elements", "cpu_s", "peak_mib"]
-    return df.groupby(["name", "particles", "size"], sort=False, dropna=False)[shown].mean().reset_index()
+    return _means(df, [*shown, "worst_r_10", "slice_worst"])
+
+
+def notes(df):
+    """What each row takes."""
+    from studies.harness.table import markdown
+
+    yield "Volume of all cells or elements off the sphere's, relative; cost of the march, the packing from the cache."
+    yield markdown(_means(df, ["volume_error", "unknowns", "elements", "cpu_s", "peak_mib"]))
+
+
+def _means(df, columns):
+    """Means over packings of rows that have numbers, by method and resolution."""
+    groups = sphere_in_time.solved(df).groupby(["name", "particles", "size"], sort=False, dropna=False)
+    return groups[columns].mean().reset_index()
 
 
 def plot(df):
-    """Temperature and error over the radius, errors against unknowns; the slice."""
+    """Temperature and error over the radius, errors against unknowns; the slice and how far it is off."""
     from matplotlib import pyplot
 
     from studies.common.sphere_looks import LOOKS
 
     df = sphere_in_time.solved(df)
-    figure, ((left, middle, right), slices) = pyplot.subplots(2, 3, figsize=(14, 8.6))
+    figure = pyplot.figure(figsize=(14, 12))
+    charts, maps = figure.subfigures(2, 1, height_ratios=(1.0, 1.75))
+    left, middle, right = charts.subplots(1, 3)
     exact = _exact()
     for name, rows in df.groupby("name"):
         colour, marker = LOOKS[name]
@@ -110,13 +146,13 @@ def plot(df):
         r, error, size = (numbers(row[f"profile_{kind}"]) for kind in ("r", "error", "worst"))
         left.plot(r, exact(r) + error, marker, color=colour, fillstyle="none", markersize=4, label=label)
         middle.plot(r, size, marker=marker, color=colour, markersize=4)
-        middle.plot(r, abs(error), ":", color=colour)
         means = rows.groupby(["particles", "size"], dropna=False)[["unknowns", "worst_10", "rms_10"]].mean()
         means = means.sort_values("unknowns")
         right.plot(means["unknowns"], means["worst_10"], marker=marker, color=colour)
-        right.plot(means["unknowns"], means["rms_10"], ":", marker=marker, color=colour)
+        right.plot(means["unknowns"], means["rms_10"], ":", marker=marker, color=colour, markersize=3)
     _radial(left, middle, right, exact)
-    _slices(figure, slices, df, exact)
+    charts.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    _slices(maps, df, exact)
     return figure
 
 
@@ -134,33 +170,56 @@ def _radial(left, middle, right, exact):
 
     r = np.linspace(0.0, 1.0, 101)
     left.plot(r, exact(r), color=BLACK, linewidth=0.8, label="exact")
-    left.set(xlabel="r / R", ylabel="temperature, C", title="10 s: exact, and plus mean errors in shells")
-    middle.set(xlabel="r / R", ylabel="error, K", yscale="log", title="Finest rows, in shells: largest; dotted: |mean|")
-    right.set(
-        xlabel="unknowns", ylabel="error, K", xscale="log", yscale="log", title="Whole field: largest; dotted: rms"
-    )
-    left.legend(fontsize=8)
+    left.set(xlabel="r / R", ylabel="temperature, C", title="10 s: means in shells, and exact")
+    middle.set(xlabel="r / R", ylabel="error, K", yscale="log", title="10 s: largest error in each shell")
+    right.set(xlabel="unknowns", ylabel="error, K", xscale="log", yscale="log")
+    right.set_title("10 s, whole field: largest (solid), rms (dotted)")
 
 
-def _slices(figure, slices, df, exact):
-    """The slice of the finest DEM, its error, and that of the finest FEM."""
-    points, inside = sphere_in_time.slice_grid()
+def _slices(figure, df, exact):
+    """The slice by the paper's network, twice, by Laguerre and by elements; below each how far it is off."""
+    rows = _shown(df)
+    figure.suptitle("The plane z = R at 10 s: temperature, and its difference from the exact field", fontsize=12)
+    columns = figure.subfigures(1, len(rows))
+    planes = [_plane(row) for row in rows]
+    off = [np.nanmax(np.abs(plane)) for plane in planes]
+    for column, row, plane in zip(np.atleast_1d(columns), rows, planes, strict=True):
+        upper, lower = column.subplots(2, 1)
+        # One scale for both networks, one for what is far more exact.
+        most = max(o for o, other in zip(off, rows, strict=True) if _contacts(other) == _contacts(row))
+        points, inside = sphere_in_time.slice_grid(len(plane))
+        field = np.full(inside.shape, np.nan)
+        field[inside] = exact(sphere_in_time.radii(points)) + plane[inside]
+        warm = upper.imshow(field, origin="lower", cmap="inferno", vmin=182.0, vmax=200.0)
+        differ = lower.imshow(plane, origin="lower", cmap="RdBu_r", vmin=-most, vmax=most)
+        size = f"{row['particles']:.0f} particles" if row["method"] == "dem" else f"{row['elements']:.0f} elements"
+        upper.set_title(f"{row['name']},\n{size}", fontsize=10)
+        lower.set_title(f"largest {np.nanmax(np.abs(plane)):.2g} K", fontsize=10)
+        for axes, image, unit in ((upper, warm, "temperature, C"), (lower, differ, "difference, K")):
+            axes.set_axis_off()
+            figure_bar = column.colorbar(image, ax=axes, orientation="horizontal", shrink=0.8, pad=0.02)
+            figure_bar.set_label(unit, fontsize=9)
+            figure_bar.ax.locator_params(nbins=4)
+
+
+def _contacts(row):
+    return row["name"] in ("DEM, calibrated", "DEM, platonic")
+
+
+def _shown(df):
+    """The two largest networks of the paper, the largest of Laguerre, the finest quadratic elements; with pictures."""
     pictured = df.dropna(subset=["slice_error"])
-    dem, fem = (pick(pictured, method=method) for method in ("dem", "fem"))
-    dem, fem = (rows.loc[rows["unknowns"].idxmax()] for rows in (dem, fem))
-    errors = [numbers(row["slice_error"]) for row in (dem, fem)]
-    pictures = [
-        (exact(sphere_in_time.radii(points)) + errors[0], dem, "C"),
-        (errors[0], dem, "K"),
-        (errors[1], fem, "K"),
+    networks = pick(pictured, law="calibrated").sort_values("particles").tail(2)
+    others = (pick(pictured, law="laguerre"), pick(pictured, order=2))
+    return [row for _, row in networks.iterrows()] + [
+        rows.loc[rows["unknowns"].idxmax()] for rows in others if len(rows)
     ]
-    for axes, (values, row, unit) in zip(slices, pictures, strict=True):
-        plane = np.full(inside.shape, np.nan)
-        plane[inside] = values
-        most = None if unit == "C" else np.abs(values).max()
-        scale = {} if most is None else {"vmin": -most, "vmax": most}
-        image = axes.imshow(plane, origin="lower", cmap="inferno" if most is None else "RdBu_r", **scale)
-        axes.set_axis_off()
-        what = "temperature, C" if most is None else "error, K"
-        axes.set_title(f"{row['name']}, {row['unknowns']:.0f} unknowns: {what}")
-        figure.colorbar(image, ax=axes, shrink=0.8)
+
+
+def _plane(row):
+    """Differences on the square that holds the slice, K; not-a-number outside the sphere."""
+    side = row.get("slice_side", np.nan)
+    _, inside = sphere_in_time.slice_grid(COARSE if side != side else int(side))
+    plane = np.full(inside.shape, np.nan)
+    plane[inside] = numbers(row["slice_error"])
+    return plane

@@ -109,30 +109,27 @@ def warm_up(law, method, **case):
 def claims(df):
     """Laguerre at the paper's size; finite elements; what a transient hides of the Platonic law; heat.
 
-    At the paper's 19465 elements 0.1 % of the span, half a kelvin, is asked for; quick rows have twice to four times
-    what was found. What the Platonic law hides must be at least a third of what was found.
+    Limits of Laguerre are two to three times what was found, ratios and what the Platonic law hides at least a third of
+    it.
     """
     return present([*_accuracy(df), *_referee(df), *_hidden(df), *_balance(df)])
 
 
+# Largest errors allowed to Laguerre at the four times, % of the span.
+ALLOWED = {NUMBERS[-1]: (0.06, 0.008, 0.005, 0.0035), NUMBERS[0]: (0.25, 0.03, 0.015, 0.0075)}
+
+
 def _accuracy(df):
-    full = pick(df, law="laguerre", particles=NUMBERS[-1])
-    for t in TIMES:
-        value = full[f"worst_{t:g}"].max(skipna=False) if len(full) else None
-        yield f"Laguerre, the paper's 19465 particles, {1e3 * t:g} ms: largest error, % of the span", value, 0.1
-    if len(full):
-        off = referee.value_error(full["mean_radius"], PAPER["mean_radius"]).abs().max(skipna=False)
-        # 0.5 %: a packing fraction of 0.64 for the paper's 0.647 is 0.4 % in the radius.
-        yield "Mean radius of 19465 particles off the paper's, relative", off, 0.005
-    small = pick(df, law="laguerre", particles=NUMBERS[0])
-    # Errors go with N^(-2/3): five times those of 19465 particles.
-    for t, limit in zip(TIMES, (0.2, 0.03, 0.02, 0.01), strict=True):
-        value = small[f"worst_{t:g}"].max(skipna=False)
-        yield f"Laguerre, 2000 particles, {1e3 * t:g} ms: largest error, % of the span", value, limit
-    for name, law, contacts in (("calibrated", "calibrated", 7.5), ("Platonic", "platonic", 7.2)):
+    for number, limits in ALLOWED.items():
+        rows = pick(df, law="laguerre", particles=number)
+        what = "the paper's 19465 particles" if number == NUMBERS[-1] else f"{number} particles"
+        for t, limit in zip(TIMES, limits, strict=True):
+            value = rows[f"worst_{t:g}"].max(skipna=False) if len(rows) else None
+            yield f"Laguerre, {what}, {1e3 * t:g} ms: largest error, % of the span", value, limit
+    for name, law, contacts, least in (("calibrated", "calibrated", 7.5, 30), ("Platonic", "platonic", 7.2, 50)):
         theirs = _means(df, law, contacts)["rms_0.01"] / _means(df, "laguerre", None)["rms_0.01"]
         text = f"Error rms at 10 ms, {name} over Laguerre, equal number of particles: least"
-        yield text, theirs.min(skipna=False), ">= 10"
+        yield text, theirs.min(skipna=False), f">= {least}"
 
 
 def _means(df, law, contacts):
@@ -174,75 +171,112 @@ def _balance(df):
 
 
 def table(df):
-    """Errors in per cent of the span, means over packings of one size.
+    """Errors in per cent of the span, means over packings of one size; `worst` is the largest over particles or nodes.
 
-    `worst` is the largest over particles or nodes; conductivity (steady, between the beam's ends), capacity and
-    diffusivity are the network's over the material's, 1 by construction with calibrated contacts. Size is the
-    elements' edge, m.
+    Size is the elements' edge, m.
     """
-    shown = [f"{kind}_{t:g}" for kind in ("worst", "rms") for t in TIMES]
+    return _shown(df, [f"{kind}_{t:g}" for kind in ("worst", "rms") for t in TIMES])
+
+
+def notes(df):
+    """What a transient hides, as a table; the paper's mean radius."""
+    from studies.harness.table import markdown
+
+    yield (
+        "The network's steady conductivity between the beam's ends, its heat capacity and their quotient, over the "
+        "material's; by construction 1 with calibrated contacts."
+    )
     relative = ["conductivity", "capacity", "diffusivity"]
-    for column in ("size", "coordination", "particles", *relative):
-        df = df if column in df else df.assign(**{column: float("nan")})
-    keys = ["law", "coordination", "particles", "size"]
-    found = df.groupby(keys, sort=False, dropna=False)[[*shown, *relative]].mean().reset_index()
+    found = _shown(pick(df, method="dem"), relative).drop(columns="size")
     found[relative] = found[relative].map(lambda value: "" if value != value else f"{value:.4f}")
-    return found
+    yield markdown(found)
+    full = pick(df, law="laguerre", particles=NUMBERS[-1])
+    if len(full):
+        off = 100 * referee.value_error(full["mean_radius"].mean(), PAPER["mean_radius"])
+        yield (
+            f"Mean radius of {NUMBERS[-1]} particles: {full['mean_radius'].mean():.3f} um, {off:+.2f} % off the "
+            "paper's, by the packing fraction of 0.64 that is chosen here."
+        )
+
+
+def _shown(df, columns):
+    """Means over packings of one size."""
+    keys = ["law", "coordination", "particles", "size"]
+    df = df.assign(**{name: np.nan for name in (*keys, *columns) if name not in df})
+    return df.groupby(keys, sort=False, dropna=False)[columns].mean().reset_index()
 
 
 def plot(df):
-    """Profiles of the largest packings; their errors; transient error beside what it hides."""
+    """Each time in a panel: temperature above, error below; what a transient shows, and what it hides."""
     from matplotlib import pyplot
 
-    from studies.harness.figures import BLUE, PINK, RED, SKY
-
-    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.6))
-    looks = {("laguerre", None): (RED, "o"), ("calibrated", 7.5): (PINK, "s"), ("platonic", 7.2): (BLUE, "^"),
-             ("platonic", 6.2): (SKY, "v")}  # fmt: skip
-    _profiles(left, middle, df, looks)
-    _shown_and_hidden(right, df, looks)
+    figure = pyplot.figure(figsize=(14, 11))
+    upper, lower = figure.subfigures(2, 1, height_ratios=(2.0, 1.0))
+    panels = upper.subplots(2, len(TIMES), sharex=True, sharey="row")
+    for (warm, off), t in zip(panels.T, TIMES, strict=True):
+        _profile(warm, off, df, t)
+    panels[0][0].set_ylabel("temperature, K")
+    panels[1][0].set_ylabel("|mean error| in a slice, % of the span")
+    upper.suptitle("The beam in time: exact (line) and means over twenty slices (points)", fontsize=12)
+    upper.legend(*panels[1][0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    _shown_and_hidden(lower.subplots(), df)
     return figure
 
 
-def _profiles(left, middle, df, looks):
+def _looks():
+    """Colour, marker and name of each law."""
+    from studies.harness.figures import BLUE, PINK, RED, SKY
+
+    return {
+        ("laguerre", None): (RED, "o", "Laguerre"),
+        ("calibrated", 7.5): (PINK, "s", "calibrated, 7.5 contacts"),
+        ("platonic", 7.2): (BLUE, "^", "Platonic, 7.2 contacts"),
+        ("platonic", 6.2): (SKY, "v", "Platonic, 6.2 contacts"),
+    }
+
+
+def _profile(warm, off, df, t):
     from references import series
     from studies.common.terreros import LENGTH, RADIUS, beam
     from studies.harness.figures import BLACK
 
     x = np.linspace(0.0, 1.0, 201)
     points = np.column_stack([x * LENGTH, np.full(201, RADIUS), np.full(201, RADIUS)])
-    for t, exact in zip(TIMES, series.evolve(beam(), TIMES, points_per_axis=1), strict=True):
-        left.plot(x, exact.temperature_at(points), color=BLACK, linewidth=0.8)
-        left.annotate(f"{1e3 * t:g} ms", (0.5, exact.temperature_at(points)[100] + 5), fontsize=8)
-    for (law, contacts), (colour, marker) in looks.items():
+    (exact,) = series.evolve(beam(), [t], points_per_axis=1)
+    warm.plot(x, exact.temperature_at(points), color=BLACK, linewidth=0.8)
+    for (law, contacts), (colour, marker, name) in _looks().items():
         rows = pick(df, law=law, coordination=contacts)
         row = rows.loc[rows["particles"].idxmax()]
-        label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
-        for t, style in zip(TIMES, ("-", "--", "-.", ":"), strict=True):
-            columns = ("profile_x", f"profile_{t:g}", f"profile_error_{t:g}")
-            at, values, errors = (numbers(row[name]) for name in columns)
-            first = label if t == TIMES[0] else None
-            left.plot(at, values, marker, color=colour, markersize=3, label=first)
-            middle.plot(at, np.maximum(np.abs(errors), 1e-5), style, color=colour, linewidth=1, label=first)
-    left.set(xlabel="x / L", ylabel="temperature, K", title="Lines: exact; points: means over slices")
-    left.legend()
-    middle.set(xlabel="x / L", ylabel="|mean error| in a slice, % of the span", yscale="log", ylim=(1e-5, 10))
-    middle.set_title("Error: 1 (solid), 10, 50, 100 ms (dotted)")
+        at, values, errors = (numbers(row[name]) for name in ("profile_x", f"profile_{t:g}", f"profile_error_{t:g}"))
+        warm.plot(at, values, marker, color=colour, fillstyle="none", markersize=5)
+        label = f"{name}, {row['particles']:.0f} particles"
+        look = {"color": colour, "linewidth": 1, "markersize": 3, "label": label}
+        sizes = np.abs(errors)
+        # Where the heat has not come yet there is nothing to be off.
+        off.plot(at, np.where(sizes > 1e-5, sizes, np.nan), marker + "-", **look)
+    warm.set_title(f"{1e3 * t:g} ms")
+    off.set(xlabel="x / L", yscale="log", ylim=(1e-5, 10))
 
 
-def _shown_and_hidden(axes, df, looks):
+def _shown_and_hidden(axes, df):
     names = ("worst_0.05", "worst_0.1", "conductivity", "capacity", "diffusivity")
-    for number, ((law, contacts), (colour, _)) in enumerate(looks.items()):
+    for number, ((law, contacts), (colour, _, name)) in enumerate(_looks().items()):
         rows = pick(df, law=law, coordination=contacts)
         rows = rows[rows["particles"] == rows["particles"].max()]
-        means = [rows[name].mean() for name in names]
+        means = [rows[column].mean() for column in names]
         heights = [*means[:2], *(100 * abs(referee.value_error(mean, 1.0)) for mean in means[2:])]
-        label = f"{law}{'' if contacts is None else f', {contacts} contacts'}"
-        axes.bar(np.arange(5) + 0.2 * (number - 1.5), np.maximum(heights, 1e-4), 0.18, color=colour, label=label)
-    axes.set_xticks(
-        range(5), ["at 50 ms", "at 100 ms", "steady\nconductivity", "heat\ncapacity", "diffusivity"], fontsize=8
+        place = np.arange(5) + 0.2 * (number - 1.5)
+        axes.bar(place, np.maximum(heights, 1e-4), 0.18, color=colour, label=name)
+        for at, height in zip(place, heights, strict=True):
+            text = f"{height:.2g}" if height > 1e-4 else "0"
+            above = {"xytext": (0, 2), "textcoords": "offset points", "ha": "center", "fontsize": 8}
+            axes.annotate(text, (at, max(height, 1e-4)), **above)
+    axes.axvline(1.5, color="black", linewidth=0.8, linestyle=":")
+    shown = ["temperature, 50 ms", "temperature, 100 ms", "steady conductivity", "heat capacity", "diffusivity"]
+    axes.set_xticks(range(5), shown)
+    axes.set(yscale="log", ylim=(1e-4, 300), ylabel="error, %")
+    axes.set_title(
+        "What the transient shows (left), and errors of the network's constants (right): their quotient shows"
     )
-    axes.set(
-        yscale="log", ylim=(1e-4, 200), ylabel="largest error, %", title="What a transient shows, and what it hides"
-    )
-    axes.legend(fontsize=8)
+    axes.grid(False, axis="x")
+    axes.set_axisbelow(True)

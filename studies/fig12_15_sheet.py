@@ -137,50 +137,51 @@ def compared(df, law, particles, name):
 def claims(df):
     """Scatter over packings; packings beside bricks, bricks beside finer ones; heat.
 
-    The paper's dispersion, below 4 % with 20000 elements, is the yardstick: Laguerre is held to 1.5 % from 1000 on and
-    to 0.5 % with 20000, and to within 1 % of the bricks there.
+    The paper's dispersion, below 4 % with 20000 elements, is asked of its own law there and of 1000 particles of the
+    tessellation; other limits are two to three times what was found, the largest of the three checkpoints.
     """
     return present([*_scatter(df), *_against_bricks(df), *_bricks(df), *_balance(df)])
 
 
+def _worst(df, law, particles, key):
+    """Largest size of a measure of `compared` at any checkpoint; None without rows."""
+    if not len(pick(df, law=law, particles=particles)):
+        return None
+    return max(abs(compared(df, law, particles, name)[key]) for name in NAMES)
+
+
 def _scatter(df):
-    # The paper's limit is for 20000 of its law; it is kept there with 1000 of the tessellation.
-    for particles, limit in zip(NUMBERS, (1.5, 1.5, 0.5), strict=True):
-        for name in NAMES if len(pick(df, law="laguerre", particles=particles)) else ():
-            value = compared(df, "laguerre", particles, name)["dispersion"]
-            text = f"Laguerre, {particles} particles, {name}: dispersion over packings, %"
-            yield f"{text} (paper, 20000: {PAPER['dispersion']:g})", value, limit
-    if len(pick(df, law="platonic", particles=NUMBERS[-1])):
-        for name in NAMES:
-            value = compared(df, "platonic", NUMBERS[-1], name)["dispersion"]
-            yield f"Platonic, 20000 particles, {name}: dispersion over packings, %", value, PAPER["dispersion"]
+    for particles, limit in zip(NUMBERS, (1.0, 0.3, 0.09), strict=True):
+        text = f"Laguerre, {particles} particles: dispersion over packings, %, largest of the checkpoints"
+        yield text, _worst(df, "laguerre", particles, "dispersion"), limit
+    text = "Platonic, 20000 particles: dispersion over packings, %, largest of the checkpoints (paper: below 4)"
+    yield text, _worst(df, "platonic", NUMBERS[-1], "dispersion"), f"< {PAPER['dispersion']:g}"
 
 
 def _against_bricks(df):
     # Where the difference is largest early, a checkpoint barely warm, a kelvin is some per cent of it: with 1000
     # particles A is 3.4 K off at 0.13 s, 5.8 % of the 58 C there are then.
-    for particles, *limits in zip(NUMBERS, (8.0, 4.0, 1.0), (0.6, 0.5, 0.2), strict=True):
-        for name in NAMES if len(pick(df, law="laguerre", particles=particles)) else ():
-            here = compared(df, "laguerre", particles, name)
-            text = f"Laguerre, {particles} particles, {name}: largest difference from bricks,"
-            yield f"{text} % of the temperature then", abs(here["off"]), limits[0]
-            yield f"{text} % of the highest temperature", here["span"], limits[1]
-    for name in NAMES:
-        ours, theirs = (compared(df, law, NUMBERS[0], name)["span"] for law in ("laguerre", "platonic"))
-        text = f"{name}, 1000 particles: largest difference from bricks, % of the highest, Platonic over Laguerre"
-        # Platonic temperatures lack what its excess of heat capacity, a tenth, takes up.
-        yield text, theirs / ours, ">= 5"
+    for particles, *limits in zip(NUMBERS, (12.0, 6.0, 1.5), (0.8, 0.3, 0.1), strict=True):
+        text = f"Laguerre, {particles} particles: largest difference from bricks at any checkpoint,"
+        yield f"{text} % of the temperature then", _worst(df, "laguerre", particles, "off"), limits[0]
+        yield f"{text} % of the highest temperature", _worst(df, "laguerre", particles, "span"), limits[1]
+    ratios = (
+        compared(df, "platonic", NUMBERS[0], name)["span"] / compared(df, "laguerre", NUMBERS[0], name)["span"]
+        for name in NAMES
+    )
+    # Platonic temperatures lack what its excess of heat capacity, a tenth, takes up.
+    text = "1000 particles: largest difference from bricks, % of the highest, Platonic over Laguerre, least of the"
+    yield f"{text} checkpoints", min(ratios), ">= 15"
 
 
 def _bricks(df):
     fine, paper = (pick(df, law="hexahedra", size=size) for size in (FINE, ELEMENT))
     if len(fine) and len(paper):
-        for name in NAMES:
-            ours, finer = (curves_of(rows, name)[0] for rows in (paper, fine))
-            # Half of what 0.5 mm are off: far below what packings are compared by. Where A is barely warm, at 0.26 s,
-            # the same difference is 0.4 % of the temperature then.
-            text = f"Bricks of 0.5 mm against a third of a mm, {name}: largest difference, % of the highest temperature"
-            yield text, 100 * referee.curve_error(ours, finer).highest, 0.05
+        pairs = [[curves_of(rows, name)[0] for rows in (paper, fine)] for name in NAMES]
+        # Twice what 0.5 mm are off: far below what packings are compared by. Where A is barely warm, at 0.26 s, the
+        # same difference is 0.4 % of the temperature then.
+        text = "Bricks of 0.5 mm against a third of a mm: largest difference at any checkpoint, % of the highest"
+        yield f"{text} temperature", max(100 * referee.curve_error(*pair).highest for pair in pairs), 0.05
 
 
 def _balance(df):
@@ -199,58 +200,119 @@ def _balance(df):
     # The same balance, read from the temperatures.
     yield "Laguerre: mean warming at the end off heat over capacity, relative", off, 1e-9
     excess = referee.value_error(pick(df, law="platonic")["capacity"], 1.0).min(skipna=False)
-    yield "Platonic law: least excess of the sheet's heat capacity", excess, ">= 0.01"
+    yield "Platonic law: least excess of the sheet's heat capacity", excess, ">= 0.02"
 
 
 def table(df):
-    """Scatter over packings and difference from bricks at the checkpoints, in per cent; capacity over the body's.
+    """Scatter over packings at the checkpoints (the paper's dispersion, below 4 % with 20000), %; mean capacity.
 
-    `off` is bricks minus mean of the packings, over that mean, at the time, s, at which the two differ most; `span` its
-    size over the highest mean; `end` as off, at the last time.
+    The heat capacity is that of the network over the body's.
     """
+    return _lines(df, ("dispersion",), capacity=True)
+
+
+def notes(df):
+    """Differences from bricks, and why the Platonic law is not better with 20000 particles than with 5000."""
+    from studies.harness.table import markdown
+
+    yield (
+        "Difference of the bricks from the mean of the packings, as the paper compares its FEM: `off` is bricks minus "
+        "mean over that mean, %, at the time, s, at which the two differ most; `span` its size over the highest mean, "
+        "%; `end` as off, at the last time."
+    )
+    yield markdown(_lines(df, ("off", "at", "span", "end")))
+    yield from _of_platonic(df)
+
+
+def _lines(df, keys, *, capacity=False):
     import pandas as pd
 
     df, found = df[df["status"] == "ok"], []
     for (law, particles), rows in pick(df, method="dem").groupby(["law", "particles"], sort=False):
-        line = {"law": law, "particles": particles, "packings": len(rows), "capacity": f"{rows['capacity'].mean():.4f}"}
+        line = {"law": law, "particles": particles}
+        if capacity:
+            line |= {"packings": len(rows), "capacity": f"{rows['capacity'].mean():.4f}"}
         for name in NAMES:
             here = compared(df, law, particles, name)
-            line |= {f"{name} {key}": here[key] for key in here}
+            line |= {f"{name} {key}": here[key] for key in keys}
         found.append(line)
     return pd.DataFrame(found)
 
 
+def _of_platonic(df):
+    """Temperature rises of the Platonic law beside what its heat capacity takes up."""
+    rows, said = pick(df, law="platonic", status="ok"), []
+    excess = 100 * referee.value_error(rows.groupby("particles")["capacity"].mean(), 1.0)
+    if len(excess) < len(NUMBERS):
+        return
+    for number in excess.index:
+        ends = ", ".join(f"{compared(df, 'platonic', number, name)['end']:.1f}" for name in NAMES)
+        said.append(
+            f"{number:.0f} particles: capacity {excess[number]:.1f} % too large, bricks warmer at the end by {ends} %"
+        )
+    yield (
+        f"The Platonic law at A, B, C: {'; '.join(said)}. It is worse with 20000 than with 5000 since its error of the "
+        "heat capacity does not fall with the number: with the gap that gives 7.2 contacts it is 8 to 9 % in the bulk "
+        "(study table1_platonic), and another one near the sheet's faces, where all particles of a coarse packing are. "
+        "All laws get the same power, so temperatures lack what the capacity is too large by."
+    )
+
+
 def plot(df):
-    """Curves at the checkpoints, band over packings; scatter and difference from bricks against their number."""
+    """Curves at the checkpoints, band over packings; scatter, and difference from bricks, against their number."""
     from matplotlib import pyplot
 
-    from studies.harness.figures import BLACK, BLUE, PINK, RED
+    from studies.harness.figures import BLACK
 
     df = df[df["status"] == "ok"]
-    figure, axes = pyplot.subplots(2, 3, figsize=(14, 8))
-    colours = {"laguerre": RED, "platonic": BLUE, "calibrated": PINK}
-    counts = pick(df, method="dem").groupby("law")["particles"]
-    for name, curves, scatter in zip(NAMES, *axes, strict=True):
-        curves.plot(TIMES, curves_of(reference(df), name)[0], color=BLACK, linewidth=0.9, label="bricks")
-        for law, most in counts.max().items():
-            mine = curves_of(pick(df, law=law, particles=most), name)
-            curves.fill_between(TIMES, mine.min(axis=0), mine.max(axis=0), color=colours[law], alpha=0.3)
-            curves.plot(
-                TIMES, mine.mean(axis=0), "--", color=colours[law], label=f"{law}, {most:.0f}, {len(mine)} packings"
-            )
-            numbers = sorted(counts.get_group(law).unique())
-            lines = [compared(df, law, number, name) for number in numbers]
-            scatter.plot(
-                numbers, [line["dispersion"] for line in lines], "o-", color=colours[law], label=f"{law}: dispersion"
-            )
-            scatter.plot(
-                numbers, [abs(line["off"]) for line in lines], "x--", color=colours[law], label=f"{law}: off the bricks"
-            )
-        curves.set(xlabel="time, s", ylabel="temperature, C", title=f"Checkpoint {name}")
-        scatter.axhline(
-            PAPER["dispersion"], color=BLACK, linestyle=":", linewidth=1, label="paper's dispersion, at most"
-        )
-        scatter.set(xscale="log", yscale="log", xlabel="particles", ylabel="%")
-    axes[0, 0].legend(fontsize=8)
-    figure.legend(*axes[1, 0].get_legend_handles_labels(), loc="outside lower center", ncols=4, fontsize=8)
+    figure = pyplot.figure(figsize=(14, 12))
+    upper, lower = figure.subfigures(2, 1, height_ratios=(1.0, 1.7))
+    curves, scatter = upper.subplots(1, 3), lower.subplots(2, 3, sharex=True, sharey="row")
+    for axes, name in zip(curves, NAMES, strict=True):
+        _curves(axes, df, name)
+        axes.set_title(f"Checkpoint {name}")
+    curves[0].set_ylabel("temperature, C")
+    upper.suptitle("Bricks (line), mean of five packings (dashed) and their band, most particles", fontsize=12)
+    upper.legend(*curves[0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    for (dispersion, off), name in zip(scatter.T, NAMES, strict=True):
+        _against_number(dispersion, df, name, "dispersion", f"{name}: dispersion over packings")
+        limit = {"color": BLACK, "linestyle": ":", "linewidth": 1, "label": "paper's limit with 20000"}
+        dispersion.axhline(PAPER["dispersion"], **limit)
+        _against_number(off, df, name, "span", f"{name}: largest difference from bricks")
+        off.set_xlabel("particles")
+    scatter[0][0].set_ylabel("mean of (max - min) / max, %")
+    scatter[1][0].set_ylabel("% of the highest temperature")
+    lower.legend(*scatter[0][0].get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
+
+
+def _colours():
+    from studies.harness.figures import BLUE, PINK, RED
+
+    return {"laguerre": RED, "platonic": BLUE, "calibrated": PINK}
+
+
+def _curves(axes, df, name):
+    """Temperature in time of the bricks and of the largest packings of each law."""
+    from studies.harness.figures import BLACK
+
+    axes.plot(TIMES, curves_of(reference(df), name)[0], color=BLACK, linewidth=0.9, label="bricks")
+    for law, most in pick(df, method="dem").groupby("law")["particles"].max().items():
+        mine = curves_of(pick(df, law=law, particles=most), name)
+        axes.fill_between(TIMES, mine.min(axis=0), mine.max(axis=0), color=_colours()[law], alpha=0.3)
+        axes.plot(TIMES, mine.mean(axis=0), "--", color=_colours()[law], label=f"{law}, {most:.0f} particles")
+    axes.set(xlabel="time, s", xlim=(0, 8), ylim=(0, None))
+
+
+def _against_number(axes, df, name, key, title):
+    """A measure of `compared` against the number of particles, by law."""
+    from matplotlib import ticker
+
+    for law, rows in pick(df, method="dem").groupby("law"):
+        numbers = sorted(rows["particles"].unique())
+        values = [compared(df, law, number, name)[key] for number in numbers]
+        axes.plot(numbers, values, "o-", color=_colours()[law], label=law)
+    axes.set(xscale="log", yscale="log", title=title, xlim=(750, 28_000))
+    axes.set_xticks(NUMBERS, [f"{number}" for number in NUMBERS])
+    axes.minorticks_off()
+    axes.yaxis.set_major_formatter(ticker.FormatStrFormatter("%g"))

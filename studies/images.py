@@ -68,7 +68,8 @@ def claims(df):
     """The image's own error and its order; what methods add to it.
 
     Limits were set when values of some methods at 8 to 64 voxels had been seen in a trial, not those of these rows.
-    Stairs are of first order; their volume scatters, so that an order of 0.6 is asked for.
+    Stairs are of first order; their volume scatters, so that an order of 0.6 is asked for. That of linear elements was
+    2.5 % and came down when .6 % was known.
     """
     yield from present(_claims(df))
 
@@ -81,7 +82,7 @@ def _claims(df):
         known = {n: abs(own[n]) for n in VOXELS if n in own and 16 <= n <= last}
         fitted = order([1 / n for n in known], list(known.values())) if last in known and len(known) > 1 else None
         yield f"image's own error, 16^3 to {last}^3: order in the voxel", fitted, limit
-    for name, n, limit in (("fft-plain", 32, 1.0), ("fft-links", 32, 2.5), ("fft-em", 32, 1.0), ("fem-p1", 32, 2.5)):
+    for name, n, limit in (("fft-plain", 32, 1.0), ("fft-links", 32, 2.5), ("fft-em", 32, 1.0), ("fem-p1", 32, 1.5)):
         text = f"image of {n}^3, {methods.found()[name].title}: distance from the image's own conductivity, %"
         yield text, _abs(_added(df, own, name=name, n=n)), limit
     for n, particles, limit in ((16, 10_000, 2.0), (32, 10_000, 2.0), (32, 100_000, 0.5)):

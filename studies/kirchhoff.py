@@ -19,6 +19,13 @@ BODIES, FACTORS = ("layers", "sphere"), (2.0, 10.0)
 NUMBERS, EDGES = (1_000, 3_000, 10_000, 30_000), (1 / 6, 1 / 12, 1 / 20)
 KNOBS = {"dem": {"method": "dem"}, "fem": {"method": "fem", "order": 2}, "fem-p1": {"method": "fem", "order": 1}}
 TOLERANCE, POINTS, SEED, SPAN = 1e-10, 500, 3, 100.0
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "layers, dem": "1e-10 of the heat is 1e-8 %, left by each of some ten rounds",
+    "sphere, dem": "1e-10 of the heat, left by each of some thirty rounds, on either side",
+    "layers, fem, edges": "a conductivity errs by the square of the gradient's error, here 1e-4 and less",
+    "heat entering that does not leave": "1e-10 of the heat, left by each of some thirty rounds",
+}
 
 
 def _cases():
@@ -99,6 +106,8 @@ def claims(df):
     off by 1e-10 in layers, and elements with edges of a quarter by .25 %. Moved after a first run on coarser meshes:
     the rounds from 30, which linear elements passed at factor 10 (37); and orders are of the weaker dependence alone,
     in the root of the number of unknowns: edges of meshes do not go with what is asked for where layers are thinner.
+    Brought nearer when values were known: what particles owe from 1e-5 and 1e-4 % and 1e-7, elements' conductivities
+    from .5 %, heat from 1e-7.
     """
     yield from present([*_network(df), *_elements(df), *_rounds(df)])
 
@@ -106,10 +115,10 @@ def claims(df):
 def _network(df):
     rows = pick(df, name="dem")
     layers = pick(rows, body="layers")
-    yield "layers, dem: largest error of the conductivity, %", layers["error_percent"].abs().max(skipna=False), 1e-5
-    yield "layers, dem: largest error of the temperature, % of the span", layers["rms_percent"].max(skipna=False), 1e-4
+    yield "layers, dem: largest error of the conductivity, %", layers["error_percent"].abs().max(skipna=False), 1e-7
+    yield "layers, dem: largest error of the temperature, % of the span", layers["rms_percent"].max(skipna=False), 1e-7
     spheres = pick(rows, body="sphere")["from_linear"].max(skipna=False)
-    yield "sphere, dem: largest relative distance from the linear network", spheres, 1e-7
+    yield "sphere, dem: largest relative distance from the linear network", spheres, 1e-8
 
 
 def _elements(df):
@@ -117,19 +126,22 @@ def _elements(df):
         rows = pick(df, body="layers", name=name, factor=FACTORS[0])
         found = order(rows["unknowns"] ** (-1 / 3), rows["rms_percent"]) if len(rows) > 1 else None
         yield f"layers, {name}, factor {FACTORS[0]:g}: order of the temperature's error", found, f">= {limit}"
-    for body in BODIES:
+    for body, limit in (("layers", 1e-6), ("sphere", 0.3)):
         rows = pick(df, body=body, name="fem", edge=EDGES[0], factor=FACTORS[0])
         off = rows["error_percent"].abs().max(skipna=False) if len(rows) else None
-        yield f"{body}, fem, edges of a sixth, factor 2: error of the conductivity, %", off, 0.5
+        yield f"{body}, fem, edges of a sixth, factor 2: error of the conductivity, %", off, limit
 
 
 def _rounds(df):
     yield "most rounds", df["rounds"].max(skipna=False), 45
-    yield "largest heat entering that does not leave, over what passes", df["heat_imbalance"].max(skipna=False), 1e-7
+    yield "largest heat entering that does not leave, over what passes", df["heat_imbalance"].max(skipna=False), 1e-8
 
 
 def table(df):
-    """Errors in %, of the temperature over the span; `from_linear` is the relative distance from the linear scene."""
+    """Errors in %, of the temperature over the span; `from_linear` is the relative distance from the linear scene.
+
+    CPU seconds of the DEM are without its packing.
+    """
     columns = ["body", "factor", "name", "particles", "edge", "conductivity", "error_percent", "rms_percent"]
     return df[[*columns, "from_linear", "rounds", "iterations", "unknowns", "cpu_s"]]
 
@@ -150,5 +162,7 @@ def plot(df):
             axes.plot(rows["unknowns"], np.maximum(rows["rms_percent"], 1e-12), **style)
         axes.set(xscale="log", yscale="log", xlabel="unknowns", title=body)
     panels[0].set_ylabel("rms error of the temperature, % of the span")
-    panels[0].legend(fontsize=8)
+    exact = pick(df, body="layers", name="dem")["rms_percent"].max()
+    figure.suptitle(f"Particles: layers exact to {exact:.0e} %, the sphere as its linear problem, whatever the factor")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     return figure

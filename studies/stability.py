@@ -17,7 +17,7 @@ from demheat.gallery import sphere_in_cube
 from studies.harness import methods
 from studies.harness.figures import GREY, look
 from studies.harness.methods import resolution
-from studies.harness.pick import finest, pick
+from studies.harness.pick import finest, pick, present
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
 FRACTIONS = (0.5, 0.52)
@@ -60,6 +60,11 @@ def _resolutions(method):
 CASES = list(_cases())
 MODULES = {"lattice": "references.exact.lattice"}
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "single precision": "6e-8 of rounding in each of a field's values and sums, some of which add up",
+    "Lattice": "1e-8 of the contrast times what flows through a gap of .1 % of the radius, up to a hundred",
+}
 
 
 def QUICK(case):
@@ -99,26 +104,43 @@ def warm_up(name, fraction, contrast, method, **knobs):
 
 
 def claims(df):
-    """No wrong number without a word, few refusals, and single precision that tells no other story."""
+    """No wrong number without a word, few refusals, and single precision that tells no other story.
+
+    Single precision was held to 1e-4 before its values were known.
+    """
+    yield from present(_claims(df))
+
+
+def _claims(df):
     solves = df[df["name"] != "lattice"]
     finite = solves[solves["contrast"] < math.inf]
-    wrong = (finite["status"] == "ok") & finite["warning"].isna() & ~_right(finite)
-    yield f"Numbers more than {LIMIT:g} % wrong ({QUICK_LIMIT:g} % where coarse) without a warning", wrong.sum(), "= 0"
-    mute = solves[(solves["status"] == "unsupported") & (solves["note"] == "")]
-    yield "Refusals without a reason", len(mute), "= 0"
-    taken = solves[(solves["contrast"] == math.inf) & (solves["status"] != "unsupported")]
-    yield "Infinite conductivities taken by a method", len(taken), "= 0"
+    answered = finite[finite["status"] == "ok"]
+    wrong = answered["warning"].isna() & ~_right(answered)
+    yield (
+        f"Numbers more than {LIMIT:g} % wrong ({QUICK_LIMIT:g} % where coarse) without a warning",
+        _count(wrong),
+        "= 0",
+    )
+    refused = solves[solves["status"] == "unsupported"]
+    yield "Refusals without a reason", _count(refused["note"] == ""), "= 0"
+    taken = solves[solves["contrast"] == math.inf]["status"] != "unsupported"
+    yield "Infinite conductivities taken by a method", _count(taken), "= 0"
     for method in methods.compared():
         rows = finite[finite["name"] == method.name]
         # What a method declares that it refuses is no failure.
         rows = rows[rows["contrast"] > 0] if "pores" in method.refuses else rows
         text = f"{method.title}: share of rows at finite contrast that are right, declared refusals left out"
         yield text, _right(rows).mean(), ">= 0.85"
-    yield "FFT in single precision: worst relative difference from double precision", _single(df), 1e-4
+    yield "FFT in single precision: worst relative difference from double precision", _single(df), 1e-6
     far = pick(df, name="lattice", contrast=1e8)
     if len(far):
         off = far["error_percent"].abs().max() / 100
         yield "Lattice: difference between contrast 1e8 and infinity, relative", off, 1e-6
+
+
+def _count(found):
+    """How many are true; None where nothing was asked."""
+    return int(found.sum()) if len(found) else None
 
 
 def _right(rows):

@@ -14,7 +14,7 @@ from demheat import Flux, referee
 from demheat.gallery import EDGE, TEMPERATURES, sphere_in_cube
 from studies.harness import methods
 from studies.harness.figures import BLACK, GREY, LOOK, look
-from studies.harness.pick import extrapolated, mean_errors, order, pick, present, worst
+from studies.harness.pick import mean_errors, order, pick, present, worst
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000, 400_000)
 SEEDS = (0, 1, 2)
@@ -39,6 +39,11 @@ def _cases():
 
 CASES = list(_cases())
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "homogeneous cube": "iterated to 1e-12 of the heat; temperatures are off by that times a part of the condition",
+    "worst error of any contrast": "rows from before twins had their margin; since then 10 000 particles err a third",
+}
 
 
 def QUICK(case):
@@ -67,29 +72,27 @@ def warm_up(name, contrast, **solver):
 def claims(df):
     """Linear temperatures where there is one material; orders and levels of the default's errors.
 
-    Linear fields are exact to rounding. The order expected is two; full rows are held to 0.06 % at 1e5 particles, as in
-    `fig14_single_inclusion`, and to 0.02 % extrapolated.
+    Linear fields are exact to rounding; their limits were 1e-10 and 1e-9. The order expected is two. Levels were held
+    to 0.8 and 0.06 %, as in `fig14_single_inclusion`, before they were known, and now to three times what was found.
+    Nothing is extrapolated: the order that is found is not the one that theory gives.
     """
     laguerre = pick(df, law="laguerre", contrast=1.0)
     text = "homogeneous cube, Laguerre facets, any number of particles:"
-    yield f"{text} worst error of the conductivity", laguerre["error_percent"].abs().max(skipna=False) / 100, 1e-10
-    yield f"{text} worst error of a temperature over the span", laguerre["linear_error"].max(skipna=False), 1e-9
+    yield f"{text} worst error of the conductivity", laguerre["error_percent"].abs().max(skipna=False) / 100, 1e-12
+    yield f"{text} worst error of a temperature over the span", laguerre["linear_error"].max(skipna=False), 1e-11
     sphere = df[df["contrast"] != 1.0]
     yield from present(_size_claims(sphere))
 
 
 def _size_claims(sphere):
-    """Orders, levels and extrapolations of the default; few particles make a coarse start, one packing scatters."""
+    """Orders and levels of the default; few particles make a coarse start, one packing scatters."""
     for first, last, limit in ((1_000, 10_000, ">= 1.4"), (10_000, 400_000, ">= 1.7")):
         orders = _orders(pick(sphere, name="dem"), first, last)
         slowest = None if orders is None else min(orders.values())
         yield f"DEM default, {first} to {last} particles: lowest order in particle size of any contrast", slowest, limit
-    for number, limit in ((10_000, 0.8), (100_000, 0.06)):
+    for number, limit in ((10_000, 0.14), (100_000, 0.014)):
         text = f"DEM default, {number} particles: worst error of any contrast, %"
         yield text, worst(sphere, name="dem", particles=number), limit
-    for coarse, fine, limit in ((3_000, 10_000, 0.3), (10_000, 100_000, 0.02)):
-        text = f"DEM default, extrapolated from {coarse} and {fine} particles: worst error of any contrast, %"
-        yield text, extrapolated(sphere, coarse, fine, name="dem"), limit
 
 
 def _orders(rows, first, last):
@@ -105,7 +108,10 @@ def _orders(rows, first, last):
 
 
 def table(df):
-    """Mean error over packings, %, of each method and contrast against the number of particles, and the order."""
+    """Error, %, of each method and contrast against the number of particles, and the order.
+
+    Of the default that is the mean over three packings up to 100 000 particles; all else is of one packing.
+    """
     import pandas as pd
 
     rows = []

@@ -8,6 +8,8 @@ diffusivity, which is all that a transient between temperatures shows. The paper
 nor a packing fraction; contacts are detected within a gap that gives the wanted mean number.
 """
 
+import numpy as np
+
 from demheat import referee
 from demheat.scene import Material, Scene
 from studies.harness.figures import BLUE, GREEN, GREY, ORANGE, PINK
@@ -20,6 +22,8 @@ SCANNED = (5.5, 6.0, 6.8, 8.0, 8.5)
 NUMBERS, SEEDS = (1_000, 10_000), (0, 1, 2)
 LAWS = ("platonic", "calibrated", "laguerre")
 PHI = 0.64
+# Columns of the paper's table by the letters it uses.
+LETTERS = {"surface": "s", "fraction": "f"}
 TIMEOUT = 3600.0
 
 
@@ -59,21 +63,14 @@ def run(part, method, **case):
 
 
 def _line(neighbours):
-    import numpy as np
-
     from demheat.network.platonic import fraction_factors, surface_factors
 
     n = np.array([neighbours])
-    row = {"surface": float(surface_factors(n)[0]), "fraction": float(fraction_factors(n)[0])}
-    for name, letter in (("surface", "s"), ("fraction", "f")):
-        row[f"printed_{name}"] = PAPER.get(f"{letter}_{neighbours}")
-    return row
+    return {"surface": float(surface_factors(n)[0]), "fraction": float(fraction_factors(n)[0])}
 
 
 def _homogeneous(law, packing, particles, seed, contacts=None):
     """Sum of the capacities, steady conductivity and diffusivity of one packing, relative to the material."""
-    import numpy as np
-
     from demheat import solve
     from demheat.packing.neighbours import contacts as linked
 
@@ -123,20 +120,38 @@ def claims(df):
 
 def _printed_claims(df):
     lines = pick(df, part="table")
-    for name in ("surface", "fraction"):
-        off = referee.value_error(lines[name], lines[f"printed_{name}"], scale=1.0).abs()
+    for name, letter in LETTERS.items():
+        printed_ = _printed(lines, letter).dropna()
+        off = referee.value_error(lines[name][printed_.index], printed_, scale=1.0).abs()
         # The paper cuts digits off.
-        yield f"Table 1 of the paper, {name}: largest difference from what is printed", off.max(), 1e-5
-        # NaN does not count above: the four lines must be there.
-        yield f"Table 1 of the paper, {name}: lines compared", off.notna().sum(), "= 4"
+        yield f"Table 1 of the paper, {name}: largest difference from what is printed", off.max(skipna=False), 1e-5
+        ruled = [_by_rule(letter, n) for n in lines["neighbours"]]
+        off = referee.value_error(lines[name].to_numpy(), np.array(ruled), scale=1.0)
+        # Digits that are cut off two corners grow up to threefold where their line is carried on.
+        text = f"Table 1 of the paper, {name}: largest difference of any of its lines from the printed rule"
+        yield text, np.abs(off).max(), 3e-5
+
+
+def _printed(lines, letter):
+    """What the paper prints for each line, as a column; not-a-number where it is not at hand."""
+    return lines["neighbours"].map(lambda n: PAPER.get(f"{letter}_{n:.0f}", np.nan))
+
+
+def _by_rule(letter, neighbours):
+    """A line of the table from the printed corners by the paper's rule: linear between them, and beyond the last."""
+    corners = {"s": (4, 6, 8, 12, 20), "f": (0, 4, 6, 8, 12)}[letter]
+    values = [PAPER.get(f"{letter}_{n}", 0.0) for n in corners]
+    left = int(np.clip(np.searchsorted(corners, neighbours) - 1, 0, len(corners) - 2))
+    slope = (values[left + 1] - values[left]) / (corners[left + 1] - corners[left])
+    return values[left] + slope * (neighbours - corners[left])
 
 
 def _law_claims(df):
-    for law, limit in (("laguerre", 1e-8), ("calibrated", 1e-6)):
-        rows = pick(df, law=law)
-        text = f"Law {law}, any packing:"
-        yield f"{text} sum of heat capacities off that of the body, relative", _most(rows, "capacity"), 1e-12
-        yield f"{text} steady conductivity off the material's, relative", _most(rows, "conductivity"), limit
+    # Of the calibrated law both are 1 by construction.
+    rows, text = pick(df, law="laguerre"), "Law laguerre, any packing:"
+    # Rounding, and the solver's tolerance.
+    yield f"{text} sum of heat capacities off that of the body, relative", _most(rows, "capacity"), 1e-12
+    yield f"{text} steady conductivity off the material's, relative", _most(rows, "conductivity"), 1e-8
 
 
 def _platonic_claims(df):
@@ -152,7 +167,8 @@ def _platonic_claims(df):
         hidden = referee.value_error(here[["capacity", "conductivity"]], 1.0).abs().max(axis=1, skipna=False)
         share = referee.value_error(here["diffusivity"], 1.0).abs() / hidden
         text = f"Platonic law, {wanted} contacts: error of the diffusivity over the larger of the two that it hides"
-        yield text, share.max(skipna=False), 0.6
+        # Where the default's two errors are alike a fifth of them is left.
+        yield text, share.max(skipna=False), 0.4 if wanted == 7.2 else 0.6
 
 
 def _most(rows, column):
@@ -164,67 +180,78 @@ def _least(rows, column):
 
 
 def table(df):
-    """Means over packings of one size, relative to the material; below, the Platonic law's table and what is printed.
+    """The Platonic law's network over the material, means over packings of one size.
 
     gap is the detection gap over the sum of two radii, most the largest number of contacts, under_2 the part of the
     particles with fewer than two, which are joined to their two nearest.
     """
+    keys, relative = ["packing", "particles", "contacts"], ["capacity", "conductivity", "diffusivity"]
+    rows = pick(df, part="packing", law="platonic")
+    found = rows.groupby(keys)[["phi", *relative, "gap", "most", "under_2"]].mean().reset_index()
+    found[["phi", *relative]] = found[["phi", *relative]].map(lambda value: f"{value:.4f}")
+    return found
+
+
+def notes(df):
+    """The other laws in a sentence; the paper's table, all twenty lines."""
     import pandas as pd
 
-    keys = ["law", "packing", "particles", "contacts"]
-    rows = pick(df, part="packing")
-    columns = ["phi", "capacity", "conductivity", "diffusivity", "gap", "most", "under_2"]
-    grouped = rows.groupby(keys, sort=False, dropna=False)
-    found = grouped[columns].mean().reset_index()
-    found[columns[:4]] = found[columns[:4]].map(lambda value: f"{value:.4f}")
-    lines = pick(df, part="table")[["neighbours", "surface", "printed_surface", "fraction", "printed_fraction"]]
-    lines = lines.map(lambda value: "" if value != value else f"{value:.5f}").assign(
-        neighbours=lines["neighbours"].map(lambda n: f"n = {n:.0f}")
+    from studies.harness.table import markdown
+
+    others = df[df["law"].isin(("calibrated", "laguerre"))]
+    off = max(_most(others, column) for column in ("capacity", "conductivity", "diffusivity"))
+    yield f"With Laguerre's facets, and by construction with calibrated contacts, all three are 1, to {off:.0e}."
+    yield (
+        "Table 1 of the paper: surface s(n) of a link over R^2, and local packing fraction f(n). Printed digits are "
+        "cut off; those that are not at hand here follow by the printed rule, lines between the regular polyhedra and "
+        "between the crystals that are carried on beyond the last."
     )
-    lines.columns = ["law", "capacity", "conductivity", "diffusivity", "gap"]
-    head = pd.DataFrame([dict(zip(lines.columns, ("", "s(n)", "printed", "f(n)", "printed"), strict=True))])
-    whole = pd.concat([found.astype(object), head, lines]).reset_index(drop=True)
-    return whole.fillna("")
+    lines = pick(df, part="table").sort_values("neighbours")
+    shown = {"n": lines["neighbours"].map("{:.0f}".format)}
+    for name, letter in LETTERS.items():
+        printed_ = _printed(lines, letter).map(lambda value: "" if value != value else f"{value:.5f}")
+        ruled = lines["neighbours"].map(lambda n, letter=letter: f"{_by_rule(letter, n):.5f}")
+        shown |= {f"{letter}(n)": lines[name].map("{:.6f}".format), f"{letter} printed": printed_}
+        shown |= {f"{letter} by the rule": ruled}
+    yield markdown(pd.DataFrame(shown))
 
 
 def plot(df):
-    """The law's table; its errors against the number of contacts."""
+    """The law's table in two panels; its errors against the number of contacts."""
     from matplotlib import pyplot
 
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(12, 4.8))
-    _draw_table(left, pick(df, part="table").sort_values("neighbours"))
-    rows = pick(df, part="packing")
-    rows = pick(rows, law="platonic", particles=rows["particles"].max()).sort_values("contacts")
-    looks = (("capacity", "heat capacity", ORANGE), ("conductivity", "conductivity", PINK),
-             ("diffusivity", "diffusivity, the quotient", BLUE))  # fmt: skip
-    for column, label, colour in looks:
-        for packing, marker, dashes in (("lsa", "o", "-"), ("relaxed", "s", "--")):
-            here = pick(rows, packing=packing).groupby("contacts")[column].mean()
-            right.plot(
-                here.index,
-                100 * referee.value_error(here, 1.0),
-                marker + dashes,
-                color=colour,
-                label=f"{label}, {packing}",
-            )
-    right.axhline(0.0, color=GREY, linewidth=1)
-    right.annotate("Laguerre: 0 in all three", (rows["contacts"].min(), 0.0), fontsize=9, color=GREEN, ha="left",
-                   va="bottom")  # fmt: skip
-    right.set(xlabel="mean number of contacts", ylabel="error of the Platonic network, %")
-    right.set_title("Two errors cancel in what a transient shows")
-    right.legend()
+    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8), width_ratios=(1, 1, 1.5))
+    lines = pick(df, part="table").sort_values("neighbours")
+    _draw_table(left, lines, "surface", PINK)
+    left.set(ylabel="surface s(n) of a link, R^2", yscale="log", title="Table 1 of the paper: surfaces")
+    left.set_yticks((1, 2, 5, 10, 20), ("1", "2", "5", "10", "20"))
+    _draw_table(middle, lines, "fraction", BLUE)
+    middle.set(ylabel="local packing fraction f(n)", ylim=(0, 1), title="and packing fractions")
+    _draw_errors(right, df)
     return figure
 
 
-def _draw_table(axes, lines):
-    axes.plot(lines["neighbours"], lines["surface"], "o-", color=PINK, label="surface s(n), in R^2")
-    axes.set(xlabel="neighbours n", ylabel="surface of a link, R^2", yscale="log")
-    other = axes.twinx()
-    other.plot(lines["neighbours"], lines["fraction"], "s-", color=BLUE, label="packing fraction f(n)")
-    axes.plot(lines["neighbours"], lines["printed_surface"], "x", color="black", markersize=10, label="printed")
-    other.plot(lines["neighbours"], lines["printed_fraction"], "x", color="black", markersize=10)
-    other.set(ylabel="local packing fraction", ylim=(0, 1))
-    other.grid(False)
-    handles = [*axes.get_legend_handles_labels()[0], *other.get_legend_handles_labels()[0]]
-    axes.legend(handles=handles, loc="center right")
-    axes.set_title("Table 1 of the paper, from geometry")
+def _draw_table(axes, lines, name, colour):
+    axes.plot(lines["neighbours"], lines[name], "o-", color=colour, label="from geometry")
+    axes.plot(lines["neighbours"], _printed(lines, LETTERS[name]), "x", color="black", markersize=10, label="printed")
+    axes.set(xlabel="neighbours n", xticks=range(0, 21, 4))
+    axes.minorticks_off()
+    axes.legend()
+
+
+def _draw_errors(axes, df):
+    """Errors of capacity, conductivity and their quotient, largest packings."""
+    rows = pick(df, part="packing", law="platonic")
+    rows = rows[rows["particles"] == rows["particles"].max()].sort_values("contacts")
+    looks = (("capacity", "heat capacity", ORANGE), ("conductivity", "conductivity", PINK),
+             ("diffusivity", "diffusivity, their quotient", BLUE))  # fmt: skip
+    for column, label, colour in looks:
+        for packing, marker, dashes in (("lsa", "o", "-"), ("relaxed", "s", "--")):
+            here = pick(rows, packing=packing).groupby("contacts")[column].mean()
+            off = 100 * referee.value_error(here, 1.0)
+            axes.plot(here.index, off, marker + dashes, color=colour, label=label if packing == "lsa" else None)
+    axes.plot([], [], "s--", color=GREY, label="relaxed packings")
+    axes.axhline(0.0, color=GREEN, linewidth=1.5, label="Laguerre: all three")
+    axes.set(xlabel="mean number of contacts", ylabel="error of the Platonic network, %")
+    axes.set_title("Two errors cancel in what a transient shows")
+    axes.legend()

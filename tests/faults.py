@@ -15,7 +15,7 @@ from studies.harness import store
 
 ROOT = Path(__file__).parents[1]
 # What two rows of one case may differ in.
-COSTS = {*store.COST, "when", "load", "triad_gbs", "commit", "beside"}
+COSTS = {*store.COST, "when", "load", "noise", "triad_gbs", "commit", "beside"}
 STUDY = '''"""A study to be killed.
 
 Four rows, each of which starts a process of its own, as solvers do, and takes a while.
@@ -26,6 +26,7 @@ import time
 
 CASES = [{"name": "row", "x": float(k)} for k in range(5)]
 PAPER = {}
+REPEATS = 1
 
 
 def QUICK(case):
@@ -74,7 +75,8 @@ class Toy:
 
     def words(self, *options, python=()):
         """The command of a quick run."""
-        return [sys.executable, *python, "-m", "studies", "run", self.name, "--quick", "--out", str(self.out), *options]
+        words = ["run", self.name, "--quick", "--out", str(self.out), "--wait", "0"]
+        return [sys.executable, *python, "-m", "studies", *words, *options]
 
     def environment(self, **changes):
         """Variables of a run, its mark among them; None takes one away."""

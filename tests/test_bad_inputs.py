@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat import gallery, packing, referee, slices
+from demheat import gallery, packing, referee, slices, streamed
 from demheat.build import network_of
 from demheat.dem import evolve, solve, solve_axes
 from demheat.packing import dispersion, domain, io, lsa, make_packing, neighbours, relax, statistics
@@ -160,6 +160,7 @@ TABLE = [
     (solve, {"scene": CELL, "packing": EIGHT}, {"conforming": or_none(FLAG), "interface": WORD, "replicas": or_none(COUNT)}),
     (solve, {"scene": CELL, "law": "calibrated", "packing": EIGHT}, {"sparse": WORD, "wall": WORD, "coordination": or_none(POSITIVE), "gap": or_none(NUMBER)}),
     (solve, {"scene": CELL, "allow_few": True}, {"particles": COUNT}),
+    (streamed.solve, {"scene": CELL, "folder": "nowhere/none", "particles": 3000}, {"scene": OBJECT, "folder": (None, 5, [], "", "a\0", "."), "law": without(WORD, None), "particles": COUNT, "slabs": or_none((*COUNT, 10**6)), "seed": WHOLE, "tolerance": POSITIVE, "replicas": or_none(COUNT)}),
     (evolve, {"scene": WARMING, "times": [1.0], "allow_few": True}, {"scene": OBJECT, "times": TIMES, "law": WORD, "particles": COUNT, "seed": WHOLE, "packing": or_none(OBJECT)}),
     (evolve, {"scene": WARMING, "times": [1.0], "law": "calibrated", "allow_few": True}, {"integrator": WORD, "accuracy": POSITIVE, "step": or_none(POSITIVE), "wall": WORD, "allow_few": FLAG}),
     (network_of, {"scene": CELL, "packing": EIGHT, "law": demheat.Laguerre()}, {"scene": OBJECT, "packing": OBJECT, "law": WORD}),

@@ -25,7 +25,7 @@ def shell(tmp_path):
 
     def run(line, status=0):
         done = subprocess.run(line, shell=True, cwd=tmp_path, env=os.environ | paths, capture_output=True, text=True)
-        assert done.returncode == status, done.stderr
+        assert done.returncode == status and "WARNING" not in done.stderr, done.stderr
         return done.stdout
 
     return run

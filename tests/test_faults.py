@@ -32,7 +32,7 @@ def test_killed_at_random_moments_and_resumed(toy, right):
         before = toy.rows()
     status, said, _ = toy.run()
     assert status == 0 and toy.rows() == rows and f"{len(before)} already there" in said
-    assert sorted(path.suffix for path in toy.out.iterdir() if path.name[0] != ".") == [".csv", ".md", ".png"]
+    assert sorted(path.suffix for path in toy.out.iterdir() if path.name[0] != ".") == [".csv", ".md", ".png", ".svg"]
 
 
 def test_what_a_row_has_started_ends_with_a_killed_run(tmp_path):

@@ -92,7 +92,7 @@ def test_the_study_runs_and_its_claims_hold():
     quick = [case for case in study.CASES if study.QUICK(case)]
     assert 0 < len(quick) < len(study.CASES)
     df = pandas.DataFrame([case | study.run(**case) for case in quick])
-    from studies.harness.table import claim
+    from studies.harness.claims import claim
 
     claims = [claim(*each) for each in study.claims(df)]
     assert len(claims) == 3 and all(each.ok for each in claims)

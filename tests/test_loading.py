@@ -8,7 +8,7 @@ import pytest
 from imported import MODULES, ROOT
 
 HEAVY = ("numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy", "tifffile", "nrrd")
-HEAVY += ("dask", "distributed", "cloudpickle")
+HEAVY += ("dask", "distributed", "cloudpickle", "zarr")
 # Modules that declare methods: whoever looks for methods imports them all.
 DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(\n    Method", path.read_text(), re.M)]
 

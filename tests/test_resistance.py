@@ -92,6 +92,9 @@ def test_what_cannot_says_so(what):
     # Laws of the DEM say which one can.
     laws = ("facets anywhere", "arithmetic mean", "contacts", "platonic axes", "network")
     assert ("only law 'laguerre' with conforming=True" in str(error.value)) == (what in laws)
+    # Those on voxels why they cannot: it is not the load's fault.
+    voxels = ("voxels", "laminates", "links", "eyre-milton", "voxels, axes")
+    assert ("on voxels temperatures jump nowhere" in str(error.value)) == (what in voxels)
 
 
 @pytest.mark.parametrize("evolve", [partial(fem.evolve, elements="hexahedra"), series.evolve])

@@ -52,7 +52,7 @@ def entries():
 
 
 def _dispersed(name, title, draw, load, accuracy):
-    """Drawn once: another processor, with other last bits, might draw other spheres."""
+    """Drawn once: another kind of processor or C library, with other last bits, might draw other spheres."""
     stored = name in benchmark.names()
     spheres = benchmark.load(name)[0].inclusions if stored else draw()
     return by_multipoles(name, title, Scene(CUBE, MATRIX, spheres, **load), accuracy)

@@ -25,7 +25,7 @@ CYCLE = {
 }
 
 
-def preconditioner(links, diagonal):
+def preconditioner(links, diagonal, coarse=np.float64):
     """One symmetric cycle for A = diag(diagonal) - conductance.
 
     Parameters
@@ -34,6 +34,8 @@ def preconditioner(links, diagonal):
         Symmetric, conductances >= 0.
     diagonal : (n,) float array, W/K
         At least the sum of each row; rows with zero have no equation.
+    coarse : {numpy.float64, numpy.float32}
+        Precision of the levels below the finest.
 
     Returns
     -------
@@ -42,7 +44,8 @@ def preconditioner(links, diagonal):
     """
     scale = 1.0 / diagonal.max()
     aggregates = aggregated(links, len(diagonal))
-    return cycle(links, diagonal, scale, aggregates, _below(kernels.galerkin(links, diagonal, scale, aggregates)))
+    below = _below(kernels.galerkin(links, diagonal, scale, aggregates), coarse)
+    return cycle(links, diagonal, scale, aggregates, below)
 
 
 def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None):
@@ -127,7 +130,7 @@ def level_of(links, diagonal, scale):
     return level
 
 
-def _below(rows):
+def _below(rows, precision):
     """A cycle of pyamg's on the aggregates, of the rows of their matrix."""
     import pyamg
 
@@ -136,14 +139,19 @@ def _below(rows):
     a = sparse.csr_matrix((values, columns, pointers), shape=(count, count))
     with seeded():
         hierarchy = pyamg.ruge_stuben_solver(a, **CYCLE)
-    return lambda r: _cycle(hierarchy, 0, r)
+    if precision == np.float64:
+        return lambda r: _cycle(hierarchy, 0, r)
+    # What is solved directly stays as it is: it is small, and nearly singular.
+    for level in hierarchy.levels[:-1]:
+        level.A, level.P, level.R = (matrix.astype(precision) for matrix in (level.A, level.P, level.R))
+    return lambda r: _cycle(hierarchy, 0, r.astype(precision)).astype(float)
 
 
 def _cycle(hierarchy, depth, r):
     """One V-cycle from zero; pyamg's own solver computes norms besides."""
     level = hierarchy.levels[depth]
     if depth == len(hierarchy.levels) - 1:
-        return hierarchy.coarse_solver(level.A, r)
+        return hierarchy.coarse_solver(level.A, r.astype(float, copy=False)).astype(r.dtype, copy=False)
     x = np.zeros_like(r)
     level.presmoother(level.A, x, r)
     x += level.P @ _cycle(hierarchy, depth + 1, level.R @ (r - level.A @ x))

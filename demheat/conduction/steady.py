@@ -20,7 +20,8 @@ from demheat.process_state import one_blas_thread
 from demheat.progress import stage
 from demheat.scene import Radiation
 
-SOLVERS = ("auto", "cg", "amg")
+SOLVERS = ("auto", "cg", "amg", "amg-single")
+COARSE = {"amg": np.float64, "amg-single": np.float32}
 # Beyond this size multigrid takes fewer CPU-seconds than Jacobi iterations, whose number grows with size and contrast.
 # Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
 # many or fewer at 1e5.
@@ -69,9 +70,9 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
     network : Network
     scene : Scene
         Its load only.
-    solver : {"auto", "cg", "amg"}
-        Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.conduction.multigrid`);
-        "auto" picks by size.
+    solver : {"auto", "cg", "amg", "amg-single"}
+        Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.conduction.multigrid`), whose
+        coarse levels may be in single precision, too; "auto" picks one of the first two by size.
     tolerance : float
         On the norm of the particles' residual heat relative to that of the heat passing through them.
     max_iterations : int
@@ -217,7 +218,7 @@ def check_solver(solver, tolerance):
 
     Parameters
     ----------
-    solver : {"auto", "cg", "amg"}
+    solver : {"auto", "cg", "amg", "amg-single"}
     tolerance : float
         Relative residual, between 1e-15 and 1e-2.
     """
@@ -245,7 +246,7 @@ def _iterate(system, x, solver, tolerance, most, kept):
         size, r, unit = _relative(system, x)
         if size <= tolerance or total >= most:
             break
-        solve = solve or (_multigrid(system, kept) if solver == "amg" else _jacobi(system))
+        solve = solve or (_jacobi(system) if solver == "cg" else _multigrid(system, kept, COARSE[solver]))
         done, x = solve(r, x, 0.9 * tolerance * unit, most - total)
         total += done
     return x, total, size
@@ -287,13 +288,13 @@ def matrix(network, diagonal):
     return (off + sparse.diags(np.where(diagonal > 0, diagonal, 1.0))).tocsr()
 
 
-def _multigrid(system, kept):
+def _multigrid(system, kept, coarse):
     """Conjugate gradients by multigrid, which is kept for another load that leads to the very same matrix."""
     links, diagonal = links_of(system.network), system.diagonal
     conductance, same = kept.get("matrix", (None, diagonal))
     if conductance is not system.network.conductance or not _serves(same, diagonal, kept.get("serves", 1.0)):
         with one_blas_thread():
-            kept["precondition"] = preconditioner(links, diagonal)
+            kept["precondition"] = preconditioner(links, diagonal, coarse)
         kept["matrix"] = system.network.conductance, diagonal
     precondition = kept["precondition"]
 

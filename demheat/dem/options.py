@@ -28,6 +28,7 @@ OTHERS = ("law", "solver", "tolerance", "integrator", "accuracy", "step")
 LOOSE = 0.3
 # Least bytes that a particle takes, found from 560 to 800 where they are many.
 BYTES = 500
+STREAMED = ", or demheat.streamed.solve, which keeps slabs of the body on disk, takes half and less"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -138,7 +139,8 @@ def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic
     own = {field.name for field in fields(Particles)}
     wanted = Particles(particles=particles, seed=seed, **{name: knobs[name] for name in own & knobs.keys()})
     if wanted.packing is None:
-        check_memory("particles", wanted.particles, BYTES * int(wanted.particles))
+        remedy = STREAMED if law == "laguerre" or isinstance(law, Laguerre) else ""
+        check_memory("particles", wanted.particles, BYTES * int(wanted.particles), remedy=remedy)
     return _law(law, {name: value for name, value in knobs.items() if name not in own}), wanted
 
 

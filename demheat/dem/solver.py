@@ -17,10 +17,11 @@ from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
+from demheat.dem.memory import MIB, expected, unknowns
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
-from demheat.progress import stage
+from demheat.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads
@@ -52,7 +53,9 @@ def solve(
         Number of particles of the packing before twins are added at interfaces.
     seed : int
         Of the packing.
-    solver : {"auto", "cg", "amg"}
+    solver : {"auto", "cg", "amg", "amg-single"}
+        Of the equations: conjugate gradients preconditioned by the diagonal, or by multigrid, which "auto" takes for
+        many; "amg-single" spares a tenth of the multigrid's memory and takes as many iterations.
     tolerance : float
         On the relative residual of the heat balance.
     conforming, interface, sparse, wall, coordination, gap : bool, str, str, str, float and float, optional
@@ -158,14 +161,20 @@ def solve_axes(
 def _answers(scenes, law, wanted, **knobs):
     """Solve scenes that differ in their loads only, as they were checked; `knobs` are those of the linear solver."""
     counts = wanted.counts(scenes[0], law)
-    begun = time.perf_counter()
-    with Helper(parts_of(law, wanted.particles)) as helper:
+    begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
+    with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
         packing = wanted.packed(scenes[0], counts)
-        spent = {"packing_s": time.perf_counter() - begun}
+        spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
         networks = networks_of(scenes, packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy
         helper.join()
+    with announced("DEM", needed):
+        return _fields(scenes, networks, law, wanted, spent, **knobs)
+
+
+def _fields(scenes, networks, law, wanted, spent, **knobs):
+    """Solve networks; `spent` is of the fields' stats."""
     fields, kept = [], {}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
@@ -244,8 +253,8 @@ def evolve(
     TypeError
         If neither `evolve` nor the law knows a keyword.
     NotImplementedError
-        For contact laws with wall "surface" where a round wall is loaded or the body a sphere, and for conforming
-        packings of inclusions in round bodies; for implicit integrators where a wall radiates.
+        For contact laws with wall "surface" where the round wall of a cylinder is loaded, and for conforming packings
+        of inclusions in round bodies; for implicit integrators where a wall radiates.
     RuntimeError
         If steps or linear solves do not converge.
 

@@ -1,4 +1,4 @@
-"""Images of labels from files: NumPy, TIFF, raw bytes with a MetaImage header, NRRD.
+"""Images of labels from files: NumPy, TIFF, raw bytes with a MetaImage header, NRRD, zarr.
 
 =========== ====================================================================================================
 suffix      what is read
@@ -7,9 +7,10 @@ suffix      what is read
 .tif .tiff  a stack of pages of one channel: columns are x, rows y, pages z; mapped if neither packed nor in pieces
 .mhd .mha   MetaImage: a header as text, with the raw bytes in a file of their own or behind it, x fastest; mapped
 .nrrd .nhdr as pynrrd reads it, x fastest
+.zarr       a folder with one (nx, ny, nz) array, read a layer of chunks at a time
 =========== ====================================================================================================
 
-What is mapped passes slab by slab into the smallest type that holds the labels.
+What is mapped or in chunks passes slab by slab into the smallest type that holds the labels.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from pathlib import Path
 
 import numpy as np
 
-from demheat.files.source import nearest, shown
+from demheat.files.source import nearest_file, shown
 from demheat.limits import check_free
 from demheat.paths import checked_path
 from demheat.scene import Image, Material
@@ -42,6 +43,8 @@ ELEMENTS = {
     "MET_FLOAT": "f4",
     "MET_DOUBLE": "f8",
 }
+# What a folder is called that zarr reads.
+CHUNKED = ".zarr"
 # A header has some twenty lines.
 LONGEST = 2**16
 # MetaImages tell lengths in millimetres; units of an NRRD.
@@ -99,7 +102,7 @@ def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
     if voxel is None and own is None:
         raise ValueError(f"{path}: does not tell the edges of a voxel; voxel must be given, in metres")
     try:
-        check_free(path, labels.size * min(labels.itemsize, 2))
+        check_free(path, math.prod(labels.shape) * min(labels.dtype.itemsize, 2))
         return Image(labels, own if voxel is None else voxel, materials)
     except ValueError as error:
         told = str(error)
@@ -107,12 +110,14 @@ def read_image(path, *, materials: Mapping[int, Material], voxel=None) -> Image:
 
 
 def _check_there(path: Path):
-    if path.is_file():
+    chunked = path.suffix.lower() == CHUNKED
+    if path.is_dir() if chunked else path.is_file():
         return
+    if path.exists() and chunked:
+        raise ValueError(f"{path}: must be a folder, as zarr writes one")
     if path.exists():
         raise ValueError(f"{path}: must be a regular file, no folder, device or pipe")
-    beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
-    raise ValueError(f"{path}: there is no such file{nearest(path.name, beside)}")
+    raise ValueError(f"{path}: there is no such file{nearest_file(path)}")
 
 
 def _npy(path):
@@ -279,6 +284,33 @@ def _nrrd(path):
     return labels, _spacings(header)
 
 
+class _Chunks:
+    """An array of zarr; what its decoders happen to raise is one ValueError of the file."""
+
+    def __init__(self, path, array):
+        self.path, self.array, self.chunks = path, array, tuple(array.chunks)
+        self.shape, self.dtype, self.ndim = tuple(array.shape), np.dtype(array.dtype), array.ndim
+
+    def __getitem__(self, part):
+        try:
+            with _one_line(self.path, "zarr array"):
+                return np.asarray(self.array[part])
+        except OSError as error:
+            raise ValueError(f"{self.path}: cannot be read: {error.strerror or error}") from None
+
+
+def _zarr(path):
+    try:
+        import zarr
+    except ImportError:
+        raise ImportError(f"{path}: zarr arrays need zarr; pip install zarr, or demheat[zarr]") from None
+    with _one_line(path, "zarr array"):
+        array = zarr.open(str(path), mode="r")
+        if not hasattr(array, "chunks"):
+            raise ValueError(f"{path}: is a group; must be one array, such as one in this folder")
+        return _Chunks(path, array), None
+
+
 def _spacings(header):
     """Edges of a voxel in metres, or None where lengths or their unit are not told."""
     units = header.get("space units", header.get("units"))
@@ -301,4 +333,5 @@ READERS = {
     ".mha": _meta,
     ".nrrd": _nrrd,
     ".nhdr": _nrrd,
+    CHUNKED: _zarr,
 }

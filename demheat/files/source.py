@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import re
 import stat
+from difflib import SequenceMatcher
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,6 +22,8 @@ LONGEST = 2**24
 SHOWN = 60
 # Letters at least of a word within another.
 PART = 4
+# Of names of files: three of four letters.
+ALIKE = 0.75
 POSITION = re.compile(r"(.*) \(at (?:line (\d+), column (\d+)|end of document)\)")
 # As "x+ = 5".
 UNQUOTED = re.compile(r"\s*\w+\+")
@@ -116,7 +119,7 @@ def text_of(path: Path, longest: int) -> str:
         data = path.read_bytes()
     except OSError as error:
         told = "there is no such file" if isinstance(error, FileNotFoundError) else error.strerror
-        raise ValueError(f"{path}: cannot be read: {told}{_near_file(path)}") from None
+        raise ValueError(f"{path}: cannot be read: {told}{nearest_file(path)}") from None
     if b"\0" in data:
         line = data[: data.index(b"\0")].count(b"\n") + 1
         raise ValueError(f"{path}:{line}: zero bytes, as in a binary file or UTF-16; must be text in UTF-8")
@@ -165,10 +168,19 @@ def nearest(word: str, words) -> str:
     return f"; did you mean {lower[found[0]]!r}?" if found else ""
 
 
-def _near_file(path):
-    """Files beside it with a name like it."""
+def nearest_file(path: Path) -> str:
+    """A suggestion for a file that is not there: one beside it whose name before the dot is like its; or empty.
+
+    Parameters
+    ----------
+    path : Path
+    """
     try:
         names = [each.name for each in path.parent.iterdir()]
     except OSError:
         return ""
-    return nearest(path.name, names) if path.name else ""
+    # Endings are alike in most folders, and say nothing.
+    stem = path.stem.lower()
+    alike = [each for each in names if SequenceMatcher(None, stem, Path(each).stem.lower()).ratio() >= ALIKE]
+    found = difflib.get_close_matches(path.name, alike, n=1, cutoff=0.0)
+    return f"; did you mean {found[0]!r}?" if found else ""

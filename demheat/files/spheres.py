@@ -6,7 +6,7 @@ import csv
 import io
 from fractions import Fraction
 
-from demheat.files.source import nearest, shown, text_of
+from demheat.files.source import nearest, nearest_file, shown, text_of
 from demheat.files.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
 from demheat.limits import free_memory
 from demheat.paths import checked_path
@@ -81,8 +81,7 @@ def _within(rows, offset, size):
 
 def _check_there(table, path):
     if not path.exists():
-        beside = [each.name for each in path.parent.iterdir()] if path.parent.is_dir() else []
-        told = f" = {shown(table.values['file'])}: there is no such file{nearest(path.name, beside)}"
+        told = f" = {shown(table.values['file'])}: there is no such file{nearest_file(path)}"
         raise table.error("file", told)
 
 

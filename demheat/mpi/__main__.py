@@ -1,24 +1,33 @@
-"""`mpiexec -n 2 python -m demheat.mpi scene.toml --particles 1000000`.
+"""`mpiexec -n 2 python -m demheat.mpi scene.toml --particles 1000000`, or `--method fft --voxels 256`.
+
+Methods besides DEM are found where their folder has a module `ranks`.
 
 Exit status as that of `demheat`: 0; 1 if the solve was refused or failed; 2 for bad input, which one line names.
 """
 
 from __future__ import annotations
 
+import inspect
 import sys
 import traceback
 import warnings
+from importlib import import_module
+from importlib.util import find_spec
 
 import numpy as np
 
+from demheat import ranks
 from demheat.commands.options import Parser
+from demheat.declared import found, path_of
 from demheat.files import read
+from demheat.files.source import nearest
 from demheat.mpi.engines import world
 
 # What all ranks raise alike, before anything heavy, and the exit status of each.
 STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, ImportError: 1}
 ALIKE = tuple(STATUS)
-STAGES = ("packing", "cells", "solve", "field")
+# Words of the command line and the keywords of `solve` that they are.
+KNOBS = {name: name for name in ("particles", "seed", "replicas", "voxels", "size", "tolerance")} | {"petsc": "options"}
 
 
 def main(words=None) -> int:
@@ -32,7 +41,8 @@ def main(words=None) -> int:
     comm = None
     try:
         options = _parser().parse_args(words)
-        comm = world()
+        # What is heavy loads once MPI is known to be there.
+        comm = world() if options.method == "dem" else ranks.found(instead="demheat solve")[0].COMM_WORLD
         if comm.rank:
             warnings.simplefilter("ignore")
         _run(options, comm)
@@ -49,15 +59,12 @@ def main(words=None) -> int:
 
 
 def _run(options, comm):
-    # What is heavy loads once MPI is known to be there.
-    from demheat import mpi
-    from demheat.mpi.solver import outlook
-
+    solver, knobs = _solver(options.method)
+    knobs = knobs | _asked(options, solver)
     scene = read(options.scene)
     say = print if comm.rank == 0 else _silent
-    say(f"{options.scene}: {options.particles} particles, {outlook(options.particles)}", flush=True)
-    knobs = {"seed": options.seed, "tolerance": options.tolerance, "replicas": options.replicas}
-    field = mpi.solve(scene, particles=options.particles, options=options.petsc, **knobs)
+    say(f"{options.scene}: {solver.outlook(scene, **knobs)}", flush=True)
+    field = solver.solve(scene, **knobs)
     _say_answer(field, say)
     if options.at:
         points = np.array(options.at)
@@ -73,6 +80,36 @@ def _run(options, comm):
         say(f"  written       {options.write}")
 
 
+def _solver(name):
+    """The module that solves by a method on ranks, and the knobs that the method fixes."""
+    if name == "dem":
+        return import_module("demheat.mpi.solver"), {}
+    if name not in found():
+        raise ValueError(f"--method {name}: no such method{nearest(name, found()) or f'; on ranks are {_on_ranks()}'}")
+    if not _has_ranks(name):
+        raise NotImplementedError(f"--method {name}: not on ranks, as are {_on_ranks()}; demheat solve runs it")
+    return import_module(f"{path_of(found()[name].module)}.ranks"), dict(found()[name].knobs)
+
+
+def _has_ranks(name):
+    method = found()[name]
+    return method.call == "solve" and find_spec(f"{path_of(method.module)}.ranks") is not None
+
+
+def _on_ranks():
+    return ", ".join(dict.fromkeys(["dem", *(found()[name].module for name in found() if _has_ranks(name))]))
+
+
+def _asked(options, solver):
+    """Knobs of the command line."""
+    given = {word: getattr(options, word) for word in KNOBS if getattr(options, word) is not None}
+    takes = inspect.signature(solver.solve).parameters
+    for word in given:
+        if KNOBS[word] not in takes:
+            raise ValueError(f"--{word}: no option of method {options.method}; must be left out")
+    return {KNOBS[word]: value for word, value in given.items()}
+
+
 def _say_answer(field, say):
     stats = field.stats
     try:
@@ -82,7 +119,7 @@ def _say_answer(field, say):
     for name, heat in field.wall_heat.items():
         say(f"  heat at {name}    {heat:.9g} W into the body")
     say(f"  unknowns      {stats['unknowns']}, residual {stats['residual']:.2g}, {stats['iterations']} iterations")
-    for name in STAGES:
+    for name in (key.removesuffix("_cpu_s") for key in stats if key.endswith("_cpu_s")):
         wall, cpu, most = (stats[f"{name}_{unit}"] for unit in ("s", "cpu_s", "bytes"))
         say(f"  {name:<13} {wall:.3g} s, {cpu:.3g} CPU-s on {stats['ranks']} ranks, {most / 2**30:.3g} GiB so far")
     more = stats["bytes"] - stats["bytes_before"]
@@ -96,14 +133,17 @@ def _say_answer(field, say):
 def _parser():
     parser = Parser(prog="python -m demheat.mpi", description=__doc__.splitlines()[0], allow_abbrev=False)
     parser.add_argument("scene", metavar="SCENE.toml")
-    parser.add_argument("--particles", type=int, default=1_000_000)
-    parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--tolerance", type=float, default=1e-8)
+    parser.add_argument("--method", default="dem", metavar="NAME", help="dem, which is the default, fft or fem")
+    parser.add_argument("--particles", type=int, help="of dem; default: 1000000")
+    parser.add_argument("--voxels", type=int, help="of fft, along the longest side; default: 128, or an image's")
+    parser.add_argument("--size", type=float, metavar="METRES", help="of fem, the longest edge; default: by the body")
+    parser.add_argument("--seed", type=int)
+    parser.add_argument("--tolerance", type=float, help="default: 1e-8 of dem, 1e-5 of fft, 1e-9 of fem")
     parser.add_argument("--replicas", type=int, help="of a smaller packing along the shortest side; default: by size")
     parser.add_argument("--at", type=float, nargs=3, action="append", metavar=("X", "Y", "Z"), help="in metres, again")
     parser.add_argument("--interval", action="store_true", help="solve with fewer particles too, and tell the error")
     parser.add_argument("--write", metavar="FILE.npz", help="samples of all particles")
-    parser.add_argument("--petsc", default="", metavar="OPTIONS", help="such as --petsc='-pc_type hypre'")
+    parser.add_argument("--petsc", metavar="OPTIONS", help="such as --petsc='-pc_type hypre'")
     return parser
 
 

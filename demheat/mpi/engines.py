@@ -2,12 +2,7 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-
-NEEDED = (
-    "demheat.mpi needs mpi4py and petsc4py, which this Python does not find ({}): see the page mpi of the manual for "
-    "their commands; without them demheat.solve does the same on one machine"
-)
+from demheat import ranks
 
 
 def world():
@@ -22,8 +17,7 @@ def world():
     ImportError
         In one line, if MPI or PETSc is missing.
     """
-    petsc()
-    return _found("mpi4py.MPI").COMM_WORLD
+    return _both()[0].COMM_WORLD
 
 
 def petsc():
@@ -34,13 +28,8 @@ def petsc():
     ImportError
         In one line, if it is missing.
     """
-    # MPI first: both then share one.
-    _found("mpi4py.MPI")
-    return _found("petsc4py.PETSc")
+    return _both()[1]
 
 
-def _found(name):
-    try:
-        return import_module(name)
-    except (ImportError, RuntimeError) as error:  # mpi4py says so of a missing MPI
-        raise ImportError(NEEDED.format(" ".join(str(error).split()))) from None
+def _both():
+    return ranks.found("petsc4py.PETSc", instead="demheat.solve")

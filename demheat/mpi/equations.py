@@ -16,10 +16,8 @@ from demheat.conduction.balance import System, residual, throughput
 from demheat.conduction.multigrid import aggregated, cycle
 from demheat.mpi.numbers import Halo
 from demheat.network.links_kernels import Links
+from demheat.petsc import PREFIX, conjugate_gradients, know
 
-# PETSc's own algebraic multigrid below the finest level, by smoothed aggregates.
-DEFAULTS = {"pc_type": "gamg", "pc_gamg_type": "agg", "pc_gamg_agg_nsmooths": "1", "pc_gamg_threshold": "0.01"}
-PREFIX = "demheat_"
 # Solved anew so often: the heat that passes, which sets the limit, is known only once the solution nearly is.
 ROUNDS, MOST = 10, 20_000
 
@@ -40,7 +38,7 @@ class Equations:
 
     def __init__(self, system: System, halo: Halo, options, petsc, comm):
         self.petsc, self.comm, self.own = petsc, comm, halo.own
-        _know(options, petsc)
+        know(options, petsc)
         rows = own_rows(system, self.own)
         sizes = ((self.own, None), (self.own, None))
         self.matrix = petsc.Mat().createPython(sizes, _Balance(*rows, halo), comm=comm)
@@ -240,29 +238,11 @@ class _Below:
             each.destroy()
 
 
-def _know(options, petsc):
-    """Tell PETSc its options."""
-    known = petsc.Options()
-    for name, value in DEFAULTS.items():
-        known[PREFIX + name] = value
-    words = options.split()
-    known.insertString(" ".join("-" + PREFIX + word[1:] if _is_name(word) else word for word in words))
-
-
 def _solver(matrix, cycle, petsc, comm):
-    solver = petsc.KSP().create(comm)
-    solver.setOptionsPrefix(PREFIX)
-    solver.setType("cg")
-    solver.setNormType(petsc.KSP.NormType.UNPRECONDITIONED)
-    solver.setOperators(matrix)
-    solver.setFromOptions()
+    solver = conjugate_gradients(matrix, petsc, comm)
     # After the options, which are those of the preconditioner below.
     outer = solver.getPC()
     outer.setType("python")
     outer.setPythonContext(cycle)
     solver.setUp()
     return solver
-
-
-def _is_name(word):
-    return word[0] == "-" and word[1:2].isalpha()

@@ -8,13 +8,12 @@ import numpy as np
 
 from demheat.conduction.steady import Solution
 from demheat.field import Field, Samples
-from demheat.mpi.cells import Cells, own_part
-from demheat.mpi.slabs import Slabs
-from demheat.network.base import SIDES
 from demheat.packing.base import wrap
-from demheat.sampling.field_of import between_walls, heat_through, samplers
-from demheat.sampling.fluxes import mean_flux
+from demheat.sampling.field_of import heat_through, samplers
 from demheat.scene import Scene
+from demheat.tiles.cells import Cells
+from demheat.tiles.slabs import Slabs
+from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
 def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, **more) -> Field:
@@ -37,23 +36,16 @@ def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm,
         Its `samples` gather all particles on every rank; temperatures and fluxes at points are those of the ranks in
         whose slabs the points lie.
     """
-    network = own_part(cells.network, cells.own)
-    mine = cells.network.wall_particle < cells.own
-    own = solution._replace(wall_temperature=solution.wall_temperature[mine], wall_heat=solution.wall_heat[mine])
-    local = (mean_flux if scene.periodic else between_walls)(network, scene, own)
-    volumes = np.bincount(network.phase, network.volumes, len(scene.materials))
-    temperature, heat = _walls(scene, network, own, comm)
+    network, own = own_of(cells, solution)
+    sums = Sums(*(_sum(comm, each) for each in sums_of(scene, network, own)))
     at = cache(lambda: samplers(scene, cells.network, solution)[1:])
-    told = {"scene": scene, "slabs": slabs, "comm": comm}
+    where = {"scene": scene, "slabs": slabs, "comm": comm}
     return Field(
         scene=scene,
-        mean_flux=_sum(comm, local),
-        fractions=_sum(comm, volumes) / _sum(comm, volumes).sum(),
+        **told(scene, sums),
         sampler=lambda: _gathered(samplers(scene, network, own)[0](), cells.own, comm),
-        temperature_at=lambda points: _at(points, lambda: at()[0], slope=solution.mean_gradient, **told),
-        flux_at=lambda points: _at(points, lambda: at()[1], slope=None, **told),
-        wall_temperature=temperature,
-        wall_heat=heat,
+        temperature_at=lambda points: _at(points, lambda: at()[0], slope=solution.mean_gradient, **where),
+        flux_at=lambda points: _at(points, lambda: at()[1], slope=None, **where),
         through=lambda axis, position: float(_sum(comm, heat_through(network, own, axis, position))),
         **more,
     )
@@ -62,19 +54,6 @@ def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm,
 def _sum(comm, values):
     """Over all ranks."""
     return np.asarray(comm.allreduce(np.asarray(values, dtype=float)))
-
-
-def _walls(scene, network, solution, comm):
-    """Mean temperature of each loaded wall, and the heat that enters by it."""
-    temperature, heat = {}, {}
-    for name in scene.walls or {}:
-        here = network.wall_side == SIDES.index(name)
-        known = here & np.isfinite(solution.wall_temperature)
-        area = network.wall_area[known]
-        warm, whole = _sum(comm, [float(area @ solution.wall_temperature[known]), float(area.sum())])
-        temperature[name] = warm / whole if whole > 0 else float("nan")
-        heat[name] = float(_sum(comm, solution.wall_heat[here].sum()))
-    return temperature, heat
 
 
 def _gathered(samples, own, comm):

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.spatial import cKDTree
 
-from demheat.mpi.slabs import Slabs
 from demheat.packing.base import wrap
-
-# Two ranks make one particle of the same numbers: so far apart, in radii, they are two.
-SAME = 1e-6
-NOBODY = -1
+from demheat.tiles.places import NOBODY, found_at
+from demheat.tiles.slabs import Slabs
 
 
 def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:
@@ -41,25 +37,13 @@ def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:
     owner = slabs.owner(centers)
     rows = [np.flatnonzero(owner == rank) for rank in range(comm.size)]
     asked = comm.alltoall([centers[each] for each in rows])
-    told = comm.alltoall([_found(points, network.centers[:own], slabs) for points in asked])
+    told = comm.alltoall([found_at(points, network.centers[:own], slabs) for points in asked])
     for each, found, rank in zip(rows, told, range(comm.size), strict=True):
         start = comm.bcast(first, root=rank)
         numbers[own + each] = np.where(found >= 0, start + found, NOBODY)
     if np.any(numbers[network.indices[: network.indptr[own]]] == NOBODY):
         raise RuntimeError("demheat.mpi: a particle beside a rank's own is unknown to its owner")
     return numbers
-
-
-def _found(points, own, slabs):
-    """Which of a rank's own particles lies at each point; -1 where none does."""
-    if not len(points):
-        return np.empty(0, dtype=np.int64)
-    x, slack = own[:, slabs.axis], SAME * slabs.unit
-    near = np.flatnonzero((x >= points[:, slabs.axis].min() - slack) & (x <= points[:, slabs.axis].max() + slack))
-    if not len(near):
-        return np.full(len(points), NOBODY)
-    away, place = cKDTree(own[near]).query(points)
-    return np.where(away <= slack, near[place], NOBODY)
 
 
 def linked(network, own: int) -> np.ndarray:

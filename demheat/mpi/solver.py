@@ -2,34 +2,28 @@
 
 from __future__ import annotations
 
-import ctypes
-import gc
-import os
-import resource
-import sys
-import time
 import warnings
-from contextlib import contextmanager, suppress
 from dataclasses import replace
 
 import numpy as np
 
-from demheat import dem
+from demheat import dem, ranks
 from demheat.conduction.balance import at_walls, linear_start, system_of
 from demheat.conduction.steady import Solution, check_solver
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.field import Field
 from demheat.laws import Laguerre
-from demheat.limits import check_memory, free_memory
 from demheat.mpi.cells import cells_of, check_unknowns, part_of
 from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
-from demheat.mpi.numbers import NOBODY, Halo, linked, numbers_of
-from demheat.mpi.slabs import slabs_of
+from demheat.mpi.numbers import Halo, linked, numbers_of
+from demheat.ranks import Costs, check_fits, cores, give_back, here
 from demheat.scene import Scene, check_scene
 from demheat.threads import limited
+from demheat.tiles.places import NOBODY
+from demheat.tiles.slabs import slabs_of
 
 # Least bytes that a particle takes at the peak, all ranks together, where they are many: about as many for what a rank
 # sees as for solving for what it owns.
@@ -87,35 +81,21 @@ def solve(
     _check(scene, law, wanted, tolerance)
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
-    share = _on_this_machine(comm)
-    _check_memory(particles, share, comm)
-    with limited(max(1, _cores() // share)):
+    check_fits("particles", particles, BYTES * float(particles), comm)
+    with limited(max(1, cores() // here(comm))):
         return _answer(scene, law, wanted, comm, tolerance=tolerance, options=options)
 
 
-def needed(particles: int, here: int, ranks: int) -> float:
-    """Bytes that a solve takes at its peak on one machine.
-
-    Parameters
-    ----------
-    particles : int
-    here, ranks : int
-        Ranks on this machine, and all of them.
-    """
-    return BYTES * float(particles) * here / ranks
-
-
-def outlook(particles: int) -> str:
+def outlook(scene: Scene, *, particles: int = 1_000_000, **_) -> str:
     """What a solve will take on this machine, in words.
 
     Parameters
     ----------
+    scene : Scene
     particles : int
+        As `solve` takes it; the scene and other knobs change nothing.
     """
-    comm = world()
-    here = _on_this_machine(comm)
-    gib = needed(particles, here, comm.size) / 2**30
-    return f"about {gib:.2g} GiB on this machine for {here} of {comm.size} ranks, {free_memory() / 2**30:.3g} are free"
+    return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
 
 
 def _check(scene, law, wanted, tolerance):
@@ -130,61 +110,8 @@ def _check(scene, law, wanted, tolerance):
     wanted.counts(scene, law)
 
 
-def _check_memory(particles, share, comm):
-    """Refuse on all ranks what does not fit where one of them is."""
-    refused = None
-    try:
-        check_memory("particles", particles, needed(particles, share, comm.size))
-    except ValueError as error:
-        refused = str(error)
-    refused = next(filter(None, comm.allgather(refused)), None)
-    if refused:
-        raise ValueError(refused)
-
-
-def _on_this_machine(comm):
-    """How many ranks share this machine."""
-    return comm.Split_type(sys.modules["mpi4py.MPI"].COMM_TYPE_SHARED).size
-
-
-def _cores():
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-class _Costs:
-    """Seconds of each stage and bytes at the peak, of all ranks."""
-
-    def __init__(self, comm):
-        self.comm, self.stages = comm, {}
-        self.before = comm.allreduce(_peak())
-
-    @contextmanager
-    def of(self, name):
-        wall, cpu = time.perf_counter(), time.process_time()
-        yield
-        give_back()
-        took = self.comm.allreduce(time.process_time() - cpu)
-        slowest = max(self.comm.allgather(time.perf_counter() - wall))
-        self.stages |= {f"{name}_s": slowest, f"{name}_cpu_s": took, f"{name}_bytes": self.comm.allreduce(_peak())}
-
-    def told(self):
-        return self.stages | {"bytes": self.comm.allreduce(_peak()), "bytes_before": self.before}
-
-
-def give_back() -> None:
-    """Return freed memory to the system: what one stage has freed would else stand beside what the next one takes."""
-    gc.collect()
-    with suppress(OSError, AttributeError):
-        ctypes.CDLL(None).malloc_trim(0)
-
-
-def _peak():
-    """Bytes that this process has held at most."""
-    return 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-
-
 def _answer(scene, law, wanted, comm, **how):
-    costs, slabs = _Costs(comm), slabs_of(scene, wanted.particles, comm.size, comm.rank)
+    costs, slabs = Costs(comm), slabs_of(scene, wanted.particles, comm.size, comm.rank)
     with costs.of("packing"):
         made = [part_of(scene, law, wanted, slabs, comm)]
     with costs.of("cells"):

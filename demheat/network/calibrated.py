@@ -26,6 +26,12 @@ LEAST_GAP = 1e-3
 # Packings are layered near a wall. Under a linear field their links were found to carry 4 % less than in the bulk at 3
 # mean radii from it, 1.5 % less at 5, and as much within the scatter of 0.5 % from 6 on.
 LAYER = 6.0
+# Least radius of a sphere with a bulk, in widths of that layer.
+THICK = 1.5
+_NO_BULK = (
+    "wall = 'surface': the packing of size {} has no bulk {:g} mean radii away from its walls; use more particles or "
+    "wall = 'center'"
+)
 
 
 def contact_facets(packing, law: Calibrated) -> Facets:
@@ -42,9 +48,9 @@ def contact_facets(packing, law: Calibrated) -> Facets:
     -------
     Facets
         Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
-        areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls;
-        links to a round one then are as long as centres are away from it. What `sparse = "drop"` takes out has neither
-        links nor volume (see `demheat.network.laguerre.drop_empty_cells`).
+        areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls
+        and that of a sphere; links to that of a cylinder then are as long as centres are away from it. What `sparse =
+        "drop"` takes out has neither links nor volume (see `demheat.network.laguerre.drop_empty_cells`).
 
     Raises
     ------
@@ -117,7 +123,8 @@ def surface_distances(facets, packing):
     factor a of each axis makes a linear field right on average: under T = x the network's mean flux along x over a
     column from wall to wall, (sum over links of H b_x^2 + sum over wall links of H h^2) / volume with H in units of k
     and b the branch vector, equals its value in the bulk, `LAYER` mean radii away from the walls. What links lack in
-    the layer at the wall, where there are fewer of them, the wall links thus make up for. All links scale with C_t.
+    the layer at the wall, where there are fewer of them, the wall links thus make up for. All links scale with C_t. In
+    a sphere the field is T = r, the distance from its centre, and the flux the mean radial one.
 
     Parameters
     ----------
@@ -141,6 +148,8 @@ def surface_distances(facets, packing):
     facets, factor = facets._replace(wall_distance=distance), np.ones(len(distance))
     for axis in _flat_walls(packing):
         factor[facets.wall_side // 2 == axis] = _wall_factor(facets, packing, axis)
+    if packing.domain == "sphere":
+        factor[:] = _sphere_factor(facets, packing)
     return distance / factor
 
 
@@ -166,22 +175,49 @@ def _wall_factor(facets, packing, axis):
     column = _side_depth(packing, axis) >= layer
     reaching = column[facets.wall_particle] & (facets.wall_side // 2 == axis)
     if not column.any() or length <= 3 * layer:
-        raise ValueError(
-            f"wall = 'surface': the packing of size {packing.size.tolist()} has no bulk {LAYER:g} mean radii away from "
-            "its walls; use more particles or wall = 'center'"
-        )
+        raise ValueError(_NO_BULK.format(packing.size.tolist(), LAYER))
     rows = row_numbers(facets.indptr)
     inside = column[rows]
     rows, columns = rows[inside], facets.indices[inside]
     x = packing.centers[:, axis]
     low, high = np.minimum(x[rows], x[columns]), np.maximum(x[rows], x[columns])
-    # Half of H b_x for each end of a link, with facets that divide the link by the radii.
-    share = packing.radii[rows] / (packing.radii[rows] + packing.radii[columns])
-    flow = 0.5 * facets.area[inside] * share / facets.distance[inside] * (high - low)
+    flow = 0.5 * _conductances(facets, packing, rows, inside) * (high - low)
     within = np.minimum(high, length - layer) - np.maximum(low, layer)
     bulk = flow @ np.maximum(within, 0.0) / (length - 2 * layer)
     lacking = bulk * length - flow @ (high - low)
     carried = facets.wall_area[reaching] @ facets.wall_distance[reaching]
+    return _made_up(lacking, carried)
+
+
+def _sphere_factor(facets, packing):
+    """Factor a of `surface_distances` for the wall of a sphere.
+
+    Under T = r a conductivity k has as the integral of its radial flux k times the volume. Within a layer's width of
+    the centre, or half of the bulk's radius if that is less, links are too long for T to be even along them: left out.
+    """
+    layer, radius = LAYER * np.mean(packing.radii), packing.size[0] / 2
+    if radius <= THICK * layer:
+        raise ValueError(_NO_BULK.format(packing.size.tolist(), LAYER))
+    begin, end = min(layer, (radius - layer) / 2), radius - layer
+    r = np.linalg.norm(packing.centers - packing.size / 2, axis=1)
+    rows = row_numbers(facets.indptr)
+    low, high = np.minimum(r[rows], r[facets.indices]), np.maximum(r[rows], r[facets.indices])
+    flow = 0.5 * _conductances(facets, packing, rows) * (high - low)
+    volume = 4 / 3 * np.pi * (np.array([end, radius]) ** 3 - begin**3)
+    bulk = flow @ np.maximum(np.minimum(high, end) - np.maximum(low, begin), 0.0) / volume[0]
+    lacking = bulk * volume[1] - flow @ np.maximum(high - np.maximum(low, begin), 0.0)
+    return _made_up(lacking, facets.wall_area @ facets.wall_distance)
+
+
+def _conductances(facets, packing, rows, inside=slice(None)):
+    """Conductances of links over the conductivity, with facets that divide them by the radii."""
+    columns = facets.indices[inside]
+    share = packing.radii[rows] / (packing.radii[rows] + packing.radii[columns])
+    return facets.area[inside] * share / facets.distance[inside]
+
+
+def _made_up(lacking, carried):
+    """What wall links make up for, over what they carry."""
     if not (lacking > 0 and carried > 0):
         raise ValueError(
             "wall = 'surface': the network has no layer at its walls with fewer links than inside, or no particle "

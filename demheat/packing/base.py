@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.powers import cubed
 from demheat.scene.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals
 
@@ -56,7 +57,7 @@ class Packing(NamedTuple):
     @property
     def phi(self) -> float:
         """Sum of the sphere volumes over the volume of the domain (overlaps counted twice)."""
-        return float(4.0 / 3.0 * np.pi * np.sum(self.radii**3) / self.volume)
+        return float(4.0 / 3.0 * np.pi * np.sum(cubed(self.radii)) / self.volume)
 
     def scaled(self, factor: float) -> Packing:
         """The same packing with every length multiplied by `factor`, which must be > 0."""
@@ -177,7 +178,7 @@ def morton_order(centers, size):
     centers : (n, 3) float array, m
     size : (3,) float array, m
     """
-    steps = np.clip(centers / np.max(size), 0.0, 1.0) * (2**MORTON_BITS - 1)
+    steps = np.clip(centers / np.max(size), 0.0, 1.0) * ((1 << MORTON_BITS) - 1)
     x, y, z = (_spread_bits(column) for column in steps.astype(np.uint64).T)
     return np.argsort(x | (y << np.uint64(1)) | (z << np.uint64(2)), kind="stable")
 

@@ -19,15 +19,19 @@ from demheat.packing.io import npz
 from demheat.packing.lsa import lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.packing.relax import relax
+from demheat.powers import cube_root
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 3
 ARRAYS = ("centers", "radii", "size", "periodic", "provenance", "domain")
 RELAX = (
     "demheat.scene.bodies",
+    "demheat.powers",
     *(f"demheat.packing.{part}" for part in ("base", "radii", "cells_kernels", "neighbours", "relax_kernels", "relax")),
 )
 LSA = (*RELAX, "demheat.packing.lsa_kernels", "demheat.packing.motion", "demheat.packing.lsa")
+# Of what is asked for, what no packing that is made depends on.
+IDLE = ("progress", "allow_few")
 
 
 def cache_folder() -> Path:
@@ -185,7 +189,7 @@ def _of_shape(maker, modules, request, size, radii, periodic, folder):
     radii = Gaussian() if radii is None else distribution(radii)
     key = {"algorithm": maker.__name__, "code": code_hash(*modules), "shape": shape.tolist()}
     key |= {"radii": repr(radii), "periodic": periodic.tolist()}
-    key |= {name: value for name, value in request.items() if name != "progress"}
+    key |= {name: value for name, value in request.items() if name not in IDLE}
 
     def make():
         return maker(size=shape, radii=radii, periodic=periodic, **request)
@@ -194,7 +198,7 @@ def _of_shape(maker, modules, request, size, radii, periodic, folder):
     # Stretched by the 1e-12 that rounding the shape took, so that the box is met exactly; volumes keep phi.
     stretch = sides / shape
     return unit._replace(
-        centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * np.cbrt(np.prod(stretch)), size=sides
+        centers=np.minimum(unit.centers * stretch, sides), radii=unit.radii * cube_root(np.prod(stretch)), size=sides
     )
 
 

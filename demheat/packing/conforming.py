@@ -119,15 +119,20 @@ def conform(
 
 def _check_number(packing, scene, radius):
     """Refuse packings whose mean radius is far below the distance between their particles, before anything is made."""
-    lows, highs = zip(*(shape.bounds() for shape in scene.inclusions), strict=True)
-    x, y, z = np.minimum(np.array(highs) - np.array(lows), scene.size).T
     # Surfaces that fill their bounds, a sphere's to within a factor of two.
-    twins = 2 * float(np.sum(2 * (x * y + y * z + z * x) / (SPACING * radius) ** 2))
+    twins = 2 * float(np.sum(faces(scene) / (SPACING * radius) ** 2))
     if twins > MOST_TWINS * packing.number:
         raise ValueError(
             f"packing: of mean radius {radius:.3g} m, by which interfaces would have some {twins:.2g} twins for "
             f"{packing.number} particles; must have radii less unequal, or be denser; or conforming=False"
         )
+
+
+def faces(scene: Scene) -> np.ndarray:
+    """Area of the faces of each inclusion's bounds, at most the box's, (inclusions,) float array, m2."""
+    lows, highs = zip(*(shape.bounds() for shape in scene.inclusions), strict=True)
+    x, y, z = np.minimum(np.array(highs) - np.array(lows), scene.size).T
+    return 2 * (x * y + y * z + z * x)
 
 
 def _reach(part, gap_spacing):

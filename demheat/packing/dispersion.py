@@ -19,6 +19,7 @@ from demheat.packing.base import Packing, check_box, make_packing
 from demheat.packing.cache import LSA, cached, code_hash
 from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
+from demheat.powers import cube_root, cubed
 from demheat.scene import Material, Scene, Sphere
 from demheat.scene.inputs import axis_number, finite, vector
 from demheat.scene.material import check_material
@@ -227,17 +228,17 @@ def _checked_number(number, fraction, ratio, sides):
             f"must be <= {MOST_SPHERES}, more would take hours. Use a smaller ratio"
         )
     diameter = float(sides.min()) / ratio
-    return max(1, round(6 * fraction * float(np.prod(sides)) / (math.pi * diameter**3)))
+    return max(1, round(6 * fraction * float(np.prod(sides)) / (math.pi * cubed(diameter))))
 
 
 def _filling(fraction, radii, sides):
     """The radii in proportion, their spheres of this volume fraction."""
-    return radii * np.cbrt(fraction * np.prod(sides) / (4 / 3 * np.pi * np.sum(radii**3)))
+    return radii * cube_root(fraction * np.prod(sides) / (4 / 3 * np.pi * np.sum(cubed(radii))))
 
 
 def _mean_diameter(radii):
     """Diameter of the sphere of mean volume."""
-    return 2 * float(np.cbrt(np.mean(radii**3)))
+    return 2 * cube_root(np.mean(cubed(radii)))
 
 
 def _placed(radii, room, sides, periodic, placing) -> Packing:
@@ -248,7 +249,7 @@ def _placed(radii, room, sides, periodic, placing) -> Packing:
         kept, rng = np.sort(wide)[::-1], np.random.default_rng([placing.seed, 3])
         centers = add_spheres(kept, inner, rng, periodic=periodic, margin=0.0 if periodic else kept)
     else:
-        filled = float(4 / 3 * np.pi * np.sum(wide**3) / np.prod(inner))
+        filled = float(4 / 3 * np.pi * np.sum(cubed(wide)) / np.prod(inner))
         box = {"size": inner, "periodic": periodic}
         grown = lsa(len(radii), **box, radii=wide, seed=placing.seed, phi=filled, growth=GROWTH, allow_few=True)
         centers, kept = grown.centers, grown.radii
@@ -302,7 +303,7 @@ def _check_room(radii, room, sides, periodic, method):
             f"spheres of diameter {2 * radii.max():.4g} with gaps of {room:.4g} in a box of {sides.tolist()} (longest "
             "side 1): must fit; use more spheres, or a smaller fraction or gap"
         )
-    filled = float(4 / 3 * np.pi * np.sum((radii + room / 2) ** 3) / np.prod(inner))
+    filled = float(4 / 3 * np.pi * np.sum(cubed(radii + room / 2)) / np.prod(inner))
     if filled > MOST[method]:
         raise ValueError(
             f"{len(radii)} spheres and their gaps fill {filled:.3f} of the box; must be <= {MOST[method]} by "

@@ -11,6 +11,7 @@ import numpy as np
 from demheat.limits import check_memory
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
 from demheat.packing.gate import check_packing
+from demheat.powers import cube_root
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.scene.inputs import chosen, vector
 
@@ -196,7 +197,7 @@ def replica_counts(number: int, size: Sequence[float], replicas: int | None = No
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     sides, _ = check_box(size, True)
     if replicas is None:
-        edge = np.cbrt(sides.prod() * REPLICA / number) if number > UNREPEATED else sides.max()
+        edge = cube_root(sides.prod() * REPLICA / number) if number > UNREPEATED else sides.max()
         return np.ceil(sides / edge - ROUNDING).astype(int)
     if not isinstance(replicas, int | np.integer) or isinstance(replicas, bool) or replicas < 1:
         raise ValueError(f"replicas = {replicas!r}: must be an integer >= 1, or None")

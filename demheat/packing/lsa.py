@@ -19,6 +19,7 @@ from demheat.packing.gate import check_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
+from demheat.powers import cube_root, cubed
 from demheat.progress import stage
 from demheat.scene.inputs import finite, flag, reals, whole
 
@@ -109,11 +110,11 @@ class Growth:
         """
         reach = JAMMED if self.pressure is None else self.pressure
         if self.phi is not None:  # Carnahan and Starling, J. Chem. Phys. 51 (1969) 635
-            reach = min(reach, (1 + self.phi + self.phi**2 - self.phi**3) / (1 - self.phi) ** 3)
+            reach = min(reach, (1 + self.phi + self.phi**2 - cubed(self.phi)) / cubed(1 - self.phi))
         ends = [min(from_, reach) for from_, _ in self.growth[1:]] + [reach]
         thin = FIRST_PHI if self.phi is None else min(self.phi, FIRST_PHI)
         begun = min(begun, thin)
-        count = (_in_fluid(begun, thin) + LISTS * (math.cbrt(thin / begun) - 1)) / self.growth[0][1]
+        count = (_in_fluid(begun, thin) + LISTS * (cube_root(thin / begun) - 1)) / self.growth[0][1]
         begin = FIRST_PRESSURE
         for (_, rate), end in zip(self.growth, ends, strict=True):
             if end > begin:
@@ -164,9 +165,9 @@ def lsa(
     Returns
     -------
     Packing
-        No two spheres overlap, nor a sphere and a wall. Same bits for the same arguments, whatever the number of
-        threads. `provenance` has the packing fraction and the reduced pressure reached, collisions and events per
-        sphere, and what stopped it.
+        No two spheres overlap, nor a sphere and a wall. Same bits for the same arguments, whatever the processor and
+        the number of threads. `provenance` has the packing fraction and the reduced pressure reached, collisions and
+        events per sphere, and what stopped it.
 
     Raises
     ------
@@ -294,7 +295,7 @@ def _check_room(start, now, phi):
     if phi is not None and now > phi:
         raise ValueError(f"phi = {phi}: must be at least that of the start without overlaps, {now:.6g}")
     most = DENSEST if phi is None else phi
-    largest = float(np.max(start.radii)) * math.cbrt(most / start.phi)
+    largest = float(np.max(start.radii)) * cube_root(most / start.phi)
     for axis in range(3):
         # Along a period only the nearest image is seen; a little room, since lists reach beyond contact.
         least = LEAST_SIDES[bool(start.periodic[axis])] * largest

@@ -15,6 +15,7 @@ import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.base import wrap
 from demheat.packing.neighbours import near_rows
+from demheat.powers import cube_root, cubed
 from demheat.scene.bodies import ROUND_AXES, domain_volume, nearest_wall, wall_names
 
 # Collisions per sphere (each counted for one of the two) over which the pressure is averaged.
@@ -85,7 +86,7 @@ class Motion:
     @property
     def phi(self):
         """Packing fraction."""
-        return 4 / 3 * math.pi * float(np.sum(self.radii**3)) / domain_volume(self.domain, self.box)
+        return 4 / 3 * math.pi * float(np.sum(cubed(self.radii))) / domain_volume(self.domain, self.box)
 
     def run(self, rate, phi) -> bool:
         """Move on with one list of neighbours.
@@ -116,7 +117,7 @@ class Motion:
         grow = rate / (2 * float(np.mean(self.radii)))
         last = self.room / grow
         if phi is not None:
-            last = min(last, (math.cbrt(phi / self.phi) - 1.0) / grow)
+            last = min(last, (cube_root(phi / self.phi) - 1.0) / grow)
         bounds, lists = self.bounds(grow, last), kernels.Lists(self.spheres[:, CENTER].copy(), indptr, indices)
         kernels.start(bounds, self.spheres, lists, self.next)
         left = WINDOW * n - self.window.collisions

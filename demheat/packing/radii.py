@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import ndtr, ndtri
 
+from demheat.powers import exponential
 from demheat.scene.inputs import finite, reals
 
 
@@ -105,7 +106,7 @@ class Lognormal:
         s, c = self.spread, self.cut
         # E[exp(s z)] over |z| < c is exp(s^2/2) [ndtr(c - s) - ndtr(-c - s)] / [ndtr(c) - ndtr(-c)].
         mean = math.exp(s * s / 2) * (ndtr(c - s) - ndtr(-c - s)) / (ndtr(c) - ndtr(-c))
-        return np.exp(s * _cut_normal(number, c, rng)) / mean
+        return exponential(s * _cut_normal(number, c, rng)) / mean
 
 
 @dataclass(frozen=True)

@@ -19,6 +19,7 @@ from demheat.packing.base import Packing, check_box, check_domain, make_packing,
 from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
+from demheat.powers import cube_root, cubed
 from demheat.progress import stage
 from demheat.scene.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
 from demheat.scene.inputs import finite, flag, whole
@@ -129,7 +130,7 @@ def relax(
     rng = np.random.default_rng(seed)
     centers = _starting_points(int(number), size, periodic, domain, rng)
     drawn = radii.draw(int(number), rng)
-    drawn *= np.cbrt(phi * domain_volume(domain, size) / (4.0 / 3.0 * np.pi * np.sum(drawn**3)))
+    drawn *= cube_root(phi * domain_volume(domain, size) / (4.0 / 3.0 * np.pi * np.sum(cubed(drawn))))
     check_fit(drawn, size, periodic)
     order = morton_order(centers, size)
     with stage("packing") as done:
@@ -304,7 +305,7 @@ def _starting_points(number, size, periodic, domain, rng):
 
 def _jittered_grid(number, size, periodic, rng):
     """Points of a nearly cubic grid with at least `number` sites, some left empty at random, moved about."""
-    least = np.maximum(1, np.floor(size / np.cbrt(np.prod(size) / number))).astype(np.int64)
+    least = np.maximum(1, np.floor(size / cube_root(np.prod(size) / number))).astype(np.int64)
     choices = [least + np.array(extra) for extra in product((0, 1), repeat=3)]
     while max(dims.prod() for dims in choices) < number:
         choices = [dims + np.eye(3, dtype=np.int64)[np.argmax(size / dims)] for dims in choices]

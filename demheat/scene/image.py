@@ -28,7 +28,8 @@ class Image:
     Parameters
     ----------
     labels : (nx, ny, nz) array of int or bool
-        Read slab by slab, so it may be mapped from a file; kept in the smallest type of integers that holds it.
+        Read slab by slab, so it may be mapped from a file, or be an array in chunks that is read as NumPy's are, such
+        as one of zarr; kept in the smallest type of integers that holds it.
     voxel : (3,) sequence of float, or float, m
         Edges of a voxel along x, y and z.
     materials : mapping of int to Material
@@ -59,11 +60,11 @@ class Image:
         object.__setattr__(self, "voxel", _checked_voxel(self.voxel))
         if not all(map(moderate, self.size)):
             raise ValueError(f"Image.voxel = {self.voxel!r}: sides of the image must be from {LEAST:g} to {MOST:g} m")
-        found = sorted(set().union(*(_occurring(labels[part]) for part in slabs(labels.shape))))
+        found = sorted(set().union(*(_occurring(slab) for _, slab in _read(labels))))
         object.__setattr__(self, "materials", ReadOnly(_checked_materials(self.materials, found)))
         kept = np.empty(labels.shape, _smallest(found[0], found[-1]))
-        for part in slabs(labels.shape):
-            kept[part] = labels[part]
+        for part, slab in _read(labels):
+            kept[part] = slab
         object.__setattr__(self, "labels", read_only(kept))
 
     @property
@@ -151,8 +152,24 @@ def slabs(shape: Sequence[int]) -> Iterator[slice]:
     ----------
     shape : (3,) sequence of int
     """
-    thick = max(1, SLAB // max(1, math.prod(shape[1:])))
+    thick = _thickness(shape)
     return (slice(start, start + thick) for start in range(0, shape[0], thick))
+
+
+def _thickness(shape):
+    return max(1, SLAB // max(1, math.prod(shape[1:])))
+
+
+def _read(labels):
+    """Slabs of labels and where they lie; of an array in chunks each is read once, a layer of them at a time."""
+    chunk = getattr(labels, "chunks", None) or (1,)
+    layer = chunk[0] if isinstance(chunk[0], Integral) else 1
+    thick = layer * max(1, _thickness(labels.shape) // layer)
+    for start in range(0, labels.shape[0], thick):
+        whole = np.asarray(labels[start : start + thick])
+        for part in slabs(whole.shape):
+            slab = whole[part]
+            yield slice(start + part.start, start + part.start + len(slab)), slab
 
 
 def _smallest(low, high):
@@ -161,12 +178,12 @@ def _smallest(low, high):
 
 
 def _checked_labels(labels):
-    """An array of labels as it is given, or ValueError."""
+    """An array of labels as it is given, or ValueError; one in chunks is not read here."""
     try:
-        labels = labels if isinstance(labels, np.ndarray) else np.asarray(labels)
+        labels = labels if isinstance(getattr(labels, "dtype", None), np.dtype) else np.asarray(labels)
     except ValueError:
         raise ValueError("Image.labels: rows of unlike lengths; must be an (nx, ny, nz) array") from None
-    if labels.ndim != 3 or not labels.size:
+    if labels.ndim != 3 or not math.prod(labels.shape):
         raise ValueError(f"Image.labels of shape {labels.shape}: must be (nx, ny, nz), of one voxel or more")
     if np.ma.is_masked(labels) or labels.dtype.kind not in "iub":
         kind = "masked" if np.ma.is_masked(labels) else labels.dtype

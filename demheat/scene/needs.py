@@ -22,6 +22,7 @@ WALLS = {
     # All that have a temperature are on one axis: none of them meet.
     "isothermal ones apart": lambda scene: len({name[0] for name in scene.wall_temperatures}) <= 1,
     "flat": lambda scene: scene.domain != "sphere" and "round" not in scene.walls,
+    "flat or a sphere's": lambda scene: scene.domain == "sphere" or "round" not in scene.walls,
 }
 
 

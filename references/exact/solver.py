@@ -14,13 +14,7 @@ from references.exact.kirchhoff import layers, transformed
 from references.exact.layers import tensor_laminate
 from references.midpoints import check_points_per_axis, midpoints
 
-KNOWN = (
-    "a homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic cell "
-    "of equal spheres, a periodic square or hexagonal array of fibres along one axis, or a fibre in the middle of a "
-    "square box, spheres apart in a matrix of no conductivity, and neutral coated spheres, each under a mean gradient "
-    "or one pair of opposite walls (with an imposed flux only where the flux is uniform); layers of tensors, between "
-    "walls where these bend no flux; layers across that follow the temperature, or all that do so alike"
-)
+KNOWN = "layers, arrays of spheres or fibres and few more; its docstring lists them"
 
 
 def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
@@ -29,10 +23,12 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     Parameters
     ----------
     scene : Scene
-        Homogeneous, laminate, cubic array of spheres, spheres in a matrix of no conductivity or neutral coated
-        spheres; see `forms`. Square or hexagonal array of fibres, see `fibre_forms`. Layers of tensors, see `layers`;
-        with conductivities that depend on temperature layers across, and all else in which they do so alike, see
-        `kirchhoff`.
+        A homogeneous box, layers, a sphere in the middle of a cube, a periodic simple, body- or face-centred cubic
+        cell of equal spheres, spheres apart in a matrix of no conductivity, or neutral coated spheres; see `forms`. A
+        periodic square or hexagonal array of fibres along one axis, or a fibre in the middle of a square box; see
+        `fibre_forms`. Layers of tensors, between walls where these bend no flux; see `layers`. Layers across that
+        follow the temperature, and all else that does so alike; see `kirchhoff`. Each under a mean gradient or one pair
+        of opposite walls, with an imposed flux only where the flux is uniform.
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
 
@@ -64,10 +60,9 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     scene.require(steady=True, takes=("resistance", "anisotropy", "dependence"))
     closed = (layers(scene) or transformed(scene, _linear)) if scene.varies else _linear(scene)
     if closed is None:
-        load = f"gradient {scene.gradient}" if scene.periodic else f"walls {dict(scene.walls)}"
+        load = "a mean gradient" if scene.periodic else f"walls {', '.join(sorted(scene.walls))}"
         raise NotImplementedError(
-            f"no closed form for {len(scene.inclusions)} inclusions in a box {scene.size} under {load}; exact.solve "
-            f"knows {KNOWN}"
+            f"no closed form for {len(scene.inclusions)} inclusions under {load}; exact.solve knows {KNOWN}"
         )
     heat, temperatures = {}, {}
     for name in scene.walls or {}:

@@ -128,15 +128,22 @@ def _solved(scenes, order, size, curved, tolerance):
         if scene.radiates:
             scene.require("finite elements iterate for it or for walls that radiate", takes=(*takes[:3], "image"))
         if scene.image is None and order == 1 and scene.domain == "box":
-            _warn_of_gaps(scene, checked_size(scene, size, order))
+            warn_of_gaps(scene, checked_size(scene, size, order))
     if scenes[0].image is not None:
         whole("order", order, "1 or 2", lambda v: v in (1, 2))
         return one_blas_thread()(solved_image)(scenes, size, tolerance)
     return _answers(scenes, tolerance, size=size, order=order, curved=curved)
 
 
-def _warn_of_gaps(scene, size):
-    """Linear elements are stiff, a straight drop of temperature each: a gap needs some across."""
+def warn_of_gaps(scene, size) -> None:
+    """Linear elements are stiff, a straight drop of temperature each: a gap needs some across.
+
+    Parameters
+    ----------
+    scene : Scene
+    size : float, m
+        Longest edge.
+    """
     k, parents = scene.mean_conductivities, scene.parents()[1:]
     near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (k[0] > 0) & (parents == 0)
     # Layers have no end; larger spheres have elements of their own size all round.
@@ -158,7 +165,7 @@ def _answers(scenes, tolerance, **elements):
     fields = []
     for scene, each in zip(scenes, solved, strict=True):
         again = partial(_again, scene, tolerance, elements)
-        fields.append(_field(scene, mesh, each, tolerance, partial(estimated, coarser=again, kind=kind)))
+        fields.append(field_of(scene, mesh, each, tolerance, partial(estimated, coarser=again, kind=kind)))
     return fields
 
 
@@ -167,7 +174,24 @@ def _again(scene, tolerance, elements, factor):
     return _answers([scene], tolerance, **elements | {"coarser": factor})[0]
 
 
-def _field(scene, mesh, solved, tolerance, estimator):
+def field_of(scene, mesh, solved, tolerance, estimator) -> Field:
+    """The Field of nodal temperatures.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh
+    solved : Solved
+        See `references.fem.system`.
+    tolerance : float
+        Relative, of the equations.
+    estimator : callable (Field) -> Estimate
+
+    Raises
+    ------
+    RuntimeError
+        If rounding drowns the flux.
+    """
     alone = one_blas_thread()
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()

@@ -49,7 +49,7 @@ class Solved(NamedTuple):
     bodies: islands.Bodies | None = None
 
 
-class _Given(NamedTuple):
+class Given(NamedTuple):
     """The known part of the temperature, lift + level; nodes of each isothermal wall; walls per node; other walls."""
 
     lift: np.ndarray
@@ -141,7 +141,7 @@ def _solve_linear(scenes, mesh, tolerance, kept, start=None):
     """Of each load; `start` has the temperatures at which all conducts, and from which the solution is improved."""
     begin = time.perf_counter()
     conductivity = scenes[0].mean_conductivities[mesh.phase]
-    givens = [_given(scene, mesh, conductivity > 0) for scene in scenes]
+    givens = [given_part(scene, mesh, conductivity > 0) for scene in scenes]
     dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
     if pores.any():
@@ -211,7 +211,7 @@ def _solved(scene, given, load, mesh, system, tolerance, kept, start):
         stats["residual"] = max(stats["residual"], more["residual"])
     stats |= {"assembly_s": assembly_s, "solve_s": time.perf_counter() - begin}
     shown = temperature if found is None else islands.reached(found, scene, temperature)
-    return Solved(temperature, *_walls(scene, given, shown, heat, films.entering(outside, temperature)), stats, found)
+    return Solved(temperature, *at_walls(scene, given, shown, heat, films.entering(outside, temperature)), stats, found)
 
 
 def _films(scene, mesh, passing):
@@ -232,7 +232,7 @@ def _at_rest(scene, mesh, given, found):
     stats |= {"assembly_s": 0.0, "solve_s": 0.0}
     shown = islands.reached(found, scene, temperature)
     still = dict.fromkeys(scene.wall_exchanges, 0.0)
-    return Solved(temperature, *_walls(scene, given, shown, np.zeros(len(shown)), still), stats, found)
+    return Solved(temperature, *at_walls(scene, given, shown, np.zeros(len(shown)), still), stats, found)
 
 
 def known_part(scene, mesh) -> tuple[np.ndarray, float, dict[str, np.ndarray], np.ndarray]:
@@ -267,8 +267,16 @@ def known_part(scene, mesh) -> tuple[np.ndarray, float, dict[str, np.ndarray], n
     return lift, level, nodes, shares
 
 
-def _given(scene, mesh, solid):
-    """Read the load of the scene; `solid` says which elements conduct, only those take a wall's flux."""
+def given_part(scene, mesh, solid) -> Given:
+    """Read the load of the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+    mesh : Mesh
+    solid : (m,) bool array
+        Which elements conduct: only those take a wall's flux.
+    """
     lift, level, nodes, shares = known_part(scene, mesh)
     weights = {}
     for name in (*scene.wall_fluxes, *scene.wall_exchanges):
@@ -276,7 +284,7 @@ def _given(scene, mesh, solid):
         weights[name] = wall_weights(mesh, triangles[solid[owners]])
         if name in scene.wall_fluxes and not weights[name].any():
             raise ValueError(f"Scene.walls[{name!r}]: a Flux needs a wall that conducts somewhere")
-    return _Given(lift, level, nodes, shares, weights)
+    return Given(lift, level, nodes, shares, weights)
 
 
 def _bodies(matrix, held, pores):
@@ -309,8 +317,18 @@ def _pore_shift(mesh, pores, temperature, dof, given, found):
     return shift[dof], stats
 
 
-def _walls(scene, given, temperature, heat, exchanged):
-    """Mean temperature of each loaded wall, and the heat that enters there."""
+def at_walls(scene, given, temperature, heat, exchanged) -> tuple[dict, dict]:
+    """Mean temperature of each loaded wall, and the heat that enters there.
+
+    Parameters
+    ----------
+    scene : Scene
+    given : Given
+    temperature, heat : (n,) float arrays, K and W
+        At the nodes.
+    exchanged : mapping of str to float, W
+        Through walls with surroundings.
+    """
     mean, entering = scene.wall_temperatures, dict(exchanged)
     for name, nodes in given.nodes.items():
         entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))

@@ -99,8 +99,9 @@ def evolve(
     29.29 29.15
     """
     check_scene(scene)
-    text = "heat would not move in pores; transients do without"
-    scene.require(text, steady=False, pores=False, takes=("resistance", "exchange", "image"))
+    takes = ("resistance", "exchange", "image")
+    scene.require("in time finite elements know one number for each phase", steady=False, takes=takes)
+    scene.require("heat would not move in pores; transients do without", pores=False, takes=takes)
     times = checked_times(times)
     order = _checked_order(order, elements)
     for name, value in (("accuracy", accuracy), ("tolerance", tolerance)):
@@ -111,6 +112,8 @@ def evolve(
     check_sources(scene, times[-1])
     if elements == "hexahedra":
         checked_size(scene, size)
+    else:
+        scene.require("in time tetrahedra follow shapes; use elements='hexahedra'", takes=takes[:2])
     knobs = {"step": step, "accuracy": accuracy, "tolerance": tolerance}
     return _alone(_fields(scene, times, {"elements": elements, "order": order, "size": size}, **knobs))
 

@@ -36,15 +36,80 @@ from references.voxels.paint import medium
 ZERO = 1e-30
 
 
-class _System(NamedTuple):
-    """The discrete problem, the vectors of its iteration, and what inverts the homogeneous problem."""
+class System(NamedTuple):
+    """The discrete problem, the vectors of its iteration, and what inverts the homogeneous problem.
 
-    conduct: Callable
+    Another with the same methods, `size`, `transform` and `vectors` may have parts of all that (`ranks`).
+    """
+
+    problem: Problem
+    kernel: Callable
     body: Body
     transform: Transform
     symbol: Symbol
     vectors: Vectors
     sums: Sums
+
+    @property
+    def size(self) -> int:
+        """Voxels."""
+        return self.problem.voxels.phase.size
+
+    @property
+    def unknowns(self) -> int:
+        """Nodes."""
+        return self.vectors.theta.size
+
+    def conduct(self, theta: np.ndarray, gradient: np.ndarray) -> Sums:
+        """work = -div(K grad(theta + gradient.x)); returns the sums of every plane.
+
+        Parameters
+        ----------
+        theta : float array
+            One of the vectors.
+        gradient : (3,) float array
+        """
+        arguments = (theta, self.vectors.work, self.body, gradient.astype(self.problem.dtype), self.sums)
+        self.problem.team.run(self.kernel, len(theta), *arguments)
+        return self.sums
+
+    def precondition(self, kernel: Callable, *arguments) -> float:
+        """work = inverse homogeneous operator on what a kernel leaves in work; returns residual.work.
+
+        Parameters
+        ----------
+        kernel : callable (vectors, *arguments, low, high)
+        *arguments
+        """
+        transform, vectors = self.transform, self.vectors
+        transform.planes(kernel, vectors, *arguments, forward=True)
+        transform.columns(kernels.divide, self.symbol, self.problem.dtype(transform.scale))
+        transform.planes(kernels.dot, vectors, backward=True)
+        return float(vectors.partial.sum())
+
+    def turn(self, beta: float) -> float:
+        """Make work + beta direction the direction; returns p.A p."""
+        vectors = self.vectors
+        self.problem.team.run(kernels.turn, len(vectors.work), vectors, self.problem.dtype(beta))
+        return total(self.conduct(vectors.direction, np.zeros(3)).energy)
+
+    def keeper(self) -> Callable:
+        """What makes temperatures and fluxes of voxels from the solution; `SolvedGrid.state`."""
+        # Without the system itself, whose transform holds as much as all temperatures.
+        problem, body, theta = self.problem, self.body, self.vectors.theta
+        shape, gradient = problem.voxels.phase.shape, problem.gradient.astype(problem.dtype)
+
+        def centers():
+            flux = np.empty((3, *shape), problem.dtype)
+            with Team(problem.team.threads) as team:
+                if problem.links:
+                    team.run(link_state, shape[0], theta, body, gradient, flux)
+                    return theta.copy(), flux
+                temperature = np.empty(shape, problem.dtype)
+                team.run(voxel_state, shape[0], theta, body, gradient, temperature, flux)
+            return temperature, flux
+
+        return centers
 
 
 class _State(NamedTuple):
@@ -76,15 +141,27 @@ def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
         If the energy still decreases after the allowed iterations, or rounding keeps the recomputed residual up.
     """
     kept = {} if kept is None else kept
-    system = kept["system"] = _again(kept["system"]) if kept else _system(problem)
+    system = kept["system"] = _again(kept["system"], problem) if kept else _system(problem)
+    return solved(problem, system)
+
+
+def solved(problem: Problem, system: System) -> SolvedGrid:
+    """The solution of a discrete problem, see `solve`.
+
+    Parameters
+    ----------
+    problem : Problem
+    system : System
+        Its temperatures are changed.
+    """
     iterations, before, clock = 0, math.inf, Clock(system.transform)
     while True:
         state = _restart(problem, system)
-        error = _error(state.rz, state.energy, problem)
+        error = _error(state.rz, state.energy, system)
         # How far each criterion is from being met: both are below 1 at the end.
         excess = max(state.decrease / (problem.tolerance**2 * state.energy), error / problem.tolerance) if error else 0
         if excess <= 1:
-            return _solution(problem, system, state, iterations, error, clock.cost())
+            return _solution(system, state, iterations, error, clock.cost())
         if iterations >= problem.max_iterations or not excess < before:
             _fail(iterations, error, problem.tolerance)
         before = excess
@@ -92,9 +169,9 @@ def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
             iterations = _iterate(problem, system, state, iterations, done)
 
 
-def _error(rz, energy, problem):
+def _error(rz, energy, system):
     """Part of the flux that is not divergence-free, root mean square over the mean flux: the equilibrium error."""
-    return math.sqrt(max(rz, 0.0) * problem.voxels.phase.size) / float(energy) if energy > 0 else 0.0
+    return math.sqrt(max(rz, 0.0) * system.size) / float(energy) if energy > 0 else 0.0
 
 
 def _fail(iterations, error, tolerance):
@@ -105,8 +182,17 @@ def _fail(iterations, error, tolerance):
 
 
 def _system(problem):
+    (nx, ny, nz), (conduct, body) = problem.voxels.phase.shape, body_of(problem)
+    nodes = nodes_of(problem, (nx, ny, nz))
+    transform = _transform(problem, nodes)
+    vectors = vectors_of(problem, nodes, transform.real[0])
+    sums = Sums(np.zeros(nx), np.zeros((nx, 3)))
+    return System(problem, conduct, body, transform, _symbol(problem, transform), vectors, sums)
+
+
+def body_of(problem: Problem) -> tuple[Callable, Body]:
+    """What conducts, and the kernel that knows how."""
     voxels, links, dtype = problem.voxels, problem.links, problem.dtype
-    nx, ny, nz = voxels.phase.shape
     if links:
         conduct, inverse = conduct_links, 1.0 / voxels.spacing
         material = Links(*(np.ascontiguousarray(link, dtype) for link in links))
@@ -114,17 +200,24 @@ def _system(problem):
         conduct, inverse = conduct_voxels, 0.25 / voxels.spacing
         voxels = voxels if voxels.tensors is None else with_own(voxels)
         material = medium(voxels, voxels.conductivity, voxels.tensor, dtype)
-    nodes = (nx - 1, ny + 1, nz + 1) if problem.walls and not links else (nx, ny, nz)
-    transform = _transform(problem, nodes)
-    vectors = _vectors(problem, nodes, transform.real[0])
-    sums = Sums(np.zeros(nx), np.zeros((nx, 3)))
-    body = Body(material, inverse.astype(dtype), problem.walls)
-    return _System(conduct, body, transform, _symbol(problem, transform), vectors, sums)
+    return conduct, Body(material, inverse.astype(dtype), problem.walls)
 
 
-def _again(system):
-    """The same with temperatures of its own: a solution keeps those before."""
-    return system._replace(vectors=system.vectors._replace(theta=np.zeros_like(system.vectors.theta)))
+def nodes_of(problem: Problem, shape: tuple) -> tuple:
+    """Nodes along each axis of so many voxels.
+
+    Parameters
+    ----------
+    problem : Problem
+    shape : (3,) tuple of int
+    """
+    nx, ny, nz = shape
+    return (nx - 1, ny + 1, nz + 1) if problem.walls and not problem.links else (nx, ny, nz)
+
+
+def _again(system, problem):
+    """The same for another gradient, with temperatures of its own: a solution keeps those before."""
+    return system._replace(problem=problem, vectors=system.vectors._replace(theta=np.zeros_like(system.vectors.theta)))
 
 
 def _transform(problem, nodes):
@@ -136,7 +229,15 @@ def _transform(problem, nodes):
     return trigonometric([("sin" + kind, "cos" + kind, "cos" + kind)], nodes, **make)
 
 
-def _vectors(problem, nodes, work):
+def vectors_of(problem: Problem, nodes: tuple, work: np.ndarray) -> Vectors:
+    """The vectors of the iteration, zeros.
+
+    Parameters
+    ----------
+    problem : Problem
+    nodes : (3,) tuple of int
+    work : (nx, ny, nz or more) float array
+    """
     theta, residual, direction = (np.zeros(nodes, problem.dtype) for _ in range(3))
     weights = [np.ones(n, problem.dtype) for n in nodes[1:]]
     if problem.walls and not problem.links:
@@ -147,14 +248,28 @@ def _vectors(problem, nodes, work):
 
 
 def _symbol(problem, transform):
-    """Per axis (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1; those of x as wide as a column of modes."""
+    """The symbol with the factors of x as wide as a column of modes."""
     modes, shape = transform.modes.shape[1:], problem.voxels.phase.shape
+    found = symbol(modes, shape, problem)
+    if problem.walls:
+        return found
+    # Columns of modes have real and imaginary parts in turn.
+    return Symbol(*((np.repeat(along, 2), *across) for along, *across in found))
+
+
+def symbol(modes: tuple, shape: tuple, problem: Problem) -> Symbol:
+    """Per axis (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1.
+
+    Parameters
+    ----------
+    modes, shape : (3,) tuples of int
+        Modes and voxels along each axis.
+    problem : Problem
+    """
     if problem.walls:
         numbers = [np.pi * (np.arange(m) + (axis == 0)) / shape[axis] for axis, m in enumerate(modes)]
     else:
         numbers = [2 * np.pi * np.arange(m) / n for m, n in zip(modes, shape, strict=True)]
-        # Columns of modes have real and imaginary parts in turn.
-        numbers[0] = np.repeat(numbers[0], 2)
     sines = [(2 * np.sin(k / 2) / h) ** 2 for k, h in zip(numbers, problem.voxels.spacing, strict=True)]
     cosines = [np.ones_like(k) if problem.links else np.cos(k / 2) ** 2 for k in numbers]
     return Symbol(
@@ -163,71 +278,34 @@ def _symbol(problem, transform):
     )
 
 
-def _conduct(problem, system, theta, gradient):
-    """work = -div(K grad(theta + gradient.x)); fills the sums of every plane."""
-    arguments = (theta, system.vectors.work, system.body, gradient.astype(problem.dtype), system.sums)
-    problem.team.run(system.conduct, len(theta), *arguments)
-
-
-def _precondition(problem, system, kernel, *arguments):
-    """work = inverse homogeneous operator on what kernel(vectors, *arguments) leaves in work; returns residual.work."""
-    transform, vectors = system.transform, system.vectors
-    transform.planes(kernel, vectors, *arguments, forward=True)
-    transform.columns(kernels.divide, system.symbol, problem.dtype(transform.scale))
-    transform.planes(kernels.dot, vectors, backward=True)
-    return float(vectors.partial.sum())
-
-
-def _turn(problem, system, beta):
-    """Make work + beta direction the direction; returns p.A p."""
-    vectors = system.vectors
-    problem.team.run(kernels.turn, len(vectors.work), vectors, problem.dtype(beta))
-    _conduct(problem, system, vectors.direction, np.zeros(3))
-    return total(system.sums.energy)
-
-
 def _restart(problem, system):
     """Recompute the residual and make the preconditioned residual the direction."""
-    _conduct(problem, system, system.vectors.theta, problem.gradient)
-    energy, flux = total(system.sums.energy), system.sums.flux.sum(axis=0)
-    ends = system.sums.flux[[0, -1], 0] * len(system.sums.flux) / problem.voxels.phase.size
-    rz = _precondition(problem, system, kernels.start)
-    return _State(energy, flux, ends, rz, curvature=_turn(problem, system, 0))
+    sums = system.conduct(system.vectors.theta, problem.gradient)
+    energy, flux = total(sums.energy), sums.flux.sum(axis=0)
+    ends = sums.flux[[0, -1], 0] * len(sums.flux) / system.size
+    rz = system.precondition(kernels.start)
+    return _State(energy, flux, ends, rz, curvature=system.turn(0))
 
 
 def _iterate(problem, system, state, iterations, done):
     """Conjugate gradients from a fresh direction until the decrease of energy is small; returns the iterations."""
     energy, rz, curvature, decreases = state.energy, state.rz, state.curvature, []
-    first = _error(rz, energy, problem)
+    first = _error(rz, energy, system)
     while iterations < problem.max_iterations and curvature > 0:
         alpha = rz / curvature
         decreases.append(alpha * rz)
         energy -= decreases[-1]
         iterations += 1
-        before, rz = rz, _precondition(problem, system, kernels.step, problem.dtype(alpha))
+        before, rz = rz, system.precondition(kernels.step, problem.dtype(alpha))
         small = sum(decreases[-max(2, len(decreases) // 8) :]) <= problem.tolerance**2 * energy
-        error = _error(rz, energy, problem)
+        error = _error(rz, energy, system)
         if small and error <= problem.tolerance:
             break
         done(converged(first, error, problem.tolerance))
-        curvature = _turn(problem, system, rz / before)
+        curvature = system.turn(rz / before)
     return iterations
 
 
-def _solution(problem, system, state, iterations, error, cost):
-    # Not the system itself, whose transform holds as much as all temperatures.
-    body, theta = system.body, system.vectors.theta
-    shape, gradient = problem.voxels.phase.shape, problem.gradient.astype(problem.dtype)
-
-    def centers():
-        flux = np.empty((3, *shape), problem.dtype)
-        with Team(problem.team.threads) as team:
-            if problem.links:
-                team.run(link_state, shape[0], theta, body, gradient, flux)
-                return theta.copy(), flux
-            temperature = np.empty(shape, problem.dtype)
-            team.run(voxel_state, shape[0], theta, body, gradient, temperature, flux)
-        return temperature, flux
-
-    mean_flux = state.flux / problem.voxels.phase.size
-    return SolvedGrid(mean_flux, state.ends, centers, theta.size, iterations, {"residual": error}, cost)
+def _solution(system, state, iterations, error, cost):
+    errors, mean_flux = {"residual": error}, state.flux / system.size
+    return SolvedGrid(mean_flux, state.ends, system.keeper(), system.unknowns, iterations, errors, cost)

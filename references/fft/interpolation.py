@@ -38,6 +38,8 @@ class Grid(NamedTuple):
         Less the linear part; as `flux`, None until it is solved for.
     flux : (3, nx, ny, nz) float array, W/m2
         Along Fourier's direction.
+    planes : (2,) tuple of int, optional
+        Of a grid of which some planes across the first axis are held: the first of them, and the number of all.
     """
 
     scene: Scene
@@ -49,6 +51,7 @@ class Grid(NamedTuple):
     bodies: Bodies | None = None
     temperature: np.ndarray | None = None
     flux: np.ndarray | None = None
+    planes: tuple | None = None
 
 
 def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
@@ -140,7 +143,9 @@ def samples(grid: Grid) -> Samples:
 
 def _neighbours(grid, points):
     """The eight voxel centres around each point: index, trilinear weight, offset to the point, axes of mirroring."""
-    shape, spacing = grid.temperature.shape, grid.voxels.spacing
+    shape, spacing = list(grid.temperature.shape), grid.voxels.spacing
+    if grid.planes:
+        held, shape[0] = grid.planes
     place = points / spacing - 0.5
     first = np.floor(place).astype(int)
     part = place - first
@@ -152,6 +157,8 @@ def _neighbours(grid, points):
             mirrored.append(np.zeros(len(points), bool) if grid.scene.periodic else index[-1] != number)
             away.append((part[:, axis] - side) * spacing[axis])
             weight = weight * (part[:, axis] if side else 1.0 - part[:, axis])
+        if grid.planes:
+            index[0] = (index[0] - held) % shape[0] if grid.scene.periodic else index[0] - held
         yield index, weight, away, mirrored
 
 

@@ -21,7 +21,9 @@ APART_FROM = 20_000
 PAUSE, LAST = 0.2, 0.95
 
 
-def run_apart(function: Callable, *arguments, seconds: float, done: Callable[[float], None]):
+def run_apart(
+    function: Callable, *arguments, seconds: float, done: Callable[[float], None], memory: float | None = None
+):
     """Call function(*arguments) in a new process.
 
     Parameters
@@ -34,6 +36,8 @@ def run_apart(function: Callable, *arguments, seconds: float, done: Callable[[fl
         That it takes, about.
     done : callable (share)
         Called meanwhile with the share of them that is over.
+    memory : float, bytes, optional
+        Of addresses that the process may have: gmsh runs away on some geometries, and would take the machine's all.
 
     Returns
     -------
@@ -45,7 +49,7 @@ def run_apart(function: Callable, *arguments, seconds: float, done: Callable[[fl
     MemoryError
         If the process was killed, as systems do that run out of memory.
     RuntimeError
-        If it crashed.
+        If it crashed, as gmsh does that wants more than `memory`.
     Exception
         Whatever the function raises.
     """
@@ -55,7 +59,7 @@ def run_apart(function: Callable, *arguments, seconds: float, done: Callable[[fl
         try:
             # The path first, with which the rest is found.
             pickle.dump(sys.path, child.stdin)
-            pickle.dump((function, arguments), child.stdin)
+            pickle.dump((function, arguments, memory), child.stdin)
             child.stdin.flush()
             begin = time.monotonic()
             # Empty answers tell that the child is alive.
@@ -83,7 +87,8 @@ def main():
     # Nothing else may write there.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
     sys.path[:] = pickle.load(sys.stdin.buffer)
-    function, arguments = pickle.load(sys.stdin.buffer)
+    function, arguments, memory = pickle.load(sys.stdin.buffer)
+    _limit(memory)
     over = threading.Event()
     alive = threading.Thread(target=_say_alive, args=(channel, over), daemon=True)
     for thread in (alive, threading.Thread(target=_end_with_parent, daemon=True)):
@@ -98,6 +103,15 @@ def main():
     channel.flush()
     # At once: nothing is left to do, and the parent may hang up first.
     os._exit(0)
+
+
+def _limit(memory):
+    if memory is not None and os.name == "posix":
+        import resource
+
+        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+        limit = int(memory) if hard == resource.RLIM_INFINITY else min(int(memory), hard)
+        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
 
 
 def _say_alive(channel, over):

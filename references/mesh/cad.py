@@ -17,7 +17,8 @@ from demheat.scene import WALLS, Layer, Shape, Sphere, check_scene
 from demheat.scene.inputs import finite, flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
-from references.mesh.sizes import GROWTH, check_cost, checked_size, table, unit_lengths, wanted_sizes
+from references.mesh.size_table import table
+from references.mesh.sizes import GROWTH, check_cost, checked_size, unit_lengths, wanted_sizes
 from references.mesh.solids import KNOWN, add
 from references.mesh.turns import turn
 

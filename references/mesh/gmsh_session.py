@@ -50,6 +50,9 @@ OPTIONS = {
 SET_LATER = ("Mesh.MeshSizeMax", "Mesh.Algorithm3D", "Mesh.SecondOrderLinear")
 # Of meshing, per tetrahedron of second order; found: 7e-5 to 1.2e-4.
 SECONDS_EACH = 1e-4
+# Addresses that gmsh may have in a process of its own: for libraries and threads, and for each tetrahedron that is
+# estimated several times what it needs (found: 1.9 kB). More than that must not take the machine's all.
+BASE_BYTES, MOST_BYTES_EACH = 4 * 2**30, 5_000
 _LOCK = threading.Lock()
 
 
@@ -164,7 +167,8 @@ def call_gmsh(function, *arguments, cells, done):
         What the function returns.
     """
     if cells >= APART_FROM and sys.executable:
-        return run_apart(function, *arguments, seconds=cells * SECONDS_EACH, done=done)
+        memory = BASE_BYTES + cells * MOST_BYTES_EACH
+        return run_apart(function, *arguments, seconds=cells * SECONDS_EACH, done=done, memory=memory)
     # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
     with ThreadPoolExecutor(1) as pool:
         return pool.submit(function, *arguments).result()

@@ -15,8 +15,6 @@ from references.mesh.solids import sized
 
 # How much longer edges may be one metre farther from a feature, in metres.
 GROWTH = 0.3
-# Numbers at the head of a `table`.
-HEAD = 10
 # Cube root of the box volume over the default size: about 1e5 nodes at either order,
 EDGES = {1: 50, 2: 26}
 # or if that is more, this times the cube root of the number of spheres (found: 0.07 % on 83 of them at order 2).
@@ -269,54 +267,6 @@ def unit_lengths(sizes, scale):
     """
     slabs = sizes.slabs / np.array([1.0, scale, scale, scale])
     return sizes._replace(size=sizes.size / scale, balls=sizes.balls / scale, shells=sizes.shells / scale, slabs=slabs)
-
-
-def table(sizes: Sizes, box) -> np.ndarray:
-    """Balls and shells sorted into cells of the box, as `references.mesh.size_kernels.size_at` reads them.
-
-    Parameters
-    ----------
-    sizes : Sizes
-    box : (3,) float array
-        Sides, in the same unit.
-
-    Returns
-    -------
-    (n,) float array
-    """
-    shells = sizes.shells
-    features = np.vstack(
-        [
-            np.column_stack([sizes.balls, np.zeros(len(sizes.balls))]),
-            np.column_stack([shells[:, :3], shells[:, 3:5].mean(axis=1), shells[:, 5], np.ones(len(shells))]),
-        ]
-    )
-    counts = np.maximum(1, np.floor(box / (np.prod(box) / max(len(features), 1)) ** (1 / 3))).astype(int)
-    each = counts / box
-    # Beyond that they ask for nothing less than the size; a little more, for rounding.
-    reach = (features[:, 3] + (sizes.size - features[:, 4]) / GROWTH)[:, None] * 1.001
-    low, high = (np.floor((features[:, :3] + sign * reach) * each).astype(int) for sign in (-1, 1))
-    low, high = np.clip(low, 0, counts - 1), np.clip(high, 0, counts - 1)
-    which, cell = _cells(low, high, counts)
-    order = np.argsort(cell, kind="stable")
-    starts = np.r_[0, np.cumsum(np.bincount(cell, minlength=np.prod(counts)))]
-    rows = features[which[order]].ravel()
-    head = [0, *counts, *each, HEAD, HEAD + len(starts), GROWTH]
-    made = np.concatenate([head, starts, rows])
-    made[0] = len(made)
-    return made
-
-
-def _cells(low, high, counts):
-    """(feature, flat index of a cell) of all cells low to high, both included, of each feature."""
-    span = high - low + 1
-    number = np.prod(span, axis=1)
-    which = np.repeat(np.arange(len(span)), number)
-    place = np.arange(len(which)) - np.repeat(np.cumsum(number) - number, number)
-    z = place % span[which, 2]
-    y = place // span[which, 2] % span[which, 1]
-    x = place // (span[which, 2] * span[which, 1])
-    return which, np.ravel_multi_index((low[which] + np.column_stack([x, y, z])).T, counts)
 
 
 def estimated_cells(sizes: Sizes, box) -> float:

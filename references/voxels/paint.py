@@ -20,6 +20,7 @@ from demheat.scene import Layer, Scene, Shape, Sphere
 from demheat.scene.shapes.solid import Solid
 from references.voxels import kernels
 from references.voxels.laminates import cut_tensors, packed
+from references.voxels.planes import kept, reaches
 from references.voxels.solids import cut_voxels, window
 from references.voxels.spheres import Balls, groups, windows
 
@@ -147,8 +148,8 @@ def _counted(scene, voxels):
     return shape
 
 
-def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
-    """Put a scene on a grid.
+def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
+    """Put a scene on a grid, or on some planes of it.
 
     Parameters
     ----------
@@ -157,6 +158,8 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
         Voxels along each side; those of the image, if it is one.
     laminate : bool
         Cut voxels get a laminate's tensor; else every voxel belongs wholly to the phase of its centre.
+    planes : (2,) tuple of int, optional
+        First and end of planes across the first axis that are kept, bit for bit as of the whole grid. Default: all.
 
     Raises
     ------
@@ -169,12 +172,11 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     if len(scene.inclusions) >= MOST_PHASES:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
     if scene.image is not None:
-        # All of them whole.
-        phase = np.ascontiguousarray(scene.image.phase, dtype=np.uint16)
-        none = np.empty(0, np.int64), np.empty((0, 6))
-        return Voxels(spacing, phase, scene.mean_conductivities, *none, scene.image.fractions, _tensors(scene))
+        return _of_image(scene, spacing, planes)
+    # The system gives memory to what is written only: of some planes to them.
     phase = np.zeros(shape, dtype=np.uint16)
-    cuts = _paint(scene, phase, spacing, laminate)
+    cuts = _paint(scene, phase, spacing, laminate, planes)
+    phase, cuts = kept(phase, cuts, planes)
     conductivity = scene.mean_conductivities
     tensors = _tensors(scene)
     count = kernels.count(phase.ravel(), len(conductivity))
@@ -192,6 +194,17 @@ def voxelise(scene: Scene, shape, *, laminate: bool) -> Voxels:
     else:
         own = _laminate(part, conductivity, moment)
     return Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
+
+
+def _of_image(scene, spacing, planes):
+    """Its own voxels, all of them whole."""
+    none, conductivity = (np.empty(0, np.int64), np.empty((0, 6))), scene.mean_conductivities
+    phase, fractions = scene.image.phase, scene.image.fractions
+    if planes is not None:
+        phase = phase[slice(*planes)]
+        fractions = kernels.count(phase.ravel(), len(conductivity)) / phase.size
+    phase = np.ascontiguousarray(phase, dtype=np.uint16)
+    return Voxels(spacing, phase, conductivity, *none, fractions, _tensors(scene))
 
 
 def _tensors(scene):
@@ -249,24 +262,25 @@ def medium(voxels: Voxels, scalar, tensor, dtype) -> Medium:
     return Medium(voxels.phase, scalar.astype(dtype), start, place, np.ascontiguousarray(tensor, dtype=dtype))
 
 
-def _paint(scene, grid, spacing, cutting):
+def _paint(scene, grid, spacing, cutting, planes):
     """Paint the inclusions in order; return the voxels that their surfaces cut, none if they are not asked for."""
     found, inclusions = [_none()], list(enumerate(scene.inclusions, start=1))
     with stage("voxels") as done:
         for group in groups(inclusions, scene.size, periodic=scene.periodic):
             if isinstance(group, Balls):
-                found += _paint_spheres(group, grid, spacing, cutting, lambda n: done(n / len(inclusions)))
-            else:
-                number, shape = group
+                found += _paint_spheres(group, grid, spacing, cutting, lambda n: done(n / len(inclusions)), planes)
+                continue
+            number, shape = group
+            if reaches(shape, planes, spacing[0]):
                 found.append(paint(shape, grid, spacing, number, cutting=cutting))
-                done(number / len(inclusions))
+            done(number / len(inclusions))
     return Cuts(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
 
-def _paint_spheres(spheres, grid, spacing, cutting, done):
+def _paint_spheres(spheres, grid, spacing, cutting, done, planes=None):
     """Paint images of spheres in order; the voxels that their surfaces cut, block by block."""
     found = []
-    for block in windows(spheres, grid.shape, spacing):
+    for block in windows(spheres, grid.shape, spacing, planes=planes):
         count = kernels.paint_spheres(grid, block, spacing)
         if cutting:
             # One more row of moments: voxels that turn out not to be cut are integrated there, too.

@@ -90,7 +90,9 @@ def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Ba
     return Balls(number[which], centers[which, shift], radius[which])
 
 
-def windows(spheres: Balls, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT) -> list[Windows]:
+def windows(
+    spheres: Balls, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT, planes=None
+) -> list[Windows]:
     """The voxels that spheres may fill or cut, in blocks of not many voxels.
 
     Parameters
@@ -103,10 +105,14 @@ def windows(spheres: Balls, shape, spacing, *, whole: bool = False, most: int = 
         Leave large spheres in one piece, which else are divided along the x-axis.
     most : int
         Voxels of a block, about.
+    planes : (2,) tuple of int, optional
+        Leave out voxels but those with low <= first index < high.
     """
-    counts, radius = np.array(shape), spheres.radius[:, None]
-    low = np.clip(np.floor((spheres.center - radius) / spacing) - 1, 0, counts).astype(np.int64)
-    high = np.clip(np.ceil((spheres.center + radius) / spacing) + 1, 0, counts).astype(np.int64)
+    first, last, radius = np.zeros(3, np.int64), np.array(shape), spheres.radius[:, None]
+    if planes is not None:
+        first[0], last[0] = planes
+    low = np.clip(np.floor((spheres.center - radius) / spacing) - 1, first, last).astype(np.int64)
+    high = np.clip(np.ceil((spheres.center + radius) / spacing) + 1, first, last).astype(np.int64)
     across = high[:, 0] - low[:, 0]
     pieces = np.clip(-(-np.prod(high - low, axis=1) // most), 1, 1 if whole else np.maximum(across, 1))
     which = np.repeat(np.arange(len(pieces)), pieces)

@@ -19,6 +19,8 @@ VOXELS = (8, 16, 32, 64, 128)  # along the cube's edge
 JUDGED = ("dem", "fft", "fem")
 MODULES = {"bracket": "references.bracket", "bracket-voxels": "references.bracket.voxels"}
 PAPER = {}
+# Of the sphere's narrowest bracket, %, with so many edges of elements beside the box and more.
+NARROW = {32: 0.004, 12: 0.1}
 TIMEOUT = 3600.0
 
 
@@ -72,31 +74,37 @@ def warm_up(part, scene, parts=None, seed=None, name=None, *, method, **knobs):
 
 
 def claims(df):
-    """The bracket holds, closes in, and is as narrow as was asked for before there was one."""
+    """The bracket holds, closes in, and is narrow.
+
+    Before there was one 1 % was asked for of drawn scenes and of 40 spheres, .1 % of the sphere and .3 % of 83 spheres;
+    when the widths were known limits were brought to two or three times these.
+    """
     drawn = pick(df, part="drawn")
-    yield (
-        f"Exact values outside of their brackets, of {len(drawn)} scenes",
-        int((~drawn["inside"].astype(bool)).sum()),
-        0,
-    )
-    yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 1.0
+    if len(drawn):
+        yield f"Exact values outside of their brackets, of {len(drawn)} scenes", _outside(drawn), 0
+        yield "Median width of the drawn scenes' brackets, %", drawn["width_percent"].median(), 0.25
     yield from present(_refined(pick(df, part="refined")))
     yield from present(_on_voxels(pick(df, part="voxels")))
     judged = pick(df, part="judged", method="bracket")
     if len(judged):
-        yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 1.0
+        yield "40 spheres, contrast 150: width, %", judged["width_percent"].iloc[0], 0.3
+
+
+def _outside(rows):
+    """How many exact values are not known to lie in their brackets; None without rows."""
+    return int((~rows["inside"].eq(True)).sum()) if len(rows) else None
 
 
 def _refined(rows):
-    """A tenth of a per cent on the sphere, three tenths on 83 for 200 CPU seconds; faster than second order."""
+    """Widths, on 83 spheres for 200 CPU seconds; faster than second order."""
     from studies.brackets.means import narrowest, order_of_width
 
     sphere, many = (pick(rows, scene=scene) for scene in REFINED)
-    yield "Sphere, contrast 10: narrowest bracket, %", narrowest(sphere), 0.1
+    limit = next((width for parts, width in NARROW.items() if (sphere["parts"] >= parts).any()), 0.1)
+    yield "Sphere, contrast 10: narrowest bracket, %", narrowest(sphere), limit
     yield "Sphere, contrast 10: order of the width in the edge of elements", order_of_width(sphere), ">= 2"
-    yield "83 spheres, at most 200 CPU seconds: narrowest bracket, %", narrowest(many, cpu_s=200.0), 0.3
-    outside = rows[~rows["inside"].astype(bool)]
-    yield "Refined scenes: exact values outside of their brackets", len(outside), 0
+    yield "83 spheres, at most 200 CPU seconds: narrowest bracket, %", narrowest(many, cpu_s=200.0), 0.15
+    yield "Refined scenes: exact values outside of their brackets", _outside(rows), 0
 
 
 def _on_voxels(rows):
@@ -104,7 +112,7 @@ def _on_voxels(rows):
     from studies.brackets.means import order_of_width
 
     yield "Sphere on voxels: order of the width in their edge", order_of_width(rows), ">= 0.8"
-    yield "Sphere on voxels: exact values outside of their brackets", len(rows[~rows["inside"].astype(bool)]), 0
+    yield "Sphere on voxels: exact values outside of their brackets", _outside(rows), 0
 
 
 def table(df):
@@ -112,7 +120,8 @@ def table(df):
 
     "exact in" says where between the bounds the exact value is, 0 the lower and 1 the upper; of drawn scenes the least
     and the greatest of each kind. Elements, unknowns of temperature and flux, CPU seconds and memory are of one
-    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds.
+    bracket, or the mean of a kind; with a method those of its solve, and its answer's place between the bounds; of the
+    DEM with its packing, unless that was kept.
     """
     from studies.brackets.tables import lines
 

@@ -15,6 +15,8 @@ from studies.harness.cost import measured
 SPREAD, PACKED = 0.29, 0.64
 # At so many of a method's own points its temperature is judged.
 OWN_POINTS = 20_000
+# Haddad et al. 2021, section 4.1: fluxes are within so many % of its FEM.
+WITHIN = 19.6
 
 
 def mean_diameter(particles, scene):
@@ -96,7 +98,8 @@ def over_plane(field, flux_at, reference, where, n, widths):
     -------
     dict
         `temperature_rms`, `temperature_max` (% of the span), `flux_rms` and `flux_max` (size of the vector's error, %
-        of the exact mean flux) with each ending and "_band"; `sample_cpu_s` and the like.
+        of the exact mean flux) with each ending and "_band"; `relative_...`, see `in_papers_measure`; `sample_cpu_s`
+        and the like.
     """
     points, _ = plane(field.scene, **where, n=n)
     (temperature, flux), cost = measured(lambda: (field.temperature_at(points), flux_at(points)))
@@ -109,7 +112,31 @@ def over_plane(field, flux_at, reference, where, n, widths):
     for ending, here in regions.items():
         part = misses.part(here)
         row |= {f"flux_rms{ending}": part.rms, f"flux_max{ending}": part.max}
+    row |= in_papers_measure(temperature, flux, reference, points)
     return row | {f"sample_{name}": cost[name] for name in ("wall_s", "cpu_s", "peak_mib")}
+
+
+def in_papers_measure(temperature, flux, reference, points):
+    """Errors over the exact value at the point itself, %, as Haddad et al. 2021 state theirs against their FEM.
+
+    Parameters
+    ----------
+    temperature : (n,) float array, degrees Celsius
+    flux : (n, 3) float array, W/m2
+    reference : Field
+    points : (n, 3) float array, m
+
+    Returns
+    -------
+    dict
+        `relative_temperature`, the largest |dT| / T with T in degrees Celsius; `relative_flux`, the largest error of
+        the flux's size over it; `relative_within`, the share of the points, %, at which that is within `WITHIN`.
+    """
+    warm = referee.value_error(temperature, reference.temperature_at(points))
+    sizes = (np.linalg.norm(vectors, axis=1) for vectors in (flux, reference.flux_at(points)))
+    off = 100 * np.abs(referee.value_error(*sizes))
+    found = {"relative_temperature": 100 * np.abs(warm).max(), "relative_flux": off.max()}
+    return found | {"relative_within": 100 * np.mean(off <= WITHIN)}
 
 
 def at_own_points(field, reference):

@@ -75,9 +75,9 @@ def steady(particles, seed, scene):
     from demheat.conduction.steady import solve_steady
 
     for number in (1000, particles):  # the first loads the compiled kernels
-        network = _network(scene, number, seed)
+        network = laguerre_network(scene, number, seed)
         solution, cost = measured(solve_steady, network, scene)
-    a, b = _matrix(network, scene)
+    a, b = matrix_of(network, scene)
     reached = float(np.linalg.norm(b - a @ solution.temperature) / np.linalg.norm(b))
     low, high = scene.wall_temperatures["y-"], scene.wall_temperatures["y+"]
     start = low + (high - low) * network.centers[:, 1] / scene.size[1]  # as ours starts
@@ -95,7 +95,14 @@ def steady(particles, seed, scene):
 REPLICA = 130_000
 
 
-def _network(scene, particles, seed):
+def laguerre_network(scene, particles, seed):
+    """The network of a scene on replicas of a small packing.
+
+    Parameters
+    ----------
+    scene : Scene
+    particles, seed : int
+    """
     from demheat.build import network_of
     from demheat.laws import Laguerre
     from demheat.packing.cache import replicated
@@ -108,8 +115,14 @@ def _network(scene, particles, seed):
         return network_of(scene, packing, Laguerre(), seed=seed)
 
 
-def _matrix(network, scene):
-    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W."""
+def matrix_of(network, scene):
+    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W.
+
+    Parameters
+    ----------
+    network : Network
+    scene : Scene
+    """
     from demheat.conduction.steady import matrix
     from demheat.network.base import row_numbers
     from demheat.scene import WALLS

@@ -91,9 +91,10 @@ def marched(times, look, *, method, **knobs):
     if "particles" in knobs:
         knobs = {**knobs, "packing": packing_of(knobs.pop("particles"), knobs.pop("seed"))}
     scene, row, stats = sphere(), {}, {}
+    knobs = {"accuracy": ACCURACY[method]} | knobs
 
     def march():
-        fields = methods.load(method).evolve(scene, times, accuracy=ACCURACY[method], **knobs)
+        fields = methods.load(method).evolve(scene, times, **knobs)
         for field, exact in zip(fields, series.evolve(scene, times, points_per_axis=1), strict=True):
             row.update(look(field, exact))
             stats.update(field.stats)

@@ -35,6 +35,13 @@ def _cases():
 
 CASES = list(_cases())
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "Simple cubic crystal": "rounding: a hundred units in the last place of sums of tens of numbers; the steady "
+    "solution is iterated to 1e-14 of the heat, of equations whose condition is (2 n / pi)^2, 200 with 22 cells",
+    "Crystals: conductivity": "iterated to 1e-13 of the heat",
+    "Crystals: heat capacity": "rounding: a hundred units in the last place",
+}
 
 
 def QUICK(case):
@@ -55,17 +62,19 @@ def warm_up(**case):
 
 
 def claims(df):
-    """Section 3 of the paper holds to rounding; beyond simple cubic it says nothing."""
+    """Section 3 of the paper holds to rounding; beyond simple cubic it says nothing.
+
+    Limits were 1e-13, 1e-11 and 1e-12 before values were seen, and are now what rounding and the solver leave.
+    """
     grids, others = pick(df, part="stencil"), pick(df, part="other")
     for quantity, name in zip(QUANTITIES, NAMES, strict=True):
-        # The steady solution is iterated to 1e-14 of the heat; errors of temperature are larger by the number of cells.
-        limit = 1e-11 if quantity == "steady" else 1e-13
+        limit = 2e-12 if quantity == "steady" else 2e-14
         text = f"Simple cubic crystal, network against finite differences: {name}, largest relative difference"
         yield text, grids[quantity].max(skipna=False), limit
     off = referee.value_error(others["conductivity"], others["formula"]).abs().max(skipna=False)
-    yield "Crystals: conductivity off polyhedron over cell, n s f / (4 pi), relative", off, 1e-11
+    yield "Crystals: conductivity off polyhedron over cell, n s f / (4 pi), relative", off, 1e-12
     off = referee.value_error(others["capacity_ratio"], 1.0).abs().max(skipna=False)
-    yield "Crystals: heat capacity off that of the body, relative", off, 1e-12
+    yield "Crystals: heat capacity off that of the body, relative", off, 2e-14
     wrong = others[others["crystal"] != "simple cubic"]
     least = referee.value_error(wrong["conductivity"], 1.0).abs().min()
     yield "Crystals other than simple cubic: least error of the conductivity", least, ">= 0.01"

@@ -17,9 +17,17 @@ TIMEOUT = 3600.0
 DAMAGE = ("share", "radius", "body", "number", "removed", "draw")
 # Limits of errors at the resolutions of each method, %: set before any value was seen, from what the methods declare
 # without damage. Those of cracks after a look at other radii and numbers, where what discs take away was 21 % too large
-# with 1000 particles, 12 % with 4000, 6 % with 16 000.
-LIMITS = {"dem": (1.0, 0.3), "fem": (0.5, 0.1), "fft": (3.0, 1.0)}
-CRACK_LIMITS = (8.0, 4.0, 2.0)
+# with 1000 particles, 12 % with 4000, 6 % with 16 000. When all values were known those more than three times as large
+# were brought nearer: of the DEM from 1 and .3, of coarse elements from .5, of cracks from 8, 4 and 2, of the first
+# links from .1.
+LIMITS = {"dem": (0.4, 0.1), "fem": (0.3, 0.1), "fft": (3.0, 1.0)}
+CRACK_LIMITS = (6.0, 3.0, 1.5)
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "spheres that have come off, DEM, 100000": "by second order, 4.6 times, from the limit with 10 000 particles",
+    "first links gone": "two gone links beside each other count as one or three: a part of twice their share, .01",
+    "effective medium theory": "draws of the small lattice scatter by 3 %, as two of them in quick rows",
+}
 
 
 def _at(name, value):
@@ -108,7 +116,7 @@ def _link_claims(rows):
     from studies.damage.means import above_bound, beside_theory, first_loss
 
     lattice = pick(rows, body="lattice")
-    yield "lattice: first links gone, off the exact loss of 1.5 of their share, of it", first_loss(lattice), 0.1
+    yield "lattice: first links gone, off the exact loss of 1.5 of their share, of it", first_loss(lattice), 0.02
     text = "lattice: worst error of the effective medium theory up to 0.4 gone, of the conductivity left"
     yield text, beside_theory(lattice, 0.4), 0.05
     dense = lattice[lattice["removed"] < 1 - THRESHOLD - 0.1]
@@ -124,14 +132,23 @@ def _link_claims(rows):
 
 
 def table(df):
-    """Errors against exact values, %; of links the mean of k over that of the whole body, beside the theory."""
-    from studies.damage.tables import lines
+    """Spheres that have come off: errors against exact values, %, by the share of them."""
+    from studies.damage import tables
 
-    return lines(df)
+    return tables.of_spheres(df)
 
 
 def notes(df):
-    """Why one limit is missed, where it is."""
+    """Tables of discs and of links; why one limit is missed, where it is."""
+    from studies.damage import tables
+    from studies.harness.table import markdown
+
+    for words, made in (
+        ("Discs: errors against exact values, %, by their radius.", tables.of_discs(df)),
+        ("Links: mean of k over that of the whole body, by the share that is gone.", tables.of_links(df)),
+    ):
+        if len(made):
+            yield from (markdown(made), words)
     rows = pick(df, part="debonded", name="fem")
     missed = rows.groupby("size")["error_percent"].apply(lambda errors: errors.abs().max()) if len(rows) else rows
     if len(missed) > 1 and missed.iloc[0] > LIMITS["fem"][1]:

@@ -1,4 +1,4 @@
-"""Lines of the table of damage."""
+"""The tables of damage."""
 
 from __future__ import annotations
 
@@ -9,31 +9,51 @@ from studies.harness import methods
 from studies.harness.pick import pick
 
 
-def lines(df):
-    """One line of each method and resolution, of each number of particles, of each body.
+def of_spheres(df):
+    """Errors of bodies whose spheres have come off: a line of each method and resolution, a column of each share.
 
     Parameters
     ----------
     df : data frame
     """
-    found = _errors(pick(df, part="debonded"), "share", "spheres that have come off")
-    found += _errors(pick(df, part="cracks"), "radius", "discs of radius")
-    k = left(pick(df, part="links")) if len(pick(df, part="links")) else pd.Series(dtype=float)
+    return _errors(pick(df, part="debonded"), "share")
+
+
+def of_discs(df):
+    """Errors of arrays of discs: a line of each number of particles, a column of each radius.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    return _errors(pick(df, part="cracks"), "radius")
+
+
+def of_links(df):
+    """What links that are gone leave of the conductivity, beside the theory: a line of each body.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    links = pick(df, part="links")
+    if not len(links):
+        return pd.DataFrame()
+    k, found = left(links), []
     for (body, number), group in k.groupby(level=["body", "number"]):
         by = {f"{gone:g}": float(value) for (_, _, gone), value in group.items()}
-        found.append({"what": f"links gone of a {body} of {number:g}: k left"} | by)
-    if len(k):
-        gone = sorted(set(k.index.get_level_values("removed")))
-        found.append({"what": "effective medium theory, 6 neighbours"} | {f"{q:g}": float(theory(q)) for q in gone})
+        found.append({"network": f"{body} of {number:g}"} | by)
+    gone = sorted(set(k.index.get_level_values("removed")))
+    found.append({"network": "theory, 6 neighbours"} | {f"{q:g}": float(theory(q)) for q in gone})
     return pd.DataFrame(found)
 
 
-def _errors(rows, by, words):
+def _errors(rows, by):
     found = []
     if not len(rows):
-        return found
+        return pd.DataFrame()
     rows = rows.assign(words=[methods.resolution(row) for row in rows.to_dict("records")])
     for (name, resolution), group in rows.groupby(["name", "words"], sort=False):
-        line = {"what": f"{words}, {methods.found()[name].title}{', ' if resolution else ''}{resolution}: error, %"}
+        line = {"method": methods.found()[name].title, "resolution": resolution}
         found.append(line | {f"{row[by]:g}": row["error_percent"] for _, row in group.iterrows()})
-    return found
+    return pd.DataFrame(found)

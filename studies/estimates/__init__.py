@@ -27,6 +27,10 @@ BESIDE, FEW = (
 )
 MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reached"}
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "an entry outside of its interval": "a twentieth is what intervals of 95 % may miss",
+}
 TIMEOUT = 1800.0
 
 
@@ -62,7 +66,10 @@ def run(part, scene, seed, method):
 
 
 def claims(df):
-    """The exact value lies inside, and the interval is not a blanket."""
+    """The exact value lies inside, and the interval is not a blanket: half of it five times the error at most.
+
+    Of the DEM as in the paper two was asked for when one was known.
+    """
     from studies.estimates.means import inside, over, present
 
     asked, df = pick(df, part="effective"), pick(df, part="unseen")
@@ -75,14 +82,15 @@ def claims(df):
     for name in filter(partial(present, df), (*NAMES, *BESIDE)):
         title = found()[name].title
         yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
-        yield f"{title}: half of the interval over the error, median", over(df, name).median(), "<= 5"
+        most = 2 if name == "dem-calibrated" else 5
+        yield f"{title}: half of the interval over the error, median", over(df, name).median(), f"<= {most}"
     for name in filter(partial(present, df), NAMES):
         title = found()[name].title
         yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
         yield f"{title}: what is said of the temperature over its error, median", over(df, name, "t_").median(), "<= 5"
     right = asked["inside"].eq(True) & (asked["worst_percent"] <= 100 * ACCURACY)
     yield f"effective: share of {len(asked)} unseen scenes right to {100 * ACCURACY:g} %", right.mean(), ">= 0.95"
-    wrong = asked["inside"].eq(False)
+    wrong = ~asked[asked["worst_percent"].notna()]["inside"].eq(True)
     yield "effective: share of scenes with an entry outside of its interval", wrong.mean(), "<= 0.05"
 
 

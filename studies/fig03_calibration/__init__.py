@@ -29,6 +29,13 @@ CURES = (
 )
 POLICIES = ({"sparse": "keep"}, {"sparse": "drop"}, {"sparse": "drop", "count": "rest"})
 TIMEOUT = 3600.0
+# Range of C_t in the periodic cell, %.
+RANGES = {"relaxed": 1.0, "lsa": 0.2}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "dropped or kept": "the same equations but for some that nothing flows into, solved to 1e-10 of the heat",
+    "of one replica": "a field that repeats, solved to 1e-10 of the heat",
+}
 
 
 def _case(loading, packing, particles, seed, domain="cube", **more):
@@ -85,7 +92,9 @@ def claims(df):
     """C_t does not drift without walls or with links at them; with the paper's walls it does.
 
     Where walls do not matter C_t is held to 1 % from 3000 particles on and 0.3 % from 1e5; with the paper's walls the
-    printed range, 0.806 at 1e5 and a scatter within the printed one are the yardsticks.
+    printed scatter is the yardstick, and 0.806 at 1e5, to three times that: it is not reproduced. Of LSA packings in
+    the periodic cell the range was held to 1 % before it was known, differences that are rounding to 1e-6, and C_t of
+    replicas to 1 %.
     """
     plain = df[unchanged(df)]
     yield from present([*_wall_claims(plain), *_paper_claims(plain), *_level_claims(df), *_other_claims(df, plain)])
@@ -106,7 +115,7 @@ def _wall_claims(plain):
             yield f"{text}: C_t off that of the periodic cell, %", here.max() if len(here) else None, limit
         cell = cell[cell.index >= 3_000]
         drift = 100 * referee.value_error(cell.max(), cell.min()) if len(cell) > 1 else None
-        yield f"{packing} packings, periodic cell, 3000 particles and more: range of C_t, %", drift, 1.0
+        yield f"{packing} packings, periodic cell, 3000 particles and more: range of C_t, %", drift, RANGES[packing]
 
 
 def _paper_claims(plain):
@@ -125,17 +134,10 @@ def _paper_claims(plain):
 
 
 def _level_claims(df):
-    """Where the paper's C_t at 1e5 lies among ours."""
-    ct = {name: variant(df, "flux", change) for name, change in VARIANTS.items()}
-    if None in ct.values():
-        return
-    text = "1e5 particles, as in the paper"
-    yield f"{text}: C_t, below the paper's range and its 0.806", ct.pop("as in the paper"), f"< {PAPER['ct_least']}"
-    reaching = {"6.5 links", "spread 0.15", "equal spheres"}
-    most = max(value for name, value in ct.items() if name not in {"7 links", *reaching})
-    yield f"{text} but for the mean of radii or the gap: largest C_t, below 0.806", most, f"< {PRINTED[VARIED]}"
-    for name in sorted(reaching):
-        yield f"{text} but for {name}: C_t, 0.806 or more", ct[name], f">= {PRINTED[VARIED]}"
+    """C_t at 1e5 as in the paper beside the printed one."""
+    ct, there = variant(df, "flux", VARIANTS["as in the paper"]), PRINTED[VARIED]
+    off = None if ct is None else 100 * abs(referee.value_error(ct, there))
+    yield f"1e5 particles, as in the paper: C_t off the printed {there:g}, %", off, 3 * PAPER["cov"]
 
 
 def _other_claims(df, plain):
@@ -143,7 +145,7 @@ def _other_claims(df, plain):
     yield "Periodic cell: least C_t over its affine bound", (cell["ct"] / cell["bound"]).min(), ">= 1"
     joined, kept, dropped = (_by_packing(rows) for rows in (plain, pick(df, sparse="keep"), pick(df, sparse="drop")))
     if len(kept):
-        yield "Poorly linked particles dropped or kept: difference of C_t", _differ(kept, dropped), 1e-6
+        yield "Poorly linked particles dropped or kept: difference of C_t", _differ(kept, dropped), 1e-10
     text = "Poorly linked particles dropped or joined to the nearest: difference of C_t, %"
     yield text, 100 * _differ(joined, dropped), 0.5
     replicas, one, true = (
@@ -152,8 +154,8 @@ def _other_claims(df, plain):
     )
     if len(replicas) == len(one) == len(true) == 1:
         text = "Periodic cell of 8 replicas of 1e4: C_t off that of"
-        yield f"{text} one replica", abs(referee.value_error(replicas, one))[0], 1e-6
-        yield f"{text} a packing of 8e4, %", 100 * abs(referee.value_error(replicas, true))[0], 1.0
+        yield f"{text} one replica", abs(referee.value_error(replicas, one))[0], 1e-10
+        yield f"{text} a packing of 8e4, %", 100 * abs(referee.value_error(replicas, true))[0], 0.5
 
 
 def _by_packing(rows):
@@ -166,8 +168,21 @@ def _differ(one, other):
     return float(referee.value_error(one, other).abs().max())
 
 
+def notes(df):
+    """What C_t is at 1e5 with one thing changed, as it is not the printed one."""
+    ct = {name: variant(df, "flux", change) for name, change in VARIANTS.items()}
+    found = ", ".join(f"{name} {value:.3f}" for name, value in ct.items() if value is not None)
+    if found:
+        yield (
+            f"C_t of {PRINTED[VARIED]:g} with 1e5 particles is not reproduced; what differs is not known. One LSA "
+            f"packing each, changed in one thing: {found}."
+        )
+
+
 def table(df):
-    """C_t by number of particles, mean over packings; scatter is the coefficient of variation at 1e5, %.
+    """C_t by number of particles, mean over four packings, of costly ones two, of what is changed one.
+
+    Scatter is the coefficient of variation at 1e5, %.
 
     Bound and formula are at the largest number of particles: 1 over the conductivity under a linear field, below which
     C_t cannot lie in the periodic cell, and 4 <R^3>/(Z phi <R_m^3>), <R^3> over particles and <R_m^3> over links.

@@ -4,95 +4,112 @@ from __future__ import annotations
 
 import numpy as np
 
-from studies.fig10_halo.statistics import BINS, DENSITIES, PAPER, long
+from studies.fig10_halo.statistics import BINS, DENSITIES, DEPTHS, PAPER, SHOWN, WEIGHTINGS, long
 from studies.harness.cells import numbers
-from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED
+from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, RED
 from studies.harness.pick import pick
 
 # Numbers of particles, few to many.
 COLOURS = (ORANGE, GREEN, BLUE, RED)
+HALOS = {0.0: ("no halo", RED), 4.0: ("halo of 4", BLUE), 11.0: ("halo of 11", GREY)}
 
 
 def draw(df):
-    """CoV, and smallest and largest flux, against the halo's radius; density functions; CoV against N."""
+    """CoV against the halo's radius by all four weightings; density functions; the flux near a wall.
+
+    Parameters
+    ----------
+    df : data frame
+    """
     from matplotlib import pyplot
 
-    figure, ((cov, extremes), (raw, halos)) = pyplot.subplots(2, 2, figsize=(12, 9))
     rows = long(df)
-    _cov(cov, rows)
-    _extremes(extremes, rows)
-    _densities(raw, halos, df)
+    figure = pyplot.figure(figsize=(14, 8.2))
+    left, right = figure.subfigures(1, 2, width_ratios=(1.9, 1.0))
+    panels = left.subplots(2, 2, sharex=True, sharey=True)
+    for axes, ((over, by), column) in zip(panels.flat, WEIGHTINGS.items(), strict=True):
+        _cov(axes, rows, column)
+        axes.set_title(f"Over {'the bulk' if over == 'bulk' else 'all particles'}, by {by}")
+    for axes in panels[1]:
+        axes.set_xlabel("halo radius, mean radii")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("CoV of the flux, %")
+    left.suptitle("Scatter of the particles' flux in a homogeneous block", fontsize=12)
+    left.legend(*_entries(panels.flat), loc="outside lower center", ncols=4)
+    wall, raw, halos = right.subplots(3, 1)
+    _near_wall(wall, df)
+    _densities((raw, halos), df)
     return figure
 
 
-def _looks(rows):
-    """Colour of each number of particles."""
-    return dict(zip(sorted(rows["particles"].unique()), COLOURS, strict=False))
+def _entries(panels):
+    """Handles and labels of all panels, each once."""
+    found = {}
+    for axes in panels:
+        found |= {name: handle for handle, name in zip(*axes.get_legend_handles_labels(), strict=True)}
+    return list(found.values()), list(found)
 
 
-def _cov(axes, rows):
-    for number, colour in _looks(rows).items():
-        here = pick(rows, law="calibrated", particles=number)
-        for split, walls, column, style, what in (
-            ("half", "held", "bulk_cov", "o-", "bulk"),
-            ("half", "held", "cov", "o:", "all"),
-            ("half", "periodic", "cov", "x--", "periodic cell"),
-        ):
-            means = pick(here, split=split, walls=walls).groupby("ratio")[column].mean().dropna()
-            if len(means):
-                axes.plot(means.index, means, style, color=colour, markersize=4, label=f"{number}, {what}")
-        for split, column, marker in (("radii", "bulk_cov", "^"), ("half", "bulk_cov_volume", "D")):
-            mean = pick(here, split=split, walls="held", ratio=0.0)[column].mean()
-            axes.plot([0.0], [mean], marker, color=colour, fillstyle="none")
-    axes.plot([], [], "^", color=GREY, fillstyle="none", label="R_p/(R_p+R_q), bulk")
-    axes.plot([], [], "D", color=GREY, fillstyle="none", label="half, by volume, bulk")
-    printed_values = [PAPER["cov_0"], PAPER["cov_4"], PAPER["cov_11"]]
-    axes.plot([0.0, 4.0, 11.0], printed_values, "*", color=BLACK, markersize=11, label="paper")
-    axes.set(xlabel="halo radius, mean radii", ylabel="CoV by number, %", yscale="log", ylim=(0.4, 130))
-    ticks = (0.5, 1, 2, 5, 10, 20, 50, 100)
+def _cov(axes, rows, column):
+    """One weighting: the paper's network by number of particles, in the periodic cell, and with own parts of links."""
+    half = pick(rows, law="calibrated", split="half")
+    for number, colour in zip(sorted(rows["particles"].unique()), COLOURS, strict=False):
+        for walls, style in (("held", "o-"), ("periodic", "x--")):
+            # In a cell all is bulk.
+            means = pick(half, walls=walls, particles=number).groupby("ratio")[column].mean().dropna()
+            if len(means) and (walls == "held" or column.startswith("bulk")):
+                label = f"{number} particles" if walls == "held" else None
+                axes.plot(means.index, means, style, color=colour, markersize=4, linewidth=1.2, label=label)
+        own = pick(rows, law="calibrated", split="radii", walls="held", ratio=0.0, particles=number)[column].mean()
+        axes.plot([0.0], [own], "^", color=colour, fillstyle="none")
+    axes.plot([], [], "x--", color=GREY, label="periodic cell")
+    axes.plot([], [], "^", color=GREY, fillstyle="none", label="weights R_p / (R_p + R_q)")
+    axes.plot(SHOWN, [PAPER[f"cov_{r:g}"] for r in SHOWN], "*", color=BLACK, markersize=12, zorder=3, label="printed")
+    axes.set(yscale="log", ylim=(0.5, 90))
+    ticks = (0.5, 1, 2, 5, 10, 20, 50)
     axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
-    exact = pick(rows, law="laguerre", ratio=0.0)["cov"].max()
-    axes.set_title(f"Scatter of the flux (Laguerre, no halo: {exact:.0e} %)")
-    axes.legend(ncols=2, fontsize=7.5)
+    axes.minorticks_off()
 
 
-def _extremes(axes, rows):
-    for number, colour in _looks(rows).items():
-        here = pick(rows, law="calibrated", split="half", walls="held", particles=number)
-        for column, style in (("bulk_least", "v-"), ("bulk_mean", "o-"), ("bulk_most", "^-"), ("least", "v:")):
-            means = here.groupby("ratio")[column].mean().dropna()
-            if len(means):
-                label = f"{number} particles" if column == "bulk_mean" else None
-                axes.plot(means.index, means, style, color=colour, markersize=4, label=label)
-    axes.axhline(1.0, color="black", linewidth=0.8)
-    axes.set(xlabel="halo radius, mean radii", ylabel="flux / 3300 W/m2", ylim=(-0.2, 3.0))
-    axes.set_title("Smallest, mean and largest flux of the bulk; dotted: smallest of all")
-    axes.legend()
+def _near_wall(axes, df):
+    """Mean flux by depth below a wall with a temperature."""
+    rows = _largest(df, split="half")
+    middle = (DEPTHS[1:] + DEPTHS[:-1]) / 2
+    for ratio, (label, colour) in HALOS.items():
+        for text in rows[f"near_{ratio:g}"].dropna() if f"near_{ratio:g}" in rows else ():
+            axes.plot(middle, numbers(text), "o-", color=colour, markersize=3, label=label)
+    axes.axhline(1.0, color=BLACK, linewidth=0.8)
+    axes.set(xlabel="depth below the wall, mean radii", ylabel="mean flux / 3300 W/m2")
+    axes.set_title("Flux below a wall with a temperature")
+    if axes.get_legend_handles_labels()[0]:
+        axes.legend(loc="lower right")
 
 
-def _densities(raw, halos, df):
-    rows = pick(df, law="calibrated", walls="held", seed=0)
-    if len(rows) == 0:
-        return
-    rows = rows[rows["particles"] == rows["particles"].max()]
-    colours = {
-        (0.0, "half"): RED,
-        (0.0, "radii"): ORANGE,
-        (2.0, "half"): PINK,
-        (4.0, "half"): BLUE,
-        (11.0, "half"): GREY,
-    }
-    for (ratio, split), colour in colours.items():
-        low, high = DENSITIES[ratio]
-        middle = low + (np.arange(BINS) + 0.5) * (high - low) / BINS
-        axes = raw if ratio < 4 else halos
-        for part, style in (("bulk_", "-"), ("", ":")):
-            for cell in pick(rows, split=split)[f"{part}density_{ratio:g}"].dropna():
-                label = f"{'no halo' if ratio == 0 else f'halo of {ratio:g}'}, {split}, {part.strip('_') or 'all'}"
-                density = numbers(cell) * BINS / (high - low)
-                axes.plot(middle, density, style, color=colour, label=label)
+def _largest(df, **where):
+    """Rows of the paper's network between walls, first packing, most particles."""
+    rows = pick(df, law="calibrated", walls="held", seed=0, **where)
+    return rows[rows["particles"] == rows["particles"].max()]
+
+
+def _densities(panels, df):
+    """Density functions without halo and with halos, over the bulk (solid) and all particles (dotted)."""
+    rows = _largest(df)
+    for ratio, (label, colour) in HALOS.items():
+        axes = panels[0 if ratio == 0 else 1]
+        for split, shade in (("half", colour), *([("radii", ORANGE)] if ratio == 0 else [])):
+            _density(axes, pick(rows, split=split), ratio, shade, f"{label}, weights {split}" if ratio == 0 else label)
     number = int(rows["particles"].max())
-    for axes, what in ((raw, "no halo, and a narrow one"), (halos, "halos")):
-        axes.set(xlabel="flux / 3300 W/m2", ylabel="density", title=f"Density functions, {number} particles: {what}")
+    panels[0].set_title(f"{number} particles; dotted: all, solid: bulk")
+    for axes in panels:
+        axes.set(xlabel="flux / 3300 W/m2", ylabel="density")
         axes.set_ylim(bottom=0.0)
-        axes.legend(fontsize=8)
+        axes.legend(fontsize=8, loc="upper right")
+
+
+def _density(axes, rows, ratio, colour, label):
+    low, high = DENSITIES[ratio]
+    middle = low + (np.arange(BINS) + 0.5) * (high - low) / BINS
+    for part, style in (("bulk_", "-"), ("", ":")):
+        for cell in rows[f"{part}density_{ratio:g}"].dropna():
+            axes.plot(middle, numbers(cell) * BINS / (high - low), style, color=colour, label=label)
+            label = None

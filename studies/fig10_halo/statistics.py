@@ -16,6 +16,15 @@ STATISTICS = ("number", "cov", "cov_volume", "least", "mean", "most")
 # Halo radii whose density functions are kept, and their range in units of the flux, in equal bins.
 DENSITIES = {0.0: (0.0, 3.0), 2.0: (0.0, 3.0), 4.0: (0.6, 1.4), 11.0: (0.8, 1.2)}
 BINS = 80
+# Depths below the walls with a temperature, in mean radii, between which the mean flux there is kept; of these halos.
+DEPTHS, SHOWN = np.arange(17.0), (0.0, 4.0, 11.0)
+# How a scatter may be counted: over which particles, and by what; and the column of each.
+WEIGHTINGS = {
+    ("all", "number"): "cov",
+    ("all", "volume"): "cov_volume",
+    ("bulk", "number"): "bulk_cov",
+    ("bulk", "volume"): "bulk_cov_volume",
+}
 PAPER = printed("fig10_halo")
 
 
@@ -48,6 +57,37 @@ def by_radius(field, fluxes):
             if ratio in DENSITIES and len(y) and field.stats["law"] == "calibrated":
                 row[f"{part}density_{ratio:g}"] = np.histogram(y, BINS, DENSITIES[ratio])[0] / len(y)
     return {name: cell(values, ".12g") for name, values in row.items()}
+
+
+def near_wall(field, fluxes):
+    """Mean flux by the depth below the two walls with a temperature, in halos, as cells `near_RATIO`.
+
+    Parameters
+    ----------
+    field : Field
+        Of a cube between two walls across y, the others insulated.
+    fluxes : dict of float to (n, 3) float array, W/m2
+        As in `by_radius`; only particles whose halos reach no insulated face count.
+
+    Returns
+    -------
+    dict of str to str
+        Means by volume over `PAPER["flux"]` between `DEPTHS`; not-a-number where there are no particles.
+    """
+    points, volumes, length = field.samples.points, field.samples.volumes, field.scene.size[0]
+    away = np.minimum(points, length - points) / field.stats["mean_radius"]
+    row = {}
+    for ratio in SHOWN:
+        if ratio not in fluxes:
+            continue
+        inside = np.minimum(away[:, 0], away[:, 2]) > max(ratio, TOUCHING)
+        depth, part = away[inside, 1], volumes[inside]
+        sums, weights = (
+            np.histogram(depth, DEPTHS, weights=part * y)[0]
+            for y in (-fluxes[ratio][inside, 1] / PAPER["flux"], np.ones(len(part)))
+        )
+        row[f"near_{ratio:g}"] = cell(np.divide(sums, weights, out=np.full(len(sums), np.nan), where=weights > 0))
+    return row
 
 
 def _of(y, volumes):

@@ -8,23 +8,31 @@ points of Table 2, in % of the exact flux there and in K.
 
 "Away" is more than a mean particle diameter of a packing of 1.5e5, 0.0187 L, from the interface and from the insulated
 faces, the same for all methods; the band is the rest. The paper's network is sampled as there: its flux is that of the
-particles (eq. 20) averaged over halos of 4 or 11 mean radii (eqs. 22-23), which do not stop at the interface.
+particles (eq. 20) averaged over halos of 4 or 11 mean radii (eqs. 22-23), which do not stop at the interface. What such
+a halo does to a flux by itself is the exact field averaged over it; halos that are as wide in metres as those of 11
+radii with 1.5e5 elements tell whether the paper's shrink with its elements.
 """
 
 from demheat import referee
 from demheat.gallery import sphere_in_cube
 from studies.fig15_16_fields.tables import error_columns, largest
 from studies.harness import methods
+from studies.harness.cells import cell
 from studies.harness.pick import order, pick, present
 from studies.harness.store import printed
 
 # Table 2, in edges of the cube.
 POINTS = {"A": (0.5, 0.5, 0.5), "B": (0.08, 0.5, 0.5), "C": (0.5, 0.92, 0.5)}
 PLANE = {"axis": 2, "at": 0.05}
-GRID, PICTURE = 200, 61
+# Points along a side of the plane; of pictures at quick size fewer.
+GRID, COARSE = 200, 61
 NUMBERS, PAPERS, MOST = (10_000, 50_000, 150_000), 150_000, 500_000
 SEEDS = (0, 1, 2)
 RATIOS = (4.0, 11.0)
+# Halos as large in metres as those of 11 mean radii with the paper's 1.5e5 elements, in mean radii.
+SAME_SIZE = {number: round(RATIOS[-1] * (number / PAPERS) ** (1 / 3), 2) for number in (*NUMBERS[:-1], MOST)}
+# Halos over which the exact field is averaged, in edges of the cube; that of 11 radii of 1.5e5 particles is .103.
+HALOS = (0.05, 0.069, 0.103)
 # Longest edges, m. Linear elements of 3.5 mm are some 1e5 tetrahedra, as in the paper.
 SIZES = {"fem-p1": (0.006, 0.0035), "fem": (0.01, 0.006, 0.004, 0.003)}
 VOXELS = (32, 64, 128)
@@ -42,6 +50,8 @@ def _cases():
                 yield methods.case("dem-calibrated", particles=number, seed=seed, ratio=ratio)
             if number < MOST:
                 yield methods.case("dem-plain", particles=number, seed=seed)
+    for number, ratio in SAME_SIZE.items():
+        yield methods.case("dem-calibrated", particles=number, seed=0, ratio=ratio)
     for name, sizes in SIZES.items():
         yield from (methods.case(name, size=size) for size in sizes)
     yield from (methods.case("fft", voxels=voxels) for voxels in VOXELS)
@@ -54,7 +64,8 @@ def QUICK(case):
     """The exact field, one packing of 1e4, the coarsest quadratic elements and voxels."""
     coarsest = {"particles": NUMBERS[0], "size": SIZES["fem"][0], "voxels": VOXELS[0]}
     fits = all(case[key] == value for key, value in coarsest.items() if key in case)
-    return fits and case["name"] not in ("dem-plain", "fem-p1") and not case.get("seed")
+    usual = case["name"] not in ("dem-plain", "fem-p1") and case.get("ratio") in (None, *RATIOS)
+    return fits and usual and not case.get("seed")
 
 
 def run(name, ratio=None, *, method, **knobs):
@@ -72,8 +83,17 @@ def run(name, ratio=None, *, method, **knobs):
     row |= field_errors.at_own_points(field, reference)
     row |= {key: field.stats.get(key) for key in ("elements", "calibration", "mean_radius")}
     if name == "exact":
-        return row | field_errors.field_pictures(field, PLANE, PICTURE)
-    return row | (field_errors.error_pictures(*looked, PLANE, PICTURE) if _is_pictured(name, **knobs) else {})
+        return row | field_errors.field_pictures(field, PLANE, GRID) | _over_halos(field)
+    side = _pictured(name, ratio, **knobs)
+    return row | (field_errors.error_pictures(*looked, PLANE, side) if side else {})
+
+
+def _over_halos(field):
+    """The exact flux at the points of Table 2 averaged over halos, a list for each point."""
+    from studies.fig15_16_fields.halos import averaged
+
+    found = averaged(field, POINTS, [radius * field.scene.size[0] for radius in HALOS])
+    return {"halo_radius": cell(HALOS)} | {f"halo_q_{letter}": cell(means) for letter, means in found.items()}
 
 
 def warm_up(name, ratio=None, *, method, **knobs):
@@ -103,29 +123,23 @@ def _flux_at(field, ratio):
     return lambda points: halo_flux(field, ratio=ratio, at=points)
 
 
-def _is_pictured(name, particles=None, seed=0, size=None, voxels=None, **_):
-    """One row of each method per figure: at quick size, and with as many elements as the paper."""
+def _pictured(name, ratio, particles=None, seed=0, size=None, voxels=None, **_):
+    """Pixels along a side of a row's picture: of each method at quick size, and with as many elements as the paper."""
+    if name == "dem-plain" or seed or ratio not in (None, *RATIOS):
+        return 0
     fine = {"fem": SIZES["fem"][2], "fem-p1": SIZES["fem-p1"][1]}.get(name)
-    sizes = (SIZES["fem"][0], fine)
-    return (
-        name != "dem-plain"
-        and seed == 0
-        and (
-            particles in (NUMBERS[0], PAPERS)
-            or (size is not None and size in sizes)
-            or voxels in (VOXELS[0], VOXELS[-1])
-        )
-    )
+    if particles == PAPERS or voxels == VOXELS[-1] or (size is not None and size == fine):
+        return GRID
+    return COARSE if particles == NUMBERS[0] or voxels == VOXELS[0] or size == SIZES["fem"][0] else 0
 
 
 def claims(df):
-    """Laguerre beside the exact field, the paper's network and printed values; FEM and FFT; orders.
+    """Laguerre beside the exact field, the paper's network and what it prints; FEM and FFT; orders.
 
-    Laguerre is held to 0.5 % of the flux and 0.02 K at Table 2's points with the paper's 1.5e5 elements, where the
-    printed flux at C is 3.8 % and more low, and to a tenth of the errors of the paper's network; quick rows to some
-    twice as much at the points.
+    Limits of Laguerre, FEM and FFT are two to three times what was found with other packings and meshes. What the paper
+    states of its network is asked of ours as it is printed.
     """
-    yield from present([*_exact(df), *_laguerre(df), *_orders(df), *_network(df), *_others(df)])
+    yield from present([*_exact(df), *_laguerre(df), *_orders(df), *_printed(df), *_network(df), *_others(df)])
 
 
 def _exact(df):
@@ -133,17 +147,10 @@ def _exact(df):
     off = max(abs(row[key] - value) * 10**digits for key, (value, digits) in RAYLEIGH.items())
     # Half a unit of the last digit, and the rounding of that half.
     yield "Exact field: off the known values of Table 2's points, in units of their last digits", off, 0.51
-    few, many = (-100 * referee.value_error(PAPER[f"q_C_{number}"], row["q_C"]) for number in ("150k", "500k"))
-    yield "Printed flux at C, 1.5e5 elements: below the exact one by, %", few, ">= 3.8"
-    yield (
-        "Printed flux at C: its error with 5e5 elements over that with 1.5e5, so that it is no noise",
-        many / few,
-        ">= 1",
-    )
 
 
 def _laguerre(df):
-    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.03, 1.5, 15.0), (PAPERS, 0.5, 0.02, 0.6, 3.0)):
+    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.015, 1.5, 12.0), (PAPERS, 0.1, 8e-4, 0.25, 2.1)):
         rows = pick(df, name="dem", particles=number)
         text = f"DEM, Laguerre, {number} particles: "
         yield text + "largest error of a flux of Table 2, %", largest(rows, error_columns("q", POINTS)), flux
@@ -151,8 +158,9 @@ def _laguerre(df):
         yield text + "flux away from interface and insulated faces, rms, %", largest(rows, ["flux_rms"]), rms
         yield text + "the same, largest, %", largest(rows, ["flux_max"]), most
         # Found 1.5 and 0.32 %; fits that do not know the interface have 6.2 and 1.8 %.
-        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 2.0 * rms
+        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 3.0 * rms
     balance = pick(df, method="dem")["heat_imbalance"].abs().max(skipna=False)
+    # A hundred times the tolerance of the solver.
     yield "DEM, all laws: heat in minus heat out over the heat that passes", balance, 1e-6
 
 
@@ -174,24 +182,45 @@ def _orders(df):
         yield f"DEM, Laguerre: order of the L2 error in the spacing, {what}", found, f">= {limit}"
 
 
+def _printed(df):
+    """What the paper prints, in its own measure: over the local value, temperatures in degrees Celsius."""
+    rows = pick(df, name="dem-calibrated", particles=PAPERS, ratio=RATIOS[-1])
+    text = "As in the paper, 1.5e5 elements, halo of 11:"
+    off = [referee.value_error(rows[f"q_{x}"], PAPER[f"q_{x}_150k"]).abs().max(skipna=False) for x in POINTS]
+    # Halos scatter by 1.3 % of the mean flux, 2.4 % of that at B.
+    yield f"{text} fluxes of Table 2 off the printed ones, largest, %", 100 * max(off) if len(rows) else None, 3.0
+    off = [(rows[f"T_{x}"] - PAPER[f"T_{x}_150k"]).abs().max(skipna=False) for x in POINTS]
+    # Half a unit of the last printed digit, and as much scatter.
+    yield f"{text} temperatures of Table 2 off the printed ones, largest, K", max(off) if len(rows) else None, 0.1
+    for name, who in (("dem-calibrated", text), ("dem", "DEM, Laguerre, 1.5e5 particles:")):
+        rows = pick(df, name=name, particles=PAPERS, ratio=RATIOS[-1] if name != "dem" else None)
+        if "relative_flux" not in rows:
+            continue
+        for column, what, limit in (
+            ("relative_temperature", "largest |dT|/T over the plane, T in degrees Celsius, % (paper: within 1)", 1.0),
+            ("relative_flux", "largest error of the flux over the flux there, % (paper: within 19.6)", 19.6),
+        ):
+            yield f"{who} {what}", largest(rows, [column]), limit
+
+
 def _network(df):
     """The paper's network on the same packings."""
-    for number in (NUMBERS[0], PAPERS):
+    for number, flux_limit, warm_limit in ((NUMBERS[0], 0.075, 0.025), (PAPERS, 0.02, 0.008)):
         mine, theirs = (pick(df, name=name, particles=number, seed=0) for name in ("dem", "dem-calibrated"))
         if not len(mine) or not len(theirs):
             continue
         text = f"{number} particles: Laguerre's error over that of the paper's network and its best halo, "
         flux = mine["flux_rms"].max(skipna=False) / theirs["flux_rms"].min(skipna=False)
-        yield text + "flux away from interface and insulated faces, rms", flux, 0.1
+        yield text + "flux away from interface and insulated faces, rms", flux, flux_limit
         warm = mine["own_temperature_rms"].max(skipna=False) / theirs["own_temperature_rms"].min(skipna=False)
-        yield text + "temperature of the particles, rms", warm, 0.1
+        yield text + "temperature of the particles, rms", warm, warm_limit
 
 
 def _others(df):
-    for size, rms in ((SIZES["fem"][0], 3.0), (SIZES["fem"][2], 0.5)):
+    for size, rms in ((SIZES["fem"][0], 4.0), (SIZES["fem"][2], 0.7)):
         found = largest(pick(df, name="fem", size=size), ["flux_rms"])
         yield f"FEM, P2, edges of {1e3 * size:g} mm: flux away, rms, %", found, rms
-    for voxels, rms in ((VOXELS[0], 3.0), (VOXELS[-1], 0.5)):
+    for voxels, rms in ((VOXELS[0], 3.5), (VOXELS[-1], 0.5)):
         found = largest(pick(df, name="fft", voxels=voxels), ["flux_rms"])
         yield f"FFT, {voxels}^3 laminate voxels: flux away, rms, %", found, rms
 
@@ -199,19 +228,34 @@ def _others(df):
 def table(df):
     """Table 2: temperature, C, and flux down the load, W/m2, at A (.5, .5, .5) L, B (.08, .5, .5) L, C (.5, .92, .5) L.
 
-    `worst q` is the largest error of the three fluxes. Errors of the flux over the plane, %: away from interface and
-    insulated faces, in the band along them, and `own`: more than a mean diameter of the row's own particles away.
-    Packings of the same number are averaged. Costs are those of the solve with the packing from the cache; `look` is
-    the processor time of 40 000 points. Temperatures of the paper's network between particles are that of the nearest,
-    carried on by its raw flux; `T own points` has none of this: rms at the particles, quadrature points or voxels.
+    `worst q` is the largest error of the three fluxes. Packings of the same number are averaged. Temperatures of the
+    paper's network between particles are that of the nearest, carried on by its raw flux.
     """
     from studies.fig15_16_fields.tables import lines
 
     return lines(df, PAPER, POINTS)
 
 
+def notes(df):
+    """What Table 2 says of the paper's network; errors over the plane; costs."""
+    from studies.fig15_16_fields import tables
+    from studies.harness.table import markdown
+
+    yield from tables.in_words(df, PAPER)
+    yield (
+        "Errors over the plane. Flux, % of the exact mean flux: away from interface and insulated faces, in the band "
+        "along them, and `own`, more than a mean diameter of the row's own particles away. Temperature, % of the span: "
+        "over the plane, and `T own points`, rms at the particles, quadrature points or voxels. In the paper's "
+        "measure, over the exact value at each point: the largest of |dT|/T, T in degrees Celsius (paper: within 1 % "
+        "of its FEM), and of the flux's size (within 19.6 %), and the share of the plane that is within 19.6 %."
+    )
+    yield markdown(tables.over_plane(df))
+    yield "Costs of the solve with the packing from the cache; `look` is the processor time of 40 000 points."
+    yield markdown(tables.costs(df))
+
+
 def plot(df):
-    """Fields and their errors side by side on shared scales; errors at the points and against unknowns."""
+    """Temperature above (the paper's Fig. 15), flux below (Fig. 16): fields, errors on one scale, errors by size."""
     from studies.fig15_16_fields.figure import draw
 
     return draw(df[df["status"] == "ok"], PAPER, POINTS)

@@ -5,31 +5,69 @@ from __future__ import annotations
 import numpy as np
 
 from demheat import referee
+from demheat.gallery import EPOXY
 from references import bounds
-from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, of_walls, witness
+from studies.common.paper_looks import draw_variants
+from studies.common.paper_variants import parted
+from studies.fig17_etc.means import CONTRAST, along_one_axis, change, interval, network_errors, of_walls, witness
 from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
 from studies.harness.pick import pick, with_size
+from studies.harness.store import printed
 
 HERE = {"kind": "periodic", "boundary": "gradient", "realisation": 0, "axes": "y"}
+PAPER = printed("fig17_etc")
+WALLS = {"gradient": "periodic cells", "walls": "between isothermal walls"}
 FLOOR = 1e-4  # per cent; what is below is drawn there
 
 
 def draw(df):
-    """Three panels."""
+    """Two lines of panels; the variants of the paper's network where they have rows."""
     from matplotlib import pyplot
 
-    df = df[df["status"] == "ok"]
-    figure, axes = pyplot.subplots(1, 3, figsize=(15, 5))
-    _conductivity(axes[0], df)
-    _errors(axes[1], df)
-    _spreads(axes[2], df)
+    network, others = parted(df)
+    others = others[others["status"] == "ok"]
+    across = 3 if len(network) else 2
+    figure, axes = pyplot.subplots(2, across, figsize=(5.5 * across, 11))
+    _plain(axes[0, 0], others)
+    _conductivity(axes[0, 1], others)
+    _spreads(axes[1, 1], others)
+    _errors(axes[1, 0], others)
+    for ax, (boundary, words) in zip(axes[:, 2:].ravel(), WALLS.items(), strict=False):
+        made = network_errors(df, boundary)
+        names = sorted({name for found in made.values() for name in found})
+        draw_variants(ax, made, names, PAPER["dem_fft"] if boundary == "gradient" else None)
+        ax.set(xlabel="volume fraction", ylabel="error, % of k", title=f"The paper's network, {words}")
     return figure
 
 
 def _fractions(df):
     return np.array(sorted(df["fraction"].unique()))
+
+
+def _plain(ax, df):
+    """k itself, as in the paper's figure: bounds, Torquato's estimate, means over cells and the paper's network."""
+    fractions, curve = _fractions(df), np.linspace(1e-3, _fractions(df).max(), 100)
+    matrix = EPOXY.conductivity
+    smooth = _zeta2(df, curve)
+    low, high = bounds.third_order(1.0, CONTRAST, curve, smooth)
+    ax.fill_between(curve, matrix * low, matrix * high, color=SKY, alpha=0.35, label="third-order bounds")
+    ax.plot(curve, matrix * bounds.torquato(1.0, CONTRAST, curve, smooth), color=BLUE, label="Torquato", linewidth=1)
+    found = {f: interval(df, "periodic", f, name="multipole") for f in fractions}
+    mean = {f: matrix * each.mean for f, each in found.items() if each}
+    ax.plot(list(mean), list(mean.values()), "o", color=BLACK, markersize=5, label="multipoles, mean over cells")
+    rows = pick(df, name="dem-calibrated", **HERE)
+    ax.plot(rows["fraction"], matrix * rows["k_ratio"], "s", color=PINK, mfc="none", label=LOOK["dem-calibrated"][0])
+    ax.set(xlabel="volume fraction", ylabel="conductivity, W/(m K)", title="Silica in epoxy, as the paper draws it")
+    ax.legend(loc="upper left")
+
+
+def _zeta2(df, curve):
+    """zeta_2 of the cells along the fractions, linear between."""
+    fractions = _fractions(df)
+    known = [pick(df, name="zeta2", fraction=f)["zeta2"].mean() for f in fractions]
+    return np.interp(curve, [0.0, *fractions], [0.0, *known])
 
 
 def _conductivity(ax, df):
@@ -39,8 +77,7 @@ def _conductivity(ax, df):
     def relative(k, f):
         return k / bounds.maxwell(1.0, CONTRAST, f)
 
-    zeta2 = [pick(df, name="zeta2", fraction=f)["zeta2"].mean() for f in fractions]
-    smooth = np.interp(curve, [0.0, *fractions], [0.0, *zeta2])
+    smooth = _zeta2(df, curve)
     low, high = bounds.third_order(1.0, CONTRAST, curve, smooth)
     ax.fill_between(
         curve, relative(low, curve), relative(high, curve), color=SKY, alpha=0.35, label="third-order bounds"
@@ -61,7 +98,7 @@ def _conductivity(ax, df):
                 label=f"multipoles, {found.number} cells, 95 %" if first else None,
             )  # fmt: skip
     _markers(ax, df, relative)
-    ax.set(xlabel="volume fraction", ylabel="k over Maxwell's estimate", title="Silica in epoxy: five random cells")
+    ax.set(xlabel="volume fraction", ylabel="k over Maxwell's estimate", title="The same over Maxwell's estimate")
     ax.legend(loc="upper left")
 
 
@@ -106,8 +143,7 @@ def _errors(ax, df):
             )
     ax.set(xlabel="volume fraction", ylabel="|error|, % of the multipole value", yscale="log")
     ax.set_title("One cell, all methods on the same spheres")
-    ax.set_ylim(top=30 * ax.get_ylim()[1])  # room for the legend
-    ax.legend(fontsize=7, loc="upper left")
+    ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.13), ncols=2, fontsize=7)
 
 
 def _percent_off(df, fraction, k):
@@ -130,6 +166,7 @@ def _spreads(ax, df):
         heights = np.array([np.nan if v is None else abs(v) for v in values])
         ax.bar(np.arange(len(fractions)) + (k + 0.5) * width - 0.4, heights, width, color=colour, label=label)
     ax.set(xlabel="volume fraction", ylabel="% of k", yscale="log", title="What changes the result")
+    ax.set_axisbelow(True)
     ax.set_xticks(range(len(fractions)), [f"{f:g}" for f in fractions])
     top = ax.get_ylim()[1]
     ax.set_ylim(top=20 * top)  # room for the legend

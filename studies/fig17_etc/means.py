@@ -7,6 +7,7 @@ import numpy as np
 from demheat import referee
 from demheat.gallery import EPOXY, SILICA
 from references import bounds
+from studies.common.paper_variants import parted, variant_errors
 from studies.harness.converged import converged
 from studies.harness.pick import pick, student
 
@@ -144,3 +145,28 @@ def walls_less_gradient(df, name, fraction):
         for boundary in ("walls", "gradient")
     ]
     return None if None in pair else 100 * referee.value_error(*pair)
+
+
+def network_errors(df, boundary):
+    """Errors of the paper's network's variants on the first cells under one boundary condition.
+
+    Parameters
+    ----------
+    df : data frame
+    boundary : {"gradient", "walls"}
+        Against the multipoles; against the converged voxels.
+
+    Returns
+    -------
+    dict of (Variant, int) to dict of str to Interval
+        As `paper_variants.variant_errors`, by the fraction as text.
+    """
+    network, others = parted(df)
+    fractions = sorted(others["fraction"].unique())
+    if boundary == "gradient":
+        network, exact = pick(network, held="periodic"), {f: witness(others, "periodic", f) for f in fractions}
+    else:
+        here = {"kind": "walled", "boundary": "walls", "realisation": 0, "axes": "y"}
+        network = network[network["held"] != "periodic"] if len(network) else network
+        exact = {f: converged(others, "fft", fraction=f, **here) for f in fractions}
+    return variant_errors(network, {f"{f:g}": k for f, k in exact.items() if k})

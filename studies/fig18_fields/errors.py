@@ -5,6 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from demheat import referee
+from studies.common.paper_network import calibrations
+from studies.common.paper_variants import Variant, interval, parted
+from studies.common.pictures import unpacked
 from studies.fig18_fields.rows import POINTS, SPAN
 from studies.harness.cells import picture
 from studies.harness.pick import pick
@@ -76,25 +79,102 @@ def at_points(row, truth):
         found[f"vector_{letter}_error"] = 100 * float(referee.vector_error(*pair, scale=truth["mean_flux"]))
     for kind in ("T", "q", "vector"):
         found[f"worst_{kind}"] = max(abs(found[f"{kind}_{letter}_error"]) for letter in POINTS)
-    return found
+    # The paper's measure of a temperature, which depends on where its scale begins.
+    degrees = [abs(referee.value_error(row[f"T_{letter}"], truth[f"T_{letter}"])) for letter in POINTS]
+    return found | {"worst_celsius": 100 * max(degrees)}
 
 
-def error_pictures(row, truth):
+def shown(row, name, *, fine=False):
+    """Picture of a row: its temperature, % of the span, or a part of its flux, W/m2.
+
+    Parameters
+    ----------
+    row : row of a data frame
+    name : {"temperature", "x", "y", "z"}
+    fine : bool
+        The one of many pixels.
+
+    Returns
+    -------
+    (n, n) float array
+    """
+    found = unpacked(row[f"fine_{name}"]) if fine else picture(row[f"slice_{name}"])
+    # Of the paper's network, whose rows have C_t = 1.
+    return found if name == "temperature" else found * row.get("factor", 1.0)
+
+
+def error_pictures(row, truth, *, fine=False):
     """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux.
 
     Parameters
     ----------
     row, truth : rows of a data frame
         With pictures of the plane.
+    fine : bool
+        The pictures of many pixels.
 
     Returns
     -------
     temperature, flux : (n, n) float array, %
     """
     # The pictures of temperature are in % of the span.
-    warm = referee.value_error(*(picture(each["slice_temperature"]) for each in (row, truth)), scale=1.0)
-    pair = (np.stack([picture(each[f"slice_{axis}"]) for axis in "xyz"], axis=-1) for each in (row, truth))
+    warm = referee.value_error(*(shown(each, "temperature", fine=fine) for each in (row, truth)), scale=1.0)
+    pair = (np.stack([shown(each, axis, fine=fine) for axis in "xyz"], axis=-1) for each in (row, truth))
     return warm, 100 * referee.vector_error(*pair, scale=truth["mean_flux"])
+
+
+def network_errors(df):
+    """Rows of the paper's network, one for each calibration, with their errors against the witness of their load.
+
+    Parameters
+    ----------
+    df : data frame
+
+    Returns
+    -------
+    data frame
+        With `variant`, `factor` (C_t), `boundary` and the columns of `with_errors`; empty without rows or witness.
+    """
+    import pandas as pd
+
+    network, others = parted(df)
+    place = pick(others, name="arrangement")
+    place, made = (place.iloc[0] if len(place) else None), []
+    for _, row in network.iterrows():
+        truth = witness(others, row["under"])
+        for way in calibrations(row["held"]) if truth is not None else ():
+            one = _scaled(row, way)
+            made.append(one | at_points(one, truth) | _over_plane(one, truth, _away(place, row["under"])))
+    return pd.DataFrame(made)
+
+
+def _scaled(row, way):
+    """Row with fluxes in proportion to C_t."""
+    factor = row[f"ct_{way}"]
+    fluxes = [name for name in row.index if name[:2] in ("q_", "qx", "qy", "qz") or name == "mean_flux"]
+    variant = Variant(row["packing"], row["held"], way)
+    more = {"variant": variant, "factor": factor, "boundary": row["under"]}
+    return dict(row) | {name: factor * row[name] for name in fluxes} | more
+
+
+def network_means(found, columns):
+    """Means over packings of errors of the network's variants, with intervals.
+
+    Parameters
+    ----------
+    found : data frame
+        From `network_errors`.
+    columns : sequence of str
+        Errors.
+
+    Returns
+    -------
+    dict of (Variant, int) to dict of str to Interval
+    """
+    made = {}
+    for (variant, number), rows in found.groupby(["variant", "particles"], sort=False) if len(found) else ():
+        made[variant, int(number)] = {name: interval(rows[name].to_numpy(dtype=float)) for name in columns}
+    return made
 
 
 def _away(place, boundary):

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 
 from demheat.slices import filled, plane
-from studies.common import silica_epoxy
+from studies.common import paper_network, silica_epoxy
 from studies.common.field_errors import mean_diameter
+from studies.common.pictures import packed
 from studies.harness import methods
 from studies.harness.cells import cell
 from studies.harness.cost import measured
@@ -17,6 +18,11 @@ from studies.harness.cost import measured
 POINTS = {"A": (0.5, 0.6, 0.6), "B": (0.5, 0.02, 0.5), "C": (0.5, 0.3, 0.55), "D": (0.5, 0.82, 0.87)}
 LOW, SPAN = 25.0, 10.0
 GRID = 51
+# Pixels of what is drawn, and steps to which it is kept: of the temperature in % of the span, of the flux in % of the
+# mean flux.
+FINE, STEPS = 200, {"temperature": 0.002, "flux": 0.05}
+# Halo of the paper's network, in mean radii (eqs. 22-23).
+RATIO = 11.0
 # Packing whose mean diameter is the width of the band along interfaces.
 BAND = 100_000
 
@@ -38,6 +44,7 @@ def arrangement_row():
     # Insulated faces count: the plane meets those across z.
     face = np.minimum(points[:, 2], scene.size[2] - points[:, 2])
     row["slice_face"] = cell(face / scene.size[0], decimals=4)
+    row |= {"circles": cell(circles(scene), decimals=5)}
     return row | {"slice_gap": cell(distance(scene, points) / scene.size[0], decimals=4)}
 
 
@@ -60,7 +67,7 @@ def distance(scene, points):
     return np.min(np.linalg.norm(points[:, None] - centers, axis=2) - radii, axis=1)
 
 
-def field_row(boundary, *, method, **knobs):
+def field_row(boundary, *, method, fine=False, **knobs):
     """Solve, and keep temperature and flux at the points and over the plane.
 
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
@@ -69,27 +76,108 @@ def field_row(boundary, *, method, **knobs):
     ----------
     boundary : {"gradient", "walls"}
     method : str
+    fine : bool
+        Keep pictures of many pixels, too.
     knobs : keywords of its `solve`
 
     Returns
     -------
     dict
     """
+    field, row = silica_epoxy.solved(spheres_in(boundary), method=method, **knobs)
+    return row | looked(field, boundary, fine=fine)
+
+
+def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
+    """The same by the paper's network: the flux is that of the particles, averaged over halos, and with C_t = 1.
+
+    Parameters
+    ----------
+    packing, held, particles, seed, replicas
+        Of a case, see `paper_network`.
+    fine : bool
+        Keep pictures of many pixels, too.
+
+    Returns
+    -------
+    dict
+        With `under`, its boundary condition.
+    """
+    from demheat.sampling.halo import halo_flux
+
+    boundary = "gradient" if held == "periodic" else "walls"
     scene = spheres_in(boundary)
-    field, row = silica_epoxy.solved(scene, method=method, **knobs)
+    made = paper_network.packed(scene.size, packing, held, particles, seed, replicas)
+    fields, row = paper_network.solved({"k": scene}, made, held, replicas)
+    field = fields["k"]
+    row |= {"under": boundary, "k": paper_network.unscaled(field, silica_epoxy.EPOXY.conductivity)}
+    factor = field.stats["calibration"]
+    found = looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points) / factor, fine=fine)
+    return row | found | {"mean_flux": found["mean_flux"] / factor}
+
+
+def looked(field, boundary, flux_at=None, *, fine=False):
+    """Temperature and flux of a field at the points and over the plane, and what it cost to look.
+
+    Parameters
+    ----------
+    field : Field
+    boundary : {"gradient", "walls"}
+    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2, optional
+        Instead of the field's own.
+    fine : bool
+        Keep pictures of many pixels, too.
+
+    Returns
+    -------
+    dict
+    """
+    scene, flux_at = field.scene, flux_at or field.flux_at
+    places = np.array(list(POINTS.values())) * scene.size
     points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
-    both = np.vstack([np.array(list(POINTS.values())) * scene.size, points])
-    (temperature, flux), cost = measured(lambda: (field.temperature_at(both), field.flux_at(both)))
-    if boundary == "gradient":
-        temperature = temperature + LOW + SPAN / 2 - temperature[len(POINTS) :].mean()
-    row |= {"mean_flux": float(np.linalg.norm(field.mean_flux)), "sample_cpu_s": cost["cpu_s"]}
+    both = np.vstack([places, points])
+    (temperature, flux), cost = measured(lambda: (field.temperature_at(both), flux_at(both)))
+    level = LOW + SPAN / 2 - temperature[len(POINTS) :].mean() if boundary == "gradient" else 0.0
+    temperature = temperature + level
+    mean = float(np.linalg.norm(field.mean_flux))
+    row = {"mean_flux": mean, "sample_cpu_s": cost["cpu_s"]}
     for letter, t, q in zip(POINTS, temperature, flux, strict=False):
         row |= {f"T_{letter}": t, f"q_{letter}": float(np.linalg.norm(q))}
         row |= {f"q{axis}_{letter}": part for axis, part in zip("xyz", q, strict=True)}
     warm, flux = filled(mask, temperature[len(POINTS) :]), filled(mask, flux[len(POINTS) :])
     # Two digits behind the point: 0.02 % of the mean flux of 29 W/m2; three: 0.0005 % of the span.
     row |= {f"slice_{axis}": cell(flux[..., k], decimals=2) for k, axis in enumerate("xyz")}
-    return row | {"slice_temperature": cell(100 * (warm - LOW) / SPAN, decimals=3)}
+    row |= {"slice_temperature": cell(100 * (warm - LOW) / SPAN, decimals=3)}
+    if not fine:
+        return row
+    points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=FINE)
+    warm, flux = filled(mask, field.temperature_at(points) + level), filled(mask, flux_at(points))
+    row["fine_temperature"] = packed(100 * (warm - LOW) / SPAN, STEPS["temperature"])
+    step = STEPS["flux"] * mean / 100
+    return row | {f"fine_{axis}": packed(flux[..., k], step) for k, axis in enumerate("xyz")}
+
+
+def circles(scene):
+    """Where the plane x = L/2 cuts the spheres: middles y and z and radii, in edges of the cube, (n, 3) float array."""
+    found = []
+    for sphere in scene.inclusions:
+        square = sphere.radius**2 - (sphere.center[0] - scene.size[0] / 2) ** 2
+        if square > 0:
+            found.append((sphere.center[1], sphere.center[2], square**0.5))
+    return np.array(found) / scene.size[0]
+
+
+def warm_up_network(packing, held, particles, seed, replicas=1):
+    """Make the dispersion and the packing, load and compile, also what looks at halos.
+
+    Parameters
+    ----------
+    packing, held, particles, seed, replicas
+        Of a case.
+    """
+    scene = spheres_in("gradient" if held == "periodic" else "walls")
+    paper_network.packed(scene.size, packing, held, particles, seed, replicas)
+    paper_network.warm_up(held)
 
 
 def warm_up(boundary, *, method, **knobs):

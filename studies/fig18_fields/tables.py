@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from studies.fig18_fields.errors import BOUNDARIES, witness
+from studies.common.paper_variants import lines_of, parted
+from studies.fig18_fields.errors import BOUNDARIES, network_errors, network_means, witness
 from studies.harness import methods
 from studies.harness.figures import LOOK
 from studies.harness.methods import resolution
 from studies.harness.pick import pick
+from studies.harness.table import markdown
 
 # Eyre and Milton's scheme has the voxels of the scalar one, whose fields stand for both.
 COMPARED = tuple(method.name for method in methods.compared() if method.name != "fft-em")
 SHOWN = {"T off": "worst_T", "q off": "worst_q", "T rms": "temperature_rms", "T max": "temperature_max",
          "flux rms": "flux_rms", "flux max": "flux_max", "band rms": "flux_rms_band", "band max": "flux_max_band",
          "unknowns": "unknowns", "elements": "elements", "cpu_s": "cpu_s", "peak_mib": "peak_mib"}  # fmt: skip
+
+NETWORK = {"worst_T": "T off", "worst_q": "q off", "temperature_rms": "T rms", "flux_rms": "flux rms",
+           "flux_rms_band": "band rms"}  # fmt: skip
 
 
 def label(row):
@@ -56,3 +61,33 @@ def _line(boundary, row):
     line = {"load": boundary, "method": label(row), "resolution": resolution(row)}
     line |= {f"T_{x}": f"{row[f'T_{x}']:.3f}" for x in "ABCD"} | {f"q_{x}": f"{row[f'q_{x}']:.2f}" for x in "ABCD"}
     return line | {title: row[column] for title, column in SHOWN.items()}
+
+
+def told(df, paper):
+    """Sentences below the table, and the table of the network's variants where they have rows.
+
+    Parameters
+    ----------
+    df : data frame
+    paper : dict
+        Printed numbers.
+    """
+    import pandas as pd
+
+    said, others = [], parted(df)[1]
+    made = network_means(network_errors(df), tuple(NETWORK))
+    if made:
+        said = [
+            "The paper's network with halos of 11 mean radii, in all its variants: errors as above, means over "
+            "packings with their 95 % intervals (Student's); the best has the least error of the flux at its worst "
+            "point. The particles' temperatures do not depend on C_t; what is read between them goes with their flux, "
+            "that of the C_t found isothermally.",
+            markdown(pd.DataFrame(lines_of(made, NETWORK, ["worst_q"]))),
+        ]
+    place = pick(others, name="arrangement").iloc[0]
+    gap = min(place[f"gap_{letter}"] for letter in "ABCD")
+    said.append(f"The points of Table 3 lie {gap / place['band']:.2f} bands and more from any interface.")
+    few = pick(others, name="fem-p1")["elements"].max() if "elements" in others else float("nan")
+    if few == few:
+        said[-1] += f" The linear elements are {few / paper['tetrahedra']:.2f} times as many as the paper's."
+    return said

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
+from demheat.grains import Gap
 from studies.grains.cases import GOOD, KINDS
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED
 from studies.harness.pick import pick
 
 COLOURS = dict(zip(KINDS, (BLUE, GREEN, ORANGE), strict=True))
+# Between surfaces, over the radius: as the networks here have it.
+WIDEST = Gap(conductivity=1.0).widest
 MARKS = {10.0: "o", 100.0: "s", 1000.0: "^", 10_000.0: "v"}
 
 
@@ -39,7 +44,19 @@ def _missing(axes, rows):
     axes.set(xscale="log", xlabel="gap over radius", ylabel="missing, conductivities of the medium")
     axes.set_title("Arrays: exact less network")
     if len(rows):
-        axes.legend(ncols=2, fontsize=7)
+        axes.legend(ncols=3, fontsize=7, loc="upper center", bbox_to_anchor=(0.5, -0.14))
+    _second(axes, pick(rows, kind="bcc"))
+
+
+def _second(axes, rows):
+    """Say where second neighbours of a body-centred array are farther apart than a gap may be."""
+    beyond = rows[2 / math.sqrt(3) * (2 + rows["gap"]) - 2 > WIDEST]
+    if len(beyond):
+        at = beyond.loc[beyond["missing"].idxmin()]
+        words = f"here second neighbours of bcc are\nbeyond the widest gap of a pair, {WIDEST:g}"
+        arrow = {"arrowstyle": "->", "color": COLOURS["bcc"]}
+        axes.annotate(words, (at["gap"], at["missing"]), xytext=(0.97, 0.13), textcoords="axes fraction", fontsize=8,
+                      color=COLOURS["bcc"], ha="right", arrowprops=arrow)  # fmt: skip
 
 
 def _contacts(axes, rows):

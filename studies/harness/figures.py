@@ -10,6 +10,8 @@ SKY, PINK, BLACK, GREY = "#56B4E9", "#CC79A7", "#000000", "#7F7F7F"
 STYLE = {
     "figure.dpi": 100,
     "savefig.dpi": 160,
+    # Names inside of a vector copy are the same each time.
+    "svg.hashsalt": "demheat",
     "savefig.bbox": "tight",
     "figure.constrained_layout.use": True,
     "font.size": 10,

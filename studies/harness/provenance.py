@@ -39,7 +39,7 @@ def provenance(study, case):
         Its "method", if any, names what the row loads, see `module_of`.
     """
     return {
-        "code": code_hash(study.__file__, module_of(study, case.get("method", ""))),
+        "code": code_of(study, case),
         "commit": commit(),
         "when": datetime.now(timezone.utc).isoformat(timespec="seconds"),
         "machine": machine(),
@@ -48,6 +48,29 @@ def provenance(study, case):
         "versions": versions(),
         "load": round(os.getloadavg()[0], 2),
     }
+
+
+def code_of(study, case):
+    """Hash of the source that a case runs.
+
+    Parameters
+    ----------
+    study : module
+    case : mapping
+        Its "method", if any, names what the row loads, see `module_of`.
+    """
+    return code_hash(study.__file__, module_of(study, case.get("method", "")))
+
+
+def guest_case(study, key):
+    """Case of a method that is not ours, by its key; None if the study takes no such, or it is no such key.
+
+    Parameters
+    ----------
+    study : module
+    key : str
+    """
+    return study.guest_case(key) if hasattr(study, "guest_case") else None
 
 
 def threads():

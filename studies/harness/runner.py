@@ -9,7 +9,8 @@ A study is a module with
   with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
-  sentences below it that are made of the rows; and `TIMEOUT`, seconds per row;
+  sentences below it that are made of the rows; `TIMEOUT`, seconds per row; `REPEATS`, how often a short `run` is called
+  at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called so (`sound.COSTS`);
 - where it takes methods that are not ours, `guests(method, quick=)`, the cases of one, and `guest_case(key)`, such a
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 
@@ -32,9 +33,12 @@ from pathlib import Path
 
 from demheat import fresh
 from demheat.progress import stage
+from studies.harness import quiet
 from studies.harness.beside import counted
-from studies.harness.cost import measured, triad_gbs
-from studies.harness.provenance import ANYWHERE, SAME, code_hash, module_of, provenance
+from studies.harness.cost import measured
+from studies.harness.provenance import ANYWHERE, SAME, code_of, guest_case, provenance
+from studies.harness.repeated import RUNS, measured_again
+from studies.harness.sound import faults
 from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows, replaced
 
 TIMEOUT = 1800.0
@@ -94,17 +98,6 @@ def find_case(study, case):
     return cases[case]
 
 
-def guest_case(study, key):
-    """Case of a method that is not ours, by its key; None if the study takes no such, or it is no such key.
-
-    Parameters
-    ----------
-    study : module
-    key : str
-    """
-    return study.guest_case(key) if hasattr(study, "guest_case") else None
-
-
 def run_study(name, out, *, quick=False, force=False, method=None, say=print, compute=None, spread=None):
     """Bring DIR/NAME.csv up to date and return its path.
 
@@ -117,14 +110,15 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
     out : path
     quick : bool
         Only the cases that QUICK accepts.
-    force : bool
-        Repeat every row.
+    force : bool or "unsound"
+        Repeat every row, or also those that are dirty or noisy (`sound.faults`).
     method : str, optional
         One that is not ours: its rows alone are run, and each anew, as nothing here knows when its code has changed.
     say : callable (str)
         Told of each row as it ends.
     compute : callable (name, study, case) -> dict
-        Default `spawn_row`: each row in a fresh process, so that its cost means something.
+        Default `quiet.quietly(spawn_row)`: each row in a fresh process, so that its cost means something, and with what
+        others did meanwhile.
     spread : callable (name, study, cases) -> iterator of dict, optional
         Instead: all rows, in the order in which they are done, by other machines perhaps (`cluster.spread_over`). A
         stored row then holds whatever machine it is from.
@@ -146,7 +140,8 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
     if not todo:
         return path
     check_writable(path.parent)
-    arriving = spread(name, study, todo) if spread else _in_turn(compute or spawn_row, name, study, todo)
+    compute = compute or quiet.quietly(spawn_row, say=say)
+    arriving = spread(name, study, todo) if spread else (compute(name, study, case) for case in todo)
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
         what = "" if spread else f", {_short(case_key(case))}"
@@ -201,7 +196,7 @@ def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME
         Of the rows there are.
     cases : list of dict, optional
         Those of a method that is not ours, instead of the study's.
-    quick, force : bool
+    quick, force
         As those of `run_study`.
     same : sequence of str
         Columns in which a stored row must agree with a new one.
@@ -212,14 +207,13 @@ def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME
     """
     rows = read_rows(path)
     wanted = [case for case in study.CASES if not quick or study.QUICK(case)] if cases is None else cases
-    return wanted, [case for case in wanted if force or not _holds(rows.get(case_key(case)), study, case, same)]
+    sound = (lambda row: not faults(study, row)) if force == "unsound" else (lambda row: not force)
 
+    def holds(case):
+        row = rows.get(case_key(case))
+        return _holds(row, study, case, same) and sound(row)
 
-def _in_turn(compute, name, study, cases):
-    """Rows made here one after another, each with the bandwidth of the memory as it was before the first."""
-    bandwidth = round(triad_gbs(), 1)
-    for case in cases:
-        yield {**compute(name, study, case), "triad_gbs": bandwidth}
+    return wanted, [case for case in wanted if not holds(case)]
 
 
 def state(study, rows):
@@ -242,7 +236,7 @@ def state(study, rows):
     found = dict.fromkeys(("held", "stale", "missing"), 0)
     for case in study.CASES:
         row = rows.get(case_key(case))
-        code = code_hash(study.__file__, module_of(study, case.get("method", "")))
+        code = code_of(study, case)
         found["missing" if row is None else "held" if row.get("code") == code else "stale"] += 1
     return found
 
@@ -309,14 +303,15 @@ def compute_row(study, case, *, warm=True):
     study : module
     case : dict
     warm : bool
-        Call the study's warm-up first; without it costs include what is loaded on first use.
+        Call the study's warm-up first, repeat a short run, and say what others did meanwhile; without it costs include
+        what is loaded on first use.
     """
     row = {"case": case_key(case), **case}
     try:
         if warm and hasattr(study, "warm_up"):
             study.warm_up(**case)
         with counted() as beside:
-            metrics, cost = measured(study.run, **case)
+            metrics, cost = _quietly_measured(study, case) if warm else measured(study.run, **case)
     except NotImplementedError as error:
         result = {"status": "unsupported", "note": str(error)}
     except Exception as error:
@@ -331,6 +326,14 @@ def compute_row(study, case, *, warm=True):
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
         result = {"status": "ok", "note": "", **cost, **beside, **metrics}
     return {**row, **result, **row, **provenance(study, case)}
+
+
+def _quietly_measured(study, case):
+    """A run's metrics and costs, with the larger share of others in this process's life before it and during it."""
+    before, begin = quiet.others(quiet.START), quiet.moment()
+    metrics, cost = measured_again(study.run, case, most=getattr(study, "REPEATS", RUNS))
+    noise = quiet.loudest(before, quiet.others(begin))
+    return metrics, cost | ({"noise": noise} if noise == noise else {})
 
 
 def write_json(row, path):

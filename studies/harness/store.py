@@ -11,15 +11,17 @@ from pathlib import Path
 from demheat import paths
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
-COST = ("wall_s", "cpu_s", "peak_mib", "base_mib", "peak_by")
+COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
 TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,
-    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions", "load", "beside"),
-    "triad_gbs",
+    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions"),
+    *("load", "beside", "noise", "triad_gbs"),
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20
+# Letters of one cell at most: a picture of 200 x 200 numbers has 300 000, above what the csv module reads by default.
+csv.field_size_limit(2**24)
 
 
 def case_key(case):

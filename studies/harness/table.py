@@ -3,33 +3,25 @@
 from __future__ import annotations
 
 import math
-import re
 import traceback
 from pathlib import Path
-from typing import NamedTuple
+from types import SimpleNamespace
 
+from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
 from studies.harness.machines import of_one_machine, said
-from studies.harness.runner import guest_case
+from studies.harness.provenance import guest_case
+from studies.harness.sound import counted, faults, told
 from studies.harness.store import case_key, read_rows, replaced
 
-OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": float.__gt__, "=": float.__eq__}
 # What every row has.
 NEEDED = ("case", "status", "note", "code", "commit", "when", "machine", "threads", "versions", "load")
 
 
-class Claim(NamedTuple):
-    """A sentence with the value that decides it; `limit` is "<= 0.06", ">= 1.7" and the like."""
-
-    sentence: str
-    value: float
-    limit: str
-    ok: bool
-
-
 def render(study, csv_path):
-    """Write NAME.md and NAME.png beside NAME.csv and return (claims, text of the Markdown file).
+    """Write NAME.md, NAME.png and NAME.svg beside NAME.csv and return (claims, text of the Markdown file).
 
-    What cannot be judged or drawn is a claim that failed, with the reason as its sentence.
+    What cannot be judged or drawn is a claim that failed, with the reason as its sentence; while rows are missing it is
+    one that is not judged.
 
     Parameters
     ----------
@@ -43,30 +35,29 @@ def render(study, csv_path):
     """
     csv_path = Path(csv_path)
     df = read_frame(study, csv_path)
-    claims = judged(study, df)
+    claims, why = judged(study, df), UNFINISHED if unfinished(study, df) else ""
     figure = csv_path.with_suffix(".png")
     try:
         _draw(study, df, figure)
     except Exception as error:
         traceback.print_exc()
-        figure.unlink(missing_ok=True)
-        claims.append(Claim(f"the figure can be drawn ({type(error).__name__}: {error})", math.nan, "= 1", False))
+        for path in (figure, figure.with_suffix(".svg")):
+            path.unlink(missing_ok=True)
+        claims.append(broken("the figure can be drawn", error, why=why))
     try:
         text = _page(study, df, claims, figure)
     except Exception as error:
         traceback.print_exc()
-        claims.append(Claim(f"the table can be made ({type(error).__name__}: {error})", math.nan, "= 1", False))
-        text = _page(_Plain(study), df, claims, figure)
+        claims.append(broken("the table can be made", error, why=why))
+        text = _page(_plain(study), df, claims, figure)
     with replaced(csv_path.with_suffix(".md")) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return claims, text
 
 
-class _Plain:
+def _plain(study):
     """A study without its table and notes, which rows that are few or odd may not make."""
-
-    def __init__(self, study):
-        self.CASES, self.__doc__, self.__name__ = study.CASES, study.__doc__, study.__name__
+    return SimpleNamespace(**{name: value for name, value in vars(study).items() if name not in ("table", "notes")})
 
 
 def read_frame(study, csv_path):
@@ -98,50 +89,6 @@ def read_frame(study, csv_path):
     return of_one_machine(df[ours | guests].reset_index(drop=True).fillna({"note": ""}))
 
 
-def judged(study, df):
-    """Claims of a study on its rows; first, that none failed.
-
-    Parameters
-    ----------
-    study : module
-    df : data frame
-        Of `read_frame`.
-
-    Returns
-    -------
-    list of Claim
-    """
-    bad = df[df["status"].isin(("failed", "timeout"))]
-    claims = [claim("Rows that failed or ran out of time", float(len(bad)), "= 0")]
-    try:
-        claims += [claim(*each) for each in study.claims(df)]
-    except Exception as error:
-        traceback.print_exc()
-        claims.append(Claim(f"the claims can be judged ({type(error).__name__}: {error})", math.nan, "= 1", False))
-    return claims
-
-
-def claim(sentence, value, limit):
-    """Judge a value by a limit: a number (at most), or text such as ">= 1.7"; not-a-number never holds.
-
-    Parameters
-    ----------
-    sentence : str
-    value : float
-    limit : float or str
-
-    Returns
-    -------
-    Claim
-    """
-    limit = f"<= {limit:g}" if isinstance(limit, int | float) else limit
-    match = re.fullmatch(r"(<=|>=|<|>|=)\s*(\S+)", limit)
-    if match is None:
-        raise ValueError(f"limit = {limit!r}: must be a number or such as '<= 0.06', '>= 1.7', '= 0'")
-    value = float(value)
-    return Claim(sentence, value, limit, OPERATORS[match[1]](value, float(match[2])))
-
-
 def markdown(df):
     """Data frame as an aligned Markdown table, numbers to three significant digits, large ones whole."""
     cells = [[str(name) for name in df.columns], *([_cell(v) for v in row] for row in df.itertuples(index=False))]
@@ -170,12 +117,16 @@ def _draw(study, df, path):
     from matplotlib import pyplot
 
     from studies.harness.figures import STYLE
+    from studies.harness.pictures import saved
 
-    with pyplot.rc_context(STYLE):
-        figure = study.plot(df)
-        with replaced(path) as temporary:
-            figure.savefig(temporary)
-        pyplot.close(figure)
+    before = set(pyplot.get_fignums())
+    try:
+        with pyplot.rc_context(STYLE):
+            saved(study.plot(df), path)
+    finally:
+        # One that could not be finished, too.
+        for number in set(pyplot.get_fignums()) - before:
+            pyplot.close(number)
 
 
 def _page(study, df, claims, figure):
@@ -184,7 +135,7 @@ def _page(study, df, claims, figure):
     title, _, rest = (study.__doc__ or study.__name__).strip().partition("\n")
     judged = pd.DataFrame(
         {
-            "": ["ok" if c.ok else "FAIL" for c in claims],
+            "": [c.verdict for c in claims],
             "claim": [c.sentence for c in claims],
             "value": [f"{c.value:.3g}" for c in claims],
             "limit": [c.limit for c in claims],
@@ -199,14 +150,29 @@ def _page(study, df, claims, figure):
             markdown(table),
             caption,
             *(study.notes(df) if hasattr(study, "notes") else ()),
-            f"![{title}]({figure.name})",
+            *_pictured(title, figure),
             "## Claims",
             markdown(judged),
+            *_unjudged(claims),
             "## Where the numbers come from",
             _origin(study, df),
             "",
         ]
     )
+
+
+def _pictured(title, figure):
+    if not figure.exists():
+        return []
+    vector = figure.with_suffix(".svg")
+    copy = [f"[The figure as lines and letters]({vector.name})."] if vector.exists() else []
+    return [f"![{title}]({figure.name})", *copy]
+
+
+def _unjudged(claims):
+    """Why claims are not judged, a sentence for each reason."""
+    reasons = [each.why for each in claims if each.why]
+    return [f"Not judged, {why}: {reasons.count(why)} claims." for why in dict.fromkeys(reasons)]
 
 
 def _all_rows(df):
@@ -218,12 +184,17 @@ def _origin(study, df):
     guests = sum(guest_case(study, key) is not None for key in df["case"])
     others = f" and {guests} of methods that are not ours" if guests else ""
     lines = [f"- rows: {len(df) - guests} of {len(study.CASES)} cases{others}; " + _counts(df["status"])]
+    count = counted(faults(study, row) for row in df.to_dict("records"))
+    lines.append(f"- rows whose costs do not count: {told(count)}")
     for name in ("commit", "machine", "threads", "versions"):
         lines.append(f"- {name}: " + " / ".join(str(v) for v in df[name].dropna().unique()))
     lines.append(f"- made between {df['when'].min()} and {df['when'].max()}")
     lines.append(f"- load average of the machine meanwhile: {df['load'].min():.1f} to {df['load'].max():.1f}")
+    if "noise" in df and df["noise"].notna().any():
+        lines.append(f"- share of the processors that others used: at most {df['noise'].max():.1%}")
     if "triad_gbs" in df:
-        lines.append(f"- memory bandwidth (triad): {df['triad_gbs'].median():.1f} GB/s")
+        low, middle, high = (df["triad_gbs"].quantile(q) for q in (0.0, 0.5, 1.0))
+        lines.append(f"- memory bandwidth (triad): {middle:.1f} GB/s, {low:.1f} to {high:.1f}")
     if "peak_by" in df and (df["peak_by"] == "ru_maxrss").any():
         lines.append("- peak memory is the whole process's where this system cannot reset it (ru_maxrss)")
     lines += [f"- {sentence}" for sentence in said(df)]

@@ -5,7 +5,10 @@ from __future__ import annotations
 import math
 
 from studies.common import silica_epoxy
+from studies.common.paper_variants import PACKED, cell
 from studies.harness.figures import LOOK
+from studies.harness.pick import pick
+from studies.harness.table import markdown
 
 SHOWN = ("unknowns", "iterations", "cpu_s")
 
@@ -54,3 +57,34 @@ def _steady(df):
             }
             peak = row[f"{prefix}peak_mib"]
             yield line | {"GiB": peak / 1024, "bytes": peak * 2**20 / row["unknowns"]}
+
+
+def told(df, paper):
+    """Sentences below the table, and the network's errors where there are rows.
+
+    Parameters
+    ----------
+    df : data frame
+    paper : dict
+        Printed numbers.
+    """
+    import pandas as pd
+
+    from studies.many_inclusions import network_errors
+
+    made, said = network_errors(df), []
+    if made:
+        rows = [
+            {"packing": PACKED[variant.packing], "particles": number, "error, %": cell(found["spheres"])}
+            | {"packings": found["spheres"].number}
+            for (variant, number), found in made.items()
+        ]
+        said = [
+            "The paper's network on its own kind of packing and on relaxed ones, C_t of the periodic cell: means over "
+            "packings with their 95 % intervals (Student's), where there are more than one.",
+            markdown(pd.DataFrame(rows)),
+        ]
+    most = pick(df, name="fem-p1")["elements"].max() if "elements" in df else math.nan
+    if most == most:
+        said.append(f"The finest linear elements are {most:.3g} tetrahedra, the paper's {paper['tetrahedra']:.3g}.")
+    return said

@@ -19,6 +19,8 @@ from studies.harness.store import printed
 from studies.nafems.scenes import LENGTH, WIDTH, problem
 
 PAPER = printed("nafems")
+# Half of the last digit printed, K: 927.0, 36.60 and 18.25.
+DIGIT = {"T2": 0.05, "T3": 0.005, "T4": 0.005}
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000)
 # Longest edges over the length of the bar, or the width of the plate.
 EDGES = {"fem": (1 / 3, 1 / 6, 1 / 12), "fem-p1": (1 / 6, 1 / 12, 1 / 24), "fem-bricks": (1 / 8, 1 / 16, 1 / 32)}
@@ -28,7 +30,17 @@ SEEDS = (0, 1, 2)
 ACCURACY = {"dem": 1e-5, "fem": 1e-6}
 # What the equations may leave: temperatures that are linear are exact but for it.
 TOLERANCE = 1e-11
+# Least order of the error over the body that is asked for.
+ORDERS = {("T3", "dem"): 1.5, ("T4", "dem"): 1.5, ("T3", "fem"): 2.5, ("T4", "fem"): 1.5}
 TIMEOUT = 3600.0
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "error of the radiating end": "1e-11 of the heat that the equations leave, by a condition of ten and more",
+    "T4, dem, particles 1e+05": "one packing at one point; by second order, ten times, from the limit with 3000",
+    "T4, fem, edge 0.0833": "one mesh at one point; by third order, eight times, from that with edges of a sixth",
+    "heat entering that does not leave": "1e-11 of the heat that the equations leave, by their rounds",
+    "heat lost over heat moved": "of the DEM rounding of some thousand steps; of elements what each step leaves",
+}
 
 
 def _cases():
@@ -108,10 +120,12 @@ def warm_up(problem, method, **knobs):
 def claims(df):
     """Where temperatures are linear all is exact; elsewhere levels and orders; heat; the printed values.
 
-    Orders expected are two for the DEM, in the spacing, and three for quadratic elements where nothing is singular; in
-    the corner of the plate the base's temperature meets a film. What is printed is rounded to 0.005 K. The limit of the
-    order of quadratic elements on the bar was 2.5 before a first run, which found 2.1 to 2.4 on meshes as coarse as the
-    wave is deep.
+    Orders expected are two for the DEM, in the spacing, and three for quadratic elements where nothing is singular, and
+    half a power less is asked for; in the corner of the plate the base's temperature meets a film, which costs elements
+    one power more. They are judged where all resolutions are there. What is printed is right to half of its last digit:
+    0.05 K of 927.0, 0.005 K of the others. When values were known limits more than three times as large were brought
+    nearer: of the plate from 2, .3 and .05, of the bar from .05, of the radiating end from 1e-6, of heat from 1e-8 and
+    1e-10.
     """
     yield from present([*_printed(df), *_radiating(df), *_levels(df), *_orders(df), *_heat(df)])
 
@@ -120,25 +134,26 @@ def _printed(df):
     for which, value in PAPER.items():
         rows = pick(df, problem=which)
         off = referee.value_error(rows["exact"], value, scale=1.0).abs()
-        yield f"{which}: exact solution off the printed value, K", off.max(skipna=False), 0.005
+        sentence = f"{which}: exact solution off the printed value, K; limit: half of the last digit printed"
+        yield sentence, off.max(skipna=False), DIGIT[which]
 
 
 def _radiating(df):
     rows = pick(df, problem="T2")
-    # Linear in space: what the equations leave, 1e-11 of the heat, times their condition of 1e3 and less.
+    # Linear in space: what the equations leave, 1e-11 of the heat, times a part of their condition of 1e3.
     for name in ("dem", "fem", "fem-p1"):
         off = pick(rows, name=name)["error_percent"].abs().max(skipna=False)
-        yield f"T2, {name}, any resolution: error of the radiating end, % of the span", off, 1e-6
+        yield f"T2, {name}, any resolution: error of the radiating end, % of the span", off, 1e-8
     yield "T2: most rounds of Newton's method", rows["rounds"].max(skipna=False), 8
 
 
 def _levels(df):
     limits = {
         ("T3", "dem"): {3_000: 1.0, 100_000: 0.1},
-        ("T4", "dem"): {3_000: 2.0, 100_000: 0.3},
-        # Moved after a first run, from .05, .005 and .3: the depth to which the wave comes, 17 mm, is one coarse edge.
-        ("T3", "fem"): {EDGES["fem"][1]: 0.6, EDGES["fem"][2]: 0.05},
-        ("T4", "fem"): {EDGES["fem"][1]: 0.3, EDGES["fem"][2]: 0.05},
+        ("T4", "dem"): {3_000: 0.4, 100_000: 0.04},
+        # Moved after a first run, from .05 and .005, and of bricks from .3: the wave comes 17 mm deep, one coarse edge.
+        ("T3", "fem"): {EDGES["fem"][1]: 0.6, EDGES["fem"][2]: 0.04},
+        ("T4", "fem"): {EDGES["fem"][1]: 0.3, EDGES["fem"][2]: 0.04},
         ("T3", "fem-bricks"): {EDGES["fem-bricks"][0]: 2.5, EDGES["fem-bricks"][1]: 0.6},
     }
     for (which, name), levels in limits.items():
@@ -150,10 +165,25 @@ def _levels(df):
 
 
 def _orders(df):
-    for which, name, limit in (("T3", "dem", 1.5), ("T4", "dem", 1.4), ("T3", "fem", 2.0), ("T4", "fem", 1.5)):
+    for (which, name), limit in ORDERS.items():
+        if not finest_there(df, which, name):
+            continue
         # In the bar the first sizes are as long as the wave is deep: cells beside the wall see its curvature whole.
         found = order_of(df[df["particles"].isna() | (df["particles"] >= 10_000)] if which == "T3" else df, which, name)
         yield f"{which}, {name}: order of the error over the body in the length of elements", found, f">= {limit}"
+
+
+def finest_there(df, which, name):
+    """Whether a method's finest rows of a problem are there: an order of the coarsest two says little.
+
+    Parameters
+    ----------
+    df : data frame
+    which, name : str
+        Of the problem and of the method.
+    """
+    rows = pick(df, problem=which, name=name)
+    return bool((rows["particles"] == NUMBERS[-1]).any() if name == "dem" else (rows["edge"] == EDGES[name][-1]).any())
 
 
 def order_of(df, which, name):
@@ -175,16 +205,17 @@ def order_of(df, which, name):
 
 def _heat(df):
     steady = df[df["problem"] != "T3"]
-    yield "T2 and T4: largest heat entering that does not leave, over what passes", steady["heat_imbalance"].max(), 1e-8
-    for method, limit in (("dem", 1e-10), ("fem", 1e-8)):
+    yield "T2 and T4: largest heat entering that does not leave, over what passes", steady["heat_imbalance"].max(), 1e-9
+    for method, limit in (("dem", 1e-12), ("fem", 1e-9)):
         rows = pick(df, problem="T3", method=method)
         yield f"T3, {method}: largest heat lost over heat moved", rows["energy_error"].max(skipna=False), limit
 
 
 def table(df):
-    """Means over packings: the temperature found, its error at the point and the error over the body, % of the span.
+    """Errors at the point and over the body, % of the span: means over packings, and the worst of them.
 
-    `printed_K` is how far the temperature found is off the printed one, in K.
+    There are three packings to 10 000 particles, one beyond and of T2. `printed_K` is how far the mean temperature is
+    off the printed one, in K. CPU seconds of the DEM are without its packing.
     """
     import pandas as pd
 
@@ -194,11 +225,26 @@ def table(df):
         for value, alike in group.groupby(knob):
             kept = ("found", "exact", "printed_K", "rms_percent", "unknowns", "cpu_s")
             means = alike[[*kept]].mean().to_dict()
+            # Of what is printed now: rows may have been made beside other digits of it.
+            means["printed_K"] = referee.value_error(means["found"], PAPER[which], scale=1.0)
             means["found"], means["exact"] = f"{means['found']:.3f}", f"{means['exact']:.3f}"
             sizes = {"resolution": f"{value:.0f} particles" if name == "dem" else f"edge / {1 / value:.0f}"}
-            error = {"error": alike["error_percent"].abs().mean()}
-            rows.append({"problem": which, "name": name} | sizes | error | means)
+            sizes["packings"] = str(len(alike)) if name == "dem" else ""
+            off = alike["error_percent"].abs()
+            rows.append({"problem": which, "name": name} | sizes | {"error": off.mean(), "worst": off.max()} | means)
     return pd.DataFrame(rows)
+
+
+def notes(df):
+    """Why orders are missed, where they are."""
+    words = {
+        ("T3", "fem"): "the wave is 17 mm deep, the coarsest edges are 33 mm and the finest 8 mm",
+        ("T4", "dem"): "why is not known; beyond 10 000 particles there is one packing each",
+    }
+    for (which, name), why in words.items():
+        found = order_of(df, which, name) if finest_there(df, which, name) else None
+        if found is not None and found < ORDERS[which, name]:
+            yield f"{which}, {name}: the order is {found:.2f} and not {ORDERS[which, name]:g}: {why}."
 
 
 def plot(df):

@@ -8,6 +8,7 @@ from studies.harness.figures import BLACK, GREY, look
 from studies.nafems.scenes import ABOVE, HEIGHT, THICK, WIDTH, problem
 
 LABELS = {"fem-bricks": {"label": "FEM, bricks"}}
+KINDS = (("over the body", {"linestyle": "-"}), ("at the point", {"linestyle": ":", "marker": ".", "linewidth": 0.8}))
 
 
 def drawn(df):
@@ -26,10 +27,24 @@ def drawn(df):
             _errors(axes, name, rows)
         axes.set(xscale="log", yscale="log", xlabel="unknowns", title=title)
         axes.xaxis.set_minor_formatter(NullFormatter())
-    panels[0].set_ylabel("error, % of the span: over the body (lines), at the point (dots)")
-    panels[0].legend()
+    for words, how in KINDS:
+        panels[0].plot([], [], color=BLACK, label=words, **how)
+    panels[0].set_ylabel("error, % of the span")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=6)
     _plate(panels[2])
+    figure.suptitle("\n".join(_best(df, which) for which in ("T3", "T4")))
     return figure
+
+
+def _best(df, which):
+    """What quadratic elements and particles reach over the body, and with how many unknowns."""
+    said = []
+    for name, words in (("fem", "quadratic elements"), ("dem", "particles")):
+        rows = df[(df["problem"] == which) & (df["name"] == name)]
+        if len(rows):
+            row = rows.loc[rows["unknowns"].idxmax()]
+            said.append(f"{words} {row['rms_percent']:.2g} % with {row['unknowns']:.0f} unknowns")
+    return f"{which}: {', '.join(said)}"
 
 
 def _errors(axes, name, rows):

@@ -147,21 +147,35 @@ def _own_claims(df):
 
 
 def table(df):
-    """One row for each kind of packing, means over its packings.
+    """Packing fractions of each kind of packing, means over its packings; phi_core is 5 mean radii away from walls."""
+    found = _means(df, ["phi_reached", "phi_core", "reached_pressure", "collisions"])
+    found[["phi_reached", "phi_core"]] = found[["phi_reached", "phi_core"]].map(lambda phi: f"{phi:.5f}")
+    return found
 
-    phi_core is that of the part 5 mean radii from walls; us_per_collision is all CPU time over collisions; rattlers and
-    backbone_z are at a gap of 1e-4; gap_7.5 is the detection gap of 7.5 neighbours, under_2 the part of the spheres
-    that then have fewer than two.
-    """
+
+def notes(df):
+    """What the packings cost, and their contacts."""
+    from studies.harness.table import markdown
+
+    yield "Costs from points to packing; us_per_collision is all CPU time over collisions."
+    yield markdown(_means(df, ["cpu_s", "us_per_collision", "bytes_per_sphere"]))
+    yield (
+        "Contacts and isotropy: rattlers and backbone_z are at a gap of 1e-4; gap_7.5 is the detection gap of 7.5 "
+        "neighbours, under_2 the part of the spheres that then have fewer than two; deviations of the fabric tensor "
+        "and of <n_i^4> in standard deviations of independent links."
+    )
+    yield markdown(_means(df, ["rattlers", "backbone_z", "gap_7.5", "under_2", "fabric_sd", "fourth_sd"]))
+
+
+def _means(df, columns):
+    """Means of each kind of packing, with the number of packings and, of packing fractions, their scatter."""
     keys = ["part", "maker", "particles", "radii", "domain", "growth"]
-    shown = ["phi_reached", "phi_core", "reached_pressure", "collisions", "cpu_s", "us_per_collision",
-             "bytes_per_sphere", "rattlers", "backbone_z", "gap_7.5", "under_2", "fabric_sd", "fourth_sd"]  # fmt: skip
     ok = df[df["status"] == "ok"].astype({"growth": object}).fillna({"domain": "", "growth": ""})
     grouped = ok.groupby(keys, sort=False, dropna=False)
-    found = grouped[shown].mean()
-    found.insert(0, "packings", grouped.size())
-    found.insert(2, "phi_sd", grouped["phi_reached"].std())
-    found[["phi_reached", "phi_core"]] = found[["phi_reached", "phi_core"]].map(lambda phi: f"{phi:.5f}")
+    found = grouped[columns].mean()
+    if "phi_reached" in columns:
+        found.insert(0, "packings", grouped.size())
+        found.insert(2, "phi_sd", grouped["phi_reached"].std())
     return found.reset_index()
 
 

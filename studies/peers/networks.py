@@ -10,7 +10,7 @@ import numpy as np
 
 from demheat.network.base import SIDES, Network
 from demheat.scene import Scene
-from studies.common.peers import _matrix, _network
+from studies.common.peers import laguerre_network, matrix_of
 from studies.peers.outside import Found
 from studies.peers.packages import found
 
@@ -86,8 +86,8 @@ def system(scene, particles) -> System:
     """
     if scene.conductivities.min() <= 0:
         raise NotImplementedError("pores leave particles without an equation, which only our own solver knows")
-    network = _network(scene, particles, SEED)
-    return System(scene, network, *_matrix(network, scene))
+    network = laguerre_network(scene, particles, SEED)
+    return System(scene, network, *matrix_of(network, scene))
 
 
 def solved_by(name, scene, *, particles, solver, module=None) -> Found:

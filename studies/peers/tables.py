@@ -16,6 +16,23 @@ KNOBS = {"n": "{:g}^3 voxels", "voxels": "{:g}^3 voxels", "size": "h = {:g}", "p
 WAYS = ("by", "solver", "scheme", "gradient", "conforming", "density", "unit")
 # Ours on beds of grains, and our linear solver: no methods.
 GRAINS, SOLVER = "grains", "ours"
+# Beds whose contacts conduct as discs between half-spaces do, which no program's own law is.
+DISC = ", disc"
+# What is asked of a program, and the bodies whose rows answer it.
+ABILITIES = {
+    "one phase": ("homogeneous",),
+    "layers on the grid": ("layers across", "layers along"),
+    "layers off it": ("layers off the grid",),
+    "sphere": ("sphere 10",),
+    "contrast 0.01": ("sphere 0.01",),
+    "contrast 1000": ("sphere 1000",),
+    "pore": ("pore",),
+    "narrow gaps": ("half 10",),
+    "coat": ("coated",),
+    "12 spheres": ("dispersion 10",),
+    "grains, its law": tuple(name for name in BEDS if not name.endswith(DISC)),
+    "grains, discs": tuple(name for name in BEDS if name.endswith(DISC)),
+}
 # At most one part in so many of the known value is shown as such: the rest is rounding.
 NOTHING = 1e-9
 
@@ -91,6 +108,39 @@ def lines(df):
     table = pd.DataFrame(found)
     last = [column for column in ("unknowns", "cpu_s", "peak_mib") if column in table]
     return table[[column for column in table if column not in last] + last]
+
+
+def abilities(df):
+    """A line for each program, ours too, a column for what may be asked: its best |error|, %.
+
+    Of two bodies the worse one counts. "refused" is an answer; an empty place says that no row asks.
+
+    Parameters
+    ----------
+    df : data frame
+        All rows.
+
+    Returns
+    -------
+    data frame
+    """
+    df = df[df["status"].isin(["ok", "unsupported"])]
+    lines = []
+    for (kind, name), rows in df.groupby(["given", "name"], sort=False):
+        found = {what: _best(rows[rows["scene"].isin(bodies)]) for what, bodies in ABILITIES.items()}
+        if any(found.values()):
+            lines.append({"program": title(name), "given": KINDS[kind], **found})
+    order = list(KINDS.values())
+    return pd.DataFrame(sorted(lines, key=lambda line: (order.index(line["given"]), line["program"].lower())))
+
+
+def _best(rows):
+    """Best |error| of each body, the worst of these, in words."""
+    done = rows[rows["status"] == "ok"]
+    if len(done):
+        worst = done["error_percent"].abs().groupby(done["scene"]).min().max()
+        return f"{_shown(worst):.2g}"
+    return "refused" if len(rows) else ""
 
 
 def _shown(error):

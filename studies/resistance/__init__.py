@@ -28,6 +28,19 @@ from studies.resistance.cases import (
 # A hundredth of the gap's least share: nothing is seen of it.
 ENOUGH = 1e-4
 PAPER = {}
+# Errors of the array, %, at each resolution, and of neutral spheres: of the conductivity and of the temperature.
+ARRAY_LIMITS = {"dem": (0.09, 0.02, 0.009), "fem": (0.25, 0.025, 0.005)}
+NEUTRAL_LIMITS = {
+    "dem": {8: (0.15, 0.013), 83: (0.15, 0.0045)},
+    "fem": {8: (0.002, 3e-4), 83: (0.002, 1.5e-4)},
+    "multipole": {8: (1e-12, 1e-12), 83: (1e-12, 1e-12)},
+}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "sphere in a cube, DEM": "by second order from the limit with 3000 particles",
+    "neutral spheres, multipoles": "rounding: fields are linear, and no order of a multipole is there",
+    "Hasselman and Johnson": "one limit for all fractions: the formula knows no neighbours, and is off by them",
+}
 TIMEOUT = 3600.0
 
 
@@ -79,8 +92,9 @@ def warm_up(part, name, method, kapitza=None, spheres=None, fraction=None, reali
 def claims(df):
     """Exact values within what each method owes without a resistance; neutral spheres; what the gap asks for.
 
-    Limits were set before any value was seen: those of the array are those of `fig14_single_inclusion`, where nothing
-    resists; the length for the gap is held to that of Hasselman and Johnson's formula, which knows no neighbours.
+    Limits of errors were those of `fig14_single_inclusion`, where nothing resists, before any value was seen; when all
+    were known they came down to two or three times these: of the DEM from .8 %, of neutral spheres from 1 to .1 and of
+    multipoles from 1e-8. The length for the gap is held to that of Hasselman and Johnson's formula, as at first.
     """
     yield from present(_array_claims(pick(df, part="array")))
     yield from present(_neutral_claims(pick(df, part="neutral")))
@@ -90,25 +104,23 @@ def claims(df):
 def _array_claims(rows):
     from studies.harness.pick import worst
 
-    limits = {"dem": (0.8, 0.2, 0.06), "fem": (0.3, 0.05, 0.01)}
     for name, values in ARRAY.items():
-        for value, limit in zip(values, limits[name], strict=True):
+        for value, limit in zip(values, ARRAY_LIMITS[name], strict=True):
             at = _at(name, value)
             text = f"sphere in a cube, {methods.found()[name].title}, {methods.resolution({'name': name} | at)}"
             yield f"{text}: worst error at any Kapitza length, %", worst(rows, by="kapitza", name=name, **at), limit
 
 
 def _neutral_claims(rows):
-    limits = {"dem": {8: 1.0, 83: 0.5}, "fem": {8: 0.3, 83: 0.1}, "multipole": {8: 1e-8, 83: 1e-8}}
-    for name, own in limits.items():
-        for spheres, limit in own.items():
+    for name, own in NEUTRAL_LIMITS.items():
+        for spheres, (limit, of_temperature) in own.items():
             mine = pick(rows, name=name, spheres=spheres)
             if not len(mine):
                 continue
             text = f"{spheres} neutral spheres, {methods.found()[name].title}"
             yield f"{text}: error of the conductivity, %", mine["error_percent"].abs().max(skipna=False), limit
             worst = mine["temperature_percent"].max(skipna=False)
-            yield f"{text}: rms error of the matrix's temperature, % of the span", worst, limit
+            yield f"{text}: rms error of the matrix's temperature, % of the span", worst, of_temperature
 
 
 def _gap_claims(rows):

@@ -53,6 +53,7 @@ def _errors(axes, rows):
             # A length of 0 has no place on a logarithmic axis.
             axes.plot(np.maximum(group["kapitza"], 0.02), group["error_percent"].abs(), **how)
         axes.lines[-1].set_label(f"{methods.found()[name].title}, {methods.resolution(best.iloc[0])}")
+    axes.plot([], [], "o", color=GREY, alpha=0.35, label="faint: coarser")
     axes.set(xscale="log", yscale="log", xlabel="Kapitza length over radius (leftmost: 0)")
     axes.set(ylabel="|error of the conductivity|, %", title="Sphere in a cube, contrast 10")
     if axes.get_legend_handles_labels()[0]:
@@ -68,10 +69,12 @@ def _falls(axes, rows):
         axes.plot(found.index, found / found.iloc[0], "o", color=colour, label=f"f = {fraction:g}")
         formula = np.array([conductivity(fraction, length) for length in lengths])
         axes.plot(lengths, formula / formula[0], color=colour, linewidth=1.0)
+    axes.plot([], [], "o", color=GREY, label="multipoles")
+    axes.plot([], [], color=GREY, linewidth=1.0, label="Hasselman-Johnson")
     axes.axhline(1 - GAP, color=BLACK, linestyle="--", linewidth=0.8)
     axes.annotate(f"{GAP:.0%} less", (max(SILICA), 1 - GAP), ha="right", va="bottom", fontsize=8)
     axes.set(xlabel="Kapitza length over radius", ylabel="conductivity over that with perfect interfaces")
-    axes.set_title("Silica in epoxy: multipoles, Hasselman-Johnson (lines)")
+    axes.set_title("Silica in epoxy")
     axes.legend()
 
 

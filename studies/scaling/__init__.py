@@ -27,6 +27,15 @@ STRONG, WEAK = (20_000, 1_000_000), (500_000, 1_000_000)  # particles of all ran
 BEFORE = "b4da0d3"
 ACCURACY = 1e-4  # of the multipoles
 PAPER = {}
+# Largest error of what a method spends on an inclusion, %.
+COARSE = {"dem": 2.5, "fft": 4.0, "fem": 0.4}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "share begun again": "none should be; one in a hundred would cost no more than the clock's noise",
+    "off one": "two clocks that are 15 % off, either way, over a factor of 20 in inclusions and their caches",
+}
+# Seconds over seconds, which their names do not tell.
+COSTS = ("efficiency", "ratio")
 TIMEOUT = 5400.0
 
 
@@ -133,7 +142,10 @@ def warm_up(name, part, number=None, kind=None, fraction=None, *, method, **knob
 def claims(df):
     """Fitted exponents, the scene of 5000 spheres, two threads, and today's code beside an earlier one.
 
-    Limits are the project's aims, set before any row was there.
+    Limits are the project's aims, set before any row was there; those that were more than three times what came out
+    were brought nearer then: errors from 4, .3 and .1 %, multipoles from 600 s and 8 GiB, the packing's share from .25,
+    the second solve from 20 s. Exponents of methods are to be one, either way: of stages, some of which hardly grow,
+    the table has them. The packing's own says nothing, as large packings repeat a smaller one.
     """
     df = errors(df)
     yield from present([*_coarse(df), *_exponents(df), *_goal(df), *_engine(df), *_ranked(df)])
@@ -144,14 +156,19 @@ def _coarse(df):
     for name in ("dem", "fft", "fem"):
         rows = pick(df, part="inclusions", name=name)
         title = methods.found()[name].title
-        yield f"{title}: largest error of what it spends on an inclusion, %", largest(rows, "error_percent"), 4.0
+        yield (
+            f"{title}: largest error of what it spends on an inclusion, %",
+            largest(rows, "error_percent"),
+            COARSE[name],
+        )
 
 
 def _exponents(df):
     found = fitted(pick(df, part="inclusions"), "number")
-    for name, limit in (("dem", 1.15), ("fft", 1.15), ("multipole", 1.3)):
-        for _, fit in pick(found, name=name).iterrows():
-            yield f"{methods.found()[name].title}, {fit['stage']}: exponent in inclusions", fit["exponent"], limit
+    for name in ("dem", "fft", "multipole"):
+        for _, fit in pick(found, name=name, stage="all").iterrows():
+            text = f"{methods.found()[name].title}: exponent of the CPU time in inclusions, off one"
+            yield text, abs(fit["exponent"] - 1), 0.15
 
 
 def _goal(df):
@@ -163,8 +180,8 @@ def _goal(df):
         yield f"DEM, {GOAL} spheres: error, %", largest(many, "error_percent"), 0.3
     exact = pick(rows, name="multipole")
     if len(exact):
-        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: CPU seconds", exact["cpu_s"].iloc[0], 600.0
-        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: GiB", exact["peak_mib"].iloc[0] / 1024, 8.0
+        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: CPU seconds", exact["cpu_s"].iloc[0], 90.0
+        yield f"Multipoles, {GOAL} spheres to {ACCURACY:g}: GiB", exact["peak_mib"].iloc[0] / 1024, 0.5
 
 
 def _cached(rows):
@@ -180,8 +197,8 @@ def _engine(df):
         yield "DEM, 8e6: peak memory per unknown, bytes", row["peak_mib"] * 2**20 / row["unknowns"], 600.0
     rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
     if len(rows):
-        yield "DEM, 8e6: error against the multipoles, %", largest(rows, "error_percent"), 0.1
-        yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.25
+        yield "DEM, 8e6: error against the multipoles, %", largest(rows, "error_percent"), 0.01
+        yield "DEM, 8e6: packing's share of the CPU time", (rows["packing_cpu_s"] / rows["cpu_s"]).iloc[0], 0.18
     rows = pick(df, part="cutter")
     if len(rows):
         row = rows.iloc[0]
@@ -192,7 +209,7 @@ def _engine(df):
     rows = pick(df, part="start")
     if len(rows):
         yield "First solve, nothing compiled: wall seconds", rows["first_s"].iloc[0], 20.0
-        yield "Second solve, in another process: wall seconds", rows["second_s"].iloc[0], 20.0
+        yield "Second solve, in another process: wall seconds", rows["second_s"].iloc[0], 8.0
 
 
 def _ranked(df):
@@ -223,14 +240,16 @@ def _ranked(df):
 def table(df):
     """CPU and wall seconds of every row, of the DEM by stages, then fits.
 
-    GiB are the peak over what was there before. Errors are those of k against the multipoles' of the same spheres;
-    coarse rows are there for their costs. "of triad" is the bandwidth of the product of the network's matrix with a
-    vector over that of the triad, a = b + s c on arrays too large for caches, right after it with as many threads.
-    Exponents are fitted to rows of 1000 inclusions or 50 000 unknowns and more. The last lines say what 1e9 unknowns
-    would take if the fits went on, and what more cores would make of it by a model: work, messages and sums fitted to
-    `strong` and `weak` (`studies/scaling/model.py`), on a network that is assumed, of 2 microseconds and, for each node
-    of 64 cores, 25 GB/s, which was not measured. `demheat.mpi` cuts slabs; bricks are the model's only, and so are more
-    unknowns than 32 bits number. Figures from the literature are other people's, for other equations and machines.
+    Seconds of the DEM count its packing, made on the spot: beyond 130 000 particles that repeats a smaller one as often
+    as `packing` says, so that its own seconds do not grow. GiB are the peak over what was there before. Errors are
+    those of k against the multipoles' of the same spheres; coarse rows are there for their costs. "of triad" is the
+    bandwidth of the product of the network's matrix with a vector over that of the triad, a = b + s c on arrays too
+    large for caches, right after it with as many threads. Exponents are fitted to rows of 1000 inclusions or 50 000
+    unknowns and more, each with its standard error. The last lines say what 1e9 unknowns would take if the fits went
+    on, and what more cores would make of it by a model: work, messages and sums fitted to `strong` and `weak`
+    (`studies/scaling/model.py`), on a network that is assumed, of 2 microseconds and, for each node of 64 cores,
+    25 GB/s, which was not measured. `demheat.mpi` cuts slabs; bricks are the model's only, and so are more unknowns
+    than 32 bits number. Figures from the literature are other people's, for other equations and machines.
     """
     from studies.scaling.tables import lines
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from demheat import referee
-from studies.harness.pick import order, pick
+from studies.harness.pick import pick
 
 # Stages of the DEM from the scene to the conductivity, and those of the field at points.
 STAGES = ("packing", "twins", "cells", "phases", "network", "equations", "field", "points")
@@ -52,8 +52,8 @@ def fitted(df, by):
     Returns
     -------
     data frame
-        name, stage, exponent, number of rows, seconds of the largest and what is largest. A stage that never lasts
-        LEAST seconds has no exponent; nor one with fewer than three rows.
+        name, stage, exponent and its standard error, `doubt`, number of rows, seconds of the largest and what is
+        largest. A stage that never lasts LEAST seconds has no exponent; nor one with fewer than three rows.
     """
     import pandas as pd
 
@@ -62,13 +62,19 @@ def fitted(df, by):
     for (name, stage), group in stages.groupby(["name", "stage"], sort=False):
         group = group[(group[by] >= FROM[by]) & (group["seconds"] >= LEAST)].sort_values(by)
         if len(group) >= 3:
-            exponent = order(group[by].to_numpy(float), group["seconds"].to_numpy(float))
+            exponent, doubt = _slope(group[by].to_numpy(float), group["seconds"].to_numpy(float))
             last = group.iloc[-1]
             rows.append(
-                {"name": name, "stage": stage, "exponent": exponent, "rows": len(group), "largest": last[by]}
-                | {"seconds": last["seconds"]}
+                {"name": name, "stage": stage, "exponent": exponent, "doubt": doubt, "rows": len(group)}
+                | {"largest": last[by], "seconds": last["seconds"]}
             )
-    return pd.DataFrame(rows, columns=["name", "stage", "exponent", "rows", "largest", "seconds"])
+    return pd.DataFrame(rows, columns=["name", "stage", "exponent", "doubt", "rows", "largest", "seconds"])
+
+
+def _slope(sizes, seconds):
+    """Slope of the logarithms by least squares, and its standard error."""
+    found, covariance = np.polyfit(np.log(sizes), np.log(seconds), 1, cov=True)
+    return float(found[0]), float(np.sqrt(covariance[0, 0]))
 
 
 def efficiencies(df):
@@ -122,20 +128,22 @@ def billion(df):
     Returns
     -------
     list of dict
-        name, unknowns, CPU hours and TiB.
+        name, unknowns, CPU hours, within which factor they are by the exponent's standard error, and TiB.
     """
     parts = pick(df[df["status"] == "ok"], part="elements")
     exponents = fitted(parts, "unknowns")
     lines = []
     for name in ("dem", "fft"):
         rows = pick(parts, name=name).sort_values("unknowns")
-        power = pick(exponents, name=name, stage="all")["exponent"]
+        power = pick(exponents, name=name, stage="all")
         if len(rows) and len(power):
             last = rows.iloc[-1]
             more = BILLION / last["unknowns"]
             lines.append(
                 {"name": name, "unknowns": BILLION}
-                | {"hours": last["cpu_s"] * more ** max(1.0, float(power.iloc[0])) / 3600}
-                | {"tib": last["peak_mib"] * more / 2**20, "from": last["unknowns"], "exponent": float(power.iloc[0])}
+                | {"hours": last["cpu_s"] * more ** max(1.0, float(power["exponent"].iloc[0])) / 3600}
+                | {"within": more ** float(power["doubt"].iloc[0]), "doubt": float(power["doubt"].iloc[0])}
+                | {"tib": last["peak_mib"] * more / 2**20, "from": last["unknowns"]}
+                | {"exponent": float(power["exponent"].iloc[0])}
             )
     return lines

@@ -25,7 +25,7 @@ LIMIT = 1800.0
 SEARCH = """
 import sys
 from importlib.util import find_spec
-sys.exit(any(find_spec(name) is None for name in ("mpi4py", "petsc4py", "numba")))
+sys.exit(any(find_spec(name) is None for name in sys.argv[1:]))
 """
 
 
@@ -34,10 +34,20 @@ def python() -> str | None:
     """The Python that runs `demheat.mpi`: what DEMHEAT_MPI_PYTHON names, or `.peers/mpi`; None if there is none."""
     named = os.environ.get("DEMHEAT_MPI_PYTHON")
     found = Path(named) if named else HOMES / "mpi" / "bin" / "python"
-    search = [found, "-c", SEARCH]
-    if not found.exists() or subprocess.run(search, env=environment(), capture_output=True).returncode:
-        return None
-    return str(found)
+    return str(found) if found.exists() and finds(str(found), "mpi4py", "petsc4py", "numba") else None
+
+
+@cache
+def finds(python: str, *names: str) -> bool:
+    """Whether a Python finds modules where ranks run.
+
+    Parameters
+    ----------
+    python : str
+    *names : str
+    """
+    search = [python, "-c", SEARCH, *names]
+    return not subprocess.run(search, env=environment(), capture_output=True).returncode
 
 
 def missing() -> str | None:

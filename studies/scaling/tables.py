@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
 from studies.scaling import model
 from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
 from studies.scaling.published import PUBLISHED
+from studies.scaling.rows import REPLICA
 
 # Characters of a note on the page; the rows' file has them all.
 NOTE = 100
@@ -35,13 +38,21 @@ def _line(row):
         scene += ", sizes to 10"
     if row["fraction"] == row["fraction"]:
         scene += f", f = {row['fraction']:g}"
-    line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": scene}
+    line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": scene, "packing": _packing(row["particles"])}
     line |= {"unknowns": row["unknowns"], "threads": row["cores"], "CPU, s": row["cpu_s"], "wall, s": row["wall_s"]}
     line |= {"GiB": row["peak_mib"] / 1024, "bytes each": row["peak_mib"] * 2**20 / row["unknowns"]}
     costs = {name: row.get(f"{name}_cpu_s") for name in STAGES}
     line["stages, CPU s"] = ", ".join(f"{k} {v:.2g}" for k, v in costs.items() if v is not None and v == v)
     line["of triad"] = row["product_gbs"] / row["triad_here_gbs"]
     return line | {"error, %": row["error_percent"], "note": _cut(row["note"]) if row["status"] != "ok" else ""}
+
+
+def _packing(particles):
+    """Whether a packing of so many particles was made as a whole; empty where there is none."""
+    if particles != particles:
+        return ""
+    number = math.ceil((particles / REPLICA) ** (1 / 3)) ** 3
+    return "whole" if number == 1 else f"{number} times one"
 
 
 def _cut(note):
@@ -112,13 +123,14 @@ def _planned(plan):
 def _fits(df):
     for part, by in (("inclusions", "number"), ("elements", "unknowns")):
         for _, fit in fitted(pick(df, part=part), by).iterrows():
-            text = f"CPU time ~ {by}^{fit['exponent']:.2f}, {fit['rows']:.0f} rows"
+            text = f"CPU time ~ {by}^({fit['exponent']:.2f} +- {fit['doubt']:.2f}), {fit['rows']:.0f} rows"
             yield {"what": f"fit, {part}", "method": LOOK[fit["name"]][0], "of": fit["stage"], "note": text}
     for _, row in efficiencies(df).iterrows():
         text = f"efficiency of two threads {row['efficiency']:.2f}"
         scene = f"{row['stage']}, {row['resolution']:.0f}"
         yield {"what": "threads", "method": LOOK[row["name"]][0], "of": scene, "wall, s": row["wall"], "note": text}
     for row in billion(df):
-        text = f"from {row['from']:.3g} unknowns with exponent {max(1.0, row['exponent']):.2f}"
+        text = f"from {row['from']:.3g} unknowns with exponent {max(1.0, row['exponent']):.2f} +- {row['doubt']:.2f}"
+        text += f": CPU time within a factor of {row['within']:.2f}"
         line = {"what": "1e9, extrapolated", "method": LOOK[row["name"]][0], "unknowns": row["unknowns"]}
         yield line | {"CPU, s": 3600 * row["hours"], "GiB": 1024 * row["tib"], "note": text}

@@ -8,6 +8,7 @@ import numpy as np
 
 from demheat import Scene, Sphere
 from demheat.gallery import EDGE, HADDAD, scaled
+from demheat.powers import cube_root
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 
 # Depth of cells along fibres and rods, and of the square, in edges: nothing changes along it.
@@ -66,7 +67,7 @@ def semi_axes(fraction):
     ----------
     fraction : float
     """
-    unit = math.cbrt(fraction * EDGE**3 / (4 / 3 * math.pi * math.prod(RATIOS)))
+    unit = cube_root(fraction * EDGE**3 / (4 / 3 * math.pi * math.prod(RATIOS)))
     return tuple(unit * ratio for ratio in RATIOS)
 
 
@@ -90,7 +91,7 @@ def ball(shape, contrast, fraction):
     shape : {"sphere", "level set"}
     contrast, fraction : float
     """
-    radius, material = EDGE * math.cbrt(3 * fraction / (4 * math.pi)), scaled(HADDAD, contrast)
+    radius, material = EDGE * cube_root(3 * fraction / (4 * math.pi)), scaled(HADDAD, contrast)
     middle = np.full(3, EDGE / 2)
 
     def function(points):

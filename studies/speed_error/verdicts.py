@@ -10,8 +10,10 @@ from studies.speed_error import laws, means
 from studies.speed_error.cases import COMPARED, MARCHED, TIGHT, TO_LIMIT
 from studies.speed_error.scenes import IN_TIME, STEADY
 
-# Methods, at least, that reach a target on the scenes that all methods know.
-SEVERAL = 3
+# Methods, at least, that reach a target on the two scenes that all methods know.
+SEVERAL = {"third": 3, "half": 3}
+# Errors of the DEM in time, % of the span.
+IN_TIME_LIMITS = {"slab": 0.1, "ball": 0.1, "beam": 0.015}
 # Scenes, at least, of which one can be left out.
 SCENES = 6
 LIMITS = {"error": 10.0, "cpu_s": 3.0}
@@ -26,16 +28,19 @@ def all_claims(df):
     df : data frame
     """
     yield from present([*_kernels(df), *_schemes(df)])
-    for scene in (name for name in STEADY if name in set(df["scene"])):
-        found = means.cheapest(df[df["scene"] == scene], targets=(0.1,))
-        least = SEVERAL if scene in ("third", "half") else 1
-        yield f"Methods that reach 0.1 % on the scene {scene!r}", float(len(found)), f">= {least}"
+    there = [name for name in STEADY if name in set(df["scene"])]
+    reach = {scene: len(means.cheapest(df[df["scene"] == scene], targets=(0.1,))) for scene in there}
+    for scene, least in SEVERAL.items():
+        if scene in reach:
+            yield f"Methods that reach 0.1 % on the scene {scene!r}", float(reach[scene]), f">= {least}"
+    if reach:
+        yield "Scenes on which no method reaches 0.1 %", float(sum(not count for count in reach.values())), "= 0"
     for scene in IN_TIME:
         most = MARCHED["particles"][-1]
         finest = pick(df, scene=scene, name="dem", particles=most)
         if len(finest):
             text = f"DEM in time, {most} particles, {scene}: error rms at the worst time, % of the span"
-            yield text, finest["error_percent"].max(skipna=False), 0.1
+            yield text, finest["error_percent"].max(skipna=False), IN_TIME_LIMITS[scene]
     yield from _worth(df)
 
 
@@ -43,9 +48,9 @@ def _kernels(df):
     row = pick(df, name="tessellation", particles=100_000)
     if len(row):
         ours, theirs = row["us_per_particle"].iloc[0], row["peer_us_per_particle"].iloc[0]
-        yield "Laguerre tessellation of 100000 particles: CPU microseconds per particle", ours, 40.0
+        yield "Laguerre tessellation of 100000 particles: CPU microseconds per particle", ours, 20.0
         if theirs == theirs:
-            yield "Laguerre tessellation of 100000 particles: CPU time over that of Voro++", ours / theirs, 1.0
+            yield "Laguerre tessellation of 100000 particles: CPU time over that of Voro++", ours / theirs, 0.4
     row = pick(df, name="steady", particles=1_000_000)
     if len(row):
         best = row[["ruge_stuben_cpu_s", "aggregation_cpu_s"]].min(axis=1).iloc[0]
@@ -63,7 +68,7 @@ def _schemes(df):
             continue
         pairs = ((a["k_ratio"].iloc[0], b["k_ratio"].iloc[0]) for a, b in zip(loose, tight, strict=True))
         off = max(abs(referee.value_error(*pair)) for pair in pairs)
-        yield f"FFT {voxels}^3: difference of either scheme from its own limit", off, 1e-6
+        yield f"FFT {voxels}^3: difference of either scheme from its own limit", off, 3e-7
         if voxels == COMPARED[-1]:
             scalar, eyre_milton = (rows["cpu_s"].iloc[0] for rows in loose)
             text = f"FFT {voxels}^3: CPU time of Eyre-Milton over that of the scalar scheme"

@@ -23,6 +23,13 @@ TARGET = 0.1
 FASTER = {("slab", 100_000): 12.0, ("sphere", 1_000_000): 25.0}
 LARGE = 100_000
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "heat lost over heat moved": "rounding of sums over up to 1e6 particles and 1e5 steps",
+    "by LAMMPS and by the kernel": "rounding: both add the same numbers, in another order, some hundred times",
+}
+# Seconds over seconds, which their names do not tell.
+COSTS = ("bandwidth_share", "over_lammps")
 TIMEOUT = 7200.0
 
 
@@ -70,7 +77,8 @@ def claims(df):
     """Accuracy and heat kept; work beside explicit Euler; its kernel beside the triad and LAMMPS.
 
     Temporal errors must not pass the accuracy asked for. Limits on the speed beside Euler's are half to two thirds
-    of what was found; of the triad's bandwidth three quarters are asked for.
+    of what was found; of the triad's bandwidth three quarters are asked for. Heat and LAMMPS's temperatures were held
+    to 1e-10 and 1e-12 before values were known.
     """
     ours = df[~df["integrator"].isin(PEERS)]
     yield from present([*_errors(ours), *_speed(ours), *_kernel(ours), *_peer(df)])
@@ -80,7 +88,7 @@ def _errors(df):
     chosen = df[df["accuracy"].notna()]
     share = (chosen["error_percent"] / (100 * chosen["accuracy"])).max(skipna=False)
     yield "Chosen steps: largest temporal error over the accuracy asked for", share, 1.0
-    yield "Largest heat lost over heat moved", df["energy_error"].max(skipna=False), 1e-10
+    yield "Largest heat lost over heat moved", df["energy_error"].max(skipna=False), 1e-12
     small = pick(df, particles=3_000)
     passes = small[small["accuracy"] == 1e-3]
     steps = pick(small, integrator="euler")["steps"].max()
@@ -121,15 +129,16 @@ def _peer(df):
     rows = df[df["integrator"].isin(PEERS) & (df["status"] == "ok")]
     if not len(rows):
         return
-    # Rounding: both add the same numbers, in another order.
     text = "Explicit Euler by LAMMPS and by the kernel: largest difference over the largest change of a temperature"
-    yield text, rows["difference"].max(skipna=False), 1e-12
-    for name, forces, limit in (("lammps", "usual forces", 20), ("lammps-bare", "cheapest forces", 5)):
-        faster = pick(rows, integrator=name, particles=LARGE)["over_lammps"]
-        text = (
-            f"Explicit kernel: particle-steps per second over LAMMPS, {forces}, same links, one thread, 1e5 particles"
-        )
-        yield text, faster.min() if len(faster) else None, f">= {limit}"
+    yield text, rows["difference"].max(skipna=False), 1e-13
+    forces = {"lammps": ("usual forces", 20), "lammps-bare": ("cheapest forces", 5)}
+    faster = {name: pick(rows, integrator=name, particles=LARGE)["over_lammps"].min() for name in forces}
+    for name, other in (tuple(forces), tuple(forces)[::-1]):
+        (mine, limit), (theirs, _) = forces[name], forces[other]
+        beside = f" ({faster[other]:.2g} over its {theirs})" if faster[other] == faster[other] else ""
+        text = f"Explicit kernel: particle-steps per second over LAMMPS with its {mine}{beside}"
+        value = None if faster[name] != faster[name] else faster[name]
+        yield f"{text}, same links, one thread, 1e5 particles", value, f">= {limit}"
 
 
 def table(df):

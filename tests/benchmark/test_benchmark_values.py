@@ -84,6 +84,6 @@ def test_certain_bounds_hold_the_value(name):
 
 def test_printed_values_are_near():
     """What NAFEMS prints, to the digits printed; McPhedran and McKenzie's cubic array."""
-    for name, printed in (("nafems-t2", 926.97), ("nafems-t3", 36.60), ("nafems-t4", 18.25)):
-        assert abs(benchmark.load(name)[1].temperature[0] - printed) <= 0.005
+    for name, printed, half in (("nafems-t2", 927.0, 0.05), ("nafems-t3", 36.60, 0.005), ("nafems-t4", 18.25, 0.005)):
+        assert abs(benchmark.load(name)[1].temperature[0] - printed) <= half
     assert abs(benchmark.load("sc-third-s10")[1].conductivity - 1.395734838) < 5e-10

@@ -1,5 +1,7 @@
 """Tasks on two Dask workers: all come home, whoever is killed meanwhile; skipped without Dask."""
 
+import atexit
+import logging
 import os
 import random
 import signal
@@ -40,3 +42,18 @@ def test_workers_killed_three_times_lose_no_task():
     assert str(home.pop(5)) == "an error of the task's own" and all(isinstance(pid, int) for pid in home.values())
     # New ones have taken the places of those that were killed.
     assert len({*home.values(), *killed}) >= 4
+
+
+def test_workers_that_end_slowly_are_neither_killed_nor_complained_of():
+    said = []
+    handler = logging.Handler(logging.WARNING)
+    handler.emit = lambda record: said.append(record.getMessage())
+    logger = logging.getLogger("distributed.nanny")
+    logger.addHandler(handler)
+    try:
+        with cluster.cluster(workers=2) as client:
+            # Dask's own patience is four seconds.
+            client.run(atexit.register, time.sleep, 5.0)
+    finally:
+        logger.removeHandler(handler)
+    assert said == []

@@ -21,6 +21,7 @@ WALLED = Scene((1, 1, 1), METAL, [BALL], walls={"y-": 0.0, "y+": 1.0}, initial=0
 CELL = Scene((1, 1, 1), METAL, [BALL], gradient=(0.0, 1.0, 0.0))
 BLOCK = Scene((1, 1, 1), METAL, walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
 SPHERE = Scene((1, 1, 1), METAL, domain="sphere", walls={"round": 1.0}, initial=0.0)
+DRUM = Scene((1, 1, 1), METAL, domain="cylinder-y", walls={"round": 1.0}, initial=0.0)
 
 SHORT = [
     (Laguerre(), {}),
@@ -156,8 +157,8 @@ def test_a_keyword_that_nobody_knows(law):
     ("law", "scene", "words"),
     [
         (Laguerre(), dataclasses.replace(SPHERE, inclusions=[BALL]), "a sphere: inclusions there have no conforming"),
-        (Calibrated(wall="surface"), SPHERE, "flat walls only"),
-        (Platonic(wall="surface"), SPHERE, "flat walls only"),
+        (Calibrated(wall="surface"), DRUM, "flat walls and that of a sphere"),
+        (Platonic(wall="surface"), DRUM, "flat walls and that of a sphere"),
         (Platonic(), Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}, initial=0.0), "two held walls meet"),
     ],
 )
@@ -173,7 +174,8 @@ def test_scenes_that_a_law_can_do():
         for scene in (WALLED, CELL, SPHERE):
             law.check(scene)
     Laguerre(conforming=False).check(dataclasses.replace(SPHERE, inclusions=[BALL]))
-    Calibrated(wall="surface").check(Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}))
+    for scene in (Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}), SPHERE):
+        Calibrated(wall="surface").check(scene)
 
 
 # ---- A network alone -------------------------------------------------------------------------------------------------

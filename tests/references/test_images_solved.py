@@ -185,6 +185,10 @@ def test_what_elements_of_an_image_refuse():
         fem.solve(scene)
     with pytest.raises(ValueError, match="order = 3"):
         fem.solve(periodic(drawn()), order=3)
+    heated = {label: Material(2.0, 1.0, 1.0) for label in np.unique(drawn())}
+    still = Scene.of_image(Image(drawn(), VOXEL, heated), walls={"x-": 1.0}, initial=0.0)
+    with pytest.raises(NotImplementedError, match="Scene.image.*: in time tetrahedra .* use elements='hexahedra'$"):
+        fem.evolve(still, [1.0])
     with pytest.raises(NotImplementedError, match="links have a harmonic mean"):
         fft.solve(periodic(grains(), materials=PORES), rule="links")
     with pytest.raises(NotImplementedError, match="fill pores"):

@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose
 from demheat.field import Field, Samples
 from studies import fig10_halo
 from studies.fig10_halo import rows as halo_rows
-from studies.fig10_halo import statistics
+from studies.fig10_halo import statistics, tables
 from studies.fig10_halo.statistics import RATIOS, STATISTICS, long
 from studies.harness import table
 from studies.harness.cells import numbers
@@ -74,6 +74,36 @@ def test_rows_by_halo_radius(rows):
     assert held["cov"].notna().all() and (held["cov"] >= held["bulk_cov"].fillna(0)).mean() > 0.9
     laguerre = table_[table_["law"] == "laguerre"]
     assert laguerre["cov"].notna().sum() == 1 and laguerre["cov"].min() < 1e-6
+
+
+def test_the_flux_by_depth_below_a_wall():
+    """Flux 1 within 3 mean radii of the walls across y, 2 beyond; none beside insulated faces."""
+    radius = LENGTH / 40
+    points = np.random.default_rng(1).random((20_000, 3)) * LENGTH
+    away = np.minimum(points, LENGTH - points) / radius
+    flux = np.zeros((20_000, 3))
+    flux[:, 1] = -3300.0 * np.where(away[:, 1] < 3, 1.0, 2.0) * (away[:, [0, 2]].min(axis=1) > 4)
+    samples = Samples(points, np.ones(20_000), np.zeros(20_000), np.zeros(20_000, int), flux)
+    field = Field(
+        halo_rows.scene_of("held"), np.zeros(3), np.ones(1), lambda: samples, None, None, stats={"mean_radius": radius}
+    )
+    row = {name: numbers(cell) for name, cell in statistics.near_wall(field, {4.0: flux}).items()}
+    assert_allclose(row["near_4"], [1.0] * 3 + [2.0] * 13)
+    assert list(row) == ["near_4"]
+
+
+def test_all_four_weightings_are_held_against_what_is_printed():
+    row = {"law": "calibrated", "split": "half", "walls": "held", "seed": 0, "status": "ok", "particles": 500_000}
+    cells = {"cov": 54.0, "cov_volume": 27.0, "bulk_cov": 13.5, "bulk_cov_volume": 2.7}
+    row |= {f"{part}{name}": "1" + " nan" * 10 for part in ("", "bulk_") for name in STATISTICS}
+    # Without halo so much, with a halo of 4 as printed, of 11 half as much.
+    row |= {name: f"{value} 9 9 9 5 9 9 9 1 9 9" for name, value in cells.items()}
+    found = tables.factors(long(pd.DataFrame([row])))
+    assert_allclose(found[0.0], [2.0, 1.0, 0.5, 0.1])
+    assert_allclose(found[4.0], 1.0)
+    assert_allclose(found[11.0], 0.5)
+    (_, value, limit), *_ = fig10_halo._paper(long(pd.DataFrame([row])))
+    assert value == 2.0 > limit
 
 
 def failing(rows):

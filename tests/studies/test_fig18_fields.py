@@ -10,6 +10,7 @@ from demheat.scene import Material, Scene, Sphere
 from studies import fig18_fields as study
 from studies.fig18_fields import errors as fig18_errors
 from studies.fig18_fields import rows as fig18_rows
+from studies.fig18_fields import tables as fig18_tables
 from studies.harness.cells import cell, numbers
 
 BOX = Scene(
@@ -56,6 +57,7 @@ def rows():
         "slice_gap": cell(gaps, decimals=4),
         "slice_face": cell(gaps, decimals=4),
         "band": 0.02,
+        "number": 83,
     }
     return pd.DataFrame([witness, other, place | {f"gap_{x}": 0.03 for x in "ABCD"}])
 
@@ -73,9 +75,39 @@ def test_errors_are_those_put_in():
 def test_claims_see_these_errors():
     found = {text: (value, limit) for text, value, limit in study.claims(rows())}
     text = "DEM, 1000000 particles, walls, worst point of Table 3: "
-    assert found[text + "temperature off the multipoles, % of the span"] == (pytest.approx(0.2), 0.1)
+    assert found[text + "temperature off the multipoles, % of the span"] == (pytest.approx(0.2), 0.03)
     assert found[text + "flux off the multipoles, % of the local one"] == (pytest.approx(3.0), 1.0)
-    assert found["Table 3's points lie farther from any interface than, in bands of 0.021 L"][0] == pytest.approx(1.5)
+    assert fig18_tables.told(rows(), study.PAPER) == [
+        "The points of Table 3 lie 1.50 bands and more from any interface."
+    ]
+
+
+def network(flux):
+    """A row of the paper's network with C_t = 1 whose flux is everywhere so many W/m2 down y."""
+    base = rows().iloc[1].to_dict() | {
+        "name": "network",
+        "packing": "lsa",
+        "held": "center",
+        "seed": 0,
+        "under": "walls",
+    }
+    base |= {"boundary": np.nan, "particles": 1000, "ct_flux": 0.5, "ct_isothermal": 0.6, "mean_flux": flux}
+    base |= {f"q_{x}": flux for x in "ABCD"} | {f"qy_{x}": -flux for x in "ABCD"} | {"qz_C": 0.0}
+    return base | {"slice_y": cell(np.full((4, 4), -flux), decimals=2)}
+
+
+def test_fluxes_of_the_network_are_in_proportion_to_its_calibration():
+    df = pd.concat([rows(), pd.DataFrame([network(20.0)])], ignore_index=True)
+    found = fig18_errors.network_errors(df).set_index("factor")
+    assert list(found.index) == [0.5, 0.6] and found.loc[0.6, "variant"].calibration == "isothermal"
+    # 20 W/m2 times C_t, beside the witness's 10.
+    assert_allclose(found["worst_q"], [0.0, 20.0], atol=1e-9)
+    assert_allclose(found["flux_max"], [0.0, 20.0], atol=1e-9)
+    # 30.02 against 30 degrees Celsius, whatever C_t is.
+    assert_allclose(found["worst_celsius"], 100 * 0.02 / 30)
+    said = fig18_tables.told(df, study.PAPER)
+    assert "halos of 11" in said[0] and said[1].count("best") == 1
+    assert list(fig18_errors.with_errors(df.iloc[:3])["name"]) == ["multipole", "dem"]
 
 
 def test_without_multipoles_the_finest_elements_are_the_witness():

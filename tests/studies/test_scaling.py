@@ -26,6 +26,7 @@ def test_exponents_are_those_of_the_stages():
     found = means.fitted(made_up(), "number").set_index(["name", "stage"])["exponent"]
     # The squares of the first numbers are below LEAST: two rows are left, too few.
     assert_allclose(found["dem", "twins"], 1.0, rtol=1e-12)  # rounding
+    assert means.fitted(made_up(), "number").set_index("stage")["doubt"]["twins"] < 1e-6  # its root
     assert ("dem", "cells") not in found and ("dem", "phases") not in found
     assert 1.0 < found["dem", "all"] < 1.1
     # One row makes no fit.
@@ -72,7 +73,7 @@ def test_the_finest_cell_is_judged_by_the_multipoles():
 
     df = cell_rows()
     value, limit = judged(df)
-    assert value == pytest.approx(1.0) and limit == 0.1
+    assert value == pytest.approx(1.0) and limit == 0.01
     # Without them nothing is known, and nothing holds.
     assert np.isnan(judged(df[df["name"] != "multipole"])[0])
 
@@ -84,6 +85,10 @@ def test_the_page_has_the_share_of_bandwidth_and_short_notes():
     assert_allclose(made["of triad"].to_numpy(float), [np.nan, np.nan, 0.75, np.nan])
     assert made["note"].str.len().max() == tables.NOTE
     assert df["note"].str.len().max() == 800
+
+
+def test_the_page_tells_packings_that_repeat_one():
+    assert [tables._packing(number) for number in (130_000.0, 1e6, np.nan)] == ["whole", "8 times one", ""]
 
 
 def test_the_page_has_both_codes_and_says_why_their_conductivities_differ():

@@ -15,7 +15,6 @@ EXCEPTIONS = {
     ("damage/means.py", "theory"): "share of links that is left",
     ("damage/means.py", "first_loss"): "share of the conductivity that is lost",
     ("damage/means.py", "above_bound"): "distance to a bound",
-    ("fig18_fields/rows.py", "field_row"): "level of the temperature in a periodic cell",
     ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
     ("peers/means.py", "same_mesh"): "two programs on one mesh",
     ("peers/programs/freefem.py", "solve"): "two outputs of one program",

@@ -169,7 +169,6 @@ def test_relations_change_what_they_say():
 
 
 def test_rows_of_a_guest_stay_when_it_is_gone(tmp_path, monkeypatch):
-    monkeypatch.setattr(runner, "triad_gbs", lambda: 10.0)
     name = _module(tmp_path, monkeypatch, "linear_guess", LINEAR)
     out, quick = tmp_path / "out", {"quick": True, "say": lambda line: None, "compute": _here}
     path = runner.run_study("sphere_benchmark", out, method=name, **quick)

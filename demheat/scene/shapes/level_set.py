@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import product
 
@@ -106,7 +106,7 @@ class LevelSet(Solid):
             return self
         back, function = np.argsort(order), self.function
         limits = tuple(tuple(end[axis] for axis in order) for end in self.limits)
-        return replace(self, function=lambda points: function(points[:, back]), limits=limits)
+        return self._moved(function=lambda points: function(points[:, back]), limits=limits)
 
     def placed(self, center: Sequence[float]) -> LevelSet:
         """The same set with the middle of its limits elsewhere; see `Shape.placed`."""
@@ -114,8 +114,8 @@ class LevelSet(Solid):
         if not np.any(shift):
             return self
         function = self.function
-        limits = tuple(tuple((np.array(end) + shift).tolist()) for end in self.limits)
-        return replace(self, function=lambda points: function(points - shift), limits=limits)
+        limits = tuple(vector("LevelSet.limits", np.array(end) + shift) for end in self.limits)
+        return self._moved(function=lambda points: function(points - shift), limits=limits)
 
     def sure_distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance to its limits, 0 within, m; see `Shape.sure_distance`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Sequence
+from dataclasses import fields
 from itertools import product
 
 import numpy as np
@@ -69,6 +70,13 @@ class Solid(Shape):
                 image = self.placed(place.tolist())
                 found += [image] if image.meets(size) else []
         return found
+
+    def _moved(self, **values):
+        """The same solid elsewhere: what was asked of this one when it was made is not asked of each image again."""
+        made = object.__new__(type(self))
+        for each in fields(self):
+            object.__setattr__(made, each.name, values.get(each.name, getattr(self, each.name)))
+        return made
 
     def meets(self, size: Sequence[float]) -> bool:
         """Whether it reaches into the box from 0 to a size; if no plane is found that parts them, it does."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import combinations
 
@@ -129,14 +129,14 @@ class Union(Solid):
 
     def turned(self, order: Sequence[int]) -> Union:
         """The same union with axes order[0], order[1], order[2] as axes 0, 1, 2."""
-        return replace(self, shapes=tuple(shape.turned(order) for shape in self.shapes))
+        return self._moved(shapes=tuple(shape.turned(order) for shape in self.shapes))
 
     def placed(self, center: Sequence[float]) -> Union:
         """The same union with its centre elsewhere; see `Shape.placed`."""
         shift = np.subtract(center, self.center)
         if not np.any(shift):
             return self
-        return replace(self, shapes=tuple(shape.placed((shape.center + shift).tolist()) for shape in self.shapes))
+        return self._moved(shapes=tuple(shape.placed((shape.center + shift).tolist()) for shape in self.shapes))
 
     def meets(self, size: Sequence[float]) -> bool:
         """Whether a member reaches into the box from 0 to a size; see `Shape.meets`."""

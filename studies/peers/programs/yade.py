@@ -114,7 +114,7 @@ def stepped(given: dict, *, script: str = "yade_bed.py") -> dict:
         One that leaves found.json.
     """
     with tempfile.TemporaryDirectory() as folder:
-        Path(folder, "bed.json").write_text(json.dumps(given))
+        Path(folder, "bed.json").write_text(json.dumps({**given, "scripts": str(SCRIPTS)}))
         ran([*COMMAND, SCRIPTS / script], folder=folder)
         return json.loads(Path(folder, "found.json").read_text())
 

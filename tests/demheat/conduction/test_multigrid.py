@@ -54,6 +54,17 @@ def test_preconditioner_is_symmetric_positive_and_near_the_inverse():
     assert values.min() > 0.2 and values.max() < 2.0
 
 
+def test_coarse_levels_in_single_precision_do_as_well():
+    links = lattice(29)
+    diagonal = row_sums(links) + 0.01
+    r = np.random.default_rng(1).random(len(diagonal))
+    double, single = np.empty_like(r), np.empty_like(r)
+    preconditioner(links, diagonal)(r, 1.0, double)
+    preconditioner(links, diagonal, np.float32)(r, 1.0, single)
+    # Rounding of some sweeps: another cycle, and the same to that.
+    assert 0 < np.abs(single - double).max() < 1e-5 * np.abs(double).max()
+
+
 def test_bits_do_not_depend_on_threads():
     numba = pytest.importorskip("numba")
     links = lattice(41)

@@ -29,7 +29,7 @@ WALLS = {"walls": {"y-": 25.0, "y+": 35.0}}
 PERIODIC = {"gradient": (0.0, 2.0, 0.0)}
 
 
-@pytest.mark.parametrize("solver", ["cg", "amg"])
+@pytest.mark.parametrize("solver", ["cg", "amg", "amg-single"])
 @pytest.mark.parametrize("load", [WALLS, PERIODIC])
 @pytest.mark.parametrize("k", [1e-3, 100.0])
 def test_against_a_direct_solver(solver, load, k):

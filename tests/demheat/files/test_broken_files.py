@@ -8,6 +8,7 @@ import re
 import pytest
 
 from demheat import files
+from demheat.files.source import nearest_file
 
 # A whole scene, line by line: each broken file below is made of it by one change.
 GOOD = """\
@@ -224,6 +225,25 @@ def test_a_broken_table_is_one_line(tmp_path, table, line, words):
     (tmp_path / "beads.csv").write_bytes(table if isinstance(table, bytes) else table.encode())
     told = refused(tmp_path, changed(TABLE))
     assert re.search(rf"beads\.csv:{line}: .*(?:{words})", told), told
+
+
+@pytest.mark.parametrize(
+    ("asked", "told"),
+    [
+        ("scene.tmol", "; did you mean 'scene.toml'?"),
+        ("scne.toml", "; did you mean 'scene.toml'?"),
+        ("beads.tsv", "; did you mean 'beads.csv'?"),
+        # Endings alike, a letter alike, a part alike: none of these was meant.
+        ("no.toml", ""),
+        ("a.toml", ""),
+        ("pores.toml", ""),
+        ("sc.toml", ""),
+    ],
+)
+def test_files_are_suggested_by_their_names_not_their_endings(tmp_path, asked, told):
+    for name in ("scene.toml", "beads.csv", "b.toml"):
+        (tmp_path / name).touch()
+    assert nearest_file(tmp_path / asked) == told and nearest_file(tmp_path / "none" / asked) == ""
 
 
 # Entries of spheres from files.

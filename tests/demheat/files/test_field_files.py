@@ -193,6 +193,10 @@ def test_pictures(field):
     assert values.shape == (8, 4)
     assert_allclose(values[0], np.interp([0.125, 0.375, 0.625, 0.875], [0, 0.25, 0.75, 1], [0, 1 / 3, 2 / 3, 1]))
     assert_allclose(figure.axes[1].images[0].get_array(), 8 / 3)
+    # Of walls nobody knows the scale; under a mean gradient only differences count.
+    assert [axes.get_ylabel() for axes in figure.axes[2:]] == ["temperature, K or C", "size of the flux, W/m2"]
+    cell = Scene(BOX.size, Material(1.0), gradient=(1.0, 0.0, 0.0))
+    assert exact.solve(cell, points_per_axis=3).plot(pixels=3).axes[2].get_ylabel() == "temperature, K"
     assert field.plot(axis=0, at=0.1, pixels=4).axes[0].get_xlabel() == "y, m"
     for wrong in ({"axis": 3}, {"at": 5.0}, {"at": "a"}, {"pixels": 0}):
         with pytest.raises(ValueError, match="must be"):

@@ -300,7 +300,7 @@ def test_what_is_written_is_read_back(tmp_path):
 @pytest.mark.parametrize(
     "old, new, words",
     [
-        ("x.tif", "y.tif", ":3: image.file = 'y.tif': there is no such file; did you mean 'x.tif'?"),
+        ("x.tif", "x.tiff", ":3: image.file = 'x.tiff': there is no such file; did you mean 'x.tif'?"),
         ("[materials.200]", "[materials.pore]", ":9: materials.pore: must be a label of the image, a whole number"),
         ("[materials.200]", "[materials.201]", ":3: image.file = 'x.tif': materials: none for labels 200"),
         ("gradient", "size_mm = [1, 1, 1]\ngradient", ":1: size_mm: with an image, which has it itself"),

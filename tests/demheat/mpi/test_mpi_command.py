@@ -8,18 +8,35 @@ import sys
 import pytest
 from blocks import DOCS, blocks
 
-from demheat import files, gallery, solve
+from demheat import Material, Scene, Sphere, files, gallery, solve
 from demheat.mpi.__main__ import main
+from references import fem, fft
 from studies.scaling import ranks
 
 PAGE = (DOCS / "mpi.md").read_text(encoding="utf-8")
-PARTICLES = 4000
+# In place of what the page has, so that it does not take long; and what one process finds then.
+SMALL = {"particles": 4000, "voxels": 21, "size": 0.025}
+ALONE = {
+    "dem": lambda scene, tolerance: solve(scene, particles=SMALL["particles"], tolerance=tolerance),
+    "fft": lambda scene, tolerance: fft.solve(scene, voxels=SMALL["voxels"], rule="laminate", tolerance=tolerance),
+    "fem": lambda scene, tolerance: fem.solve(scene, size=SMALL["size"], tolerance=tolerance),
+}
+# Modules that methods need besides those of the DEM.
+NEEDED = {"dem": (), "fft": ("mpi4py_fft",), "fem": ("gmsh", "skfem")}
+SPHERE = [Sphere((0.4, 0.1, 0.6), 0.35, Material(0.2))]
+CELL = Scene((1.0, 1.3, 0.9), Material(2.0), SPHERE, gradient=(0.0, 0.0, 1.0))
 
 
-def ran(command, folder):
+def method_of(command):
+    return (re.search(r"--method (\w+)", command) or ["", "dem"])[1]
+
+
+def ran(command, folder, needed=()):
     """Run a command of the page by the Python that has MPI and PETSc, this one or another."""
     if ranks.missing():
         pytest.skip(ranks.missing())
+    if not ranks.finds(ranks.python(), *needed):
+        pytest.skip(f"the Python with MPI needs {' and '.join(needed)}")
     words = shlex.split(command.replace(" python ", f" {ranks.python()} ", 1))
     return subprocess.run(words, cwd=folder, capture_output=True, text=True, env=ranks.environment())
 
@@ -43,11 +60,24 @@ def test_an_unknown_option_is_one_line(capsys):
     assert capsys.readouterr().err.count("\n") == 1
 
 
+def small(text):
+    for name, value in SMALL.items():
+        text = re.sub(rf"\b{name}([ =])[\d._]+", rf"{name}\g<1>{value}", text)
+    return text
+
+
+def conductivity(done):
+    assert done.returncode == 0, done.stderr
+    assert re.search(r"\d+ bytes an unknown", done.stdout)
+    return float(re.search(r"conductivity +(\S+)", done.stdout)[1])
+
+
 COMMANDS = [line for line in PAGE.splitlines() if line.startswith("mpiexec ")]
 
 
 def test_the_page_has_commands():
-    assert len(COMMANDS) >= 3 and any("--petsc=" in command for command in COMMANDS)
+    assert any("--petsc=" in command for command in COMMANDS)
+    assert {method_of(command) for command in COMMANDS} == set(ALONE)
 
 
 # Some seconds each, most of it for two Pythons to begin.
@@ -56,32 +86,67 @@ SLOW = [pytest.param(each, marks=pytest.mark.slow) for each in COMMANDS[1:]]
 
 @pytest.mark.parametrize("command", [*COMMANDS[:1], *SLOW])
 def test_the_commands_of_the_page_give_what_one_process_gives(command, folder):
-    scene = files.read(folder / "scene.toml")
-    done = ran(re.sub(r"--particles \d+", f"--particles {PARTICLES}", command) + " --tolerance 1e-11", folder)
-    assert done.returncode == 0, done.stderr
-    found = float(re.search(r"conductivity +(\S+)", done.stdout)[1])
+    method = method_of(command)
+    done = ran(small(command) + " --tolerance 1e-11", folder, NEEDED[method])
+    alone = ALONE[method](files.read(folder / "scene.toml"), 1e-11)
     # Rounding, and what is left of either's residual.
-    assert found == pytest.approx(solve(scene, particles=PARTICLES, tolerance=1e-11).conductivity, rel=1e-9)
-    assert re.search(r"\d+ bytes an unknown", done.stdout)
+    assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
+    if method == "fft":
+        # Only they show what preconditions; rounding may make one more.
+        assert abs(int(re.search(r"(\d+) iterations", done.stdout)[1]) - alone.stats["iterations"]) <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["fem", "fft"])
+def test_periodic_cells_give_what_one_process_gives(method, tmp_path):
+    files.write(CELL, tmp_path / "cell.toml")
+    words = {"fft": "--method fft --voxels 21", "fem": "--method fem --size 0.3"}[method]
+    words += " --tolerance 1e-11 --at 0.31 0.77 0.2"
+    done = ran(f"mpiexec -n 2 python -m demheat.mpi cell.toml {words}", tmp_path, NEEDED[method])
+    knobs = {"fft": {"voxels": 21, "rule": "laminate"}, "fem": {"size": 0.3}}[method]
+    alone = {"fft": fft, "fem": fem}[method].solve(files.read(tmp_path / "cell.toml"), tolerance=1e-11, **knobs)
+    assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
+    if method == "fft":
+        # Only they show what preconditions; rounding may make one more.
+        assert abs(int(re.search(r"(\d+) iterations", done.stdout)[1]) - alone.stats["iterations"]) <= 1
+    # Printed with nine digits.
+    temperature = float(re.search(r"temperature +(\S+)", done.stdout)[1])
+    assert temperature == pytest.approx(alone.temperature_at((0.31, 0.77, 0.2)), rel=1e-8)
 
 
 @pytest.mark.slow
 def test_the_block_of_python_on_the_page(folder):
     """Run as a script on two ranks, smaller."""
     (block,) = (each for each in blocks("mpi.md") if each.kind == "python")
-    (folder / "script.py").write_text(block.text.replace("1_000_000", str(PARTICLES)))
-    done = ran("mpiexec -n 2 python script.py", folder)
+    (folder / "script.py").write_text(small(block.text))
+    done = ran("mpiexec -n 2 python script.py", folder, NEEDED["fft"] + NEEDED["fem"])
     assert done.returncode == 0, done.stderr
     # Lines of two ranks may be mixed up.
-    unknowns = solve(files.read(folder / "scene.toml"), particles=PARTICLES).stats["unknowns"]
+    scene = files.read(folder / "scene.toml")
+    unknowns = solve(scene, particles=SMALL["particles"]).stats["unknowns"]
     assert done.stdout.count(f" {unknowns}") == done.stdout.count("'y-': -42.6") == 2
+    printed = [float(each) for each in re.findall(r"\b\d\d\.\d{6,}", done.stdout)]
+    for method in ("fft", "fem"):
+        # The tolerances of both methods' residuals are 1e-6 and smaller.
+        found = ALONE[method](scene, 1e-9).conductivity
+        assert sum(each == pytest.approx(found, rel=1e-6) for each in printed) == 2
+
+
+REFUSED = [
+    ("--particles 200", 2, "slabs of 200 particles"),
+    ("--particles 1000000000000", 2, "GiB of memory or more"),
+    ("--voxels 8", 2, "--voxels: no option of method dem"),
+    ("--method fftt", 2, "--method fftt: no such method; did you mean 'fft'"),
+    ("--method multipole", 1, "--method multipole: not on ranks, as are dem, fem, fft"),
+    ("--method fft-links", 1, "rule 'links': fft on ranks solves"),
+    ("--method fft --voxels 1290", 2, "GiB of memory or more"),
+]
 
 
 @pytest.mark.parametrize(
-    ("words", "status", "told"),
-    [("--particles 200", 2, "slabs of 200 particles"), ("--particles 1000000000000", 2, "GiB of memory or more")],
+    ("words", "status", "told"), REFUSED[:2] + [pytest.param(*each, marks=pytest.mark.slow) for each in REFUSED[2:]]
 )
 def test_what_cannot_be_done_is_refused_in_one_line(folder, words, status, told):
-    done = ran(f"mpiexec -n 2 python -m demheat.mpi scene.toml {words}", folder)
+    done = ran(f"mpiexec -n 2 python -m demheat.mpi scene.toml {words}", folder, NEEDED.get(method_of(words), ()))
     lines = [line for line in done.stderr.splitlines() if line.startswith("demheat: ")]
     assert done.returncode == status and len(lines) == 1 and told in lines[0]

@@ -167,6 +167,26 @@ def test_surface_links_make_up_for_what_the_layer_at_the_wall_lacks(between_wall
     assert walls > 0.02 * links  # without wall links this test would fail by 4 % and more
 
 
+def test_surface_links_make_up_for_what_the_layer_in_a_sphere_lacks():
+    """The same for T = r: the heat through concentric spheres of the bulk over their area, brute force."""
+    packing = relax(5000, periodic=False, domain="sphere", seed=1)
+    facets = contact_facets(packing, Calibrated(wall="surface"))
+    network = connect(packing, facets, np.zeros(packing.number, int), np.ones(1))
+    r = np.linalg.norm(packing.centers - 0.5, axis=1)
+    rows, layer = row_numbers(facets.indptr), 6 * packing.radii.mean()
+    low, high = np.minimum(r[rows], r[facets.indices]), np.maximum(r[rows], r[facets.indices])
+    begin, end = min(layer, (0.5 - layer) / 2), 0.5 - layer
+    shells = np.linspace(begin, end, 2001)
+    flow = 0.5 * network.conductance * (high - low)
+    crossing = [flow[(low < s) & (high > s)].sum() for s in shells]
+    bulk = np.trapezoid(crossing, shells) / (4 / 3 * np.pi * (end**3 - begin**3))
+    links = flow @ np.maximum(high - np.maximum(low, begin), 0.0)
+    walls = network.wall_conductance @ (0.5 - r[facets.wall_particle]) ** 2
+    # Averaged over 2001 shells: the sampling error is about 1e-4.
+    assert_allclose(links + walls, bulk * 4 / 3 * np.pi * (0.5**3 - begin**3), rtol=1e-3)
+    assert walls > 0.05 * links
+
+
 def test_center_links_hold_the_centres(between_walls):
     facets = contact_facets(between_walls, Calibrated(wall="center"))
     assert_allclose(facets.wall_distance, 1e-4 * between_walls.radii[facets.wall_particle], rtol=1e-14)
@@ -188,6 +208,8 @@ def test_bad_choices(packing, change, words):
 def test_surface_links_need_bulk_and_hard_walls(packing, between_walls):
     with pytest.raises(ValueError, match="no bulk 6 mean radii"):
         contact_facets(relax(300, periodic=(True, False, True), phi=0.5, seed=0), Calibrated(wall="surface"))
+    with pytest.raises(ValueError, match="no bulk 6 mean radii"):
+        contact_facets(relax(300, periodic=False, domain="sphere", seed=0), Calibrated(wall="surface"))
     # A periodic packing merely declared walled: nobody touches its walls as a rule.
     hollow = between_walls._replace(centers=between_walls.centers * [1, 0.8, 1] + [0, 0.1, 0])
     with pytest.raises(ValueError, match="hard walls"):

@@ -243,3 +243,8 @@ def test_without_any_home_packings_are_made_and_a_line_says_so(monkeypatch):
         packing = cached(Maker(), {})
     same(packing, Maker()())
     assert not packing.provenance["cached"]
+
+
+def test_whether_few_are_allowed_makes_no_other_packing(tmp_path):
+    relaxed(200, seed=1, folder=tmp_path)
+    assert relaxed(200, seed=1, allow_few=True, folder=tmp_path).provenance["cached"]

@@ -65,7 +65,7 @@ def test_between_walls_it_must_run_straight():
         field = exact.solve(stack(materials=straight, walls={axis + "-": 1.0, axis + "+": 3.0}))
         assert_allclose(field.conductivity, expected, rtol=1e-13)
         assert_allclose(sum(field.wall_heat.values()), 0.0, atol=1e-13)
-    with pytest.raises(NotImplementedError, match="layers of tensors, between walls where these bend no flux"):
+    with pytest.raises(NotImplementedError, match="no closed form for .* under walls"):
         exact.solve(stack(walls={"y-": 1.0, "y+": 3.0}))
     # Turned about the load alone: all still runs along it, and every wall is as warm as it should be.
     about = np.stack([orthotropic(1, 2, 3, rotation=(0, 1, 0)), np.diag([0.5, 4.0, 1.0]), TENSORS[2]])

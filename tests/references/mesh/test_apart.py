@@ -67,6 +67,14 @@ def test_a_crash_is_an_error():
         call(os._exit, 3)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="limits of addresses")
+def test_what_runs_away_is_stopped():
+    # 8 GiB where 4 are allowed: not the machine's memory is at an end, but the process's.
+    with pytest.raises(MemoryError) as caught:
+        run_apart(np.empty, 2**30, seconds=1.0, done=lambda share: None, memory=2**32)
+    assert "larger size" not in str(caught.value)
+
+
 def test_many_elements_are_made_apart_and_are_the_same(monkeypatch):
     here = mesh.make(ball(), size=0.2)
     monkeypatch.setattr(gmsh_session, "APART_FROM", 0)

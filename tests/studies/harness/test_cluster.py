@@ -14,7 +14,7 @@ from studies.harness import runner
 from studies.harness.cluster import spread_over
 
 # What differs between two runs of the same row: seconds, memory, load, the hour.
-MEASURED = {"wall_s", "cpu_s", "peak_mib", "base_mib", "when", "load", "beside", "triad_gbs"}
+MEASURED = {"wall_s", "cpu_s", "peak_mib", "base_mib", "when", "load", "beside", "noise", "triad_gbs"}
 needs_dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="Dask is not installed")
 
 
@@ -62,13 +62,20 @@ def test_killed_workers_lose_no_row(tiny):
 def test_a_worker_with_other_code_is_refused(tiny, monkeypatch):
     """Its rows would be made for nothing: none of them holds here."""
 
-    class Client:
-        def run(self, function, *args):
-            return {"tcp://other": {"code": "another", "versions": "those"}}
+    found = {"tcp://dying": OSError("closed"), "tcp://other": {"code": "another", "versions": "those"}}
 
-    with pytest.raises(ValueError, match="worker tcp://other has code another, versions those: must be as here"):
-        runner.run_study(tiny.name, tiny.out, say=lambda line: None, spread=spread_over(Client()))
-    assert tiny.rows() == {}
+    class Client:
+        def run(self, function, *args, on_error):
+            return found
+
+    def refused(words):
+        with pytest.raises(ValueError, match=words):
+            runner.run_study(tiny.name, tiny.out, say=lambda line: None, spread=spread_over(Client()))
+        assert tiny.rows() == {}
+
+    refused("worker tcp://other has code another, versions those: must be as here")
+    found["tcp://other"] = ModuleNotFoundError("studies")
+    refused(f"a worker cannot make rows of '{tiny.name}': ModuleNotFoundError: studies")
 
 
 @needs_dask

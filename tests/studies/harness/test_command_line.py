@@ -27,7 +27,7 @@ def test_run_writes_rows_page_and_figure(tiny, capsys):
     assert (tiny.out / f"{tiny.name}.png").read_bytes().startswith(b"\x89PNG")
     printed = capsys.readouterr().out
     assert page in printed and f"{tiny.name}.png" in printed and "[2/2]" in printed
-    assert sorted(p.name for p in tiny.out.iterdir()) == [f"{tiny.name}.{end}" for end in ("csv", "md", "png")]
+    assert sorted(p.name for p in tiny.out.iterdir()) == [f"{tiny.name}.{end}" for end in ("csv", "md", "png", "svg")]
 
 
 def test_row_prints_one_row_and_finds_it_by_number_or_key(tiny, capsys):
@@ -84,7 +84,7 @@ def test_ctrl_c_ends_a_run_with_a_line_and_no_process_left(tiny, tmp_path):
         **{'_log("run " + name)': '_log(f"run {name} {os.getpid()}")'},
     )
     run = subprocess.Popen(
-        [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out)],
+        [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out), "--wait", "0"],
         stderr=subprocess.PIPE,
         env=os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(tmp_path)])},
         text=True,

@@ -72,7 +72,6 @@ def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
     monkeypatch.setattr(provenance, "ROOT", tmp_path)
     monkeypatch.setattr(provenance, "PACKAGES", (home.name,))
     monkeypatch.setattr(declared, "HOMES", (home.name,))
-    monkeypatch.setattr(runner, "triad_gbs", lambda: 12.5)
     solve, helper = "def solve(x):\n    return square(x)\n", "def square(x):\n    return x * x\n"
 
     def rows(**files):
@@ -129,7 +128,7 @@ def test_a_refusal_fails_no_claim(tiny):
 
 def test_a_killed_run_resumes(tiny):
     tiny.write(", ".join(f'{{"name": "slow", "x": {k}.0}}' for k in range(3, 7)))
-    words = [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out)]
+    words = [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out), "--wait", "0"]
     process = subprocess.Popen(words, stdout=subprocess.PIPE, text=True, env={**os.environ, "COLUMNS": "80"})
     for line in process.stdout:
         if line.startswith("[3/"):
@@ -308,6 +307,6 @@ def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):
         assert tiny.run() == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and "No space left on device; the rows are in " in said
-    assert tiny.rows() == before and len(list(tiny.out.iterdir())) == 3
+    assert tiny.rows() == before and len(list(tiny.out.iterdir())) == 4
     assert list(store.read_rows(said.rpartition(" ")[2].strip())) == ["name=plain,x=1.5", "name=second,x=2.0"]
     assert tiny.run() == 0 and len(tiny.rows()) == 2

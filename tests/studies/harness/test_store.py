@@ -82,3 +82,10 @@ def test_rows_that_cannot_be_written_are_kept_elsewhere(tmp_path, monkeypatch):
         store.add_rows(tmp_path / "out" / "rows.csv", {"a": {"case": "a", "x": 1}}, ["a"])
     kept = str(raised.value).rpartition(" ")[2]
     assert store.read_rows(kept) == {"a": {"case": "a", "x": "1"}}
+
+
+def test_a_picture_is_one_cell(tmp_path):
+    """200 x 200 numbers, more letters than the csv module reads by default."""
+    text = " ".join(["12.345"] * 40_000)
+    store.write_rows(tmp_path / "rows.csv", [{"case": "a", "picture": text}])
+    assert store.read_rows(tmp_path / "rows.csv")["a"]["picture"] == text

@@ -31,7 +31,9 @@ def test_who_is_ahead_at_an_error():
     mine = [("fem", "body", "half 10", 0.1, 2, 1.0, 0.05, 2.0), ("fem", "body", "half 10", 0.2, 2, 1.0, 0.5, 0.1)]
     other = [("ngsolve", "body", "half 10", 0.1, 3, 1.0, 0.09, 1.0)]
     parts = [("petsc", "network", "half 10", 0.1, 1, 1.0, 0.0, 0.001)]
-    assert means.ahead(rows(*mine, *other, *parts)) == {"half 10": 0.5}
+    # The DEM's packing is there already.
+    kept = [("dem", "body", "half 10", None, None, 1.0, 0.01, 0.01)]
+    assert means.ahead(rows(*mine, *other, *parts, *kept)) == {"half 10": 0.5}
     assert means.ahead(rows(*mine, ("ngsolve", "body", "half 10", 0.1, 3, 1.0, 0.2, 1.0))) == {"half 10": float("inf")}
 
 
@@ -58,3 +60,17 @@ def test_ways_of_one_program_are_told_apart():
     )
     lines = tables.lines(found)
     assert lines["program"].tolist() == ["PuMA, fv", "PuMA, fe"] and lines["pore"].tolist() == [1.0, 2.0]
+
+
+def test_abilities_are_the_best_of_each_body_and_the_worst_of_bodies():
+    found = pd.DataFrame(
+        [
+            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": -3.0},
+            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": 1.0},
+            {"name": "fem", "given": "body", "scene": "layers along", "status": "ok", "error_percent": -2.0},
+            {"name": "fem", "given": "body", "scene": "pore", "status": "unsupported", "error_percent": None},
+            {"name": "fem", "given": "body", "scene": "coated", "status": "failed", "error_percent": None},
+        ]
+    )
+    (line,) = tables.abilities(found).to_dict("records")
+    assert (line["layers on the grid"], line["pore"], line["coat"], line["sphere"]) == ("2", "refused", "", "")

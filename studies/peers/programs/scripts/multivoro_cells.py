@@ -1,28 +1,19 @@
 """Radical cells by Voro++ (multivoro), in the Python that has it: given.npz and JSON in, cells.npz and JSON out."""
 
 import json
-import resource
 import sys
-import time
 
 import numpy as np
 from multivoro import compute_voronoi
-
-
-def spent():
-    """CPU seconds of this process."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime
-
+from spent import Spent
 
 folder = json.load(sys.stdin)["folder"]
 given = np.load(f"{folder}/given.npz")
-cpu, wall = spent(), time.perf_counter()
+clock = Spent()
 cells = compute_voronoi(
     given["centers"], limits=given["limits"], radii=given["radii"], periodic_boundaries=(False, False, False)
 )
-cost = {"cpu_s": spent() - cpu, "wall_s": time.perf_counter() - wall}
-cost["peak_mib"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+cost = clock.so_far()
 owners, neighbours, lengths, corners, points, before = [], [], [], [], [], 0
 for number, cell in enumerate(cells):
     vertices = [] if cell is None else np.reshape(cell.get_vertices(), (-1, 3))

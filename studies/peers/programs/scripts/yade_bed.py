@@ -2,13 +2,16 @@
 
 # ruff: noqa: F403, F405, B905 (as scripts of Yade do: O, Vector3 and the engines; Python of the system)
 import json
-import resource
-import time
+import sys
 
 from yade import *
 
 with open("bed.json") as stream:
     given = json.load(stream)
+# Where this file lies: Yade runs it from its own.
+sys.path.insert(0, given["scripts"])
+from spent import Spent
+
 wide = 2 * max(given["radii"])
 O.materials.append(FrictMat(young=1e6, poisson=0.3, frictionAngle=0, density=given["density"], label="grains"))
 low, high = Vector3(-wide, -wide, -wide), Vector3(*[side + wide for side in given["size"]])
@@ -52,16 +55,9 @@ for state, solid, held in zip(states, given["solid"], given["held"]):
         state.Tcondition, state.temp, state.boundaryId = True, held, 0 if held else 1
 
 
-def spent():
-    """CPU seconds of this process."""
-    used = resource.getrusage(resource.RUSAGE_SELF)
-    return used.ru_utime + used.ru_stime
-
-
-cpu, wall = spent(), time.perf_counter()
+clock = Spent()
 O.run(given["count"], True)
-cost = {"cpu_s": spent() - cpu, "wall_s": time.perf_counter() - wall}
-cost["peak_mib"] = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
+cost = clock.so_far()
 with open("found.json", "w") as stream:
     heat = [-float(thermal.thermalBndFlux[0]), float(thermal.thermalBndFlux[1])]
     json.dump({"cost": cost, "heat": heat, "warmth": [float(state.temp) for state in states]}, stream)

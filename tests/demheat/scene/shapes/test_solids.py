@@ -151,6 +151,24 @@ def test_a_level_set_is_exact_inside_and_nearly_so_elsewhere():
     assert RING.contains(RING.point_in((1, 1, 1), periodic=False)[None])[0]
 
 
+def test_a_level_set_is_checked_once():
+    asked = []
+
+    def counted(points):
+        asked.append(len(points))
+        return ball(points)
+
+    sphere = LevelSet(counted, LIMITS, OTHER)
+    made = sum(asked)
+    moved = sphere.placed((0.2, 0.5, 0.5)).turned((1, 0, 2))
+    # What was kept of the first is not its own.
+    assert sum(asked) == made and moved.center == pytest.approx((0.5, 0.2, 0.5))
+    assert moved.contains(np.array([[0.5, 0.2, 0.5], [0.2, 0.5, 0.5]])).tolist() == [True, False]
+    assert_allclose(moved.volume, sphere.volume, rtol=1e-12)
+    with pytest.raises(ValueError, match="LevelSet.limits = .*must be three finite numbers"):
+        sphere.placed((0.2, np.nan, 0.5))
+
+
 @pytest.mark.parametrize(
     ("make", "words"),
     [

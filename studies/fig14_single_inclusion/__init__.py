@@ -3,15 +3,20 @@
 The scene of Fig. 14 of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799): a cube of edge L
 with a centred sphere of radius L/3 ("third"), two isothermal and four insulated faces; and the same with a sphere that
 fills half of the cube and comes within 0.0076 L of its faces ("half"). Errors are relative to the exact value, that of
-the simple cubic array by Rayleigh's multipoles.
+the simple cubic array by Rayleigh's multipoles; the paper's own are against Maxwell's formula and its FEM.
+
+The paper's network is here twice: "DEM as in the paper" is what `solve` takes for it, relaxed packings, temperatures at
+centres, C_t between isothermal walls, at the other methods' numbers of particles; the table of variants has all
+packings, walls and calibrations, at the paper's number (`studies/common/paper_network.py` says what they are).
 """
 
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
+from studies.common import paper_network
+from studies.common.paper_network import NAME, unscaled
+from studies.common.paper_variants import best_variant, parted, variant_errors, variants, worst_error
 from studies.harness import methods
-from studies.harness.figures import GREY, LOOK, look
-from studies.harness.methods import resolution
-from studies.harness.pick import extrapolated, finest, mean_errors, pick, present, with_size, worst
+from studies.harness.pick import extrapolated, pick, present, worst
 from studies.harness.store import printed
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
@@ -26,6 +31,8 @@ BESIDE = (*DEM_BESIDE, "fem-straight", "fem-p1", "fft-plain", "fft-em-plain")
 PARTICLES, SIZES, VOXELS = (20_000, 100_000), (0.06, 0.04), (64, 128)
 RESOLUTIONS = {"particles": PARTICLES, "size": SIZES, "voxels": VOXELS, "fem-p1": (0.05, 0.02)}
 COARSE, SEEDS = 10_000, (0, 1, 2)
+# Of the paper's network: few, and as many as the paper has.
+NETWORKS = (10_000, 150_000)
 
 PAPER = printed("fig14_single_inclusion")
 # Rayleigh's method, McPhedran and McKenzie (1978): every digit is certain.
@@ -52,13 +59,18 @@ def _cases():
     for name in ("maxwell", "exact"):
         yield from (methods.case(name, scene="third", contrast=contrast) for contrast in CURVE)
         yield methods.case(name, scene="half", contrast=10.0)
+    yield from paper_network.cases(NETWORKS)
 
 
 CASES = list(_cases())
+# Contrasts of the paper's figure, as columns of the network's rows end.
+WORDS = tuple(f"{contrast:g}" for contrast in CONTRASTS)
 
 
 def QUICK(case):
     """Coarse rows, one packing; what stands beside the main methods at contrast 10 only."""
+    if case["name"] == NAME:
+        return (case["packing"], case["particles"], case["seed"]) == ("relaxed", NETWORKS[0], 0)
     method = methods.found()[case["name"]]
     if not methods.at(method, methods.spent(method, RESOLUTIONS)[0]).items() <= case.items():
         return False
@@ -66,31 +78,60 @@ def QUICK(case):
     return (main and "periodic" not in case) or (case["scene"], case["contrast"]) == ("third", 10.0)
 
 
-def run(name, scene, contrast, periodic=False, **solver):
-    """Solve and compare with the exact value."""
+def run(name, scene=None, contrast=None, periodic=False, *, method, **solver):
+    """Solve and compare with the exact value; of the paper's network, all scenes by one packing."""
+    if name == NAME:
+        return _network(**solver)
     fraction = FRACTIONS[scene]
     cube = sphere_in_cube(contrast, fraction=fraction, periodic=periodic)
-    return methods.solve_row(cube, methods.exact_ratio(fraction, contrast), **solver)
+    return methods.solve_row(cube, methods.exact_ratio(fraction, contrast), method=method, **solver)
 
 
-def warm_up(name, scene, contrast, periodic=False, **solver):
-    """Load the solver."""
-    methods.warm_up(**solver)
+def _network(packing, held, particles, seed):
+    scenes = {
+        label(*where): sphere_in_cube(where[1], fraction=FRACTIONS[where[0]], periodic=held == "periodic")
+        for where in SCENES
+    }
+    made = paper_network.packed((EDGE,) * 3, packing, held, particles, seed)
+    fields, row = paper_network.solved(scenes, made, held)
+    return row | {f"k_{where}": unscaled(field, methods.MATRIX) for where, field in fields.items()}
+
+
+def label(scene, contrast):
+    """Scene in a word, as columns of the network's rows end.
+
+    Parameters
+    ----------
+    scene : {"third", "half"}
+    contrast : float
+    """
+    return f"{contrast:g}" if scene == "third" else scene
+
+
+def warm_up(name, scene=None, contrast=None, periodic=False, *, method, **solver):
+    """Load the solver; make and keep the network's packing, which is not part of what is compared."""
+    if name == NAME:
+        paper_network.packed((EDGE,) * 3, **solver)
+        paper_network.warm_up(solver["held"])
+    else:
+        methods.warm_up(method, **solver)
 
 
 def claims(df):
-    """Every method against the exact value at every contrast; the DEM beside the paper's network.
+    """Every method against the exact value at every contrast; the DEM beside the paper's network at its best.
 
-    Full rows of the default DEM are held to 0.06 % and to a tenth of the error that the paper prints, of quadratic
-    elements to 0.005 %, of laminate voxels to 0.15 %; quick rows have twice the error found or more.
+    Limits of errors are two to three times what was found, as other compilers and meshers change that; the ratios to
+    the paper's network and to its printed error say that ours is ten times smaller, not how much more it is. The
+    paper's own error is judged as the paper has it: against Maxwell's formula, by the best of all variants.
     """
-    yield from present([*_dem_claims(df), *_fem_claims(df), *_fft_claims(df), *_exact_claims(df)])
+    network, df = parted(df)
+    claimed = [*_dem_claims(df), *_network_claims(network, df), *_fem_claims(df), *_fft_claims(df), *_exact_claims(df)]
+    yield from present(claimed)
 
 
 def _dem_claims(df):
     third, half = df[df["scene"] == "third"], df[df["scene"] == "half"]
-    # Quick: twice the error found with one packing, which scatters by as much as the mean.
-    for particles, limit, harder in ((PARTICLES[0], 0.4, 1.0), (PARTICLES[1], 0.06, 0.5)):
+    for particles, limit, harder in ((PARTICLES[0], 0.07, 0.2), (PARTICLES[1], 0.015, 0.06)):
         text = f"DEM default, {particles} particles, mean of its packings: worst error of any contrast, %"
         yield text, worst(third, name="dem", particles=particles), limit
         yield text.replace("of any contrast", "at f = 0.5"), worst(half, name="dem", particles=particles), harder
@@ -100,25 +141,52 @@ def _dem_claims(df):
     if mine is not None and theirs is not None:
         yield "DEM default: worst error over that of the paper's network, same packings", mine / theirs, 0.1
         yield "DEM default: worst error over the one that the paper prints", mine / PAPER["worst_error"], 0.1
+    # A hundred times what the solver leaves of the residual.
     balance = df[df["method"] == "dem"]["heat_imbalance"].max(skipna=False)
     yield "DEM: heat in minus heat out, relative to the heat that passes", balance, 1e-6
 
 
+def _network_claims(network, df):
+    """The printed error in the paper's own measure, and ours beside its best network; full rows of all variants."""
+    made = variant_errors(pick(network, particles=NETWORKS[-1]), exact_of(df))
+    if len(made) < len(variants()):
+        return
+    first = best_variant(made, WORDS)
+    mine = worst(df[df["scene"] == "third"], name="dem", particles=PARTICLES[1])
+    if mine is not None:
+        text = f"DEM default, {PARTICLES[1]} particles: worst error over that of the paper's network's best variant"
+        yield f"{text}, {NETWORKS[-1]} particles", mine / worst_error(made[first], WORDS), 0.1
+    off = variant_errors(network, exact_of(df, "maxwell"))
+    least = worst_error(off[best_variant(off, WORDS)], WORDS)
+    text = f"The paper's network, {NETWORKS[-1]} particles, the best of all variants: worst difference from Maxwell, %"
+    yield f"{text} (the paper prints {PAPER['worst_error']:g})", least, PAPER["worst_error"]
+
+
+def exact_of(df, name="exact"):
+    """k over the matrix's by a method without resolution, by the labels of the network's scenes.
+
+    Parameters
+    ----------
+    df : data frame
+    name : {"exact", "maxwell"}
+    """
+    found = {label(*where): pick(df, name=name, scene=where[0], contrast=where[1])["k_ratio"] for where in SCENES}
+    return {where: float(values.iloc[0]) for where, values in found.items() if len(values)}
+
+
 def _fem_claims(df):
     third, half = df[df["scene"] == "third"], df[df["scene"] == "half"]
-    for size, limit, harder in zip(SIZES, (0.05, 0.005), (0.1, 0.02), strict=True):
+    for size, limit, harder in zip(SIZES, (0.03, 0.005), (0.025, 0.0075), strict=True):
         here = {"name": "fem", "size": size * EDGE}
         text = f"FEM, P2 on curved elements of {size:g} L: worst error of any contrast, %"
         yield text, worst(third, **here), limit
         yield text.replace("of any contrast", "at f = 0.5"), worst(half, **here), harder
-    most = pick(third, name="fem")["unknowns"].max(skipna=False)
-    yield "FEM, P2 on curved elements: unknowns", most, 1.6e5
 
 
 def _fft_claims(df):
     third, half = df[df["scene"] == "third"], df[df["scene"] == "half"]
     # Laminate voxels converge at first order at best: a quick run has twice the error.
-    for voxels, factor in ((VOXELS[0], 2.5), (VOXELS[1], 1.0)):
+    for voxels, factor in ((VOXELS[0], 2.0), (VOXELS[1], 1.0)):
         for name, scheme, limit in (("fft", "scalar CG", 0.15), ("fft-em", "Eyre-Milton", 0.1)):
             here = {"name": name, "voxels": voxels, "periodic": None}
             text = f"FFT {scheme}, {voxels}^3 laminate voxels: worst error of any contrast, %"
@@ -127,7 +195,8 @@ def _fft_claims(df):
             yield at_ten, worst(pick(third, contrast=10.0), **here), factor * 0.02
             yield text.replace("of any contrast", "at f = 0.5"), worst(half, **here), factor * 0.1
     text = "FFT: isothermal and insulated faces against the periodic cell, relative difference of the conductivity"
-    yield text, _periodic_difference(df), 1e-6
+    # One equation in two forms, which the solver leaves to its tolerance.
+    yield text, _periodic_difference(df), 1e-9
 
 
 def _periodic_difference(df):
@@ -141,29 +210,17 @@ def _exact_claims(df):
     known = [(pick(df, name="exact", scene=s, contrast=c)["k_ratio"], value) for (s, c), value in RAYLEIGH.items()]
     off = [referee.value_error(found, value, scale=1.0).abs().max() for found, value in known]
     yield "Lattice: worst difference from the printed values of Rayleigh's method", max(off), 5e-10
-    bad = abs(pick(df, name="maxwell", scene="half")["error_percent"]).max()
-    yield "Maxwell is far off at f = 0.5, so that scene tells methods apart: its error, %", bad, ">= 10"
 
 
 def table(df):
     """Error in per cent of the first scene at contrasts 0.01 to 100 and of the second, mean of packings.
 
-    Costs at contrast 10, a packing from the cache; `packing_s` is the wall time of making one, where this run made it.
+    `packings` says of how many. Costs at contrast 10, a packing from the cache; `packing_s` is the wall time of making
+    one, where this run made it.
     """
-    import pandas as pd
+    from studies.fig14_single_inclusion.tables import lines
 
-    shown = df[df["periodic"].isna() & df["contrast"].isin(CONTRASTS)]
-    rows = []
-    for (name, _), group in with_size(shown).groupby(["name", "h"], dropna=False, sort=False):
-        errors = mean_errors(group, scene="third")
-        row = {"method": LOOK[name][0], "resolution": resolution(group.iloc[0])}
-        row |= {f"{c:g}": float(errors.get(c, float("nan"))) for c in CONTRASTS}
-        row["f = 0.5"] = float(pick(group, scene="half")["error_percent"].mean())
-        cost = pick(group, scene="third", contrast=10.0)
-        row |= {column: float(cost[column].mean()) for column in ("unknowns", "iterations", "cpu_s", "peak_mib")}
-        made = group[group["packing_cached"].astype(str) == "False"]
-        rows.append(row | {"packing_s": float(made["packing_s"].mean())})
-    return pd.DataFrame(rows)
+    return lines(parted(df)[1])
 
 
 def headline(df):
@@ -173,41 +230,20 @@ def headline(df):
     ----------
     df : data frame
     """
-    shown = table(df).groupby("method", sort=False).tail(1).set_index("method")
-    named = [LOOK[name][0] for name in ("dem", "dem-plain", "dem-calibrated", "fem", "fft", "maxwell")]
-    columns = ["resolution", *(f"{contrast:g}" for contrast in CONTRASTS), "f = 0.5", "cpu_s"]
-    return shown.loc[[name for name in named if name in shown.index], columns].reset_index()
+    from studies.fig14_single_inclusion.tables import short
+
+    return short(df)
+
+
+def notes(df):
+    """The variants of the paper's network; what is a choice here, or a property of the scenes."""
+    from studies.fig14_single_inclusion.tables import told
+
+    return told(df)
 
 
 def plot(df):
-    """Conductivity over contrast with the exact curve, and the error of each method beside it."""
-    from matplotlib import pyplot
+    """Conductivity over contrast with the exact curve, errors of the methods, and of the paper's network's variants."""
+    from studies.fig14_single_inclusion.figure import draw
 
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8))
-    third = df[(df["scene"] == "third") & df["periodic"].isna()]
-    for name in LOOK:
-        rows = finest(third[third["name"] == name])
-        if not len(rows):
-            continue
-        mean = rows.groupby("contrast")[["k_ratio", "error_percent"]].mean()
-        only_line = name in ("exact", "maxwell")
-        style = {} if only_line else {"linestyle": "", "zorder": 5 if name == "dem" else 3}
-        left.plot(mean.index, mean["k_ratio"], **look(name, **style))
-        if name != "exact":
-            there = mean[mean.index != 1.0]
-            right.plot(there.index, abs(there["error_percent"]), **look(name))
-    _dress(figure, left, right, df)
-    return figure
-
-
-def _dress(figure, left, right, df):
-    worst_dem = worst(finest(pick(df, name="dem", scene="third")))
-    left.set(xscale="log", xlabel="conductivity of the sphere / matrix", ylabel="effective conductivity / matrix")
-    left.set_title("Fig. 14 of the paper: its network lies off the exact curve")
-    right.axhline(PAPER["worst_error"], color=GREY, linewidth=1, zorder=0)
-    place = {"fontsize": 8, "color": GREY, "ha": "center", "va": "center", "bbox": {"color": "white", "pad": 1}}
-    right.text(1.0, PAPER["worst_error"], "worst DEM error printed in the paper", **place)
-    right.set(xscale="log", yscale="log", xlabel="conductivity of the sphere / matrix", ylabel="|error|, %")
-    right.set_title(f"Conforming DEM: within {worst_dem:.2g} % of exact at every contrast")
-    handles, labels = right.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    return draw(df)

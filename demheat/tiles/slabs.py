@@ -1,4 +1,4 @@
-"""The body cut into slabs, one for each rank, each with a layer of its neighbours' particles."""
+"""The body cut into slabs, each with a layer of its neighbours' particles: one for each rank, or one by one."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Slabs(NamedTuple):
     length : float, m
         Of that side.
     ranks, rank : int
-        How many slabs, and which is ours.
+        How many slabs, and which is ours; where they are worked on one after the other, whose turn it is.
     periodic : bool
     unit : float, m
         Radius that equal spheres would have.
@@ -76,13 +76,20 @@ class Slabs(NamedTuple):
         return self.length * number / self.ranks
 
 
-def slabs_of(scene: Scene, particles: int, ranks: int, rank: int) -> Slabs:
+def most_slabs(slabs: Slabs) -> int:
+    """How many slabs there may be: thinner ones would see more than their neighbours."""
+    return int(slabs.length / (GHOSTS * slabs.unit))
+
+
+def slabs_of(scene: Scene, particles: int, ranks: int, rank: int, name: str = "ranks") -> Slabs:
     """Slabs of a scene's box.
 
     Parameters
     ----------
     scene : Scene
     particles, ranks, rank : int
+    name : str
+        What the user calls their number.
 
     Raises
     ------
@@ -92,10 +99,10 @@ def slabs_of(scene: Scene, particles: int, ranks: int, rank: int) -> Slabs:
     axis = int(np.argmax(scene.size))
     unit = float(np.cbrt(0.75 / np.pi * PHI * np.prod(scene.size) / particles))
     slabs = Slabs(axis, float(scene.size[axis]), int(ranks), int(rank), scene.periodic, unit)
-    most = int(slabs.length / (GHOSTS * unit))
+    most = most_slabs(slabs)
     if ranks > most:
         raise ValueError(
-            f"ranks = {ranks}: slabs of {particles} particles would be thinner than {GHOSTS:g} of their radii; must be "
-            f"at most {most}" + ("" if most else ", that is, no packing so small")
+            f"{name} = {ranks}: slabs of {particles} particles would be thinner than {GHOSTS:g} of their radii; "
+            f"must be at most {most}" + ("" if most else ", that is, no packing so small")
         )
     return slabs

@@ -1,0 +1,73 @@
+"""Cubes, cube roots and other powers whose last bit is the same on every processor.
+
+NumPy computes powers, roots, exponentials and logarithms of arrays, and of its own numbers, by other code where a
+processor has AVX-512, and rounds otherwise there: every other cube root differs in its last bit. Spheres that collide
+grow such a bit until they are other spheres. Here is what asks the C library instead, which looks at no such thing.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+
+def power(base, exponent) -> np.ndarray:
+    """Elements of `base` to those of `exponent`; the same bits as NumPy's own without AVX-512.
+
+    Parameters
+    ----------
+    base, exponent : float or array of float
+
+    Returns
+    -------
+    float array
+    """
+    # The one power of NumPy that has no other code for some processors: github.com/numpy/numpy/issues/25269.
+    return np.float_power(base, exponent)
+
+
+def cubed(values) -> np.ndarray:
+    """The third power of each value.
+
+    Parameters
+    ----------
+    values : float or array of float
+
+    Returns
+    -------
+    float array
+    """
+    return power(values, 3.0)
+
+
+def exponential(values) -> np.ndarray:
+    """The exponential of each value.
+
+    Parameters
+    ----------
+    values : (n,) float array
+
+    Returns
+    -------
+    (n,) float array
+    """
+    return np.array([math.exp(value) for value in values.tolist()])
+
+
+def cube_root(value: float) -> float:
+    """Cube root of a number.
+
+    Parameters
+    ----------
+    value : float
+
+    Returns
+    -------
+    float
+    """
+    try:
+        return math.cbrt(value)
+    except AttributeError:
+        # Python 3.10 has none: another last bit there, and so other spheres than by 3.11.
+        return math.copysign(math.pow(abs(value), 1 / 3), value)

@@ -1,0 +1,56 @@
+"""The homogeneous block of Haddad et al. (2021), sections 3 and on heat flux, and fields of contact networks in it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from demheat.build import network_of
+from demheat.conduction.steady import solve_steady
+from demheat.field import Samples
+from demheat.sampling.field_of import field_of
+from demheat.sampling.particle_flux import particle_flux
+from demheat.scene import Material, Scene
+
+LENGTH, CONDUCTIVITY, COLD, HOT = 0.1, 33.0, 25.0, 35.0
+
+
+def scene_of(walls, conductivity=CONDUCTIVITY):
+    """Block under a mean gradient of 100 K/m.
+
+    Parameters
+    ----------
+    walls : {"held", "periodic"}
+        Between two walls, or a periodic cell.
+    conductivity : float, W/(m K)
+
+    Returns
+    -------
+    Scene
+    """
+    gradient = (0.0, (HOT - COLD) / LENGTH, 0.0)
+    load = {"gradient": gradient} if walls == "periodic" else {"walls": {"y-": COLD, "y+": HOT}}
+    return Scene(size=(LENGTH,) * 3, matrix=Material(conductivity), **load)
+
+
+def contact_field(scene, packing, law, split):
+    """Field of a network of contacts whose samples have the particles' fluxes by one of the splits.
+
+    Parameters
+    ----------
+    scene : Scene
+    packing : Packing
+    law : Calibrated
+    split : str
+        As in `demheat.sampling.particle_flux.particle_flux`.
+
+    Returns
+    -------
+    Field
+        Its stats have the network's.
+    """
+    network = network_of(scene, packing, law)
+    solution = solve_steady(network, scene)
+    field = field_of(scene, network, solution, stats={})
+    flux = particle_flux(network, solution, split=split)
+    samples = Samples(network.centers, network.volumes, solution.temperature, network.phase, flux)
+    return replace(field, sampler=lambda: samples)

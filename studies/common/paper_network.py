@@ -1,0 +1,177 @@
+"""The paper's network in all the ways that its words allow: two packings, three kinds of walls, two calibrations.
+
+Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799) let hard spheres grow (LSA), put the temperatures of walls
+into the centres of the particles there and calibrate C_t under a flux. Here each of the three is taken in other ways,
+too: spheres may overlap and be pushed apart ("relaxed"); temperatures may act at the wall's own surface, or there are
+no walls at all ("periodic", where the scene has an equal that is); and C_t may be calibrated between two isothermal
+walls. In a periodic cell there is one calibration, under the mean gradient ("cell").
+
+All links scale with C_t, so that one solve serves both calibrations: the particles' steady temperatures do not depend
+on it, fluxes and the conductivity are in proportion. A row is one packing under one kind of walls: conductivities and
+fluxes in it are those with C_t = 1, and `ct_flux`, `ct_isothermal` or `ct_cell` are what they are to be multiplied by.
+Solved is with the last of these, as what is read between particles goes with their flux.
+"""
+
+from __future__ import annotations
+
+NAME = "network"
+PACKINGS = ("lsa", "relaxed")
+WALLED = ("center", "surface")
+HELD = (*WALLED, "periodic")
+SEEDS = (0, 1, 2)
+# Reduced pressure at which the spheres stop to grow, as in `fig03_calibration`: phi = 0.641 in a periodic cell.
+PRESSURE = 120.0
+
+
+def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
+    """Cases of the network: every packing under every kind of walls.
+
+    Parameters
+    ----------
+    numbers : sequence of int
+        Of particles, all replicas together.
+    held, packings : sequence of str
+        Of `HELD` and `PACKINGS`.
+    seeds : sequence of int
+    replicas : int
+        Along each axis, of a smaller packing; for periodic cells.
+    """
+    repeated = {} if replicas == 1 else {"replicas": replicas}
+    for number in numbers:
+        for packing in packings:
+            for walls in held:
+                here = {"name": NAME, "packing": packing, "held": walls, "particles": number}
+                yield from (here | {"seed": seed} | repeated | {"method": "dem"} for seed in seeds)
+
+
+def calibrations(held):
+    """Names of the calibrations that differ under a kind of walls."""
+    return ("cell",) if held == "periodic" else ("flux", "isothermal")
+
+
+def packed(size, packing, held, particles, seed, replicas=1):
+    """Packing in a box, kept in the cache: one for all scenes of its shape.
+
+    Parameters
+    ----------
+    size : (3,) sequence of float, m
+        Of all replicas together.
+    packing, held, particles, seed, replicas
+        Of a case.
+
+    Returns
+    -------
+    Packing
+        Of one replica.
+    """
+    from demheat.packing.cache import grown, relaxed
+
+    here = {"size": [side / replicas for side in size], "periodic": held == "periodic", "seed": seed}
+    particles //= replicas**3
+    if packing == "lsa":
+        return grown(particles, pressure=PRESSURE, domain="box", **here)
+    return relaxed(particles, **here)
+
+
+def unit_law(packing, held):
+    """The paper's law with C_t = 1 on a packing, its gap found once.
+
+    Parameters
+    ----------
+    packing : Packing
+    held : {"center", "surface", "periodic"}
+
+    Returns
+    -------
+    Calibrated
+    """
+    from demheat.laws import Calibrated
+    from demheat.packing.neighbours import contacts
+
+    gap = contacts(packing, coordination=Calibrated.usual)[2]
+    return Calibrated(gap=gap, wall="surface" if held == "surface" else "center", factor=1.0)
+
+
+def calibrated(packing, law, held):
+    """C_t of a packing by every calibration that its walls allow.
+
+    Parameters
+    ----------
+    packing : Packing
+        In a box.
+    law : Calibrated
+        With C_t = 1.
+    held : {"center", "surface", "periodic"}
+
+    Returns
+    -------
+    dict of float
+        `ct_flux` and `ct_isothermal`, or `ct_cell`, under a load along y.
+    """
+    from demheat.build import network_of
+    from demheat.calibration import calibration
+    from demheat.scene import Material, Scene
+
+    load = {"gradient": (0.0, 1.0, 0.0)} if held == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}
+    scene = Scene(size=tuple(packing.size), matrix=Material(1.0), **load)
+    network = network_of(scene, packing, law)
+    found = {}
+    for name in calibrations(held):
+        loading = "flux" if name == "flux" else "isothermal"
+        found[f"ct_{name}"] = float(calibration(network, scene, loading=loading))
+    return found
+
+
+def solved(scenes, packing, held, replicas=1):
+    """Fields of scenes of one box by one packing, and its C_t.
+
+    Parameters
+    ----------
+    scenes : dict of str to Scene
+        Periodic ones for `held = "periodic"`, else walled ones; loaded along y.
+    packing : Packing
+        Of one replica, on which C_t is calibrated: without walls all replicas have the same.
+    held : {"center", "surface", "periodic"}
+    replicas : int
+
+    Returns
+    -------
+    fields : dict of str to Field
+        With the last of C_t, whose value is in their stats as "calibration".
+    row : dict
+        C_t, and the unknowns, iterations and residual of the last solve.
+    """
+    from dataclasses import replace
+
+    from demheat import dem
+    from demheat.packing.domain import replicate
+
+    law = unit_law(packing, held)
+    row = calibrated(packing, law, held)
+    law = replace(law, factor=list(row.values())[-1])
+    whole = replicate(packing, (replicas,) * 3) if replicas > 1 else packing
+    fields = {name: dem.solve(scene, law=law, packing=whole) for name, scene in scenes.items()}
+    last = list(fields.values())[-1]
+    return fields, row | {name: last.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
+
+
+def unscaled(field, matrix):
+    """Conductivity with C_t = 1 over the matrix's.
+
+    Parameters
+    ----------
+    field : Field
+        From `solved`.
+    matrix : float, W/(m K)
+    """
+    return field.conductivity / (matrix * field.stats["calibration"])
+
+
+def warm_up(held):
+    """Load and compile by a tiny packing; keeps nothing on disk."""
+    from demheat.gallery import sphere_in_cube
+    from demheat.packing.relax import relax
+
+    scene = sphere_in_cube(2.0, periodic=held == "periodic")
+    # Fewer leave no bulk between walls.
+    solved({"": scene}, relax(3_000, size=scene.size, periodic=held == "periodic"), held)

@@ -1,0 +1,37 @@
+"""What a reader of the results sees first: ten claims, and which study stands for which figure of the papers."""
+
+# Study, and words that one of its claims has: its value and verdict are those of the rows.
+HEADLINES = (
+    ("fig14_single_inclusion", "DEM default, 100000 particles, mean of its packings: worst error of any contrast"),
+    ("fig14_single_inclusion", "FEM, P2 on curved elements of 0.04 L: worst error of any contrast"),
+    ("fig14_single_inclusion", "FFT scalar CG, 128^3 laminate voxels: worst error of any contrast"),
+    ("many_inclusions", "DEM, 8000000 elements: error"),
+    ("fig07_sphere", "Laguerre, 1e+06 particles: error of the centre at 10 s"),
+    ("fig03_calibration", "1e5 particles, as in the paper: C_t"),
+    ("time_integrators", "particle-steps per second over LAMMPS, usual forces"),
+    ("estimates", "DEM: share of exact conductivities inside of the interval"),
+    ("brackets", "Exact values outside of their brackets, of 100 scenes"),
+    ("hard_cases", "Silently wrong"),
+)
+
+HADDAD = "Haddad et al., Int. J. Thermal Sciences 164 (2021) 106799"
+TERREROS = "Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46"
+# Paper, what of it, and the study that does the same.
+FIGURES = (
+    (HADDAD, "Fig. 3", "fig03_calibration"),
+    (HADDAD, "Fig. 5, Table 1", "fig05_slab"),
+    (HADDAD, "Fig. 7", "fig07_sphere"),
+    (HADDAD, "Fig. 8", "fig08_sphere_field"),
+    (HADDAD, "Figs. 10 to 12", "fig10_halo"),
+    (HADDAD, "Fig. 14", "fig14_single_inclusion"),
+    (HADDAD, "Figs. 15 and 16, Table 2", "fig15_16_fields"),
+    (HADDAD, "Fig. 17", "fig17_etc"),
+    (HADDAD, "Fig. 18, Table 3", "fig18_fields"),
+    (HADDAD, "section 5 at full size", "many_inclusions"),
+    (HADDAD, "zeta_2, left out as too costly", "zeta2"),
+    (HADDAD, "7 % to experiment", "resistance"),
+    (TERREROS, "section 3", "crystal"),
+    (TERREROS, "section 4, Table 1", "table1_platonic"),
+    (TERREROS, "Fig. 10", "fig10_beam"),
+    (TERREROS, "Figs. 12 to 15", "fig12_15_sheet"),
+)

@@ -1,0 +1,200 @@
+"""A sphere heated from its surface: the temperature of its centre in time, against the exact series.
+
+Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799), figure 7 and eq. 19, corrected: diameter 0.1 m, 20 C, its
+surface at 200 C from time 0 on; 900 J/(kg K), 185 W/(m K), 2700 kg/m3. The paper's contact network with 1e5 elements
+was 1.93 K off at 10 s. Facets of the radical tessellation ("laguerre") include the cells' walls at the surface, placed
+so that the volume is exact. The laws of contacts hold the centres of the particles that touch the surface at its
+temperature, as in the paper; C_t of "calibrated" is that of a cube of the same volume, packed with the same radii
+between walls. Temperatures are read at the centre itself: in the particle there, with its own gradient. Finite elements
+are straight linear (P1) and curved quadratic (P2) tetrahedra; two of their meshes are also marched with a tenth of the
+temporal error. Costs leave out the packings, which come from the cache, and include the mesh.
+
+The paper's network is here twice: "calibrated" is what `evolve` takes for it; the table of variants has both packings
+(LSA with 1e5 only: a million spheres take it 1100 CPU-seconds), temperatures held at centres or acting at the surface,
+and both calibrations (`studies/common/paper_network.py`). There is no sphere without walls.
+"""
+
+import numpy as np
+
+from demheat import referee
+from studies.common import paper_network, sphere_in_time
+from studies.common.paper_network import NAME, WALLED
+from studies.common.paper_variants import Variant, interval, parted, variants
+from studies.common.sphere_in_time import ACCURACY, NUMBERS, PAPERS, SIZES
+from studies.harness.cells import cell
+from studies.harness.pick import pick, present
+from studies.harness.store import printed
+
+TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
+# Of the paper's network; the first is a quick run's.
+FEW, NETWORK, MOST = 3_000, PAPERS, 1_000_000
+# Sizes of quadratic elements that are marched with a tenth of the temporal error.
+TIGHTER = {size: ACCURACY["fem"] / 10 for size in (SIZES[2][0], SIZES[2][2])}
+
+
+def _cases():
+    yield from sphere_in_time.cases()
+    for size, accuracy in TIGHTER.items():
+        yield {"order": 2, "size": size, "accuracy": accuracy, "method": "fem"}
+    yield from paper_network.cases([FEW], held=WALLED, packings=["relaxed"], seeds=[0])
+    yield from paper_network.cases([NETWORK], held=WALLED)
+    yield from paper_network.cases([MOST], held=WALLED, packings=["relaxed"], seeds=[0])
+
+
+CASES = list(_cases())
+
+
+def QUICK(case):
+    """As of both figures of the sphere; of the paper's network and of the tighter marches the smallest."""
+    if case.get("name") == NAME:
+        return case["particles"] == FEW
+    return sphere_in_time.quick(case)
+
+
+PAPER = printed("fig07_sphere")
+AS_PRINTED = Variant("lsa", "center", "flux")
+TIMEOUT = 3600.0
+
+
+def run(method, name=None, **knobs):
+    """Errors of the centre in time."""
+    if name == NAME:
+        from studies.fig07_sphere.rows import network_row
+
+        return network_row(**knobs, times=TIMES)
+    row = sphere_in_time.marched(TIMES, _look, method=method, **knobs)
+    errors = np.array([row.pop(f"error_{t:g}") for t in TIMES])
+    at, largest = referee.worst(errors)
+    return row | {
+        "error_10s": errors[TIMES.index(10.0)],
+        "worst": abs(largest),
+        "worst_at_s": TIMES[at],
+        "errors": cell(errors),
+    }
+
+
+def _look(field, exact):
+    off = referee.temperature_error(field, exact, sphere_in_time.CENTER, unit="K")
+    return {f"error_{field.time:g}": float(off.values[0])}
+
+
+def warm_up(method, name=None, **knobs):
+    """Make and keep the packing, load and compile."""
+    if name == NAME:
+        from studies.fig07_sphere.rows import warm_up
+
+        return warm_up(**knobs, times=(10.0,))
+    return sphere_in_time.prepare((1.0,), _look, method=method, **knobs)
+
+
+def claims(df):
+    """The centre by Laguerre, by the laws of contacts and by finite elements; orders; heat; the printed 1.93 K.
+
+    Limits of errors are some three times what was found with one to three packings. The paper's network as the paper
+    has it, LSA, temperatures at centres and C_t under a flux, must be off by half to twice the printed error: ours and
+    theirs are other packings, with other links. The order expected is two.
+    """
+    network, others = parted(df)
+    others = plain(others)
+    yield from present([*_accuracy(others), *_network(network), *_rest(others)])
+
+
+def plain(df):
+    """Rows with numbers and their names, without those of tighter marches.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    return sphere_in_time.solved(pick(df, accuracy=None))
+
+
+def _accuracy(df):
+    at_10s = df["error_10s"].abs()
+    for number, limit in ((100_000, 0.06), (1_000_000, 0.015)):
+        rows = pick(df, law="laguerre", particles=number).index
+        value = at_10s[rows].max(skipna=False) if len(rows) else None
+        yield f"Laguerre, {number:.0e} particles: error of the centre at 10 s, K (paper 1.93 with 1e5)", value, limit
+    # A quick run has 1000 and 3000 particles only: the paper's error with 1e5 elements is their limit.
+    small = pick(df, law="laguerre", particles=NUMBERS[0]).index
+    text = f"Laguerre, {NUMBERS[0]} particles: error of the centre at 10 s, K, below the paper's with 1e5 elements"
+    yield text, at_10s[small].max(skipna=False), f"< {PAPER['centre_10s']}"
+    for law in sphere_in_time.CONTACTS:
+        ours, theirs = (at_10s[pick(df, law=name, particles=NUMBERS[1]).index].mean() for name in ("laguerre", law))
+        text = f"{NUMBERS[1]} particles: error of the centre at 10 s, {law} over Laguerre"
+        yield text, theirs / ours, ">= 3"
+    # Found 0.13 to 0.15 K at the coarsest edge: a third order scheme that curves with the surface.
+    curved = pick(df, order=2, size=SIZES[2][0]).index
+    yield "FEM, P2, edges of 12 mm: error of the centre at 10 s, K", at_10s[curved].max(skipna=False), 0.3
+
+
+def _network(network):
+    made = network_errors(pick(network, particles=NETWORK))
+    papers = next((found for (variant, _), found in made.items() if variant == AS_PRINTED), None)
+    if papers is None:
+        return
+    value = abs(papers["error_10s"].mean) / PAPER["centre_10s"]
+    for limit in ("<= 2", ">= 0.5"):
+        text = "The paper's network as the paper has it, 1e5 particles: error of the centre at 10 s over its 1.93 K"
+        yield text, value, limit
+
+
+def network_errors(network):
+    """Errors of the centre of the network's variants, K: at 10 s (signed) and the largest, with intervals.
+
+    Parameters
+    ----------
+    network : data frame
+
+    Returns
+    -------
+    dict of (Variant, int) to dict of str to Interval
+    """
+    made = {}
+    for number in sorted(network["particles"].unique()) if len(network) else ():
+        for each in variants(WALLED):
+            rows = pick(network, particles=number, packing=each.packing, held=each.held)
+            if len(rows):
+                names = ("error_10s", "worst")
+                made[each, int(number)] = {
+                    name: interval(rows[f"{name}_{each.calibration}"].to_numpy(dtype=float)) for name in names
+                }
+    return made
+
+
+def _rest(df):
+    dem = pick(df, law="laguerre")
+    # A thousand are five diameters to the centre: no law of powers yet.
+    fine = dem[dem["particles"] >= NUMBERS[1]]
+    order = sphere_in_time.order_of(fine, "worst") if fine["particles"].nunique() > 1 else None
+    yield "Laguerre, from 3000 on: order in the particle spacing of the largest error of the centre", order, ">= 1.5"
+    yield from sphere_in_time.balance(df)
+    yield (
+        "Laguerre: spectral radius over the mean row (slivers: hundreds)",
+        dem["spectral_ratio"].max(skipna=False),
+        20.0,
+    )
+
+
+def table(df):
+    """Errors of the centre in K, means over packings: size at 10 s, largest over 0.5 to 30 s, and when it is found."""
+    df = plain(parted(df)[1])
+    df["at_10s"], df["packings"] = df["error_10s"].abs(), df["seed"].notna().astype(int)
+    kept = {"at_10s": "mean", "worst": "mean", "worst_at_s": "mean", "packings": "sum"}
+    kept |= {name: "mean" for name in ("unknowns", "elements", "steps", "iterations", "cpu_s", "peak_mib")}
+    found = df.groupby(["name", "particles", "size"], sort=False, dropna=False)
+    return found.agg(kept).reset_index()
+
+
+def notes(df):
+    """The paper's network in all its variants, and where quadratic elements stall."""
+    from studies.fig07_sphere.tables import told
+
+    return told(df)
+
+
+def plot(df):
+    """The centre in time, its error in time, errors against unknowns, and the paper's network's variants."""
+    from studies.fig07_sphere.figure import draw
+
+    return draw(df)

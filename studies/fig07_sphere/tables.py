@@ -1,0 +1,45 @@
+"""What stands below the table of the sphere's centre: the network's variants, and the stall of quadratic elements."""
+
+from __future__ import annotations
+
+from studies.common.paper_variants import lines_of, parted, told_of
+from studies.fig07_sphere import PAPER, TIGHTER, network_errors, plain
+from studies.harness.pick import pick
+from studies.harness.table import markdown
+
+
+def told(df):
+    """Sentences and the table of the variants, as far as there are rows.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    import pandas as pd
+
+    network, others = parted(df)
+    said, made = [], network_errors(network)
+    if made:
+        names = {"error_10s": "at 10 s, K", "worst": "largest, K"}
+        said = [
+            "The paper's network in all its variants: error of the centre at 10 s (signed) and the largest in time, K, "
+            "means over packings with their 95 % intervals (Student's); the best has the least at 10 s.",
+            markdown(pd.DataFrame(lines_of(made, names, ["error_10s"]))),
+            told_of(made, ["error_10s"], unit="K") + f" The paper prints {PAPER['centre_10s']:g} K with 1e5.",
+        ]
+    return said + list(_stall(others))
+
+
+def _stall(df):
+    """By how much a tenth of the temporal error moves the centre, beside its error."""
+    for size, accuracy in TIGHTER.items():
+        usual, tight = pick(plain(df), order=2, size=size), pick(df, order=2, size=size, accuracy=accuracy)
+        tight = tight[tight["status"] == "ok"]
+        if not len(usual) or not len(tight):
+            continue
+        before, after = (float(rows["error_10s"].iloc[0]) for rows in (usual, tight))
+        yield (
+            f"Quadratic elements of {1000 * size:g} mm are {before:+.4f} K off at 10 s, and with a tenth of the "
+            f"temporal error per step {after:+.4f} K, {after - before:+.4f} K from there: "
+            f"{'most' if abs(after) < abs(before) / 2 else 'little'} of it is temporal."
+        )

@@ -1,0 +1,78 @@
+"""A study's figure as files: PNG, a vector copy beside it, and small enough for a page that holds many."""
+
+from __future__ import annotations
+
+import base64
+import io
+from pathlib import Path
+
+from studies.harness.store import replaced
+
+# Beyond so many points, cells or paths an artist is pixels inside of the vector copy, too.
+MANY = 2_000
+# A larger vector copy, bytes, is not kept: the PNG says as much.
+LARGEST = 2**20
+# Width, pixels, and colours of a picture inside of a page: nobody needs more on a screen.
+WIDEST, COLOURS = 1_400, 128
+
+
+def saved(figure, path):
+    """Write a figure as PATH.png and PATH.svg and return the paths of the files there are.
+
+    Parameters
+    ----------
+    figure : matplotlib figure
+    path : path
+        Its ending is replaced.
+
+    Returns
+    -------
+    list of Path
+    """
+    picture, vector = (Path(path).with_suffix(end) for end in (".png", ".svg"))
+    with replaced(picture) as temporary:
+        figure.savefig(temporary)
+    pixels_for_many(figure)
+    with replaced(vector) as temporary:
+        # Neither a date nor names drawn at random: the same rows give the same file.
+        figure.savefig(temporary, metadata={"Date": None})
+    if vector.stat().st_size > LARGEST:
+        vector.unlink()
+    return [each for each in (picture, vector) if each.exists()]
+
+
+def pixels_for_many(figure):
+    """Have artists of very many parts drawn as pixels in vector formats; those of few stay lines and letters."""
+    from matplotlib.collections import Collection
+    from matplotlib.lines import Line2D
+
+    for artist in figure.findobj(Collection):
+        if max(len(artist.get_offsets()), sum(len(path.vertices) for path in artist.get_paths())) > MANY:
+            artist.set_rasterized(True)
+    for artist in figure.findobj(Line2D):
+        if len(artist.get_xdata()) > MANY:
+            artist.set_rasterized(True)
+
+
+def embedded(path):
+    """A picture file as the address of itself, for a page that needs no other file.
+
+    Parameters
+    ----------
+    path : path
+        Of a PNG.
+
+    Returns
+    -------
+    str
+        "data:image/png;base64,...", of fewer pixels and colours where there are too many.
+    """
+    from PIL import Image
+
+    with Image.open(path) as picture:
+        small = picture.convert("RGB")
+        if small.width > WIDEST:
+            small = small.resize((WIDEST, round(small.height * WIDEST / small.width)), Image.Resampling.LANCZOS)
+        buffer = io.BytesIO()
+        small.quantize(COLOURS, dither=Image.Dither.NONE).save(buffer, "PNG", optimize=True)
+    return "data:image/png;base64," + base64.b64encode(buffer.getvalue()).decode()

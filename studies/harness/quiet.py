@@ -1,0 +1,156 @@
+"""How much of the processors others use: a cost is one of a quiet machine, or its row says that it is not."""
+
+from __future__ import annotations
+
+import math
+import os
+import resource
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from studies.harness.cost import triad_gbs
+
+STAT = Path("/proc/stat")
+# Of these processors' time: with more in other hands a row is noisy.
+NOISY = 0.1
+# Shorter than this, s, the kernel's ticks of 10 ms say too little.
+SHORTEST = 0.2
+# Between two looks at a machine that is not quiet, s.
+PAUSE = 2.0
+
+
+class Moment(NamedTuple):
+    """A time, s, seconds that the processors we may use were busy until then, and those of this process."""
+
+    time: float
+    busy: float
+    own: float
+
+
+def moment():
+    """Now; busy is not-a-number where the system does not tell (it does on Linux)."""
+    children = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return Moment(time.monotonic(), _busy(), time.process_time() + children.ru_utime + children.ru_stime)
+
+
+def others(begin, end=None):
+    """Share of our processors' time between two moments that went to others, 0 to 1.
+
+    What a hypervisor gave to other machines counts; what this process and its finished children used does not.
+
+    Parameters
+    ----------
+    begin, end : Moment
+        The end is now by default.
+
+    Returns
+    -------
+    float
+        Not-a-number if nobody knows, or the time was too short to tell.
+    """
+    end = moment() if end is None else end
+    elapsed = end.time - begin.time
+    if elapsed < SHORTEST:
+        return math.nan
+    used = (end.busy - begin.busy) - (end.own - begin.own)
+    return min(max(used / (elapsed * processors()), 0.0), 1.0) if math.isfinite(used) else math.nan
+
+
+def loudest(*shares):
+    """The largest of some shares, rounded; not-a-number if none is known."""
+    return round(max((share for share in shares if math.isfinite(share)), default=math.nan), 3)
+
+
+def processors():
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0))
+
+
+def look():
+    """Bandwidth of the memory, GB/s, and the share of others meanwhile."""
+    begin = moment()
+    bandwidth = round(triad_gbs(repeats=2), 1)
+    time.sleep(max(0.0, SHORTEST - (time.monotonic() - begin.time)))
+    return bandwidth, others(begin)
+
+
+def waiting(seconds, say, *, clock=time.monotonic, sleep=time.sleep):
+    """What waits for a quiet machine, at most so long in all its calls together.
+
+    Parameters
+    ----------
+    seconds : float, s
+    say : callable (str)
+        Told when a wait begins, and when there is no more patience.
+    clock, sleep : callable
+        Those of a test do not wait.
+
+    Returns
+    -------
+    callable (look) -> look
+        Takes what was seen, returns what was seen last: not quiet if patience has ended.
+    """
+    left = float(seconds)
+
+    def wait(seen):
+        nonlocal left
+        if seen[1] > NOISY and left > 0:
+            say(f"others use {seen[1]:.0%} of the processors: waiting for at most {left:.0f} s")
+            begin = clock()
+            while seen[1] > NOISY and clock() - begin < left:
+                sleep(PAUSE)
+                seen = look()
+            left -= clock() - begin
+            if left <= 0:
+                say("no more waiting in this run; rows that others disturb say so")
+        return seen
+
+    return wait
+
+
+def quietly(compute, *, seconds=0.0, say=print):
+    """Rows one after another, each when the machine is quiet, with what was seen of it before and after.
+
+    Parameters
+    ----------
+    compute : callable (name, study, case) -> dict
+    seconds : float, s
+        How long to wait for others to end, in all rows together; then rows are made all the same, and marked.
+    say : callable (str)
+
+    Returns
+    -------
+    callable (name, study, case) -> dict
+        With `triad_gbs`, the memory's bandwidth before the row, and `noise`, the largest share of others before,
+        during and after it, where the system tells.
+    """
+    wait, last = waiting(seconds, say), []
+
+    def computed(name, study, case):
+        # What is seen after a row is what is seen before the next.
+        before = wait(last.pop() if last else look())
+        row = compute(name, study, case)
+        last.append(look())
+        noise = loudest(row.get("noise", math.nan), before[1], last[0][1])
+        return row | {"triad_gbs": before[0]} | ({"noise": noise} if math.isfinite(noise) else {})
+
+    return computed
+
+
+def _busy():
+    """Seconds that the processors which this process may use were not idle, whoever used them."""
+    ours = {f"cpu{number}" for number in os.sched_getaffinity(0)}
+    try:
+        lines = [line.split() for line in STAT.read_text().splitlines() if line.startswith("cpu")]
+    except OSError:
+        return math.nan
+    ticks = [list(map(int, words[1:9])) for words in lines if words[0] in ours]
+    if len(ticks) < len(ours):
+        return math.nan
+    # user, nice, system, idle, iowait, irq, softirq, steal; time of guests is in user.
+    return sum(sum(each) - each[3] - each[4] for each in ticks) / os.sysconf("SC_CLK_TCK")
+
+
+# When this process began to work.
+START = moment()

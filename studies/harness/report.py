@@ -1,0 +1,186 @@
+"""All studies of a folder in one report: their pages, a short README.md, and index.html that needs no other file."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+from typing import NamedTuple
+
+from studies.harness import runner, sound
+from studies.harness.claims import Claim
+from studies.harness.store import replaced
+from studies.harness.table import render
+
+VERDICTS = ("ok", "FAIL", "not judged")
+
+
+class Chapter(NamedTuple):
+    """One study of a report; `problem` says why it has no page."""
+
+    name: str
+    title: str
+    claims: list[Claim]
+    text: str
+    rows: int
+    count: dict[str, int]
+    problem: str = ""
+
+    @property
+    def verdicts(self):
+        """Numbers of claims by verdict, in words."""
+        found = Counter(each.verdict for each in self.claims)
+        return ", ".join(f"{found[word]} {word}" for word in VERDICTS if found[word])
+
+
+def chapters(names, out):
+    """Render every study that has rows in a folder; one whose rows cannot be read is a chapter that says so.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of studies.
+    out : path
+
+    Returns
+    -------
+    list of Chapter
+
+    Raises
+    ------
+    ValueError
+        If none of them has rows there.
+    """
+    paths = {name: runner.csv_of(name, out) for name in names}
+    found = [_chapter(name, path) for name, path in paths.items() if path.exists()]
+    if not found:
+        raise ValueError(f"no results in {out}; run a study first")
+    return found
+
+
+def _chapter(name, path):
+    study = runner.load(name)
+    title = (study.__doc__ or name).strip().splitlines()[0]
+    try:
+        claims, text = render(study, path)
+    except ValueError as error:
+        return Chapter(name, title, [], "", 0, dict.fromkeys(sound.FAULTS, 0), str(error))
+    found = sound.checked(study, path)
+    return Chapter(name, title, claims, text, len(found), sound.counted(found.values()))
+
+
+def total(found):
+    """Rows of all chapters, and those whose costs do not count, in words.
+
+    Parameters
+    ----------
+    found : sequence of Chapter
+    """
+    count = {name: sum(each.count[name] for each in found) for name in sound.FAULTS}
+    return f"{sum(each.rows for each in found)} rows: {sound.told(count)}"
+
+
+def headlines(found, wanted):
+    """Claims of the chapters that are wanted first.
+
+    Parameters
+    ----------
+    found : sequence of Chapter
+    wanted : sequence of (str, str)
+        Study, and words of one of its claims.
+
+    Returns
+    -------
+    list of (str, Claim)
+        Study and claim; one that is not there, or not the only one with such words, is one that is not judged.
+    """
+    claims = {each.name: each.claims for each in found}
+    picked = []
+    for name, words in wanted:
+        fits = [each for each in claims.get(name, ()) if words in each.sentence]
+        lost = f"{len(fits) or 'no'} claims with these words" if name in claims else "the study has no rows here"
+        picked.append((name, fits[0] if len(fits) == 1 else Claim(words, float("nan"), "", False, lost)))
+    return picked
+
+
+def write(found, out, contents):
+    """Write README.md and index.html into a folder and return their paths.
+
+    Parameters
+    ----------
+    found : sequence of Chapter
+    out : path
+    contents : module
+        With HEADLINES and FIGURES, see `studies.contents`.
+
+    Returns
+    -------
+    list of Path
+    """
+    from studies.harness.html import page
+
+    first = headlines(found, contents.HEADLINES)
+    texts = {
+        "README.md": readme(found, first, contents.FIGURES),
+        "index.html": page(found, first, contents.FIGURES, out),
+    }
+    for name, text in texts.items():
+        with replaced(Path(out) / name) as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    return [Path(out) / name for name in texts]
+
+
+def readme(found, first, figures):
+    """The short page that leads to those of the studies, in Markdown.
+
+    Parameters
+    ----------
+    found : sequence of Chapter
+    first : list of (str, Claim)
+        Of `headlines`.
+    figures : sequence of (str, str, str)
+        Paper, what of it, study.
+
+    Returns
+    -------
+    str
+    """
+    there = {each.name for each in found}
+    claims = [
+        f"| {each.verdict} | {_cell(each.sentence)} | {each.value:.3g} | {each.limit} | [{name}]({name}.md) |"
+        for name, each in first
+    ]
+    mapped = [f"| {paper} | {what} | [{name}]({name}.md) |" for paper, what, name in figures if name in there]
+    lines = [_line(each) for each in found]
+    return "\n".join(
+        [
+            "# Results\n",
+            f"{len(found)} studies, {total(found)}. Costs of these count in no claim.",
+            "The same as one page, with all tables and figures: [index.html](index.html).\n",
+            "Written by `python -m studies report`; how to read and repeat it: [studies](../docs/studies.md).\n",
+            "- [Ten claims first](#ten-claims-first)",
+            "- [Figures of the papers](#figures-of-the-papers)",
+            "- [All studies](#all-studies)\n",
+            "## Ten claims first\n",
+            "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
+            *claims,
+            "\n## Figures of the papers\n",
+            "| paper | what | study |\n|---|---|---|",
+            *mapped,
+            "\n## All studies\n",
+            "| study | what | claims | rows | whose costs do not count |\n|---|---|---|--:|---|",
+            *lines,
+            "",
+        ]
+    )
+
+
+def _cell(text):
+    return text.replace("|", "\\|")
+
+
+def _line(each):
+    if each.problem:
+        return f"| {each.name} | {each.title} | {each.problem} | | |"
+    return (
+        f"| [{each.name}]({each.name}.md) | {each.title} | {each.verdicts} | {each.rows} | {sound.told(each.count)} |"
+    )

@@ -1,0 +1,69 @@
+"""Figures as files: the same from the same rows, vector copies of bearable size, small pictures inside of a page."""
+
+import base64
+import io
+
+import numpy as np
+import pytest
+
+from studies.harness import pictures
+from studies.harness.figures import STYLE
+
+plt = pytest.importorskip("matplotlib.pyplot")
+Image = pytest.importorskip("PIL.Image")
+
+
+def drawn(draw):
+    with plt.rc_context(STYLE):
+        figure, axes = plt.subplots(figsize=(3, 2))
+        draw(axes)
+        return figure
+
+
+def saved(draw, path):
+    figure = drawn(draw)
+    with plt.rc_context(STYLE):
+        found = pictures.saved(figure, path)
+    plt.close(figure)
+    return found
+
+
+def test_the_same_figure_is_the_same_file(tmp_path):
+    def draw(axes):
+        axes.plot([1, 2, 3], "o-", clip_on=True, label="a line")
+        axes.legend()
+
+    one, two = (saved(draw, tmp_path / name) for name in ("one.png", "two.png"))
+    assert [path.suffix for path in one] == [".png", ".svg"]
+    assert one[1].read_bytes() == two[1].read_bytes() and b"<dc:date>" not in one[1].read_bytes()
+    assert b"<image" not in one[1].read_bytes()
+
+
+@pytest.mark.parametrize("many", ["scatter", "line", "mesh"])
+def test_very_many_points_are_pixels_in_the_vector_copy(many, tmp_path, monkeypatch):
+    monkeypatch.setattr(pictures, "MANY", 50)
+    x = np.linspace(0, 1, 100)
+    draws = {
+        "scatter": lambda axes: axes.scatter(x, x**2),
+        "line": lambda axes: axes.plot(x, x**2, "."),
+        "mesh": lambda axes: axes.pcolormesh(np.outer(x[:10], x[:10])),
+    }
+    text = saved(draws[many], tmp_path / "many.png")[1].read_text()
+    assert "<image" in text and "<text" not in text and text.count("<use") < 60
+
+
+def test_a_large_vector_copy_is_not_kept(tmp_path, monkeypatch):
+    saved(lambda axes: axes.plot([1, 2]), tmp_path / "figure.png")
+    monkeypatch.setattr(pictures, "LARGEST", 1000)
+    assert saved(lambda axes: axes.plot([1, 2]), tmp_path / "figure.png") == [tmp_path / "figure.png"]
+    assert not (tmp_path / "figure.svg").exists()
+
+
+def test_a_picture_inside_of_a_page_is_small(tmp_path, monkeypatch):
+    saved(lambda axes: axes.imshow(np.random.default_rng(0).random((40, 40))), tmp_path / "figure.png")
+    monkeypatch.setattr(pictures, "WIDEST", 200)
+    head, _, code = pictures.embedded(tmp_path / "figure.png").partition(",")
+    raw = base64.b64decode(code)
+    assert head == "data:image/png;base64" and len(raw) < (tmp_path / "figure.png").stat().st_size
+    with Image.open(io.BytesIO(raw)) as small, Image.open(tmp_path / "figure.png") as whole:
+        assert small.width == 200 and small.height == round(whole.height * 200 / whole.width)
