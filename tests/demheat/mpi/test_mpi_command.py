@@ -125,11 +125,11 @@ def test_the_block_of_python_on_the_page(folder):
     scene = files.read(folder / "scene.toml")
     unknowns = solve(scene, particles=SMALL["particles"]).stats["unknowns"]
     assert done.stdout.count(f" {unknowns}") == done.stdout.count("'y-': -42.6") == 2
-    printed = [float(each) for each in re.findall(r"\b\d\d\.\d{6,}", done.stdout)]
+    printed = [float(each) for each in re.findall(r"42\.\d{6}", done.stdout)]
     for method in ("fft", "fem"):
-        # The tolerances of both methods' residuals are 1e-6 and smaller.
+        # What is cut off; the methods' own tolerances leave less: 1e-10 of FFT's conductivity, 1e-9 of elements'.
         found = ALONE[method](scene, 1e-9).conductivity
-        assert sum(each == pytest.approx(found, rel=1e-6) for each in printed) == 2
+        assert sum(abs(each - found) < 2e-6 for each in printed) == 2
 
 
 REFUSED = [
