@@ -26,6 +26,11 @@ LIMITS = {0.05: 0.25, 0.1: 0.12, 0.2: 0.06}
 ACCURACY = 1e-5
 # Particles of a row's picture, and its slices.
 DOTS, SLICES = 250, 20
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "Largest heat lost over heat moved": "rounding of sums over all particles and steps",
+    "Laguerre, 1e5 particles: largest |dT|/T": "the paper's own statement, asked of every law alike",
+}
 PAPER = printed("fig05_slab")
 TIMEOUT = 3600.0
 
@@ -147,7 +152,7 @@ def _order(df):
 
 
 def _balance(df):
-    yield "Largest heat lost over heat moved", df["energy_error"].max(), 1e-10
+    yield "Largest heat lost over heat moved", df["energy_error"].max(), 1e-12
     walled = df["spectral_ratio"].max()
     # Slivers make it hundreds.
     yield "Spectral radius over the mean row", walled, 40.0

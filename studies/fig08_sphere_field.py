@@ -32,6 +32,10 @@ def _cases():
 
 CASES = _cases()
 QUICK = sphere_in_time.quick
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "heat lost over heat moved": "rounding; of elements the tolerance of each step's equations",
+}
 PAPER = printed("fig07_sphere")
 TIMEOUT = 3600.0
 
@@ -78,7 +82,7 @@ def claims(df):
 
 
 def _accuracy(df):
-    for number, limit in ((100_000, 0.1), (1_000_000, 0.02)):
+    for number, limit in ((100_000, 0.1), (1_000_000, 0.019)):
         rows = pick(df, law="laguerre", particles=number)
         value = rows["worst_10"].max(skipna=False) if len(rows) else None
         yield f"Laguerre, {number:.0e} particles, 10 s: largest error of any particle, K", value, limit
@@ -100,7 +104,7 @@ def _rest(df):
     for t in (TIMES[0], TIMES[-1]):
         order = sphere_in_time.order_of(dem, f"rms_{t:g}")
         yield f"Laguerre: order in the particle spacing of the error rms at {t:g} s", order, ">= 1.5"
-    yield "Laguerre: volume of all cells off the sphere's, relative", dem["volume_error"].max(skipna=False), 1e-9
+    yield "Laguerre: volume of all cells off the sphere's, relative", dem["volume_error"].max(skipna=False), 1e-12
     yield from sphere_in_time.balance(df)
 
 

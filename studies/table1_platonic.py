@@ -24,6 +24,10 @@ LAWS = ("platonic", "calibrated", "laguerre")
 PHI = 0.64
 # Columns of the paper's table by the letters it uses.
 LETTERS = {"surface": "s", "fraction": "f"}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "Law laguerre, any packing: steady conductivity": "the tolerance of the equations",
+}
 TIMEOUT = 3600.0
 
 
@@ -129,7 +133,7 @@ def _printed_claims(df):
         off = referee.value_error(lines[name].to_numpy(), np.array(ruled), scale=1.0)
         # Digits that are cut off two corners grow up to threefold where their line is carried on.
         text = f"Table 1 of the paper, {name}: largest difference of any of its lines from the printed rule"
-        yield text, np.abs(off).max(), 3e-5
+        yield text, np.abs(off).max(), 2.5e-5
 
 
 def _printed(lines, letter):

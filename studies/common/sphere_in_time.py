@@ -188,6 +188,6 @@ def order_of(rows, column):
 
 def balance(df):
     """Claims on heat: the network's steps keep it to rounding, the elements' to ten times their linear tolerance."""
-    for method, limit in (("dem", 1e-10), ("fem", 1e-8)):
+    for method, limit in (("dem", 1e-12), ("fem", 1e-8)):
         lost = df[df["method"] == method]["energy_error"].max(skipna=False)
         yield f"{method}: largest heat lost over heat moved", lost, limit

@@ -53,6 +53,11 @@ def QUICK(case):
 
 PAPER = printed("fig07_sphere")
 AS_PRINTED = Variant("lsa", "center", "flux")
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "heat lost over heat moved": "rounding; of elements the tolerance of each step's equations",
+    "platonic over Laguerre": "the limit of both laws",
+}
 TIMEOUT = 3600.0
 
 
@@ -122,7 +127,7 @@ def _accuracy(df):
     for law in sphere_in_time.CONTACTS:
         ours, theirs = (at_10s[pick(df, law=name, particles=NUMBERS[1]).index].mean() for name in ("laguerre", law))
         text = f"{NUMBERS[1]} particles: error of the centre at 10 s, {law} over Laguerre"
-        yield text, theirs / ours, ">= 3"
+        yield text, theirs / ours, ">= 4"
     # Found 0.13 to 0.15 K at the coarsest edge: a third order scheme that curves with the surface.
     curved = pick(df, order=2, size=SIZES[2][0]).index
     yield "FEM, P2, edges of 12 mm: error of the centre at 10 s, K", at_10s[curved].max(skipna=False), 0.3

@@ -34,6 +34,14 @@ COARSE, SEEDS = 10_000, (0, 1, 2)
 # Of the paper's network: few, and as many as the paper has.
 NETWORKS = (10_000, 150_000)
 
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "over that of the paper's network": "of quick rows, too, which have a fifth of the particles",
+    "over the one that the paper prints": "of quick rows, too, which have a fifth of the particles",
+    "heat in minus heat out": "the tolerance of the equations",
+    "64^3 laminate voxels: worst error at f": "the limit of both schemes",
+    "against the periodic cell": "the tolerance of the equations",
+}
 PAPER = printed("fig14_single_inclusion")
 # Rayleigh's method, McPhedran and McKenzie (1978): every digit is certain.
 RAYLEIGH = {
@@ -131,7 +139,7 @@ def claims(df):
 
 def _dem_claims(df):
     third, half = df[df["scene"] == "third"], df[df["scene"] == "half"]
-    for particles, limit, harder in ((PARTICLES[0], 0.07, 0.2), (PARTICLES[1], 0.015, 0.06)):
+    for particles, limit, harder in ((PARTICLES[0], 0.07, 0.2), (PARTICLES[1], 0.0145, 0.06)):
         text = f"DEM default, {particles} particles, mean of its packings: worst error of any contrast, %"
         yield text, worst(third, name="dem", particles=particles), limit
         yield text.replace("of any contrast", "at f = 0.5"), worst(half, name="dem", particles=particles), harder
@@ -139,7 +147,7 @@ def _dem_claims(df):
     yield text, extrapolated(third, COARSE, PARTICLES[1], name="dem"), 0.02
     mine, theirs = (worst(third, name=name, particles=PARTICLES[1]) for name in ("dem", "dem-calibrated"))
     if mine is not None and theirs is not None:
-        yield "DEM default: worst error over that of the paper's network, same packings", mine / theirs, 0.1
+        yield "DEM default: worst error over that of the paper's network, same packings", mine / theirs, 0.015
         yield "DEM default: worst error over the one that the paper prints", mine / PAPER["worst_error"], 0.1
     # A hundred times what the solver leaves of the residual.
     balance = df[df["method"] == "dem"]["heat_imbalance"].max(skipna=False)

@@ -36,6 +36,10 @@ HALOS = (0.05, 0.069, 0.103)
 # Longest edges, m. Linear elements of 3.5 mm are some 1e5 tetrahedra, as in the paper.
 SIZES = {"fem-p1": (0.006, 0.0035), "fem": (0.01, 0.006, 0.004, 0.003)}
 VOXELS = (32, 64, 128)
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "heat in minus heat out": "the tolerance of the equations",
+}
 PAPER = printed("fig15_16_fields")
 # Rayleigh's method, McPhedran and McKenzie (1978), summed elsewhere: W/m2 and C, to the digits given.
 RAYLEIGH = {"q_A": (7767.43, 2), "q_B": (2309.24, 2), "q_C": (6433.60, 2), "T_C": (33.511132, 6)}
@@ -150,7 +154,7 @@ def _exact(df):
 
 
 def _laguerre(df):
-    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.015, 1.5, 12.0), (PAPERS, 0.1, 8e-4, 0.25, 2.1)):
+    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.015, 1.5, 12.0), (PAPERS, 0.09, 7.5e-4, 0.25, 2.1)):
         rows = pick(df, name="dem", particles=number)
         text = f"DEM, Laguerre, {number} particles: "
         yield text + "largest error of a flux of Table 2, %", largest(rows, error_columns("q", POINTS)), flux
@@ -158,7 +162,7 @@ def _laguerre(df):
         yield text + "flux away from interface and insulated faces, rms, %", largest(rows, ["flux_rms"]), rms
         yield text + "the same, largest, %", largest(rows, ["flux_max"]), most
         # Found 1.5 and 0.32 %; fits that do not know the interface have 6.2 and 1.8 %.
-        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 3.0 * rms
+        yield text + "flux in the band beside them, rms, %", largest(rows, ["flux_rms_band"]), 2.9 * rms
     balance = pick(df, method="dem")["heat_imbalance"].abs().max(skipna=False)
     # A hundred times the tolerance of the solver.
     yield "DEM, all laws: heat in minus heat out over the heat that passes", balance, 1e-6
