@@ -26,6 +26,7 @@ PHI = 0.64
 LETTERS = {"surface": "s", "fraction": "f"}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
+    "sum of heat capacities off": "rounding of a sum over particles",
     "Law laguerre, any packing: steady conductivity": "the tolerance of the equations",
 }
 TIMEOUT = 3600.0

@@ -39,6 +39,7 @@ def test_a_study_on_two_workers(shell, tmp_path):
     assert len(rows) == 5 and {row["status"] for row in rows.values()} == {"ok"}
 
 
+@pytest.mark.slow
 def test_jobs_of_a_batch_system(shell, tmp_path):
     jobs, first, gather, render = (each for each in COMMANDS if "pip" not in each and "--workers" not in each)
     shell(jobs)

@@ -19,17 +19,14 @@ import numpy as np
 from demheat import referee
 from studies.common import paper_network, sphere_in_time
 from studies.common.paper_network import NAME, WALLED
-from studies.common.paper_variants import Variant, interval, parted, variants
-from studies.common.sphere_in_time import ACCURACY, NUMBERS, PAPERS, SIZES
+from studies.common.paper_variants import Variant, parted
+from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
+from studies.fig07_sphere.means import PAPER, TIGHTER, TIMES, network_errors, plain
 from studies.harness.cells import cell
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
 
-TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
 # Of the paper's network; the first is a quick run's.
 FEW, NETWORK, MOST = 3_000, PAPERS, 1_000_000
-# Sizes of quadratic elements that are marched with a tenth of the temporal error.
-TIGHTER = {size: ACCURACY["fem"] / 10 for size in (SIZES[2][0], SIZES[2][2])}
 
 
 def _cases():
@@ -51,7 +48,6 @@ def QUICK(case):
     return sphere_in_time.quick(case)
 
 
-PAPER = printed("fig07_sphere")
 AS_PRINTED = Variant("lsa", "center", "flux")
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -104,16 +100,6 @@ def claims(df):
     yield from present([*_accuracy(others), *_network(network), *_rest(others)])
 
 
-def plain(df):
-    """Rows with numbers and their names, without those of tighter marches.
-
-    Parameters
-    ----------
-    df : data frame
-    """
-    return sphere_in_time.solved(pick(df, accuracy=None))
-
-
 def _accuracy(df):
     at_10s = df["error_10s"].abs()
     for number, limit in ((100_000, 0.06), (1_000_000, 0.015)):
@@ -142,29 +128,6 @@ def _network(network):
     for limit in ("<= 2", ">= 0.5"):
         text = "The paper's network as the paper has it, 1e5 particles: error of the centre at 10 s over its 1.93 K"
         yield text, value, limit
-
-
-def network_errors(network):
-    """Errors of the centre of the network's variants, K: at 10 s (signed) and the largest, with intervals.
-
-    Parameters
-    ----------
-    network : data frame
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-    """
-    made = {}
-    for number in sorted(network["particles"].unique()) if len(network) else ():
-        for each in variants(WALLED):
-            rows = pick(network, particles=number, packing=each.packing, held=each.held)
-            if len(rows):
-                names = ("error_10s", "worst")
-                made[each, int(number)] = {
-                    name: interval(rows[f"{name}_{each.calibration}"].to_numpy(dtype=float)) for name in names
-                }
-    return made
 
 
 def _rest(df):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from studies.common.paper_variants import lines_of, parted, told_of
-from studies.fig07_sphere import PAPER, TIGHTER, network_errors, plain
+from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.pick import pick
 from studies.harness.table import markdown
 

@@ -15,14 +15,12 @@ from demheat.gallery import EDGE, sphere_in_cube
 from studies.common import paper_network
 from studies.common.paper_network import NAME, unscaled
 from studies.common.paper_variants import best_variant, parted, variant_errors, variants, worst_error
+from studies.fig14_single_inclusion.means import PAPER, SCENES, WORDS, exact_of, label
 from studies.harness import methods
 from studies.harness.pick import extrapolated, pick, present, worst
-from studies.harness.store import printed
 
 FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
-CONTRASTS = (0.01, 0.1, 10.0, 100.0)
 CURVE = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
-SCENES = [*(("third", contrast) for contrast in CONTRASTS), ("half", 10.0)]
 # What stands beside the methods that every study compares.
 DEM_BESIDE = ("dem-plain", "dem-calibrated", "dem-arithmetic")
 BESIDE = (*DEM_BESIDE, "fem-straight", "fem-p1", "fft-plain", "fft-em-plain")
@@ -42,7 +40,6 @@ REASONS = {
     "64^3 laminate voxels: worst error at f": "the limit of both schemes",
     "against the periodic cell": "the tolerance of the equations",
 }
-PAPER = printed("fig14_single_inclusion")
 # Rayleigh's method, McPhedran and McKenzie (1978): every digit is certain.
 RAYLEIGH = {
     ("third", 0.01): 0.786847280,
@@ -71,8 +68,6 @@ def _cases():
 
 
 CASES = list(_cases())
-# Contrasts of the paper's figure, as columns of the network's rows end.
-WORDS = tuple(f"{contrast:g}" for contrast in CONTRASTS)
 
 
 def QUICK(case):
@@ -103,17 +98,6 @@ def _network(packing, held, particles, seed):
     made = paper_network.packed((EDGE,) * 3, packing, held, particles, seed)
     fields, row = paper_network.solved(scenes, made, held)
     return row | {f"k_{where}": unscaled(field, methods.MATRIX) for where, field in fields.items()}
-
-
-def label(scene, contrast):
-    """Scene in a word, as columns of the network's rows end.
-
-    Parameters
-    ----------
-    scene : {"third", "half"}
-    contrast : float
-    """
-    return f"{contrast:g}" if scene == "third" else scene
 
 
 def warm_up(name, scene=None, contrast=None, periodic=False, *, method, **solver):
@@ -168,18 +152,6 @@ def _network_claims(network, df):
     least = worst_error(off[best_variant(off, WORDS)], WORDS)
     text = f"The paper's network, {NETWORKS[-1]} particles, the best of all variants: worst difference from Maxwell, %"
     yield f"{text} (the paper prints {PAPER['worst_error']:g})", least, PAPER["worst_error"]
-
-
-def exact_of(df, name="exact"):
-    """k over the matrix's by a method without resolution, by the labels of the network's scenes.
-
-    Parameters
-    ----------
-    df : data frame
-    name : {"exact", "maxwell"}
-    """
-    found = {label(*where): pick(df, name=name, scene=where[0], contrast=where[1])["k_ratio"] for where in SCENES}
-    return {where: float(values.iloc[0]) for where, values in found.items() if len(values)}
 
 
 def _fem_claims(df):

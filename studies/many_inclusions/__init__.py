@@ -17,11 +17,12 @@ import tempfile
 from demheat import referee
 from studies.common import paper_network, silica_epoxy
 from studies.common.paper_network import NAME, unscaled
-from studies.common.paper_variants import parted, values, variant_errors, variants
+from studies.common.paper_variants import parted, values, variants
 from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import largest, pick, present
 from studies.harness.store import printed
+from studies.many_inclusions.means import network_errors
 
 FRACTION, CLOSE = 0.2, 0.3
 PARTICLES = (10_000, 30_000, 100_000, 300_000, 1_000_000, 8_000_000)
@@ -139,23 +140,6 @@ def _network_claims(network, df):
         off = 100 * abs(referee.value_error(k, float(fft.iloc[0]))).max() if len(k) else None
         text = f"The paper's network, {max(REPLICATED)} particles, {variant.words}: off FFT, {VOXELS[-1]}^3, %"
         yield text, off, PAPER["dem_fft"]
-
-
-def network_errors(df):
-    """Errors of the network's variants against the multipoles' finest.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-    """
-    network, others = parted(df)
-    spheres = pick(others, name="multipole")
-    exact = spheres.loc[spheres["highest"].idxmax(), "k_ratio"]
-    return variant_errors(network, {"spheres": float(exact)})
 
 
 def errors(df):

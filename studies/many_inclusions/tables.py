@@ -70,7 +70,7 @@ def told(df, paper):
     """
     import pandas as pd
 
-    from studies.many_inclusions import network_errors
+    from studies.many_inclusions.means import network_errors
 
     made, said = network_errors(df), []
     if made:

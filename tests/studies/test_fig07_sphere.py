@@ -39,7 +39,7 @@ def test_one_march_serves_both_calibrations(usual):
         fields = dem.evolve(sphere(), times, law=law, packing=ball, accuracy=1e-5)
         found = [field.temperature_at(CENTER)[0] for field in fields]
         exact = [field.temperature_at(CENTER)[0] for field in series.evolve(sphere(), times)]
-        here = [fig07_sphere.TIMES.index(time) for time in times]
+        here = [fig07_sphere.means.TIMES.index(time) for time in times]
         # Two marches of accuracy 1e-5 of 180 K; what is read beside a particle goes with its flux, here 1 % off: .15 K.
         atol = 0.01 if way == "isothermal" else 0.3
         assert_allclose(numbers(row[f"errors_{way}"])[here], np.subtract(found, exact), atol=atol)
@@ -56,7 +56,7 @@ def test_temperatures_at_the_surface_heat_it_later():
 
 
 def test_of_a_stall_is_said_whether_it_is_temporal():
-    size, accuracy = next(iter(fig07_sphere.TIGHTER.items()))
+    size, accuracy = next(iter(fig07_sphere.means.TIGHTER.items()))
     here = {"method": "fem", "order": 2, "size": size, "status": "ok"}
     df = pd.DataFrame([here | {"error_10s": 0.1}, here | {"error_10s": 0.01, "accuracy": accuracy}])
     (said,) = fig07_tables.told(df)

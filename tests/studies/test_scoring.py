@@ -15,6 +15,8 @@ EXCEPTIONS = {
     ("damage/means.py", "theory"): "share of links that is left",
     ("damage/means.py", "first_loss"): "share of the conductivity that is lost",
     ("damage/means.py", "above_bound"): "distance to a bound",
+    ("fig15_16_fields/halos.py", "ball"): "heights of points in a ball",
+    ("harness/repeated.py", "measured_again"): "spread of seconds",
     ("packings/rows.py", "_z_of_gap"): "gap between two spheres",
     ("peers/means.py", "same_mesh"): "two programs on one mesh",
     ("peers/programs/freefem.py", "solve"): "two outputs of one program",
@@ -22,6 +24,9 @@ EXCEPTIONS = {
     ("peers/programs/multivoro.py", "solve"): "two programs that cut the same cells",
     ("peers/programs/openfoam.py", "solve"): "heat in and heat out",
     ("peers/python_elements.py", "solved"): "two outputs of one program",
+    ("scaling/__init__.py", "_ranked"): "one body on one rank and on two",
+    ("scaling/model.py", "inner"): "share of a block's faces",
+    ("scaling/model.py", "left_out"): "seconds of a model over those of a row",
     ("sphere_benchmark/rows.py", "_at_points"): "flux at points of a file, over the mean one",
     ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",
 }

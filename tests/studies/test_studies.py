@@ -42,12 +42,18 @@ SLOW = (
     "ct_search",
     "damage",
     "estimates",
+    "fig07_sphere",
+    "fig08_sphere_field",
     "fig12_15_sheet",
     "fig15_16_fields",
     "fig17_etc",
     "fig18_fields",
     "grains",
+    "hard_cases",
     "images",
+    "kirchhoff",
+    "many_inclusions",
+    "nafems",
     "resistance",
     "scaling",
     "shapes",
@@ -105,7 +111,7 @@ def test_a_new_drawing_repeats_no_row(name, monkeypatch):
 
 
 def test_code_of_a_row_is_that_of_its_method(monkeypatch):
-    study = runner.load("fig14_single_inclusion")
+    study = runner.load("stability")
     codes = {
         method: provenance.code_hash(study.__file__, methods.path_of(method))
         for method in ("dem", "fem", "fft", "bounds")

@@ -41,7 +41,9 @@ def test_a_body_without_symmetry_takes_three_loads_on_one_set_up():
     assert loads_of(walled).diagonal and loads_of(walled).together
 
 
-@pytest.mark.parametrize("method", ["exact", "multipole", "fem", "fft", "dem", "bracket"])
+@pytest.mark.parametrize(
+    "method", ["exact", "multipole", "fem", "fft", pytest.param("dem", marks=pytest.mark.slow), "bracket"]
+)
 def test_every_method_gets_there(method):
     right = exact.solve(CUBE).conductivity
     found = effective(CUBE, accuracy=1e-2, method=method)

@@ -1,0 +1,46 @@
+"""What is printed and shown of the sphere's centre, and the errors of the network's variants."""
+
+from studies.common import sphere_in_time
+from studies.common.paper_network import WALLED
+from studies.common.paper_variants import interval, variants
+from studies.common.sphere_in_time import ACCURACY, SIZES
+from studies.harness.pick import pick
+from studies.harness.store import printed
+
+PAPER = printed("fig07_sphere")
+TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
+# Sizes of quadratic elements that are marched with a tenth of the temporal error.
+TIGHTER = {size: ACCURACY["fem"] / 10 for size in (SIZES[2][0], SIZES[2][2])}
+
+
+def plain(df):
+    """Rows with numbers and their names, without those of tighter marches.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    return sphere_in_time.solved(pick(df, accuracy=None))
+
+
+def network_errors(network):
+    """Errors of the centre of the network's variants, K: at 10 s (signed) and the largest, with intervals.
+
+    Parameters
+    ----------
+    network : data frame
+
+    Returns
+    -------
+    dict of (Variant, int) to dict of str to Interval
+    """
+    made = {}
+    for number in sorted(network["particles"].unique()) if len(network) else ():
+        for each in variants(WALLED):
+            rows = pick(network, particles=number, packing=each.packing, held=each.held)
+            if len(rows):
+                names = ("error_10s", "worst")
+                made[each, int(number)] = {
+                    name: interval(rows[f"{name}_{each.calibration}"].to_numpy(dtype=float)) for name in names
+                }
+    return made
