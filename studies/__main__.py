@@ -255,7 +255,7 @@ def _report(arguments):
     for each in found:
         if each.problem:
             print(each.problem, file=sys.stderr)
-    print(f"{len(found)} studies in {' and '.join(map(str, paths))}; {report.total(found)}")
+    print(f"{len(found)} studies in {' and '.join(map(str, paths))}; {sound.total(found)}")
     verdict = "a claim FAILED" if any(claim.failed for claim in claims) else "no claim failed"
     print(f"{len(claims)} claims: {verdict}, {sum(bool(claim.why) for claim in claims)} not judged")
     return int(status)

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from studies.harness import sound
 from studies.harness.pictures import embedded
-from studies.harness.report import total
 
 CLASSES = {"ok": "ok", "FAIL": "fail", "not judged": "open"}
 STYLE = """
@@ -58,7 +57,8 @@ def page(found, first, figures, out):
     """
     body = [
         "<h1>demheat: results</h1>",
-        f'<p class="note">{len(found)} studies, {total(found)}. A claim that rests on costs of such rows is not judged.'
+        f'<p class="note">{len(found)} studies, {sound.total(found)}. A claim that rests on costs of such rows is not'
+        " judged."
         " Stale: made by other code than that of today. Dirty: by code of no commit. Noisy: while others used more than"
         f" {sound.NOISY:.0%} of the processors, or nobody knows.</p>",
         _contents(found),

@@ -68,17 +68,6 @@ def _chapter(name, path):
     return Chapter(name, title, claims, text, len(found), sound.counted(found.values()))
 
 
-def total(found):
-    """Rows of all chapters, and those whose costs do not count, in words.
-
-    Parameters
-    ----------
-    found : sequence of Chapter
-    """
-    count = {name: sum(each.count[name] for each in found) for name in sound.FAULTS}
-    return f"{sum(each.rows for each in found)} rows: {sound.told(count)}"
-
-
 def headlines(found, wanted):
     """Claims of the chapters that are wanted first.
 
@@ -154,7 +143,7 @@ def readme(found, first, figures):
     return "\n".join(
         [
             "# Results\n",
-            f"{len(found)} studies, {total(found)}. Costs of these count in no claim.",
+            f"{len(found)} studies, {sound.total(found)}. Costs of these count in no claim.",
             "The same as one page, with all tables and figures: [index.html](index.html).\n",
             "Written by `python -m studies report`; how to read and repeat it: [studies](../docs/studies.md).\n",
             "- [Ten claims first](#ten-claims-first)",

@@ -97,3 +97,14 @@ def _number(value):
         return float(value)
     except (TypeError, ValueError):
         return math.nan
+
+
+def total(found):
+    """Rows of all chapters of a report, and those whose costs do not count, in words.
+
+    Parameters
+    ----------
+    found : sequence of report.Chapter
+    """
+    count = {name: sum(each.count[name] for each in found) for name in FAULTS}
+    return f"{sum(each.rows for each in found)} rows: {told(count)}"
