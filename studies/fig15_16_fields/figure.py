@@ -130,7 +130,8 @@ def _said(row, name):
     if name == "temperature":
         return f"rms {row['temperature_rms']:.2g} %, largest {row['temperature_max']:.3g} %"
     band = max(row["flux_max"], row["flux_max_band"])
-    return f"rms away {row['flux_rms']:.2g} %, in the band {row['flux_rms_band']:.2g} %,\nlargest {band:.3g} %"
+    away, beside = row["flux_rms"], row["flux_rms_band"]
+    return f"rms away {away:.2g} %,\nin the band {beside:.2g} %,\nlargest {band:.3g} %"
 
 
 def _mark(axis, points):
