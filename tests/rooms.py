@@ -1,8 +1,10 @@
 """The rooms of the house, and what each may import."""
 
+from rooms_beside import BESIDE
+
 # The rooms of the house from the ground up, and what each may import of ours: itself and rooms that stand before it.
 # The longest prefix that fits a module is its room; a prefix stands for itself and all below it. A module adds a line.
-LAYERS = {
+ENGINE = {
     "demheat.scene.inputs": (),
     "demheat.scene.frozen": (),
     "demheat.scene.bodies": (),
@@ -316,108 +318,8 @@ LAYERS = {
         "demheat.cheapest",
         "demheat.sweeps",
     ),
-    # Witnesses know the engine's nouns and not the engine.
-    "references.threads": (),
-    "references.times": ("demheat.scene",),
-    "references.midpoints": ("demheat.scene", "demheat.field", "demheat.limits"),
-    "references.richardson": ("demheat.scene",),
-    "references.voxels": ("demheat.scene", "demheat.progress", "references.voxels"),
-    "references.mesh": ("demheat.scene", "demheat.progress", "demheat.limits", "references.mesh"),
-    "references.exact": (
-        "demheat.scene",
-        "demheat.error",
-        "demheat.field",
-        "demheat.tensor",
-        "demheat.method",
-        "references.times",
-        "references.midpoints",
-        "references.exact",
-    ),
-    "references.bounds": ("demheat.scene", "demheat.method", "references.exact", "references.bounds"),
-    "references.multipole": (
-        "demheat.scene",
-        "demheat.error",
-        "demheat.field",
-        "demheat.tensor",
-        "demheat.method",
-        "demheat.process_state",
-        "demheat.progress",
-        "references.threads",
-        "references.midpoints",
-        "references.exact",
-        "references.multipole",
-    ),
-    "references.fem": (
-        "demheat.scene",
-        "demheat.error",
-        "demheat.field",
-        "demheat.tensor",
-        "demheat.method",
-        "demheat.process_state",
-        "demheat.progress",
-        "demheat.limits",
-        "demheat.ranks",
-        "demheat.petsc",
-        "references.times",
-        "references.mesh",
-        "references.fem",
-    ),
-    "references.bracket": (
-        "demheat.scene",
-        "demheat.limits",
-        "demheat.process_state",
-        "demheat.progress",
-        "references.mesh",
-        "references.fem",
-        "references.bracket",
-    ),
-    "references.fft": (
-        "demheat.scene",
-        "demheat.error",
-        "demheat.field",
-        "demheat.tensor",
-        "demheat.method",
-        "demheat.process_state",
-        "demheat.progress",
-        "demheat.limits",
-        "demheat.ranks",
-        "references.threads",
-        "references.voxels",
-        "references.fft",
-    ),
-    "references.bracket.voxels": (
-        "demheat.scene",
-        "demheat.limits",
-        "demheat.process_state",
-        "demheat.progress",
-        "references.threads",
-        "references.voxels",
-        "references.fft",
-        "references.bracket",
-    ),
-    # Old names of what lies in folders now.
-    "references.series": ("references.exact.series",),
-    "references.zeta": ("references.fft.zeta",),
-    "references": (),
-    # Scenes with known answers: what reads them knows the nouns, what made them the witnesses.
-    "benchmark.parts": ("demheat.scene", "demheat.files"),
-    "benchmark.schema": (),
-    "benchmark": ("demheat.scene", "benchmark.parts"),
-    "benchmark.recipes": (
-        "demheat.scene",
-        "demheat.addition",
-        "demheat.gallery",
-        "demheat.referee",
-        "references",
-        "benchmark",
-        "benchmark.recipes",
-    ),
-    "benchmark.make": ("benchmark",),
-    "studies.harness": ("demheat", "references", "studies.harness"),
-    "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
-    # And every study itself, if it is a folder.
-    "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("demheat.fresh", "studies"),
 }
+
+LAYERS = ENGINE | BESIDE
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references", "benchmark")

@@ -9,7 +9,7 @@ import numpy as np
 
 from demheat import dem, ranks
 from demheat.conduction.balance import at_walls, linear_start, system_of
-from demheat.conduction.steady import Solution, check_solver
+from demheat.conduction.steady import Solution
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.field import Field
@@ -20,8 +20,9 @@ from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Halo, linked, numbers_of
 from demheat.ranks import Costs, check_fits, cores, give_back, here
-from demheat.scene import Scene, check_scene
+from demheat.scene import Scene
 from demheat.threads import limited
+from demheat.tiles.checks import check
 from demheat.tiles.places import NOBODY
 from demheat.tiles.slabs import slabs_of
 
@@ -78,7 +79,7 @@ def solve(
     """
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas, allow_few=allow_few)
-    _check(scene, law, wanted, tolerance)
+    check(scene, law, wanted, tolerance, knows=KNOWS)
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
     check_fits("particles", particles, BYTES * float(particles), comm)
@@ -96,18 +97,6 @@ def outlook(scene: Scene, *, particles: int = 1_000_000, **_) -> str:
         As `solve` takes it; the scene and other knobs change nothing.
     """
     return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
-
-
-def _check(scene, law, wanted, tolerance):
-    check_scene(scene)
-    check_solver("auto", tolerance)
-    if not isinstance(law, Laguerre):
-        raise ValueError(f"law = {law!r}: must be a Laguerre, whose cells each rank makes for itself")
-    scene.require(KNOWS, steady=True, domain="box", pores=False, takes=("resistance", "exchange"))
-    if scene.radiates:
-        raise NotImplementedError(f"walls that radiate: {KNOWS}")
-    law.check(scene)
-    wanted.counts(scene, law)
 
 
 def _answer(scene, law, wanted, comm, **how):

@@ -9,7 +9,7 @@ import numpy as np
 
 from demheat import dem
 from demheat.build import warn_of_twins
-from demheat.conduction.steady import AMG_UNKNOWNS, check_solver, solve_checked
+from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, unknowns
 from demheat.dem.options import Particles
@@ -17,13 +17,14 @@ from demheat.field import Field
 from demheat.laws import Laguerre
 from demheat.limits import check_memory, check_room
 from demheat.progress import announced, stage
-from demheat.scene import Scene, check_scene
+from demheat.scene import Scene
 from demheat.scene.inputs import whole
 from demheat.streamed.equations import joined, number_all
 from demheat.streamed.field import field_of
 from demheat.streamed.memory import expected, on_disk
 from demheat.streamed.store import Parts, Store, checked_folder
 from demheat.tiles.cells import cells_of, check_filled, conformed, packed
+from demheat.tiles.checks import check
 from demheat.tiles.slabs import most_slabs, slabs_of
 
 KNOWS = "demheat.streamed solves steady conduction in boxes without pores, by the discrete element method"
@@ -88,7 +89,7 @@ def solve(
     """
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas)
-    _check(scene, law, wanted, tolerance)
+    check(scene, law, wanted, tolerance, knows=KNOWS)
     path, cuts = checked_folder(folder), _cuts(scene, wanted.particles, slabs)
     number = unknowns(scene, law, wanted)
     # The packing may be in the cache: what it would take is said, not asked for.
@@ -97,18 +98,6 @@ def solve(
     needed = expected(number, cuts[0], wanted.particles / wanted.counts(scene, law).prod())
     with announced("DEM in slabs", needed):
         return _answer(scene, law, wanted, Parts(scene, Store(path), cuts, []), tolerance, needed)
-
-
-def _check(scene, law, wanted, tolerance):
-    check_scene(scene)
-    check_solver("auto", tolerance)
-    if not isinstance(law, Laguerre):
-        raise ValueError(f"law = {law!r}: must be a Laguerre, whose cells can be made by slabs")
-    scene.require(KNOWS, steady=True, domain="box", pores=False, takes=("resistance", "exchange"))
-    if scene.radiates:
-        raise NotImplementedError(f"walls that radiate: {KNOWS}")
-    law.check(scene)
-    wanted.counts(scene, law)
 
 
 def _cuts(scene, particles, slabs):

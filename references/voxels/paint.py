@@ -19,6 +19,7 @@ from demheat.progress import stage
 from demheat.scene import Layer, Scene, Shape, Sphere
 from demheat.scene.shapes.solid import Solid
 from references.voxels import kernels
+from references.voxels.cut import laminate_tensors, phase_parts
 from references.voxels.laminates import cut_tensors, packed
 from references.voxels.planes import kept, reaches
 from references.voxels.solids import cut_voxels, window
@@ -185,14 +186,14 @@ def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
         return Voxels(spacing, phase, conductivity, *uncut, count / phase.size, tensors)
     parent = scene.parents()
     cut, first, rank = np.unique(cuts.index, return_index=True, return_inverse=True)
-    part = _phase_parts(len(conductivity), rank, cuts, parent, parent[cuts.phase[first]])
+    part = phase_parts(len(conductivity), rank, cuts, parent, parent[cuts.phase[first]])
     count = count - np.bincount(phase.ravel()[cut], minlength=len(conductivity))
     fractions = (count + np.bincount(part[1], part[2], minlength=len(conductivity))) / phase.size
     moment = np.stack([np.bincount(rank, column, len(cut)) for column in cuts.moment.T], axis=1)
     if scene.anisotropic:
         own = cut_tensors(part, scene.tensors, moment)
     else:
-        own = _laminate(part, conductivity, moment)
+        own = laminate_tensors(part, conductivity, moment)
     return Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
 
 
@@ -377,33 +378,3 @@ def _(shape: Layer, grid, spacing, number, *, cutting):
     moment = np.zeros((index.size, 6))
     moment[:, axis] = np.prod(np.delete(spacing, axis))
     return Cuts(index.ravel(), part.ravel(), moment, np.full(index.size, number))
-
-
-def _phase_parts(n_phases, rank, cuts, parent, background):
-    """Fraction of each phase in each cut voxel, as (voxel, phase, fraction) columns.
-
-    A voxel starts as its background; each surface in it moves its fraction from the phase it was painted on.
-    """
-    voxels = np.concatenate([np.arange(len(background)), rank, rank])
-    phases = np.concatenate([background, cuts.phase, parent[cuts.phase]])
-    moved = np.concatenate([np.ones(len(background)), cuts.fraction, -cuts.fraction])
-    key, inverse = np.unique(voxels * n_phases + phases, return_inverse=True)
-    total = np.bincount(inverse, moved)
-    # Touching inclusions leave nothing of their background but rounding and quadrature error.
-    total[total < kernels.FULL] = 0.0
-    voxel = key // n_phases
-    return voxel, key % n_phases, total / np.bincount(voxel, total)[voxel]
-
-
-def _laminate(part, conductivities, moment):
-    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal."""
-    voxel, phase, fraction = part
-    # A pore blocks the normal direction; the smallest normal number stands for its zero conductivity.
-    resistance = fraction / np.maximum(conductivities[phase], np.finfo(float).tiny)
-    arithmetic = np.bincount(voxel, fraction * conductivities[phase])
-    with np.errstate(over="ignore"):
-        harmonic = 1.0 / np.bincount(voxel, resistance)
-    direction = moment / moment[:, :3].sum(axis=1, keepdims=True)
-    tensors = -(arithmetic - harmonic)[:, None] * direction
-    tensors[:, :3] += arithmetic[:, None]
-    return tensors

@@ -15,6 +15,8 @@ from studies.harness.cost import measured
 DIAMETER, COLD, HOT = 0.1, 20.0, 200.0
 METAL = Material(185.0, density=2700.0, heat_capacity=900.0)
 CENTER = np.full((1, 3), DIAMETER / 2)
+# Of figure 7, s.
+CENTER_TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000, 1_000_000)
 # The laws of contacts, up to the paper's number of elements.

@@ -20,8 +20,9 @@ from demheat import referee
 from studies.common import paper_network, sphere_in_time
 from studies.common.paper_network import NAME, WALLED
 from studies.common.paper_variants import Variant, parted
+from studies.common.sphere_in_time import CENTER_TIMES as TIMES
 from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
-from studies.fig07_sphere.means import PAPER, TIGHTER, TIMES, network_errors, plain
+from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.cells import cell
 from studies.harness.pick import pick, present
 

@@ -7,8 +7,9 @@ import numpy as np
 from studies.common import sphere_in_time
 from studies.common.paper_looks import draw_variants
 from studies.common.paper_variants import parted
+from studies.common.sphere_in_time import CENTER_TIMES as TIMES
 from studies.common.sphere_looks import LOOKS
-from studies.fig07_sphere.means import PAPER, TIMES, network_errors, plain
+from studies.fig07_sphere.means import PAPER, network_errors, plain
 from studies.harness.cells import numbers
 from studies.harness.figures import BLACK
 

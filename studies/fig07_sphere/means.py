@@ -8,7 +8,6 @@ from studies.harness.pick import pick
 from studies.harness.store import printed
 
 PAPER = printed("fig07_sphere")
-TIMES = (0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0, 25.0, 30.0)
 # Sizes of quadratic elements that are marched with a tenth of the temporal error.
 TIGHTER = {size: ACCURACY["fem"] / 10 for size in (SIZES[2][0], SIZES[2][2])}
 

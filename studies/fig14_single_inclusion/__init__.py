@@ -10,16 +10,21 @@ centres, C_t between isothermal walls, at the other methods' numbers of particle
 packings, walls and calibrations, at the paper's number (`studies/common/paper_network.py` says what they are).
 """
 
+from importlib import import_module
+
 from demheat import referee
 from demheat.gallery import EDGE, sphere_in_cube
 from studies.common import paper_network
-from studies.common.paper_network import NAME, unscaled
+from studies.common.paper_network import NAME
 from studies.common.paper_variants import best_variant, parted, variant_errors, variants, worst_error
-from studies.fig14_single_inclusion.means import PAPER, SCENES, WORDS, exact_of, label
+from studies.fig14_single_inclusion.means import PAPER, exact_of
+from studies.fig14_single_inclusion.scenes import FRACTIONS, SCENES, WORDS
 from studies.harness import methods
 from studies.harness.pick import extrapolated, pick, present, worst
 
-FRACTIONS = {"third": methods.THIRD, "half": methods.HALF}
+# What rows of the paper's network run, by this name: others do not change with it.
+OWN = "network"
+MODULES = {OWN: "studies.fig14_single_inclusion.rows"}
 CURVE = (0.01, 0.03, 0.1, 0.3, 1.0, 3.0, 10.0, 30.0, 100.0)
 # What stands beside the methods that every study compares.
 DEM_BESIDE = ("dem-plain", "dem-calibrated", "dem-arithmetic")
@@ -64,7 +69,7 @@ def _cases():
     for name in ("maxwell", "exact"):
         yield from (methods.case(name, scene="third", contrast=contrast) for contrast in CURVE)
         yield methods.case(name, scene="half", contrast=10.0)
-    yield from paper_network.cases(NETWORKS)
+    yield from ({**case, "method": OWN} for case in paper_network.cases(NETWORKS))
 
 
 CASES = list(_cases())
@@ -83,28 +88,17 @@ def QUICK(case):
 
 def run(name, scene=None, contrast=None, periodic=False, *, method, **solver):
     """Solve and compare with the exact value; of the paper's network, all scenes by one packing."""
-    if name == NAME:
-        return _network(**solver)
+    if method == OWN:
+        return import_module(MODULES[OWN]).network_row(**solver)
     fraction = FRACTIONS[scene]
     cube = sphere_in_cube(contrast, fraction=fraction, periodic=periodic)
     return methods.solve_row(cube, methods.exact_ratio(fraction, contrast), method=method, **solver)
 
 
-def _network(packing, held, particles, seed):
-    scenes = {
-        label(*where): sphere_in_cube(where[1], fraction=FRACTIONS[where[0]], periodic=held == "periodic")
-        for where in SCENES
-    }
-    made = paper_network.packed((EDGE,) * 3, packing, held, particles, seed)
-    fields, row = paper_network.solved(scenes, made, held)
-    return row | {f"k_{where}": unscaled(field, methods.MATRIX) for where, field in fields.items()}
-
-
 def warm_up(name, scene=None, contrast=None, periodic=False, *, method, **solver):
     """Load the solver; make and keep the network's packing, which is not part of what is compared."""
-    if name == NAME:
-        paper_network.packed((EDGE,) * 3, **solver)
-        paper_network.warm_up(solver["held"])
+    if method == OWN:
+        import_module(MODULES[OWN]).warm_up(**solver)
     else:
         methods.warm_up(method, **solver)
 

@@ -6,7 +6,8 @@ import numpy as np
 
 from studies.common.paper_looks import draw_variants
 from studies.common.paper_variants import best_variant, interval, parted, values, variant_errors
-from studies.fig14_single_inclusion.means import CONTRASTS, PAPER, WORDS, exact_of
+from studies.fig14_single_inclusion.means import PAPER, exact_of
+from studies.fig14_single_inclusion.scenes import CONTRASTS, WORDS
 from studies.harness import methods
 from studies.harness.figures import BLACK, GREY, LOOK, PINK, look
 from studies.harness.pick import finest, pick

@@ -1,24 +1,10 @@
-"""What is printed of the sphere in a cube, its scenes in words, and what is exact of them."""
+"""What is printed of the sphere in a cube, and what is exact of it."""
 
+from studies.fig14_single_inclusion.scenes import SCENES, label
 from studies.harness.pick import pick
 from studies.harness.store import printed
 
 PAPER = printed("fig14_single_inclusion")
-CONTRASTS = (0.01, 0.1, 10.0, 100.0)
-SCENES = [*(("third", contrast) for contrast in CONTRASTS), ("half", 10.0)]
-# Contrasts of the paper's figure, as columns of the network's rows end.
-WORDS = tuple(f"{contrast:g}" for contrast in CONTRASTS)
-
-
-def label(scene, contrast):
-    """Scene in a word, as columns of the network's rows end.
-
-    Parameters
-    ----------
-    scene : {"third", "half"}
-    contrast : float
-    """
-    return f"{contrast:g}" if scene == "third" else scene
 
 
 def exact_of(df, name="exact"):

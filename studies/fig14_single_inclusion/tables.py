@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from studies.common.paper_variants import best_variant, lines_of, parted, told_of, variant_errors
-from studies.fig14_single_inclusion.means import CONTRASTS, PAPER, WORDS, exact_of
+from studies.fig14_single_inclusion.means import PAPER, exact_of
+from studies.fig14_single_inclusion.scenes import CONTRASTS, WORDS
 from studies.harness.figures import LOOK
 from studies.harness.methods import resolution
 from studies.harness.pick import mean_errors, pick, with_size

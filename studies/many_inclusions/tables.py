@@ -9,6 +9,7 @@ from studies.common.paper_variants import PACKED, cell
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
 from studies.harness.table import markdown
+from studies.many_inclusions.means import network_errors
 
 SHOWN = ("unknowns", "iterations", "cpu_s")
 
@@ -69,8 +70,6 @@ def told(df, paper):
         Printed numbers.
     """
     import pandas as pd
-
-    from studies.many_inclusions.means import network_errors
 
     made, said = network_errors(df), []
     if made:

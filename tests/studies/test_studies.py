@@ -111,7 +111,7 @@ def test_a_new_drawing_repeats_no_row(name, monkeypatch):
 
 
 def test_code_of_a_row_is_that_of_its_method(monkeypatch):
-    study = runner.load("stability")
+    study = runner.load("fig14_single_inclusion")
     codes = {
         method: provenance.code_hash(study.__file__, methods.path_of(method))
         for method in ("dem", "fem", "fft", "bounds")

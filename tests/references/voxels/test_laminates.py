@@ -4,8 +4,9 @@ import numpy as np
 from numpy.testing import assert_allclose
 
 from demheat import Layer, Material, Scene, Sphere, orthotropic
+from references.voxels.cut import laminate_tensors
 from references.voxels.laminates import cut_tensors, laminated, packed, unpacked, with_own
-from references.voxels.paint import _laminate, turned, voxelise
+from references.voxels.paint import turned, voxelise
 
 ONE, OTHER = (
     np.array(orthotropic(*k, rotation=r)) for k, r in (((1, 4, 9), (0.3, -0.5, 0.8)), ((3, 1, 0.2), (1, 0, 2)))
@@ -40,7 +41,7 @@ def test_of_numbers_it_is_the_formula_for_numbers():
     spread = rng.random((5, 3, 3))
     moment = packed(spread @ spread.transpose(0, 2, 1))
     tensors = conductivity[:, None, None] * np.eye(3)
-    assert_allclose(cut_tensors(part, tensors, moment), _laminate(part, conductivity, moment), atol=1e-13)
+    assert_allclose(cut_tensors(part, tensors, moment), laminate_tensors(part, conductivity, moment), atol=1e-13)
 
 
 def test_voxels_of_a_tensor_have_their_own():

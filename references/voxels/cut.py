@@ -1,0 +1,58 @@
+"""Voxels that surfaces cut: how much they hold of each phase, and what that conducts as a laminate."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from references.voxels import kernels
+
+
+def phase_parts(n_phases, rank, cuts, parent, background):
+    """Fraction of each phase in each cut voxel, as (voxel, phase, fraction) columns.
+
+    A voxel starts as its background; each surface in it moves its fraction from the phase it was painted on.
+
+    Parameters
+    ----------
+    n_phases : int
+    rank : (m,) int array
+        Which cut voxel each surface is in.
+    cuts : Cuts
+        The m surfaces, of `references.voxels.paint`.
+    parent : (n_phases,) int array
+        Phase that each was painted on.
+    background : (n,) int array
+        Of the cut voxels.
+    """
+    voxels = np.concatenate([np.arange(len(background)), rank, rank])
+    phases = np.concatenate([background, cuts.phase, parent[cuts.phase]])
+    moved = np.concatenate([np.ones(len(background)), cuts.fraction, -cuts.fraction])
+    key, inverse = np.unique(voxels * n_phases + phases, return_inverse=True)
+    total = np.bincount(inverse, moved)
+    # Touching inclusions leave nothing of their background but rounding and quadrature error.
+    total[total < kernels.FULL] = 0.0
+    voxel = key // n_phases
+    return voxel, key % n_phases, total / np.bincount(voxel, total)[voxel]
+
+
+def laminate_tensors(part, conductivities, moment):
+    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal.
+
+    Parameters
+    ----------
+    part : tuple of (m,) array
+        As of `phase_parts`.
+    conductivities : (n_phases,) float array, W/(m K)
+    moment : (n, 6) float array
+        Mean of n n over the surfaces in each cut voxel, times their area.
+    """
+    voxel, phase, fraction = part
+    # A pore blocks the normal direction; the smallest normal number stands for its zero conductivity.
+    resistance = fraction / np.maximum(conductivities[phase], np.finfo(float).tiny)
+    arithmetic = np.bincount(voxel, fraction * conductivities[phase])
+    with np.errstate(over="ignore"):
+        harmonic = 1.0 / np.bincount(voxel, resistance)
+    direction = moment / moment[:, :3].sum(axis=1, keepdims=True)
+    tensors = -(arithmetic - harmonic)[:, None] * direction
+    tensors[:, :3] += arithmetic[:, None]
+    return tensors
