@@ -32,7 +32,7 @@ COARSE = {"dem": 2.5, "fft": 4.0, "fem": 0.4}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "share begun again": "none should be; one in a hundred would cost no more than the clock's noise",
-    "conductivity of two ranks against one": "what is asked of one answer by two programs; equations are solved to less",
+    "conductivity of two ranks against one": "asked of two programs with one answer; tolerances are lower",
     "off one": "two clocks that are 15 % off, either way, over a factor of 20 in inclusions and their caches",
 }
 # Seconds over seconds, which their names do not tell.
