@@ -31,12 +31,12 @@ def run(
     """
     with Path(log).open("wb") as stream:
         process = subprocess.Popen(words, stdout=stream, stderr=stream, start_new_session=True, env=environment)
-        watch = _watch(process)
+        guard = watch(process.pid)
         try:
             return process.wait(limit)
         finally:
             _end(process)
-            _dismiss(watch)
+            dismiss(guard)
 
 
 def ending(code: int, log: Path) -> str:
@@ -69,13 +69,18 @@ def die_with_parent(parent: int) -> None:
         os._exit(1)
 
 
-def _watch(process):
+def watch(pid: int) -> subprocess.Popen | None:
     """Have a shell end a process and all that it started if this process is killed; None without a shell.
 
     The kernel ends the process itself then, see `die_with_parent`, but not what that has started. The shell hears of it
     by the end of a pipe of which nobody else holds the other end.
+
+    Parameters
+    ----------
+    pid : int
+        Of a process that leads a session of its own.
     """
-    words = ["sh", "-c", 'read word; kill -9 -"$0"', str(process.pid)]
+    words = ["sh", "-c", 'read word; kill -9 -"$0"', str(pid)]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     try:
         return subprocess.Popen(words, stdin=subprocess.PIPE, start_new_session=True, **quiet)
@@ -83,17 +88,33 @@ def _watch(process):
         return None
 
 
-def _dismiss(watch):
-    if watch is not None:
-        watch.kill()
-        watch.wait()
-        watch.stdin.close()
+def dismiss(guard: subprocess.Popen | None) -> None:
+    """End what `watch` returned.
+
+    Parameters
+    ----------
+    guard : Popen or None
+    """
+    if guard is not None:
+        guard.kill()
+        guard.wait()
+        guard.stdin.close()
+
+
+def end_group(pid: int) -> None:
+    """Kill a process that leads a session, and all that it started.
+
+    Parameters
+    ----------
+    pid : int
+    """
+    try:
+        os.killpg(pid, signal.SIGKILL)
+    except (ProcessLookupError, PermissionError):
+        pass
 
 
 def _end(process):
-    """Kill a process and all that it started."""
-    try:
-        os.killpg(process.pid, signal.SIGKILL)
-    except (ProcessLookupError, PermissionError):
-        pass
+    """Kill a process and all that it started, and wait for it."""
+    end_group(process.pid)
     process.wait()

@@ -12,6 +12,7 @@ from demheat import fresh
 from studies import contents
 from studies.harness import jobs, quiet, runner, sound
 from studies.harness.cluster import spreading
+from studies.harness.forked import forking
 from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
@@ -131,9 +132,9 @@ def _run(arguments):
         knobs["method"] = arguments.method
         runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
-    # Rows side by side would wait for each other.
-    knobs["compute"] = quiet.quietly(runner.spawn_row, seconds=arguments.wait, say=_say)
-    with spreading(arguments.scheduler, arguments.workers, _say) as spread:
+    with spreading(arguments.scheduler, arguments.workers, _say) as spread, forking() as compute:
+        # Rows side by side would wait for each other.
+        knobs["compute"] = quiet.quietly(compute, seconds=arguments.wait, say=_say)
         for name in chosen:
             path = runner.run_study(name, arguments.out, spread=spread, **knobs)
             status |= _show(name, path)

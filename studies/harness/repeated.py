@@ -12,7 +12,7 @@ from studies.harness.cost import measured
 from studies.harness.methods import packings_in
 
 # A run is repeated until there are so many, or they took so long together, s.
-RUNS, SECONDS = 5, 1.0
+RUNS, SECONDS = 5, 0.5
 # Where values are kept from call to call that a solve pays for; what the harness keeps costs no row anything.
 KEEPERS, HARNESS = ("references", "studies"), "studies.harness"
 PEAK = ("peak_mib", "base_mib", "peak_by")

@@ -1,4 +1,4 @@
-"""Run a study: each case in a fresh process, timed after a warm-up, kept row by row.
+"""Run a study: each case in a process of its own, timed after a warm-up, kept row by row.
 
 A study is a module with
 
@@ -29,6 +29,7 @@ import sys
 import tempfile
 import time
 import traceback
+from functools import partial
 from pathlib import Path
 
 from demheat import fresh
@@ -262,8 +263,8 @@ def _short(key):
     return key.split(",method=")[0]
 
 
-def spawn_row(name, study, case, *, environment=None):
-    """Compute a row in a fresh process; whatever happens to that process, a row comes back.
+def spawn_row(name, study, case, *, environment=None, start=None):
+    """Compute a row in a process of its own; whatever happens to that process, a row comes back.
 
     Parameters
     ----------
@@ -273,6 +274,8 @@ def spawn_row(name, study, case, *, environment=None):
     case : dict
     environment : mapping of str to str, optional
         Of that process; default that of this one.
+    start : callable (words, log, limit) -> int, optional
+        Does what the command line says with these words, in a process of its own; default: a fresh one.
 
     Returns
     -------
@@ -283,9 +286,9 @@ def spawn_row(name, study, case, *, environment=None):
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
-        words = ["row", name, key, "--json", str(answer), "--parent", str(os.getpid())]
+        words = ["row", name, key, "--json", str(answer)]
         try:
-            code = fresh.run([sys.executable, "-m", "studies", *words], log, limit=limit, environment=environment)
+            code = (start or partial(_started, environment=environment))(words, log, limit)
         except subprocess.TimeoutExpired:
             note = f"not finished after {limit:g} s"
             return {**base, "status": "timeout", "note": note, **provenance(study, case)}
@@ -293,6 +296,11 @@ def spawn_row(name, study, case, *, environment=None):
             return json.loads(answer.read_text(encoding="utf-8"))
         except (OSError, ValueError):
             return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study, case)}
+
+
+def _started(words, log, limit, *, environment):
+    words = [sys.executable, "-m", "studies", *words, "--parent", str(os.getpid())]
+    return fresh.run(words, log, limit=limit, environment=environment)
 
 
 def compute_row(study, case, *, warm=True):

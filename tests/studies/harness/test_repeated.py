@@ -36,7 +36,7 @@ def test_the_least_of_five_counts(monkeypatch):
     assert cost["peak_mib"] == 8.0 and cost["base_mib"] == 55.0
 
 
-@pytest.mark.parametrize(("takes", "calls"), [(0.1, 5), (0.3, 4), (0.6, 2), (1.0, 1), (7.0, 1)])
+@pytest.mark.parametrize(("takes", "calls"), [(0.05, 5), (0.15, 4), (0.3, 2), (0.5, 1), (7.0, 1)])
 def test_a_long_run_is_not_repeated(monkeypatch, takes, calls):
     scripted(monkeypatch, *[(takes, 0.0)] * 9, takes=takes)
     _, cost = repeated.measured_again(lambda: {}, {})

@@ -290,7 +290,7 @@ def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):
     """The rows done stay, the new one is kept elsewhere, a line says where; with room again the run goes on."""
     for name in ("NUMBA_THREADING_LAYER", "OMP_WAIT_POLICY"):
         monkeypatch.setenv(name, "")
-    monkeypatch.setattr(runner, "spawn_row", lambda name, *row: runner.compute_row(*row, warm=False))
+    monkeypatch.setattr(runner, "spawn_row", lambda name, *row, **knobs: runner.compute_row(*row, warm=False))
     tiny.run("--quick")
     before, writes = tiny.rows(), []
     capsys.readouterr()
