@@ -10,7 +10,7 @@ TIMEOUT = 3600.0
 BESIDE = ("dem-calibrated", "fem-straight", "fem-p1", "fft-plain", "multipole")
 PARTICLES = (1_000, 3_000, 10_000, 30_000, 100_000)
 VOXELS = (32, 64, 128)
-SIZES = (0.2, 0.1, 0.05)
+SIZES = (0.2, 0.1, 0.07, 0.05)
 # By knob, or by name where a method needs others; sizes in edges of the cube.
 USUAL = {
     "particles": PARTICLES,
@@ -20,10 +20,10 @@ USUAL = {
     "fem-p1": (0.1, 0.05, 0.025),
     "voxels": VOXELS,
     "fft-plain": (32, 128),
-    "order": (1, 7, 15),
+    "order": (1, 3, 7, 15),
 }
 CLOSELY = USUAL | {
-    "dem-calibrated": (1_000, 10_000, 100_000),
+    "dem-calibrated": (1_000, 10_000),
     "size": (0.2, 0.14, *SIZES[1:], 0.035),
     "fem-straight": (0.1, 0.05, 0.035),
     "fft": (*VOXELS, 256),
@@ -32,11 +32,11 @@ CLOSELY = USUAL | {
 # unknowns, would take as long as a third of all rows together, linear ones as long as all others of the scene.
 BY_SCENE = {
     "third": CLOSELY,
-    "half": CLOSELY | {"particles": (*PARTICLES, 200_000), "order": (3, 15, 31)},
+    "half": CLOSELY | {"particles": (*PARTICLES, 200_000), "order": (3, 7, 15, 31)},
     # Iterations on laminate voxels go with the root of the contrast.
     "third at 1000": USUAL | {"fft-em": VOXELS[:2]},
     "third at infinity": USUAL | {"fft": VOXELS[:1], "fft-em": VOXELS[:1]},
-    "half at 100": USUAL | {"order": (3, 15, 31)},
+    "half at 100": USUAL | {"order": (3, 7, 15, 31)},
     "polydisperse": USUAL | {"size": (0.2, 0.05), "fem-straight": (0.2,), "fem-p1": (0.1, 0.025)},
     "83 spheres": USUAL
     | {"fft": (*VOXELS, 256), "size": (1 / 20, 1 / 34), "fem-straight": (1 / 20,), "fem-p1": (1 / 20, 1 / 40)},

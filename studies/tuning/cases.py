@@ -27,7 +27,7 @@ FINE = {8_000: (0.372, 0.5, 0.7, 0.85, 1.0, 1.4), 30_000: (0.5, 0.85, 1.0), 100_
 # Elements know these families to some 1e-5: too little beside the finest packings.
 MOST_MESHED = 8_000
 # Of the order: packings of each number of particles, and what is varied.
-PACKINGS = {1_000: 8, 4_000: 8, 16_000: 6, 100_000: 3}
+PACKINGS = {1_000: 8, 2_000: 8, 4_000: 8, 8_000: 8, 16_000: 6, 32_000: 4, 100_000: 3}
 COARSE = (1_000, 4_000, 16_000)
 SPHERE = {"shape": "sphere", "contrast": 10.0, "constant": None, "factor": 1.0}
 BENT = SPHERE | {"constant": "CURVATURE", "factor": 1.0}
@@ -57,7 +57,7 @@ def cases():
             allowed = FINE.get(particles, factors)
             yield from (_varied(constant, factor, particles) for factor in factors if factor in allowed)
     for probe in PROBES:
-        for particles in PACKINGS if probe in (SPHERE, BENT) else COARSE:
+        for particles in PACKINGS if probe == SPHERE else COARSE:
             yield {"part": "order", **probe, "particles": particles, "method": "dem"}
     yield {"part": "order", **SPHERE, "shape": "layer", "particles": 1_000, "method": "dem"}
 
