@@ -51,7 +51,7 @@ def our_beds():
 
 
 def thinned(cases):
-    """Cases without those that say little more: one body at every resolution, some at the two coarsest, others at one or none.
+    """Cases without those that say little more: one body at every resolution, some at two, others at one or at none.
 
     Parameters
     ----------
