@@ -10,7 +10,7 @@ HEADLINES = (
     ("fig03_calibration", "1e5 particles, as in the paper: C_t"),
     ("time_integrators", "particle-steps per second over LAMMPS with its usual"),
     ("estimates", "DEM: share of exact conductivities inside of the interval"),
-    ("brackets", "Exact values outside of their brackets, of 100 scenes"),
+    ("brackets", "Exact values outside of their brackets, of"),
     ("hard_cases", "Silently wrong"),
 )
 

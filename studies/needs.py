@@ -1,6 +1,6 @@
 """What a scene needs: closed forms, mirror planes, axes alike, one set-up for the tensor, spheres that cannot matter.
 
-Every scene of the gallery and a few more, each for what it triggers and what that saves of the diagonal of its
+Scenes of the gallery and a few more, each for what it triggers and what that saves of the diagonal of its
 conductivity tensor: by three solves of the whole; by one set-up for all three loads; and by as few loads as the axes
 alike leave, each on the part between mirror planes with elements of the same size. Packings are made before and counted
 nowhere. Where spheres are left out, `multipole` says what that changes.
@@ -52,8 +52,6 @@ SCENES = {
     "simple cubic, periodic": gallery.simple_cubic,
     "body-centred, periodic": gallery.body_centred,
     "face-centred, periodic": gallery.face_centred,
-    "83 spheres": lambda: gallery.random_dispersion(periodic=False),
-    "83 spheres, periodic": gallery.random_dispersion,
     "50 spheres, periodic": lambda: gallery.dispersion(50, **SILICA),
 }
 CASES = [

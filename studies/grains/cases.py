@@ -1,11 +1,11 @@
 """What the study looks at; light, since every listing of studies loads it."""
 
 KINDS = ("sc", "bcc", "fcc")
-CONTRASTS = (10.0, 100.0, 1000.0, 10_000.0)
+CONTRASTS = (10.0, 100.0, 1000.0)
 # Between surfaces, over the radius; of contacts that of the disc.
-GAPS = (0.003, 0.01, 0.03, 0.1, 0.3)
-CONTACTS = (0.02, 0.05, 0.1, 0.2, 0.3)
-FRACTIONS, REALISATIONS = (0.4, 0.5, 0.55), (0, 1, 2)
+GAPS = (0.003, 0.03, 0.1, 0.3)
+CONTACTS = (0.02, 0.05, 0.1, 0.3)
+FRACTIONS, REALISATIONS = (0.4, 0.55), (0, 1, 2)
 # Spheres of a bed; largest radius over the smallest; least distance of their surfaces over the mean diameter.
 SPHERES, RATIO, APART = 50, 1.5, 0.01
 # Contrasts from here on are the law's, and gaps up to here.

@@ -14,7 +14,7 @@ from studies.harness.pick import pick
 COLOURS = dict(zip(KINDS, (BLUE, GREEN, ORANGE), strict=True))
 # Between surfaces, over the radius: as the networks here have it.
 WIDEST = Gap(conductivity=1.0).widest
-MARKS = {10.0: "o", 100.0: "s", 1000.0: "^", 10_000.0: "v"}
+MARKS = {10.0: "o", 100.0: "s", 1000.0: "^"}
 
 
 def draw(df):
@@ -62,7 +62,7 @@ def _second(axes, rows):
 def _contacts(axes, rows):
     bare = rows[rows["contrast"].isna()].sort_values("contact")
     axes.plot(bare["contact"], bare["error_percent"], "o-", color=BLACK, label="vacuum")
-    for (contrast, group), colour in zip(rows.groupby("contrast"), (GREY, PINK, RED, BLUE), strict=False):
+    for (contrast, group), colour in zip(rows.groupby("contrast"), (GREY, PINK, RED), strict=False):
         group = group.sort_values("contact")
         axes.plot(group["contact"], group["error_percent"], marker=MARKS[contrast], color=colour, label=f"{contrast:g}")
     axes.axhline(0, color=BLACK, linewidth=0.8)

@@ -8,22 +8,26 @@ VOXELS = (16, 32, 64, 128)
 # Elements of bricks are dear beyond this.
 MOST = {"fem-p1": 32}
 ON_IMAGES = ("fft-plain", "fem-p1")
+STRAIGHT = "fem-straight"
 ON_BODIES = {
     "dem": ("particles", (2_000, 20_000, 100_000)),
     "fem": ("size", (0.15, 0.08, 0.05)),
     # On the meshes of 0.08, 0.05 and 0.03 stand the elements of others.
     "fem-p1": ("size", (0.08, 0.05, 0.03)),
-    "fem-straight": ("size", (0.08, 0.05)),
+    STRAIGHT: ("size", (0.08, 0.05)),
     "fft": ("voxels", (32, 64, 128)),
 }
 # Laws that programs of grains print, and layers of grains or cells; at random there is one size.
 PRINTED = ("root of area", "Hertz radius", "Hertz area", "whole grain", "cylinder")
-BED_LAYERS = {
-    "chain": (10, 40), "unlike chain": (10,), "simple cubic": (8, 16), "body-centred": (6, 12), "random bed": (None,)
-}  # fmt: skip
+BED_LAYERS = {"chain": 10, "unlike chain": 10, "simple cubic": 8, "body-centred": 6, "random bed": None}
 # What refines a program, and the sign with which it does; bodies at every resolution, at two, and at one.
 REFINES = {"n": 1, "voxels": 1, "particles": 1, "size": -1}
-EVERY, TWO = ("sphere 10",), ("half 10", "dispersion 10", "pore")
+EVERY, TWO = ("sphere 10",), ("half 10", "dispersion 10")
+# What another body says as well; and bodies of programs that are given our mesh, on which all linear elements have one
+# answer.
+ALIKE = ("layers along", "dispersion 0.1")
+MESHED = ("layers off the grid", "sphere 0.01", "half 10", "dispersion 10")
+HIGHEST = 5
 QUICK_SCENES = ("sphere 10", "layers off the grid")
 
 
@@ -42,13 +46,12 @@ def ours():
 def our_beds():
     """Scene and layers of the beds that programs of grains have: the same by `demheat.grains`."""
     for law in PRINTED:
-        for arrangement, layers in BED_LAYERS.items():
-            for n in layers:
-                yield f"{arrangement}, {law}", {"n": n} if n else {}
+        for arrangement, n in BED_LAYERS.items():
+            yield f"{arrangement}, {law}", {"n": n} if n else {}
 
 
 def thinned(cases):
-    """Cases without those that say little more: one body at every resolution, some at the two coarsest, others at one.
+    """Cases without those that say little more: one body at every resolution, some at two, others at one or at none.
 
     Parameters
     ----------
@@ -65,8 +68,9 @@ def thinned(cases):
 
 
 def _kind(case):
-    """What two resolutions of one program share."""
-    return tuple((key, value) for key, value in case.items() if key not in REFINES and key != "scene")
+    """What two resolutions of one program share; each bed of grains has numbers of layers of its own."""
+    here = ("scene", *REFINES) if case["scene"] in SCENES else REFINES
+    return tuple((key, value) for key, value in case.items() if key not in here)
 
 
 def _fineness(case):
@@ -74,11 +78,17 @@ def _fineness(case):
 
 
 def _levels(case):
-    """How many resolutions a body is worth; a bed of grains has its own numbers of layers, all exact."""
-    scene = case["scene"]
-    if scene in EVERY or scene not in SCENES:
+    """How many resolutions a body is worth; beds of grains are exact with few layers as with many."""
+    scene, given, order = case["scene"], case["given"], case.get("order", 1)
+    if scene in EVERY:
         return math.inf
+    if scene not in SCENES:
+        return 1
     # Elements of a higher degree on the same mesh or image: as well on any body as on one.
-    if case["given"] in ("mesh", "image") and case.get("order", 1) > 1:
+    bent = given in ("mesh", "image") and order > 1 or case["name"] == STRAIGHT
+    # Of a program that has several degrees on the body the highest.
+    low = given == "body" and 1 < order < HIGHEST and scene not in TWO and case["name"] not in ON_BODIES
+    meshed = case["name"] == "fem-p1" and given == "body" or given == "mesh"
+    if bent or low or scene in ALIKE or (meshed and scene not in MESHED):
         return 0
-    return 2 if scene in TWO else 1
+    return 2 if scene in TWO and not meshed else 1

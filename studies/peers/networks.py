@@ -19,10 +19,10 @@ SEED = 0
 RESIDUAL = 1e-10
 # Particles, by body; the error of the network is not at stake, so few bodies do.
 SCENES = {
-    "sphere 10": (2_000, 20_000, 100_000, 1_000_000),
-    "sphere 1000": (20_000, 100_000),
-    "half 10": (20_000, 100_000),
-    "dispersion 10": (20_000, 100_000),
+    "sphere 10": (20_000, 100_000, 1_000_000),
+    "sphere 1000": (20_000,),
+    "half 10": (20_000,),
+    "dispersion 10": (20_000,),
 }
 
 

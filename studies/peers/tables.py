@@ -21,7 +21,7 @@ DISC = ", disc"
 # What is asked of a program, and the bodies whose rows answer it.
 ABILITIES = {
     "one phase": ("homogeneous",),
-    "layers on the grid": ("layers across", "layers along"),
+    "layers on the grid": ("layers across",),
     "layers off it": ("layers off the grid",),
     "sphere": ("sphere 10",),
     "contrast 0.01": ("sphere 0.01",),

@@ -1,4 +1,4 @@
-"""Rows of scaling that time a run as a whole: with an earlier code, in time, from an empty cache of compiled code."""
+"""Rows of scaling that time a run as a whole: with an earlier code, from an empty cache of compiled code."""
 
 from __future__ import annotations
 
@@ -8,13 +8,9 @@ import subprocess
 import sys
 import tarfile
 import tempfile
-from dataclasses import replace
 from io import BytesIO
 from pathlib import Path
 
-from demheat.scene import Material
-from studies.common import silica_epoxy
-from studies.harness import methods
 from studies.harness.cost import measured
 
 ROOT = Path(__file__).parents[2]
@@ -43,10 +39,6 @@ scene = Scene(size=(0.1, 0.1, 0.1), matrix=Material(conductivity=33.0),
 solve(scene, particles={particles}, seed={seed})
 print(time.perf_counter() - begun)
 """
-# Of the spheres and the matrix in time.
-EPOXY, SILICA = Material(0.195, 1200.0, 1100.0), Material(1.5, 2200.0, 740.0)
-# Of the time that heat takes across the cell, about.
-WHEN = 200.0
 
 
 def before_row(particles, seed, then):
@@ -114,25 +106,3 @@ def _said(words, there):
         [sys.executable, "-c", words], cwd=ROOT, env=os.environ | there, stdout=subprocess.PIPE, check=True, text=True
     )
     return float(done.stdout)
-
-
-def time_row(particles, seed):
-    """Heat that enters the cell of 83 spheres from one wall, in time.
-
-    Parameters
-    ----------
-    particles, seed : int
-
-    Returns
-    -------
-    dict
-    """
-    from demheat import evolve
-
-    made = silica_epoxy.scene("walled", FRACTION, seed=0, boundary="walls")
-    spheres = [replace(sphere, material=SILICA) for sphere in made.inclusions]
-    scene = replace(made, matrix=EPOXY, inclusions=spheres, initial=min(made.wall_temperatures.values()))
-    with tempfile.TemporaryDirectory() as folder, methods.packings_in(folder):
-        (field,), cost = measured(lambda: list(evolve(scene, [WHEN], particles=particles, seed=seed)))
-    names = ("unknowns", "integrator", "steps", "stages")
-    return {name: field.stats.get(name) for name in names} | {"mean_flux": float(field.mean_flux[1])} | cost

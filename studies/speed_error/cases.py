@@ -23,11 +23,10 @@ USUAL = {
     "order": (1, 3, 7, 15),
 }
 CLOSELY = USUAL | {
-    "dem-calibrated": (1_000, 10_000, 100_000),
+    "dem-calibrated": (1_000, 10_000),
     "size": (0.2, 0.14, *SIZES[1:], 0.035),
     "fem-straight": (0.1, 0.05, 0.035),
     "fft": (*VOXELS, 256),
-    "fft-plain": (*VOXELS, 256),
 }
 # Spheres make elements fine, whatever the size that is asked for: quadratic ones around a thousand, three million
 # unknowns, would take as long as a third of all rows together, linear ones as long as all others of the scene.
@@ -36,7 +35,7 @@ BY_SCENE = {
     "half": CLOSELY | {"particles": (*PARTICLES, 200_000), "order": (3, 7, 15, 31)},
     # Iterations on laminate voxels go with the root of the contrast.
     "third at 1000": USUAL | {"fft-em": VOXELS[:2]},
-    "third at infinity": USUAL | {"fft": VOXELS[:2], "fft-em": VOXELS[:1]},
+    "third at infinity": USUAL | {"fft": VOXELS[:1], "fft-em": VOXELS[:1]},
     "half at 100": USUAL | {"order": (3, 7, 15, 31)},
     "polydisperse": USUAL | {"size": (0.2, 0.05), "fem-straight": (0.2,), "fem-p1": (0.1, 0.025)},
     "83 spheres": USUAL

@@ -10,4 +10,7 @@ LADDERS = {
     "multipole": ("degree", (7,)),
     "maxwell": (None, (None,)),
 }
+# Coarse resolutions are for one group, and for what a quick run has; iterations on voxels beside pores are dear.
+TWICE = "cubic arrays"
+POROUS = ("sc-third-pore", "coated-hollow", "dispersion-20-pores")
 RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")

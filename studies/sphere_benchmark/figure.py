@@ -31,12 +31,14 @@ def draw(df):
         style = _style(name, strangers)
         plain = {"color": style["color"], "marker": style["marker"] or "x", "linestyle": ""}
         left.plot(rows["cpu_s"], rows["off"], **plain, markersize=4, alpha=0.35, markeredgewidth=0)
-        middle = rows.groupby("place")[["cpu_s", "off"]].median()
+        # Of scenes that have every resolution, so that a line does not go from some scenes to others.
+        every = rows[rows.groupby("scene")["place"].transform("nunique") == rows["place"].nunique()]
+        middle = every.groupby("place")[["cpu_s", "off"]].median()
         left.plot(middle["cpu_s"], middle["off"], **style | {"marker": style["marker"] or "x"}, markersize=9)
         best = np.sort(np.maximum(finest(rows)["error_percent"].abs(), LEAST))
         right.step([*best, 1e3], [*np.arange(1, len(best) + 1), len(best)], where="post", **style | {"marker": ""})
     left.set(xscale="log", yscale="log", xlabel="CPU time, s", ylabel="|error|, %", xlim=(1e-4, None))
-    left.set_title("each scene, and the medians of each resolution")
+    left.set_title("each scene, and medians of those at every resolution")
     right.set(xscale="log", xlim=(LEAST, 100), xlabel="|error|, %, at the finest resolution")
     right.set_ylabel("scenes with at most this error")
     right.axhline(real["scene"].nunique(), color=GREY, linewidth=0.6, linestyle="--")

@@ -113,7 +113,7 @@ def test_what_a_billion_takes_goes_on_from_the_largest_row():
 
 def test_every_part_has_rows_and_quick_ones_are_few():
     parts = {case["part"] for case in scaling.CASES}
-    assert parts == {"inclusions", "kinds", "goal", "elements", "before", "time", "cutter", "start", "strong", "weak"}
+    assert parts == {"inclusions", "kinds", "goal", "elements", "before", "cutter", "start", "strong", "weak"}
     assert 0 < sum(map(scaling.QUICK, scaling.CASES)) < 15
 
 

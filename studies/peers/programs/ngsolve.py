@@ -32,7 +32,7 @@ SCENES = (
     "dispersion 10",
 )
 # Edges, in those of the cube, by order: few high elements, or many low ones.
-SIZES = {2: (0.2, 0.1, 0.06, 0.04), 3: (0.2, 0.1, 0.06, 0.04), 5: (0.2, 0.1)}
+SIZES = {2: (0.2, 0.1, 0.06), 3: (0.2, 0.1, 0.06), 5: (0.2, 0.1)}
 CASES = tuple(
     {"scene": scene, "order": order, "size": size}
     for scene in SCENES

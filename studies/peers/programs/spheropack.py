@@ -20,10 +20,10 @@ GET = "pip: spheropack"
 CANNOT = {"conductivities": "it packs spheres; network and solver are ours", "overlaps": "its spheres are hard"}
 BODIES = ("homogeneous", "layers off the grid", "sphere 10", "sphere 0.01", "half 10")
 CASES = (
-    *({"scene": body, "particles": 2000, "conforming": way} for body in BODIES for way in (True, False)),
+    *({"scene": body, "particles": 2000, "conforming": True} for body in BODIES),
+    {"scene": "sphere 10", "particles": 2000, "conforming": False},
     {"scene": "sphere 10", "particles": 2000, "conforming": True, "density": "max"},
     {"scene": "sphere 10", "particles": 8000, "conforming": True},
-    {"scene": "sphere 10", "particles": 8000, "conforming": False},
 )
 EXPLAINED = "the error is that of the network, which is ours; packings matter where no twins stand at interfaces"
 SCRIPT = Path(__file__).parent / "scripts" / "spheropack_pack.py"

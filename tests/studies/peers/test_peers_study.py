@@ -40,13 +40,13 @@ def test_who_is_ahead_at_an_error():
 def test_one_body_is_seen_at_every_resolution():
     every = [
         {"name": "a", "given": "image", "scene": scene, "n": n, "order": order, "method": "a"}
-        for scene in ("sphere 10", "pore", "coated")
+        for scene in ("sphere 10", "half 10", "pore", "layers along")
         for n in (64, 16, 32)
         for order in (1, 2)
     ]
     kept = {(case["scene"], case["n"], case["order"]) for case in cases.thinned(every)}
     assert kept == {("sphere 10", n, order) for n in (16, 32, 64) for order in (1, 2)} | {
-        ("pore", 16, 1), ("pore", 32, 1), ("coated", 16, 1)
+        ("half 10", 16, 1), ("half 10", 32, 1), ("pore", 16, 1)
     }  # fmt: skip
 
 
@@ -65,12 +65,12 @@ def test_ways_of_one_program_are_told_apart():
 def test_abilities_are_the_best_of_each_body_and_the_worst_of_bodies():
     found = pd.DataFrame(
         [
-            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": -3.0},
-            {"name": "fem", "given": "body", "scene": "layers across", "status": "ok", "error_percent": 1.0},
-            {"name": "fem", "given": "body", "scene": "layers along", "status": "ok", "error_percent": -2.0},
+            {"name": "fem", "given": "body", "scene": "chain, disc", "status": "ok", "error_percent": -3.0},
+            {"name": "fem", "given": "body", "scene": "chain, disc", "status": "ok", "error_percent": 1.0},
+            {"name": "fem", "given": "body", "scene": "random bed, disc", "status": "ok", "error_percent": -2.0},
             {"name": "fem", "given": "body", "scene": "pore", "status": "unsupported", "error_percent": None},
             {"name": "fem", "given": "body", "scene": "coated", "status": "failed", "error_percent": None},
         ]
     )
     (line,) = tables.abilities(found).to_dict("records")
-    assert (line["layers on the grid"], line["pore"], line["coat"], line["sphere"]) == ("2", "refused", "", "")
+    assert (line["grains, discs"], line["pore"], line["coat"], line["sphere"]) == ("2", "refused", "", "")
