@@ -54,7 +54,7 @@ def _cases():
             here = {"placed": placed, "gap": gap, "fraction": fraction, "ratio": RATIO, "first": 0}
             for first in range(0, REALISATIONS, AT_ONCE):
                 yield {"part": "cells", **here, "first": first, "cells": AT_ONCE, "method": MULTIPOLE}
-            # Voxels and lines do not know how spheres were placed: cells of one kind, where some nearly touch, judge them.
+            # Voxels and lines do not know how spheres were placed: cells of one kind judge them.
             for voxels in ON_RANDOM if (placed, gap) == ("lsa", 0.0) else ():
                 yield {"part": "voxels", **here, "voxels": voxels, "method": VOXELS}
             if (placed, gap) == ("lsa", 0.02):
