@@ -6,7 +6,6 @@ import pandas as pd
 
 from studies.common.drawn import ACCURACY
 from studies.harness.methods import found
-from studies.harness.pick import pick
 
 
 def present(df, name):
@@ -68,15 +67,15 @@ def lines(df, names):
     Parameters
     ----------
     df : DataFrame
+        Of unseen scenes.
     names : sequence of str
     """
-    parts = [(part, group) for part in ("unseen", "tuned") for group in [pick(df, part=part)]]
-    return pd.DataFrame([_line(part, group, name) for part, group in parts for name in names if present(group, name)])
+    return pd.DataFrame([_line(df, name) for name in names if present(df, name)])
 
 
-def _line(part, df, name):
+def _line(df, name):
     rows = answered(df, name)
-    line = {"scenes": f"{len(rows)} {part}", "method": found()[name].title}
+    line = {"scenes": f"{len(rows)} unseen", "method": found()[name].title}
     for what, words in (("", "k"), ("t_", "T")):
         line |= {
             f"error of {words}, median %": rows[f"{name}_{what}off"].abs().median(),

@@ -28,8 +28,10 @@ def lines(df):
     import pandas as pd
 
     shown = df[df["periodic"].isna() & df["contrast"].isin(CONTRASTS)]
-    rows = []
-    for (name, _), group in with_size(shown).groupby(["name", "h"], dropna=False, sort=False):
+    rows, order = [], list(shown["name"].unique())
+    groups = with_size(shown).groupby(["name", "h"], dropna=False, sort=False)
+    # Method by method, the finest last: not every scene has rows of all sizes.
+    for (name, _), group in sorted(groups, key=lambda each: (order.index(each[0][0]), -each[0][1])):
         errors = mean_errors(group, scene="third")
         row = {"method": LOOK[name][0], "resolution": resolution(group.iloc[0])}
         row |= {f"{c:g}": float(errors.get(c, math.nan)) for c in CONTRASTS}

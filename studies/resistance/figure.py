@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from studies.harness import methods
-from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, look
+from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, RED, look
 from studies.harness.pick import finest, pick
 from studies.resistance.cases import FRACTION, FRACTIONS, GAP, KNOWING, SILICA, USUAL
 from studies.resistance.means import conductivity, curve, explaining, radius_of
 
-COLOURS = dict(zip(FRACTIONS, (BLUE, GREEN, ORANGE, RED, PINK), strict=True))
+COLOURS = dict(zip(FRACTIONS, (BLUE, GREEN, ORANGE, RED), strict=True))
 
 
 def draw(df):

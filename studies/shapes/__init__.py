@@ -48,7 +48,8 @@ def _cases():
     for level in (0, 1):
         for name in SPENT:
             for fraction in FRACTIONS:
-                for contrast in CONTRASTS:
+                # Fibres near each other at every contrast, those apart at that whose temperature is looked at, too.
+                for contrast in CONTRASTS if fraction == FRACTIONS[-1] else (CONTRAST,):
                     where = {"part": "fibres", "contrast": contrast, "fraction": fraction}
                     yield methods.case(name, **where, **_at("fibres", name, level))
         for part, (contrasts, names) in PARTS.items():

@@ -82,4 +82,4 @@ def _fibres(axes, rows):
             axes.plot(best["contrast"], np.maximum(best["error_percent"].abs(), LEAST), **how)
     axes.axvline(1.0, color=GREY, linewidth=0.8)
     axes.set(xscale="log", yscale="log", xlabel="conductivity of the fibres over the matrix's", xlim=(0.005, 200))
-    axes.set(ylabel="|error of the conductivity|, %", title="Square arrays of fibres, fine (dashed: f = 0.6)")
+    axes.set(ylabel="|error of the conductivity|, %", title="Arrays of fibres, fine (dashed: f = 0.6, alone: 0.3)")

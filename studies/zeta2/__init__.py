@@ -25,11 +25,15 @@ ARRAYS = (("sc", 0.5), ("sc", DILUTE), ("bcc", 0.5), ("fcc", 0.5))
 KNOWN = {("sc", 0.5): (0.17376, 5), ("sc", DILUTE): (0.00200341, 8)}
 GRIDS, ON_RANDOM = (32, 64, 128, 256), (128, 256)
 FRACTIONS = (0.1, 0.2, 0.3, 0.4, 0.5)
+SHOWN = 0.3  # fraction whose S2 is drawn, of cells of every kind
 # How placed, smallest gap in diameters, fractions: one by one they jam near 0.38.
-PLACED = (("lsa", 0.0, FRACTIONS), ("lsa", 0.02, FRACTIONS), ("rsa", 0.0, FRACTIONS[:3]), ("rsa", 0.02, FRACTIONS[:3]))
+PLACED = (
+    *(("lsa", 0.0, FRACTIONS), ("lsa", 0.02, (*FRACTIONS[:3], FRACTIONS[-1]))),
+    *(("rsa", 0.0, FRACTIONS[:3]), ("rsa", 0.02, FRACTIONS[:3])),
+)
 RATIO, LARGER = 6.0, 9.0
-# Realisations come in rows of five; the scatter of one, 2 to 18 %, asks for twenty.
-AT_ONCE, REALISATIONS = 5, 20
+# Realisations come in rows of five; the scatter of one, 2 to 23 %, leaves means of ten within 2 to 17 %, at 95 %.
+AT_ONCE, REALISATIONS = 5, 10
 PAPER = {}
 # Errors of voxels, %, by their number along an edge: on SC, on dilute SC, on BCC and FCC; on random cells.
 VOXEL_LIMITS = {64: (1.0, 8.0, 1.5), 128: (0.3, 1.0, 0.25), 256: (0.08, 0.8, 0.045)}
@@ -50,14 +54,16 @@ def _cases():
             here = {"placed": placed, "gap": gap, "fraction": fraction, "ratio": RATIO, "first": 0}
             for first in range(0, REALISATIONS, AT_ONCE):
                 yield {"part": "cells", **here, "first": first, "cells": AT_ONCE, "method": MULTIPOLE}
-            for voxels in ON_RANDOM:
+            # Voxels and lines do not know how spheres were placed: cells of one kind judge them.
+            for voxels in ON_RANDOM if (placed, gap) == ("lsa", 0.0) else ():
                 yield {"part": "voxels", **here, "voxels": voxels, "method": VOXELS}
-            if gap:
+            if (placed, gap) == ("lsa", 0.02):
                 yield {"part": "conductivity", **here, "method": MULTIPOLE}
-            yield {"part": "surface", **here, "cells": AT_ONCE, "method": S2}
+            if (placed, gap) == ("lsa", 0.0) or fraction == SHOWN:
+                yield {"part": "surface", **here, "cells": AT_ONCE, "method": S2}
     # Whether six diameters are enough.
     larger = {"placed": "lsa", "gap": 0.0, "fraction": 0.2, "ratio": LARGER, "cells": AT_ONCE, "method": MULTIPOLE}
-    yield from ({"part": "cells", **larger, "first": first} for first in (0, AT_ONCE))
+    yield {"part": "cells", **larger, "first": 0}
 
 
 CASES = list(_cases())
@@ -149,12 +155,15 @@ def _statistics(df):
     dilute = free[free["fraction"] < 0.45]
     off = referee.value_error(dilute["zeta2"], dilute["polynomial"], scale=dilute["se"]).abs()
     yield text + "f <= 0.4, in standard errors", off.max(), 3.0
-    # 95 % of means of twenty cells lie within 3 % at f = 0.2, within 1 % at f = 0.5, where the fit may be 1.7 % low.
+    # Of twenty cells 95 % of means lay within 3 % at f = 0.2, of ten within 4 %; within 1.5 % at f = 0.5, where the
+    # fit may be 1.7 % low.
     dense = free[(free["cells"] == REALISATIONS) & (free["fraction"] > 0.15)]
     yield text + "f >= 0.2, %", largest(dense, "off_percent"), 3.5
+    # Of the five cells of a quick run three standard errors are more than the difference itself.
+    whole = means[means["cells"] >= REALISATIONS]
     for gap in (0.0, 0.02):
-        yield _lower(means, f"RSA below LSA, both with a gap of {gap:g} D", {**rsa, "gap": gap}, {**lsa, "gap": gap})
-    yield _lower(means, "LSA with a gap of 0.02 D below LSA without", {**lsa, "gap": 0.02}, {**lsa, "gap": 0.0})
+        yield _lower(whole, f"RSA below LSA, both with a gap of {gap:g} D", {**rsa, "gap": gap}, {**lsa, "gap": gap})
+    yield _lower(whole, "LSA with a gap of 0.02 D below LSA without", {**lsa, "gap": 0.02}, {**lsa, "gap": 0.0})
     found, se = below(means, {**lsa, "gap": 0.0}, {**lsa, "gap": 0.0, "ratio": LARGER})
     value = None if found is None else abs(found) / se
     yield f"Cells of {RATIO:g} D against cells of {LARGER:g} D: difference in standard errors", value, 3.0

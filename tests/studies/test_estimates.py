@@ -66,7 +66,8 @@ def test_drawn_scenes_have_an_exact_solution(kind):
 
 
 def test_unseen_scenes_are_others_than_those_tuned_on():
-    seeds = {part: {case["seed"] for case in estimates.CASES if case["part"] == part} for part in ("tuned", "unseen")}
-    assert not seeds["tuned"] & seeds["unseen"]
-    assert sum(case["part"] == "unseen" for case in estimates.CASES) == 200
-    assert sum(case["part"] == "effective" for case in estimates.CASES) == 100
+    seeds = {case["seed"] for case in estimates.CASES if case["part"] == "unseen"}
+    # Rules and safeties were found on seeds 0 to 6, 100 to 110 and from 1000 on.
+    assert min(seeds) > 110 and max(seeds) < 1000
+    assert sum(case["part"] == "unseen" for case in estimates.CASES) == len(KINDS) * estimates.EACH
+    assert sum(case["part"] == "effective" for case in estimates.CASES) == estimates.ASKED

@@ -52,7 +52,7 @@ def test_claims_see_cells_off_the_polynomial_and_additions_that_are_not_below():
         values.append([found[" f <= 0.4, in standard errors"], found[" f >= 0.2, %"]])
         values[-1].append(found["RSA below LSA, both with a gap of 0 D"])
     assert values[0][0] < 1e-3 and values[0][1] < 1e-3 and values[0][2] > 5  # values are text of many digits
-    assert values[1][0] > 10 and values[1][1] == pytest.approx(10.0) and values[1][2] == pytest.approx(0.0, abs=1e-9)
+    assert values[1][0] > 8 and values[1][1] == pytest.approx(10.0) and values[1][2] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_claims_see_a_conductivity_outside_the_bounds_and_a_wrong_surface():
