@@ -9,7 +9,6 @@ import math
 import os
 import tempfile
 from contextlib import contextmanager
-from functools import cache
 
 from demheat.declared import found, load, path_of  # noqa: F401 (studies know them from here)
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
@@ -110,7 +109,6 @@ def case(name, **more):
     return {"name": name, **more, "method": found()[name].module, **found()[name].knobs}
 
 
-@cache
 def exact_ratio(fraction, contrast):
     """Exact effective conductivity of the sphere in a cube over that of the matrix.
 

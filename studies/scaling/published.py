@@ -38,6 +38,6 @@ PUBLISHED = (
         2.7e10,
         524_288,
         "Lin, Bettencourt, Domino et al., Towards extreme-scale simulations for low Mach fluids with second-generation "
-        "Trilinos, Parallel Processing Letters (2014)",
+        "Trilinos, preprint of Sandia National Laboratories (2014)",
     ),
 )
