@@ -47,6 +47,7 @@ SLOW = (
     "estimates",
     "fig07_sphere",
     "fig08_sphere_field",
+    "fig10_beam",
     "fig12_15_sheet",
     "fig15_16_fields",
     "fig17_etc",
@@ -65,6 +66,7 @@ SLOW = (
     "speed_error",
     "sphere_benchmark",
     "stability",
+    "time_integrators",
     "tuning",
     "zeta2",
 )
