@@ -25,7 +25,7 @@ test: .venv/ready
 	$(PY) -m ruff format --check .
 	$(PY) -m pytest -n 2 --dist worksteal -m "not slow"
 
-# Quick rows of studies whose figures take long.
+# Quick rows of studies whose figures take long, and what others see in less time.
 test-slow: .venv/ready
 	$(PY) -m pytest -n 2 --dist worksteal -m slow
 

@@ -37,12 +37,13 @@ class Laguerre:
         Rule for links between materials (Haddad et al. 2021, eq. 24).
     gap_spacing : float
         Distance between mirrored particles in a gap or a coat, over its width, if that is less than elsewhere. Smaller
-        resolves gaps better, at the inverse square of the cost; more than 0.88 lets facets cross interfaces.
+        resolves gaps better, at the inverse square of the cost; more than 0.88 lets facets cross interfaces. Only with
+        `conforming`.
 
     Raises
     ------
     ValueError
-        If an argument is none of these.
+        If an argument is none of these, or a spacing is given without mirrored particles.
 
     Examples
     --------
@@ -66,6 +67,11 @@ class Laguerre:
         flag("conforming", self.conforming)
         chosen("interface", self.interface, RULES)
         finite("gap_spacing", self.gap_spacing, "a number above 0, at most 0.88", lambda v: 0 < v <= WIDEST)
+        if not self.conforming and self.gap_spacing != type(self).gap_spacing:
+            raise ValueError(
+                f"gap_spacing = {self.gap_spacing!r} with conforming = False: there are no mirrored particles; must be "
+                "left out"
+            )
 
     @property
     def takes(self) -> tuple[str, ...]:
@@ -74,15 +80,15 @@ class Laguerre:
         return ("exchange", "image", "resistance", "dependence") if on_facets else ("exchange", "image")
 
     @classmethod
-    def short(cls, *, conforming: bool | None = None, interface: str = "harmonic", **others: object) -> Laguerre:
+    def short(cls, *, conforming: bool | None = None, **others: object) -> Laguerre:
         """The law from the keywords of `demheat.solve`, where None stands for the default.
 
         Parameters
         ----------
-        conforming, interface
+        conforming
             As in `Laguerre`.
         **others
-            What only other laws have, refused unless it is their default.
+            Others of `Laguerre`; or what only other laws have, refused unless it is their default.
 
         Raises
         ------
@@ -96,8 +102,9 @@ class Laguerre:
             raise ValueError(
                 f"{', '.join(odd)} with law = 'laguerre': only the laws 'calibrated' and 'platonic' have these choices"
             )
-        _known(cls, {name: value for name, value in others.items() if name not in UNASKED})
-        return cls(conforming=True if conforming is None else conforming, interface=interface)
+        own = {name: value for name, value in others.items() if name not in UNASKED}
+        _known(cls, own)
+        return cls(conforming=True if conforming is None else conforming, **own)
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""

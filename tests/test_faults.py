@@ -22,6 +22,8 @@ def right(tmp_path_factory):
     return faults.unkilled(tmp_path_factory.mktemp("right") / "toy")
 
 
+# A dozen seconds; that a killed run resumes is seen by the tests of the harness, too: `make test-slow`.
+@pytest.mark.slow
 def test_killed_at_random_moments_and_resumed(toy, right):
     """All but costs is as if nobody had killed it, and no process is left, of rows' children neither."""
     (rows, seconds), moments = right, random.Random(3)

@@ -46,6 +46,7 @@ def test_bits_are_those_of_one_thread(jobs, threads, tmp_path):
     run([str(TESTS / "in_threads.py"), *jobs], tmp_path, threads=threads)
 
 
+@pytest.mark.slow
 def test_bits_are_those_of_one_thread_with_tbb(tmp_path):
     try:
         ctypes.CDLL("libtbb.so.12")

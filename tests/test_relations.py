@@ -35,9 +35,15 @@ def hand(name):
     return found
 
 
+# Six CPU-seconds each, and each is another method here but for a rule of its links, or its elements' sides: `make
+# test-slow`.
+SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem-straight")
+NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in METHODS]
+
+
 # What thin layers do to particles without twins is left to chance, but to the same in relations that are exact.
 @pytest.mark.filterwarnings("ignore:.*are thin for particles:UserWarning")
-@pytest.mark.parametrize("name", METHODS)
+@pytest.mark.parametrize("name", NAMES)
 def test_relations(name):
     asked, wrong = hand(name), []
     for relation, seed in asked.items():

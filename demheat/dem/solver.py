@@ -58,7 +58,7 @@ def solve(
         many; "amg-single" spares a tenth of the multigrid's memory and takes as many iterations.
     tolerance : float
         On the relative residual of the heat balance.
-    conforming, interface, sparse, wall, coordination, gap : bool, str, str, str, float and float, optional
+    conforming, interface, gap_spacing, sparse, wall, coordination, gap : bool, str, float, str, str, float, float
         Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
         `demheat.Platonic`.
     packing : Packing, optional
@@ -236,7 +236,7 @@ def evolve(
     step : float, s, optional
         Equal steps of at most this size instead of chosen ones; they end at jumps as well, but sources and functions
         may change within a step as they like.
-    conforming, interface, sparse, wall, coordination, gap, packing, replicas, allow_few : optional
+    conforming, interface, gap_spacing, sparse, wall, coordination, gap, packing, replicas, allow_few : optional
         As in `solve`; a packing must have the scene's box and domain.
 
     Returns

@@ -10,7 +10,9 @@ A study is a module with
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
   sentences below it that are made of the rows; `TIMEOUT`, seconds per row; `REPEATS`, how often a short `run` is called
-  at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called so (`sound.COSTS`);
+  at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called so (`sound.COSTS`); `REASONS`, by words of a
+  claim's sentence why its limit is no nearer to the value (more than three times needs one, and
+  `tests/studies/test_claims_can_fail.py` asks for it);
 - where it takes methods that are not ours, `guests(method, quick=)`, the cases of one, and `guest_case(key)`, such a
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 

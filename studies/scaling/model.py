@@ -38,7 +38,9 @@ class Network(NamedTuple):
     cores: int  # of a node
 
 
-# Assumed, not measured: MPI between nodes over 200 Gb/s InfiniBand takes 1 to 2 microseconds and 12 to 25 GB/s.
+# Assumed, none of it measured here. Half a round trip of Open MPI between two servers took 1.93 microseconds ("MPI over
+# 40Gb Ethernet", blogs.cisco.com); 25 GB/s are the 200 Gb/s of a port of the Slingshot network (De Sensi et al., SC20,
+# arXiv:2008.08886), as if all of them were had. Cores of a node: assumed without a source.
 NETWORK = Network(2e-6, 25.0, 64)
 
 

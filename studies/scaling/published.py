@@ -22,10 +22,10 @@ PUBLISHED = (
         "Adams, Bayraktar, Keaveny, Papadopoulos, SC2004; 7e6 to 5.37e8 unknowns, 131 000 a processor",
     ),
     Published(
-        "hypre's multigrids, more than 100 000 cores and a trillion unknowns",
+        "multigrid of HyTeG on nested grids, Stokes flow; more than 140 000 processes and a trillion unknowns",
         1e12,
-        100_000,
-        "Baker, Falgout, Kolev, Yang, in High-Performance Scientific Computing (Springer 2012), LLNL-JRNL-479591",
+        140_000,
+        "U. Rüde, project page at konwihr.de, Coarse grid solver optimization for extreme-scale geometric multigrid",
     ),
     Published(
         "aggregates of equal values, made by each process alone; nearly 300 000 cores, more than 1e11 unknowns",
@@ -37,6 +37,7 @@ PUBLISHED = (
         "Trilinos of the second generation, flow at low Mach numbers",
         2.7e10,
         524_288,
-        "Lin, Bettencourt, Domino et al., Parallel Processing Letters 24 (2014)",
+        "Lin, Bettencourt, Domino et al., Towards extreme-scale simulations for low Mach fluids with second-generation "
+        "Trilinos, preprint of Sandia National Laboratories (2014)",
     ),
 )

@@ -56,6 +56,15 @@ def test_objects_are_their_short_forms_to_the_last_bit(law, short):
         assert_same_field(*(field for (field,) in fields))
 
 
+def test_the_spacing_of_twins_in_gaps_is_a_keyword():
+    assert Laguerre.short(gap_spacing=0.5) == Laguerre(gap_spacing=0.5) != Laguerre()
+    # The default may be given where there are no twins, as `dataclasses.replace` does.
+    assert Laguerre.short(conforming=False, gap_spacing=0.85) == Laguerre(conforming=False)
+    for law in ("calibrated", "platonic"):
+        with pytest.raises(TypeError, match="gap_spacing: no keyword of solve and evolve, nor of law"):
+            demheat.solve(WALLED, law=law, gap_spacing=0.5)
+
+
 def test_defaults_are_those_of_the_papers():
     assert Calibrated() == Calibrated(coordination=7.5) and Platonic() == Platonic(coordination=7.2)
     assert Calibrated(gap=0.1).coordination is None
@@ -87,6 +96,8 @@ WRONG = [
     (Laguerre, *CONTACT[-2]),
     (Laguerre, *CONTACT[-1]),
     (Laguerre, {"conforming": "no"}, "conforming = 'no': must be True or False"),
+    (Laguerre, {"gap_spacing": 0.9}, "gap_spacing = 0.9: must be a number above 0, at most 0.88"),
+    (Laguerre, {"conforming": False, "gap_spacing": 0.5}, "gap_spacing = 0.5 with conforming = False: there are no"),
 ]
 
 

@@ -28,7 +28,10 @@ STORED = [name for name in study_names() if (RESULTS / f"{name}.csv").exists()]
 # TEMPORARY: studies that have such claims still. Each leaves this list when it has none.
 TO_MEND = ("fig17_etc", "fig18_fields", "many_inclusions", "packings")
 # Judged a dozen times or more, these take over two CPU-seconds each: `make test-slow`.
-SLOW = ("scaling", "speed_error", "tuning", "zeta2")
+SLOW = (
+    *("estimates", "fig12_15_sheet", "peers", "resistance", "scaling", "shapes", "speed_error", "sphere_benchmark"),
+    *("tuning", "zeta2"),
+)
 # Claims that no order of the rows and no change of the results make fail, and why.
 EXCEPTIONS = {
     "Cells of 6 D against cells of 9 D": "two means that should not differ: any others dealt to both do not either",

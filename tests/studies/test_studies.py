@@ -25,8 +25,10 @@ def _here(name, study, case):
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Folder of results; packings and transforms' plans are kept in one of this module's own."""
+    """Folder of results; packings and transforms' plans are kept in one of this module's own, and what is exact."""
     with pytest.MonkeyPatch.context() as patch:
+        # Half a second for each of many rows, of a few scenes.
+        patch.setattr(methods, "exact_ratio", functools.cache(methods.exact_ratio))
         patch.setenv("DEMHEAT_CACHE", str(tmp_path_factory.mktemp("cache")))
         yield tmp_path_factory.mktemp("out")
 
@@ -36,14 +38,16 @@ def test_the_studies_are_there():
     assert {"fig03_calibration", "packings"} <= set(NAMES)
 
 
-# Their quick rows take 12 to 52 CPU-seconds each, together more than a third of all tests: `make test-slow`.
+# Their quick rows take 8 to 52 CPU-seconds each, together more than a third of all tests: `make test-slow`.
 SLOW = (
+    "anisotropy",
     "brackets",
     "ct_search",
     "damage",
     "estimates",
     "fig07_sphere",
     "fig08_sphere_field",
+    "fig10_beam",
     "fig12_15_sheet",
     "fig15_16_fields",
     "fig17_etc",
@@ -54,12 +58,15 @@ SLOW = (
     "kirchhoff",
     "many_inclusions",
     "nafems",
+    "packings",
+    "peers",
     "resistance",
     "scaling",
     "shapes",
     "speed_error",
     "sphere_benchmark",
     "stability",
+    "time_integrators",
     "tuning",
     "zeta2",
 )

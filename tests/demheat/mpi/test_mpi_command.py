@@ -5,6 +5,7 @@ import shlex
 import subprocess
 import sys
 
+import numpy as np
 import pytest
 from blocks import DOCS, blocks
 
@@ -112,6 +113,27 @@ def test_periodic_cells_give_what_one_process_gives(method, tmp_path):
     # Printed with nine digits.
     temperature = float(re.search(r"temperature +(\S+)", done.stdout)[1])
     assert temperature == pytest.approx(alone.temperature_at((0.31, 0.77, 0.2)), rel=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("method", ["fem", "fft"])
+def test_the_interval_and_the_file_are_those_of_one_process(method, folder):
+    words = {"fft": f"--voxels {SMALL['voxels']}", "fem": f"--size {SMALL['size']}"}[method]
+    words = f"--method {method} {words} --tolerance 1e-11 --interval --write field.npz"
+    done = ran(f"mpiexec -n 2 python -m demheat.mpi scene.toml {words}", folder, NEEDED[method])
+    alone = ALONE[method](files.read(folder / "scene.toml"), 1e-11)
+    assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
+    # Printed with nine digits, of differences of runs.
+    told = [float(each) for each in re.search(r"expected +(\S+) to (\S+)", done.stdout).groups()]
+    assert told == pytest.approx([alone.error.lower, alone.error.upper], rel=1e-7)
+    with np.load(folder / "field.npz") as written:
+        own = alone.samples
+        order, theirs = (np.lexsort(np.round(each, 9).T) for each in (written["points"], own.points))
+        assert set(written) == set(own._fields)
+        for name, values in own._asdict().items():
+            # Rounding, and what is left of either's residual, of values up to the largest.
+            scale = np.abs(values).max()
+            np.testing.assert_allclose(written[name][order], values[theirs], rtol=0, atol=1e-7 * scale, err_msg=name)
 
 
 @pytest.mark.slow
