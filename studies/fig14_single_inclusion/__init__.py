@@ -69,7 +69,7 @@ def _cases():
     for name in ("maxwell", "exact"):
         yield from (methods.case(name, scene="third", contrast=contrast) for contrast in CURVE)
         yield methods.case(name, scene="half", contrast=10.0)
-    yield from ({**case, "method": OWN} for case in paper_network.cases(NETWORKS))
+    yield from paper_network.cases(NETWORKS)
 
 
 CASES = list(_cases())

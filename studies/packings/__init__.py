@@ -12,7 +12,7 @@ from demheat import referee
 from studies.harness.cells import numbers
 from studies.harness.pick import pick, present
 
-SEEDS = (0, 1, 2, 3, 4)
+SEEDS = (0, 1, 2)
 MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packings.rows"}
 LARGE = 100_000
 PAPER = {}
@@ -33,19 +33,16 @@ def _cases():
     for radii in ("equal", "gaussian", "ten"):
         # At one pressure: at one packing fraction the wide mixture is a thin gas with more lists than collisions.
         yield _case("width", "lsa", 30_000, radii, pressure=100.0, growth=0.02)
-    for growth in (0.005, 0.05, "late"):
+    for growth in (0.005, 0.05):
         yield _case("growth", "lsa", 10_000, "gaussian", pressure=1e6, growth=growth)
     for number in (1000, 10_000):
         for domain in ("walls", "cylinder-y", "sphere"):
             yield _case("walls", "lsa", number, "gaussian", domain=domain, pressure=1e6, growth=0.02)
     for maker in ("lsa", "relax"):
-        for number in (LARGE, 1_000_000):
-            yield _case("large", maker, number, "gaussian", phi=0.64)
+        yield _case("large", maker, LARGE, "gaussian", phi=0.64)
 
 
 CASES = list(_cases())
-# "late": slower by ten where the packing is nearly jammed, so that contacts can close.
-LATE = ((0.0, 0.02), (1e4, 0.002))
 
 
 def QUICK(case):
@@ -57,7 +54,6 @@ def run(part, maker, particles, radii, seed, method, growth=0.02, **knobs):
     """Make a packing and describe it."""
     from studies.packings import rows
 
-    growth = LATE if growth == "late" else growth
     packing, row = rows.packed(maker, particles, radii, seed, growth=growth, **knobs)
     return {**row, **rows.described(packing, row, curves=part == "large" or (part == "peer" and seed == 0))}
 
@@ -133,7 +129,7 @@ def _own_claims(df):
     if len(large):
         at = pick(large, particles=LARGE)["cpu_s"]
         yield f"{LARGE} spheres to phi = 0.64: CPU seconds, points to packing", at.max(), 90.0
-        yield "Memory per sphere from 1e5 spheres on, bytes", large["bytes_per_sphere"].max(), 1000.0
+        yield f"Memory per sphere of {LARGE}, bytes", large["bytes_per_sphere"].max(), 1000.0
         off = abs(referee.value_error(large["slope_mean"], large["slope_exact"])).max()
         yield "S2(r): measured start slope, mean of 7 directions, relative to -surface/4", off, 0.01
         for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):

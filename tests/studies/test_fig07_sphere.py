@@ -30,7 +30,7 @@ def test_laws_of_contacts_heat_the_centre_too_early(usual):
 
 def test_one_march_serves_both_calibrations(usual):
     """A march at times in proportion is one with the other C_t."""
-    row = fig07_sphere.run("dem", "network", packing="relaxed", held="center", particles=500, seed=99)
+    row = fig07_sphere.run("network", "network", packing="relaxed", held="center", particles=500, seed=99)
     # `evolve` calibrates along x, a row along y: found 0.1 %.
     assert_allclose(row["ct_isothermal"], usual["calibration"], rtol=0.01)
     times, ball = (3.0, 10.0), fig07_rows.ball("relaxed", 500, 99)
