@@ -47,7 +47,7 @@ REFINED, BETWEEN = (0.1, 0.3, 0.5), ("dem", "dem-calibrated", "fft")
 MEANS = (0.1, 0.2, 0.3, 0.5)
 WITNESS = {"method": "multipole"}
 NETWORK = 150_000  # particles of the paper's network
-# Accuracy of the multipoles in the means: a tenth of the least interval of a mean.
+# Accuracy of the multipoles in the means: a quarter of the least interval of a mean.
 ENOUGH = 1e-4
 PAPER = printed("fig17_etc")
 TIMEOUT = 3600.0
