@@ -49,6 +49,12 @@ WITNESS = {"method": "multipole"}
 NETWORK = 150_000  # particles of the paper's network
 # Accuracy of the multipoles in the means: a quarter of the least interval of a mean.
 ENOUGH = 1e-4
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "converged, off the multipole value": "one limit for all methods and cells, of which the worst has half",
+    "worst resolution, off the multipole value": "one limit for all methods, of which the worst has half",
+    "What unequal spheres change": "a tenth of what it might explain; its interval is as wide",
+}
 PAPER = printed("fig17_etc")
 TIMEOUT = 3600.0
 
@@ -214,11 +220,12 @@ def _averages(df):
         room = 100 * np.minimum(referee.value_error(k, limits[:, 0]), -referee.value_error(k, limits[:, 1]))
         text = f"f = {fraction:g}, {methods.found()[name].title}, means over three axes: "
         yield text + "least room to the third-order bounds of the same cell, %", np.min(room), ">= 0"
-    for fraction in FRACTIONS:
-        changed = change(df, fraction, "unequal")
-        # Half of the gap to experiment that the paper puts down to this and to its perfect interfaces.
-        text = f"f = {fraction:g}: what unequal spheres change in the mean over cells, %"
-        yield text, changed if changed is None else abs(changed), PAPER["dem_experiment"] / 2
+    changed = [change(df, fraction, "unequal") for fraction in REFINED]
+    if None not in changed:
+        # The paper puts its gap to experiment down to this and to its perfect interfaces.
+        text = f"What unequal spheres change in the mean over cells, largest of {len(REFINED)} fractions, % "
+        text += f"(the paper is {PAPER['dem_experiment']:g} off experiment)"
+        yield text, np.max(np.abs(changed)), PAPER["dem_experiment"] / 10
 
 
 def table(df):

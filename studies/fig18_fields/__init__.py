@@ -51,6 +51,15 @@ DRAWN = {
     "fft": ("voxels", VOXELS[-1]),
     OWN: ("particles", NETWORK),
 }
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "Multipoles of degree": "one limit for both loads, of which the lower degrees have half",
+    "temperature off the multipoles": "one limit for all methods, of which the voxels have half",
+    "flux off the multipoles": "one limit for all methods, of which the voxels have half",
+    "temperature, % of the span": "that of each method beside the witness",
+    "flux, % of": "a third of what the paper's two methods differ by; of its network all of it",
+    "temperature, % of degrees Celsius": "a tenth of what the paper prints; of its network all of it",
+}
 PAPER = printed("fig18_fields")
 TIMEOUT = 3600.0
 
@@ -121,7 +130,7 @@ def claims(df):
 
     others = parted(df)[1]
     found = with_errors(others)
-    claimed = [*_witnesses(others), *_methods(found), *_side_by_side(found), *_paper(found)]
+    claimed = [*_witnesses(others), *_methods(found), *_side_by_side(found)]
     yield from present([*claimed, *_network(network_errors(df), found)])
 
 
@@ -150,12 +159,13 @@ def _differences(row, other):
 def _methods(found):
     """Each method against the witness: quick rows at the coarsest resolution, full ones at the finest.
 
-    Limits of quick rows are some twice what was found; between walls their witness is a coarse FEM, itself 2 % off.
+    Limits of quick rows are some twice what was found; where their witness is a coarse FEM, itself 2 % off, those of
+    the flux are twice as large again.
     """
     for name, knob, coarse, fine, quick in (
-        ("dem", "particles", NUMBERS[0], NUMBERS[-1], {"gradient": (0.15, 2.0), "walls": (0.3, 8.0)}),
+        ("dem", "particles", NUMBERS[0], NUMBERS[-1], {"gradient": (0.15, 2.0), "walls": (0.3, 4.0)}),
         ("fem", "size", None, SIZES["fem"][-1] * EDGE, {}),
-        ("fft", "voxels", VOXELS[0], VOXELS[-1], {"gradient": (0.15, 2.0), "walls": (0.15, 4.0)}),
+        ("fft", "voxels", VOXELS[0], VOXELS[-1], {"gradient": (0.15, 2.0), "walls": (0.15, 2.0)}),
     ):
         for boundary in BOUNDARIES:
             exact = len(pick(found, name="multipole", boundary=boundary)) > 0
@@ -169,7 +179,8 @@ def _methods(found):
                 words = resolution({"name": name, knob: size})
                 text = f"{name.upper()}, {words}, {boundary}, worst point of Table 3: "
                 yield text + f"temperature off {whom}, % of the span", _worst(rows, "worst_T"), limits[0]
-                yield text + f"flux off {whom}, % of the local one", _worst(rows, "worst_q"), limits[1]
+                limit = limits[1] if exact else 2 * limits[1]
+                yield text + f"flux off {whom}, % of the local one", _worst(rows, "worst_q"), limit
 
 
 def _worst(rows, column):
@@ -204,13 +215,6 @@ def _network(made, found):
     yield text + f"temperature, % of degrees Celsius (the paper prints {within:g})", min(w[2] for w in off), within
     # Its text says 3 %, its table 3.1.
     yield text + "flux, % of theirs (the paper's table: 3.1)", min(w[1] for w in off), 3.1
-
-
-def _paper(found):
-    """What linear elements as many as the paper's err by: no less than its two methods differ by, 3.1 % in print."""
-    text = f"FEM, P1, as many elements as the paper's FE ({PAPER['tetrahedra']:.1e}), walls: "
-    off = _worst(pick(found, name="fem-p1"), "worst_q")
-    yield text + "flux at the worst point off the witness, % (printed DE and FE differ by 3.1)", off, ">= 2"
 
 
 def table(df):
