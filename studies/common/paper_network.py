@@ -26,6 +26,8 @@ PRESSURE = 120.0
 def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
     """Cases of the network: every packing under every kind of walls.
 
+    Their method is `NAME`: a study's `MODULES` names what they run, so that its other rows do not change with it.
+
     Parameters
     ----------
     numbers : sequence of int
@@ -41,7 +43,7 @@ def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
         for packing in packings:
             for walls in held:
                 here = {"name": NAME, "packing": packing, "held": walls, "particles": number}
-                yield from (here | {"seed": seed} | repeated | {"method": "dem"} for seed in seeds)
+                yield from (here | {"seed": seed} | repeated | {"method": NAME} for seed in seeds)
 
 
 def calibrations(held):

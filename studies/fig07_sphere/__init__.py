@@ -14,11 +14,14 @@ The paper's network is here twice: "calibrated" is what `evolve` takes for it; t
 the surface, and both calibrations (`studies/common/paper_network.py`). There is no sphere without walls.
 """
 
+from importlib import import_module
+
 import numpy as np
 
 from demheat import referee
-from studies.common import paper_network, sphere_in_time
+from studies.common import sphere_in_time
 from studies.common.paper_network import NAME, WALLED
+from studies.common.paper_network import cases as network_cases
 from studies.common.paper_variants import Variant, parted
 from studies.common.sphere_in_time import CENTER_TIMES as TIMES
 from studies.common.sphere_in_time import NUMBERS, PAPERS, SIZES
@@ -26,6 +29,9 @@ from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.cells import cell
 from studies.harness.pick import pick, present
 
+# What rows of the paper's network run, by this name: others do not change with it.
+OWN = "network"
+MODULES = {OWN: "studies.fig07_sphere.rows"}
 # Of the paper's network; the first is a quick run's.
 FEW, NETWORK, MOST = 3_000, PAPERS, 1_000_000
 
@@ -34,9 +40,9 @@ def _cases():
     yield from sphere_in_time.cases()
     for size, accuracy in TIGHTER.items():
         yield {"order": 2, "size": size, "accuracy": accuracy, "method": "fem"}
-    yield from paper_network.cases([FEW], held=WALLED, packings=["relaxed"], seeds=[0])
-    yield from paper_network.cases([NETWORK], held=WALLED)
-    yield from paper_network.cases([MOST], held=["center"], packings=["relaxed"], seeds=[0])
+    yield from network_cases([FEW], held=WALLED, packings=["relaxed"], seeds=[0])
+    yield from network_cases([NETWORK], held=WALLED)
+    yield from network_cases([MOST], held=["center"], packings=["relaxed"], seeds=[0])
 
 
 CASES = list(_cases())
@@ -60,10 +66,8 @@ TIMEOUT = 3600.0
 
 def run(method, name=None, **knobs):
     """Errors of the centre in time."""
-    if name == NAME:
-        from studies.fig07_sphere.rows import network_row
-
-        return network_row(**knobs, times=TIMES)
+    if method == OWN:
+        return import_module(MODULES[OWN]).network_row(**knobs, times=TIMES)
     row = sphere_in_time.marched(TIMES, _look, method=method, **knobs)
     errors = np.array([row.pop(f"error_{t:g}") for t in TIMES])
     at, largest = referee.worst(errors)
@@ -82,10 +86,8 @@ def _look(field, exact):
 
 def warm_up(method, name=None, **knobs):
     """Make and keep the packing, load and compile."""
-    if name == NAME:
-        from studies.fig07_sphere.rows import warm_up
-
-        return warm_up(**knobs, times=(10.0,))
+    if method == OWN:
+        return import_module(MODULES[OWN]).warm_up(**knobs, times=(10.0,))
     return sphere_in_time.prepare((1.0,), _look, method=method, **knobs)
 
 

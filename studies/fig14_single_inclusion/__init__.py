@@ -67,8 +67,8 @@ def _cases():
                 yield from (methods.case(method.name, **here, **methods.at(method, value, seed)) for seed in seeds)
         yield from (methods.case(name, **here, voxels=VOXELS[0], periodic=True) for name in ("fft", "fft-em"))
         yield from (methods.case(name, **here) for name in ("maxwell", "exact"))
-    few = paper_network.cases(NETWORKS[:1], packings=["relaxed"], seeds=SEEDS[:1])
-    yield from ({**case, "method": OWN} for case in (*few, *paper_network.cases(NETWORKS[1:])))
+    yield from paper_network.cases(NETWORKS[:1], packings=["relaxed"], seeds=SEEDS[:1])
+    yield from paper_network.cases(NETWORKS[1:])
 
 
 CASES = list(_cases())

@@ -25,7 +25,6 @@ from studies.harness.pick import pick, with_size
 from studies.harness.store import printed
 from studies.harness.table import markdown
 
-COSTS_AT = 0.4
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
 ESTIMATES = {
     "Maxwell (lower bound of Hashin and Shtrikman)": bounds.maxwell,
@@ -128,7 +127,7 @@ def _nearest(df, exact, kind, here):
     for fraction, right in exact.items():
         limits = {method: converged(df, method.name, fraction=fraction, **here) for method in methods.compared()}
         off = {method: abs(referee.value_error(k, right)) for method, k in limits.items() if right and k}
-        if len(off) == len(limits):
+        if len(off) > 1:
             best = min(off, key=off.get)
             spent = pick(df, name=best.name, fraction=fraction, **here)["cpu_s"].max()
             line[f"f = {fraction:g}"] = f"{best.title}, {spent:.0f} s"
@@ -143,9 +142,8 @@ def _ladder(rows):
 
 
 def _costs(rows):
-    """Costs of a row at the fraction that stands for all."""
-    rows = pick(rows, fraction=COSTS_AT)
-    return {cost: rows[cost].iloc[0] for cost in COSTS if len(rows)}
+    """Costs of the row at the largest fraction."""
+    return {cost: rows.sort_values("fraction")[cost].iloc[-1] for cost in COSTS if len(rows)}
 
 
 def _walls(df, fractions):

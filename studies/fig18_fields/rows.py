@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from demheat.slices import filled, plane
-from studies.common import paper_network, silica_epoxy
+from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
 from studies.common.pictures import packed
 from studies.harness import methods
@@ -21,8 +21,6 @@ GRID = 51
 # Pixels of what is drawn, and steps to which it is kept: of the temperature in % of the span, of the flux in % of the
 # mean flux.
 FINE, STEPS = 200, {"temperature": 0.002, "flux": 0.05}
-# Halo of the paper's network, in mean radii (eqs. 22-23).
-RATIO = 11.0
 # Packing whose mean diameter is the width of the band along interfaces.
 BAND = 100_000
 
@@ -88,34 +86,6 @@ def field_row(boundary, *, method, fine=False, **knobs):
     return row | looked(field, boundary, fine=fine)
 
 
-def network_row(packing, held, particles, seed, replicas=1, *, fine=False):
-    """The same by the paper's network: the flux is that of the particles, averaged over halos, and with C_t = 1.
-
-    Parameters
-    ----------
-    packing, held, particles, seed, replicas
-        Of a case, see `paper_network`.
-    fine : bool
-        Keep pictures of many pixels, too.
-
-    Returns
-    -------
-    dict
-        With `under`, its boundary condition.
-    """
-    from demheat.sampling.halo import halo_flux
-
-    boundary = "gradient" if held == "periodic" else "walls"
-    scene = spheres_in(boundary)
-    made = paper_network.packed(scene.size, packing, held, particles, seed, replicas)
-    fields, row = paper_network.solved({"k": scene}, made, held, replicas)
-    field = fields["k"]
-    row |= {"under": boundary, "k": paper_network.unscaled(field, silica_epoxy.EPOXY.conductivity)}
-    factor = field.stats["calibration"]
-    found = looked(field, boundary, lambda points: halo_flux(field, ratio=RATIO, at=points) / factor, fine=fine)
-    return row | found | {"mean_flux": found["mean_flux"] / factor}
-
-
 def looked(field, boundary, flux_at=None, *, fine=False):
     """Temperature and flux of a field at the points and over the plane, and what it cost to look.
 
@@ -167,19 +137,6 @@ def circles(scene):
     return np.array(found) / scene.size[0]
 
 
-def warm_up_network(packing, held, particles, seed, replicas=1):
-    """Make the dispersion and the packing, load and compile, also what looks at halos.
-
-    Parameters
-    ----------
-    packing, held, particles, seed, replicas
-        Of a case.
-    """
-    scene = spheres_in("gradient" if held == "periodic" else "walls")
-    paper_network.packed(scene.size, packing, held, particles, seed, replicas)
-    paper_network.warm_up(held)
-
-
 def warm_up(boundary, *, method, **knobs):
     """Make the dispersion and the packing, load and compile, also what looks at the field.
 
@@ -191,9 +148,9 @@ def warm_up(boundary, *, method, **knobs):
     scene = spheres_in(boundary)
     methods.warm_up(method, **knobs)
     if "particles" in knobs:
-        from demheat import dem
         from demheat.packing.cache import relaxed
 
         relaxed(knobs["particles"], size=scene.size, periodic=scene.periodic, seed=knobs["seed"])
-        small = dem.solve(replace(scene, inclusions=scene.inclusions[:1]), **{**knobs, **methods.small(method)})
+        one = replace(scene, inclusions=scene.inclusions[:1])
+        small = methods.load(method).solve(one, **{**knobs, **methods.small(method)})
         small.temperature_at(np.array([scene.size]) / 2), small.flux_at(np.array([scene.size]) / 2)

@@ -8,13 +8,26 @@ have spread 0.3, cut at 2.5 standard deviations; of the radii "ten" one in a hun
 
 import numpy as np
 
-from demheat import referee
 from studies.harness.cells import numbers
 from studies.harness.pick import pick, present
 
-SEEDS = (0, 1, 2, 3, 4)
+SEEDS = (0, 1, 2)
 MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packings.rows"}
 LARGE = 100_000
+# Gaps, over the sum of radii, at which numbers of neighbours are compared.
+COMPARED = (1e-4, 1e-2, 1e-1)
+# Standard deviations of one packing of 10 000 spheres jammed, here and by spheropack: of the packing fraction, and the
+# largest of the number of neighbours within those gaps. Two of each are what means of three may differ by.
+SCATTER = {"equal": (2e-4, 0.016), "gaussian": (5e-4, 0.025)}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "CPU time of spheropack over ours": "what was asked for, and compilers differ",
+    "gaussian radii: mean number of neighbours": "two standard deviations of one packing",
+    "Radii shrunk": "rounding, and far below the gaps of a packing at pressure 1e6, some 1e-6",
+    "Largest overlap": "rounding, and far below the gaps of a packing at pressure 1e6, some 1e-6",
+    "start slope": "three of its standard errors",
+    "stretched by 3 %": "twice what an isotropic packing may have",
+}
 PAPER = {}
 TIMEOUT = 3600.0
 
@@ -33,19 +46,16 @@ def _cases():
     for radii in ("equal", "gaussian", "ten"):
         # At one pressure: at one packing fraction the wide mixture is a thin gas with more lists than collisions.
         yield _case("width", "lsa", 30_000, radii, pressure=100.0, growth=0.02)
-    for growth in (0.005, 0.05, "late"):
+    for growth in (0.005, 0.05):
         yield _case("growth", "lsa", 10_000, "gaussian", pressure=1e6, growth=growth)
     for number in (1000, 10_000):
         for domain in ("walls", "cylinder-y", "sphere"):
             yield _case("walls", "lsa", number, "gaussian", domain=domain, pressure=1e6, growth=0.02)
     for maker in ("lsa", "relax"):
-        for number in (LARGE, 1_000_000):
-            yield _case("large", maker, number, "gaussian", phi=0.64)
+        yield _case("large", maker, LARGE, "gaussian", phi=0.64)
 
 
 CASES = list(_cases())
-# "late": slower by ten where the packing is nearly jammed, so that contacts can close.
-LATE = ((0.0, 0.02), (1e4, 0.002))
 
 
 def QUICK(case):
@@ -57,7 +67,6 @@ def run(part, maker, particles, radii, seed, method, growth=0.02, **knobs):
     """Make a packing and describe it."""
     from studies.packings import rows
 
-    growth = LATE if growth == "late" else growth
     packing, row = rows.packed(maker, particles, radii, seed, growth=growth, **knobs)
     return {**row, **rows.described(packing, row, curves=part == "large" or (part == "peer" and seed == 0))}
 
@@ -71,7 +80,7 @@ def warm_up(**case):
 def claims(df):
     """Speed and likeness beside spheropack; hard, jammed and isotropic packings; denser away from round walls.
 
-    Likeness is judged in standard deviations of one packing, isotropy in those of independent links; three times as
+    Likeness is judged by standard deviations of one packing, isotropy by those of independent links; three times as
     fast is asked for with Gaussian radii.
     """
     return present([*_peer_claims(df), *_own_claims(df)])
@@ -93,22 +102,16 @@ def _peer_claims(df):
             least = ">= 3" if radii == "gaussian" else ">= 2"
             yield f"{what}: CPU time of spheropack over ours, to the same pressure", ratio, least
             if len(ours) > 1:
-                yield from _agreement(what, ours, theirs)
+                yield from _agreement(what, ours, theirs, SCATTER[radii])
 
 
-def _agreement(what, ours, theirs):
-    difference = ours["phi_reached"].mean() - theirs["phi_reached"].mean()
-    yield f"{what}: mean packing fraction, ours minus spheropack's", difference, ">= -0.003"
-    yield f"{what}: the same in standard deviations of one packing", _apart(ours, theirs, "phi_reached"), 2.0
-    for gap in (1e-4, 1e-2, 1e-1):
-        text = f"{what}: mean number of neighbours within a gap of {gap:g}, difference in standard deviations"
-        yield text, _apart(_with_z(ours, gap), _with_z(theirs, gap), "z"), 2.0
-
-
-def _apart(ours, theirs, column):
-    """Difference of two means over the standard deviation of one packing (both scatter)."""
-    scatter = np.sqrt(ours[column].var() + theirs[column].var())
-    return abs(ours[column].mean() - theirs[column].mean()) / scatter
+def _agreement(what, ours, theirs, scatter):
+    off = abs(ours["phi_reached"].mean() - theirs["phi_reached"].mean())
+    yield f"{what}: mean packing fraction, difference from spheropack's", off, 2 * scatter[0]
+    means = [[_with_z(rows, gap)["z"].mean() for gap in COMPARED] for rows in (ours, theirs)]
+    gaps = ", ".join(f"{gap:g}" for gap in COMPARED)
+    text = f"{what}: mean number of neighbours within gaps of {gaps}, largest difference from spheropack's"
+    yield text, np.max(np.abs(np.subtract(*means))), 2 * scatter[1]
 
 
 def _with_z(rows, gap):
@@ -125,17 +128,14 @@ def _own_claims(df):
     yield "Largest overlap in any packing by our algorithm, mean diameters", ours["overlap"].max(skipna=False), 1e-10
     by_width = pick(ours, part="width").set_index("radii")["us_per_collision"]
     if len(by_width):
-        text = "CPU time per collision, {} over equal ones"
-        yield text.format("Gaussian radii"), by_width["gaussian"] / by_width["equal"], 1.5
-        # A sphere ten times as large has hundreds of neighbours, all of which are looked at when it collides.
-        yield text.format("1 : 10 radii"), by_width["ten"] / by_width["equal"], 8.0
+        yield "CPU time per collision, Gaussian radii over equal ones", by_width["gaussian"] / by_width["equal"], 1.5
     large = pick(ours, part="large")
     if len(large):
         at = pick(large, particles=LARGE)["cpu_s"]
         yield f"{LARGE} spheres to phi = 0.64: CPU seconds, points to packing", at.max(), 90.0
-        yield "Memory per sphere from 1e5 spheres on, bytes", large["bytes_per_sphere"].max(), 1000.0
-        off = abs(referee.value_error(large["slope_mean"], large["slope_exact"])).max()
-        yield "S2(r): measured start slope, mean of 7 directions, relative to -surface/4", off, 0.01
+        yield f"Memory per sphere of {LARGE}, bytes", large["bytes_per_sphere"].max(), 1000.0
+        off = abs(large["slope_mean"] - large["slope_exact"]) / large["slope_error"]
+        yield "S2(r): start slope, mean of 7 directions, off -surface/4, standard errors", off.max(skipna=False), 3.0
         for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):
             # Links of one sphere repel each other: twenty packings were all within 1.1 of independent links' scatter.
             yield f"Isotropy: largest deviation of the {name}, standard deviations", large[column].max(), 2.0
@@ -143,7 +143,7 @@ def _own_claims(df):
         yield text, large["strained_sd"].min(), ">= 4"
     cylinder = pick(ours, part="walls", domain="cylinder-y")
     excess = (cylinder["phi_core"] - cylinder["phi_reached"]).min(skipna=False)
-    yield "Round walls: packing fraction of the core minus that of the whole cylinder", excess, ">= 0.005"
+    yield "Round walls: packing fraction of the core minus that of the whole cylinder", excess, ">= 0.01"
 
 
 def table(df):
@@ -157,7 +157,10 @@ def notes(df):
     """What the packings cost, and their contacts."""
     from studies.harness.table import markdown
 
-    yield "Costs from points to packing; us_per_collision is all CPU time over collisions."
+    yield (
+        "Costs from points to packing; us_per_collision is all CPU time over collisions. A sphere ten times as large "
+        "as others has hundreds of neighbours, all of which are looked at when it collides."
+    )
     yield markdown(_means(df, ["cpu_s", "us_per_collision", "bytes_per_sphere"]))
     yield (
         "Contacts and isotropy: rattlers and backbone_z are at a gap of 1e-4; gap_7.5 is the detection gap of 7.5 "

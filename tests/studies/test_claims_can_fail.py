@@ -25,12 +25,10 @@ from studies.harness import runner
 RESULTS = Path(__file__).parents[2] / "results"
 DEALS, KEPT, NEAR = 6, 0.9, 3.0
 STORED = [name for name in study_names() if (RESULTS / f"{name}.csv").exists()]
-# TEMPORARY: studies that have such claims still. Each leaves this list when it has none.
-TO_MEND = ("fig17_etc", "fig18_fields", "many_inclusions", "packings")
 # Judged a dozen times or more, these take over two CPU-seconds each: `make test-slow`.
 SLOW = (
-    *("estimates", "fig12_15_sheet", "peers", "resistance", "scaling", "shapes", "speed_error", "sphere_benchmark"),
-    *("tuning", "zeta2"),
+    *("estimates", "fig12_15_sheet", "fig17_etc", "fig18_fields", "packings", "peers", "resistance", "scaling"),
+    *("shapes", "speed_error", "sphere_benchmark", "tuning", "zeta2"),
 )
 # Claims that no order of the rows and no change of the results make fail, and why.
 EXCEPTIONS = {
@@ -124,8 +122,6 @@ NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name fo
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("refused", [holding_anyhow, without_rows, far])
 def test_claims_can_fail(name, refused):
-    if name in TO_MEND:
-        pytest.skip("still to be mended")
     assert refused(stored(name)) == []
 
 

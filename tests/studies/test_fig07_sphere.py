@@ -30,7 +30,7 @@ def test_laws_of_contacts_heat_the_centre_too_early(usual):
 
 def test_one_march_serves_both_calibrations(usual):
     """A march at times in proportion is one with the other C_t."""
-    row = fig07_sphere.run("dem", "network", packing="relaxed", held="center", particles=500, seed=99)
+    row = fig07_sphere.run("network", "network", packing="relaxed", held="center", particles=500, seed=99)
     # `evolve` calibrates along x, a row along y: found 0.1 %.
     assert_allclose(row["ct_isothermal"], usual["calibration"], rtol=0.01)
     times, ball = (3.0, 10.0), fig07_rows.ball("relaxed", 500, 99)
@@ -39,7 +39,7 @@ def test_one_march_serves_both_calibrations(usual):
         fields = dem.evolve(sphere(), times, law=law, packing=ball, accuracy=1e-5)
         found = [field.temperature_at(CENTER)[0] for field in fields]
         exact = [field.temperature_at(CENTER)[0] for field in series.evolve(sphere(), times)]
-        here = [fig07_sphere.means.TIMES.index(time) for time in times]
+        here = [fig07_sphere.TIMES.index(time) for time in times]
         # Two marches of accuracy 1e-5 of 180 K; what is read beside a particle goes with its flux, here 1 % off: .15 K.
         atol = 0.01 if way == "isothermal" else 0.3
         assert_allclose(numbers(row[f"errors_{way}"])[here], np.subtract(found, exact), atol=atol)

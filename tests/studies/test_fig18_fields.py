@@ -74,7 +74,7 @@ def test_errors_are_those_put_in():
 
 def test_claims_see_these_errors():
     found = {text: (value, limit) for text, value, limit in study.claims(rows())}
-    text = "DEM, 1000000 particles, walls, worst point of Table 3: "
+    text = f"DEM, {study.NUMBERS[-1]} particles, walls, worst point of Table 3: "
     assert found[text + "temperature off the multipoles, % of the span"] == (pytest.approx(0.2), 0.03)
     assert found[text + "flux off the multipoles, % of the local one"] == (pytest.approx(3.0), 1.0)
     assert fig18_tables.told(rows(), study.PAPER) == [

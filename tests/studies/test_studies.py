@@ -137,6 +137,28 @@ def test_code_of_a_row_is_that_of_its_method(monkeypatch):
     assert {method for method in codes if after[method] != codes[method]} == {"dem"}
 
 
+@pytest.mark.parametrize(
+    "name", ["fig07_sphere", "fig14_single_inclusion", "fig17_etc", "fig18_fields", "many_inclusions"]
+)
+def test_rows_do_not_change_with_the_papers_network(name, monkeypatch):
+    study, parse = runner.load(name), provenance._parse
+    named = {case["method"] for case in study.CASES}
+
+    def codes():
+        provenance.code_hash.cache_clear()
+        return {method: provenance.code_hash(study.__file__, provenance.module_of(study, method)) for method in named}
+
+    @functools.cache
+    def changed(path):
+        return parse(path) if path.name != "paper_network.py" else parse(provenance.ROOT / "studies/harness/cost.py")
+
+    before = codes()
+    monkeypatch.setattr(provenance, "_parse", changed)
+    after = codes()
+    provenance.code_hash.cache_clear()
+    assert {method for method in named if before[method] != after[method]} == {"network"}
+
+
 def test_a_row_in_its_own_process():
     study = runner.load("fig14_single_inclusion")
     case = runner.find_case(study, "name=exact,scene=third,contrast=10.0,method=exact")
