@@ -21,10 +21,10 @@ GRID = 51
 # Pixels of what is drawn, and steps to which it is kept: of the temperature in % of the span, of the flux in % of the
 # mean flux.
 FINE, STEPS = 200, {"temperature": 0.002, "flux": 0.05}
-# Arrangement: the first whose four points are no nearer to an interface than that band, in which flux is hard to find.
-SEED = 20
 # Packing whose mean diameter is the width of the band along interfaces.
 BAND = 100_000
+# Arrangement: the first whose four points are no nearer to an interface than that band, in which flux is hard to find.
+SEED = 20
 
 
 def spheres_in(boundary):
