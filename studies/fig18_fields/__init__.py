@@ -160,10 +160,11 @@ def _methods(found):
     """Each method against the witness: quick rows at the coarsest resolution, full ones at the finest.
 
     Limits of quick rows are some twice what was found; where their witness is a coarse FEM, itself 2 % off, those of
-    the flux are twice as large again.
+    the flux are twice as large again. Nothing is claimed of the flux by coarse particles: they are 0.03 L, as far as
+    a point is from an interface, and their flux was found 9 % off on this arrangement, 1 to 2 % on another.
     """
     for name, knob, coarse, fine, quick in (
-        ("dem", "particles", NUMBERS[0], NUMBERS[-1], {"gradient": (0.15, 2.0), "walls": (0.3, 4.0)}),
+        ("dem", "particles", NUMBERS[0], NUMBERS[-1], {"gradient": (0.15, None), "walls": (0.3, None)}),
         ("fem", "size", None, SIZES["fem"][-1] * EDGE, {}),
         ("fft", "voxels", VOXELS[0], VOXELS[-1], {"gradient": (0.15, 2.0), "walls": (0.15, 2.0)}),
     ):
@@ -179,6 +180,8 @@ def _methods(found):
                 words = resolution({"name": name, knob: size})
                 text = f"{name.upper()}, {words}, {boundary}, worst point of Table 3: "
                 yield text + f"temperature off {whom}, % of the span", _worst(rows, "worst_T"), limits[0]
+                if limits[1] is None:
+                    continue
                 limit = limits[1] if exact else 2 * limits[1]
                 yield text + f"flux off {whom}, % of the local one", _worst(rows, "worst_q"), limit
 

@@ -23,11 +23,13 @@ GRID = 51
 FINE, STEPS = 200, {"temperature": 0.002, "flux": 0.05}
 # Packing whose mean diameter is the width of the band along interfaces.
 BAND = 100_000
+# Arrangement: the first whose four points are no nearer to an interface than that band, in which flux is hard to find.
+SEED = 20
 
 
 def spheres_in(boundary):
     """The 83 spheres, between walls or, the same, in a periodic cell."""
-    return silica_epoxy.scene("walled", 0.2, seed=0, boundary=boundary)
+    return silica_epoxy.scene("walled", 0.2, seed=SEED, boundary=boundary)
 
 
 def arrangement_row():

@@ -31,6 +31,7 @@ def test_distances_and_phases():
     points = np.array(list(fig18_rows.POINTS.values())) * scene.size
     gaps = [np.linalg.norm(points - s.center, axis=1) - s.radius for s in scene.inclusions]
     assert_allclose([row[f"gap_{x}"] for x in "ABCD"], np.abs(np.min(np.abs(gaps), axis=0)) / 0.1)
+    assert min(row[f"gap_{x}"] for x in "ABCD") >= row["band"]
     assert [row[f"phase_{x}"] == "sphere" for x in "ABCD"] == (np.min(gaps, axis=0) < 0).tolist()
 
 
