@@ -13,7 +13,7 @@ from contextlib import nullcontext
 
 import benchmark
 from studies.harness import methods
-from studies.sphere_benchmark.cases import GUEST, LADDERS, POROUS, RELATIONS, TWICE
+from studies.sphere_benchmark.cases import GUEST, LADDERS, MOST, POROUS, RELATIONS, TWICE
 
 PAPER = {}
 TIMEOUT = 900.0
@@ -37,7 +37,7 @@ def _cases():
             if not timed or name in IN_TIME:
                 if name == "fft" and scene in POROUS:
                     values = values[:1]
-                elif group != TWICE and scene not in QUICK_SCENES:
+                elif group != TWICE and scene not in (*QUICK_SCENES, MOST):
                     values = values[-1:]
                 for value in values:
                     yield methods.case(name, scene=scene, **({column: value} if column else {}))

@@ -10,7 +10,8 @@ LADDERS = {
     "multipole": ("degree", (7,)),
     "maxwell": (None, (None,)),
 }
-# Coarse resolutions are for one group, and for what a quick run has; iterations on voxels beside pores are dear.
-TWICE = "cubic arrays"
+# Coarse resolutions are for one group, for what a quick run has, and for the most spheres, where coarse elements are
+# hardest to make; iterations on voxels beside pores are dear.
+TWICE, MOST = "cubic arrays", "dispersion-150"
 POROUS = ("sc-third-pore", "coated-hollow", "dispersion-20-pores")
 RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")
