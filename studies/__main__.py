@@ -12,7 +12,7 @@ from demheat import fresh
 from studies import contents
 from studies.harness import jobs, quiet, runner, sound
 from studies.harness.cluster import spreading
-from studies.harness.forked import forking
+from studies.harness.forked import forking, serve
 from studies.harness.machines import origins
 from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
@@ -73,6 +73,9 @@ def _parser():
     row.add_argument("--json", metavar="FILE", help="write the row there, in JSON, for `gather`")
     row.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
+    first = actions.add_parser("first")  # of which rows are copies
+    first.add_argument("parent", type=int)
+    first.set_defaults(action=_first, out=None)
     array = actions.add_parser("jobs", help="print a command for each row still to be made, for a batch system")
     array.add_argument("name", metavar="NAME")
     array.add_argument("--quick", action="store_true", help="only the quick rows")
@@ -209,6 +212,11 @@ def _row(arguments):
     for name, value in row.items():
         print(f"{name:20} {value}")
     return 0 if row["status"] in runner.KEPT else 1
+
+
+def _first(arguments):
+    serve(main, arguments.parent)
+    return 0
 
 
 def _jobs(arguments):

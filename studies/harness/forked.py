@@ -58,7 +58,7 @@ def forking():
 
 def _begun():
     """The first process, in the environment of rows: libraries read it when they are loaded."""
-    words = [sys.executable, "-m", "studies.harness.forked", str(os.getpid())]
+    words = [sys.executable, "-m", "studies", "first", str(os.getpid())]
     # Unbuffered, so that nothing that is there to be read hides from `select`.
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "bufsize": 0}
     return subprocess.Popen(words, start_new_session=True, env=provenance.row_environment(), **pipes)
@@ -96,17 +96,16 @@ def _started(first, words, log, limit):
         fresh.dismiss(guard)
 
 
-def serve(parent):
+def serve(main, parent):
     """Be the first process: for each line of orders load what that row needs and copy this process.
 
     Parameters
     ----------
+    main : callable (words) -> int
+        The command line, of which a copy does what an order's words say.
     parent : int
         Process with whose end this one ends.
     """
-    # This module is part of the command line's.
-    from studies.__main__ import main
-
     fresh.die_with_parent(parent)
     own = os.getpid()
     answers = os.dup(1)
@@ -181,7 +180,3 @@ def _copied(main, words, log):
         sys.stdout.flush()
         sys.stderr.flush()
         os._exit(status)
-
-
-if __name__ == "__main__":
-    serve(int(sys.argv[1]))
