@@ -26,6 +26,8 @@ from studies.harness import provenance, quiet, runner
 # What most rows load, whatever their method.
 SCIPY = ("scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial", "scipy.special", "scipy.optimize")
 LIBRARIES = ("numba.np.ufunc.parallel", *SCIPY, "skfem", "pyfftw", "pyamg")
+# Seconds for the first process to end.
+PATIENCE = 5.0
 
 
 @contextmanager
@@ -65,11 +67,16 @@ def _begun():
 
 
 def _end(first):
-    if first is not None:
-        first.stdin.close()
+    """End the first process: by itself, once it has seen the end of its row, so that nothing of that is left."""
+    if first is None:
+        return
+    first.stdin.close()
+    try:
+        first.wait(PATIENCE)
+    except subprocess.TimeoutExpired:
         first.kill()
         first.wait()
-        first.stdout.close()
+    first.stdout.close()
 
 
 def _sources():
