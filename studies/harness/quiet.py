@@ -18,6 +18,10 @@ NOISY = 0.1
 SHORTEST = 0.2
 # Between two looks at a machine that is not quiet, s.
 PAUSE = 2.0
+# Looks after a row at most, until one is quiet.
+LOOKS = 3
+# Each processor's count may be wrong by so much, s.
+TICK = 1 / os.sysconf("SC_CLK_TCK")
 
 
 class Moment(NamedTuple):
@@ -37,7 +41,8 @@ def moment():
 def others(begin, end=None):
     """Share of our processors' time between two moments that went to others, 0 to 1.
 
-    What a hypervisor gave to other machines counts; what this process and its finished children used does not.
+    What a hypervisor gave to other machines counts; what this process and its finished children used does not, nor
+    what may be the coarseness of the count.
 
     Parameters
     ----------
@@ -53,7 +58,7 @@ def others(begin, end=None):
     elapsed = end.time - begin.time
     if elapsed < SHORTEST:
         return math.nan
-    used = (end.busy - begin.busy) - (end.own - begin.own)
+    used = (end.busy - begin.busy) - (end.own - begin.own) - TICK * processors()
     return min(max(used / (elapsed * processors()), 0.0), 1.0) if math.isfinite(used) else math.nan
 
 
@@ -131,11 +136,20 @@ def quietly(compute, *, seconds=0.0, say=print):
         # What is seen after a row is what is seen before the next.
         before = wait(last.pop() if last else look())
         row = compute(name, study, case)
-        last.append(look())
+        last.append(_after())
         noise = loudest(row.get("noise", math.nan), before[1], last[0][1])
         return row | {"triad_gbs": before[0]} | ({"noise": noise} if math.isfinite(noise) else {})
 
     return computed
+
+
+def _after():
+    """A look after a row; somebody's blink in it is no noise of the row, what is still there in the next look is."""
+    for _ in range(LOOKS):
+        seen = look()
+        if not seen[1] > NOISY:
+            break
+    return seen
 
 
 def _busy():
