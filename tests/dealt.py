@@ -41,9 +41,9 @@ def dealt(study, df, seed):
     return df.assign(**columns)
 
 
-def spoiled(study, df, how, names=None):
+def spoiled(study, df, how, names=None, seed=2):
     """The rows with every number changed, or every verdict; of all results, or of some."""
-    rng = np.random.default_rng(2)
+    rng = np.random.default_rng(seed)
     names = [name for name in names or results(study, df) if name != "status"]
     return df.assign(**{name: df[name].map(lambda value: _changed(value, how, rng)) for name in names})
 

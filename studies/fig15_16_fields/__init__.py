@@ -154,7 +154,7 @@ def _exact(df):
 
 
 def _laguerre(df):
-    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.015, 1.5, 12.0), (PAPERS, 0.09, 7.5e-4, 0.25, 2.1)):
+    for number, flux, warm, rms, most in ((NUMBERS[0], 1.0, 0.015, 1.5, 12.0), (PAPERS, 0.08, 6e-4, 0.25, 2.1)):
         rows = pick(df, name="dem", particles=number)
         text = f"DEM, Laguerre, {number} particles: "
         yield text + "largest error of a flux of Table 2, %", largest(rows, error_columns("q", POINTS)), flux
@@ -196,15 +196,19 @@ def _printed(df):
     off = [(rows[f"T_{x}"] - PAPER[f"T_{x}_150k"]).abs().max(skipna=False) for x in POINTS]
     # Half a unit of the last printed digit, and as much scatter.
     yield f"{text} temperatures of Table 2 off the printed ones, largest, K", max(off) if len(rows) else None, 0.1
-    for name, who in (("dem-calibrated", text), ("dem", "DEM, Laguerre, 1.5e5 particles:")):
+    # Of ours three times what was found, as elsewhere; of the network what is printed.
+    for name, who, limits in (
+        ("dem-calibrated", text, (1.0, 19.6)),
+        ("dem", "DEM, Laguerre, 1.5e5 particles:", (0.03, 4.5)),
+    ):
         rows = pick(df, name=name, particles=PAPERS, ratio=RATIOS[-1] if name != "dem" else None)
         if "relative_flux" not in rows:
             continue
-        for column, what, limit in (
-            ("relative_temperature", "largest |dT|/T over the plane, T in degrees Celsius, % (paper: within 1)", 1.0),
-            ("relative_flux", "largest error of the flux over the flux there, % (paper: within 19.6)", 19.6),
-        ):
-            yield f"{who} {what}", largest(rows, [column]), limit
+        warm, flux = limits
+        text = f"{who} largest |dT|/T over the plane, T in degrees Celsius, % (paper: within 1)"
+        yield text, largest(rows, ["relative_temperature"]), warm
+        text = f"{who} largest error of the flux over the flux there, % (paper: within 19.6)"
+        yield text, largest(rows, ["relative_flux"]), flux
 
 
 def _network(df):

@@ -16,6 +16,10 @@ from studies.speed_error.cases import TIMEOUT, all_cases
 
 CASES = list(all_cases())
 PAPER = {}
+# Limits that are far from the values, and why they are no nearer.
+REASONS = {
+    "over that of the best plain pyamg": "to be no slower than the library is what is asked",
+}
 
 __all__ = ["CASES", "PAPER", "QUICK", "TIMEOUT", "by_accuracy", "claims", "notes", "plot", "run", "table", "warm_up"]
 # Methods of a quick run, at their coarsest, on scenes besides the first.

@@ -91,6 +91,8 @@ def holding_anyhow(found):
 def _spoiled(study, df):
     """All results at once; halves of them, for ratios of two; each alone, as others may leave nothing to be judged."""
     yield from (dealt.spoiled(study, df, how) for how in dealt.SPOILS)
+    # Of two numbers one grows as often as the other: a ratio of them may need more than one try.
+    yield from (dealt.spoiled(study, df, "unlike", seed=seed) for seed in range(3, 11))
     names = [name for name in dealt.results(study, df) if df[name].notna().any()]
     for bit in range(len(names).bit_length()):
         for side in (0, 1):
