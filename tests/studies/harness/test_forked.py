@@ -52,11 +52,11 @@ def test_each_row_has_a_process_of_its_own_all_of_one_first(study):
 def test_a_row_that_dies_or_takes_too_long_is_told_and_the_next_is_made(study, tmp_path):
     more = '{"name": "dies", "x": 3.0}, {"name": "sleeps", "x": 4.0}, {"name": "plain", "x": 5.0}'
     child = 'import subprocess; child = subprocess.Popen(["sleep", "60"]); _log(f"pid {child.pid}"); time.sleep(60)'
-    tiny = study(more, **{"TIMEOUT = 60.0": "TIMEOUT = 2.0", "time.sleep(60)": child})
+    tiny = study(more, **{"TIMEOUT = 60.0": "TIMEOUT = 5.0", "time.sleep(60)": child})
     with forked.forking() as compute:
         dead, late, well = (compute(tiny.__name__, tiny, case) for case in tiny.CASES[2:])
     assert dead["status"] == "failed" and "SIGABRT" in dead["note"]
-    assert late["status"] == "timeout" and "2 s" in late["note"]
+    assert late["status"] == "timeout" and "5 s" in late["note"]
     assert well["status"] == "ok" and well["first"] != well["process"]
     pid = int((tmp_path / "log").read_text().split("pid ")[1].split()[0])
     for _ in range(100):
