@@ -75,7 +75,7 @@ def _parser():
     row.set_defaults(action=_row)
     first = actions.add_parser("first")  # of which rows are copies
     first.add_argument("parent", type=int)
-    first.set_defaults(action=_first, out=None)
+    first.set_defaults(action=_first)
     array = actions.add_parser("jobs", help="print a command for each row still to be made, for a batch system")
     array.add_argument("name", metavar="NAME")
     array.add_argument("--quick", action="store_true", help="only the quick rows")

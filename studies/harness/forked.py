@@ -2,8 +2,9 @@
 
 To start Python and load what a solve needs takes some three seconds, more than most solves do. Here one process, the
 first, does so once, and forks for each row; on Linux, elsewhere every row starts from nothing. A row still has its
-process to itself: what it compiles, allocates and keeps ends with it. The first computes nothing and starts no threads,
-as a fork would have them not; when a source file changes, another takes its place.
+process to itself: what it compiles, allocates and keeps ends with it. The first computes nothing. Threads that OpenBLAS
+and Numba start when they are loaded are not in a copy; both make theirs anew there. When a source file changes, another
+process takes the first's place.
 """
 
 from __future__ import annotations
@@ -131,7 +132,7 @@ def serve(main, parent):
 
 @cache
 def load(path):
-    """Load what rows of a method need, as far as that starts no threads; what is missing is for the row to tell.
+    """Load what rows of a method need, and compute nothing with it; what is missing is for the row to tell.
 
     Parameters
     ----------

@@ -11,8 +11,9 @@ from studies.harness import forked, provenance, runner
 
 pytestmark = pytest.mark.skipif(not sys.platform.startswith("linux"), reason="rows are copies of a process on Linux")
 NOTED = '"square": x * x, "process": os.getpid(), "first": os.getppid(), "threads": os.environ["OMP_NUM_THREADS"]'
+NOTED += ', "began": __import__("studies.harness.quiet", fromlist="START").START.time'
 # What a row is not told by its case: when it was made, and what it took.
-OWN = ("when", "load", "wall_s", "cpu_s", "peak_mib", "base_mib", "noise", "beside", "process", "first")
+OWN = ("when", "load", "wall_s", "cpu_s", "peak_mib", "base_mib", "noise", "beside", "process", "first", "began")
 
 
 @pytest.fixture
@@ -44,6 +45,8 @@ def test_each_row_has_a_process_of_its_own_all_of_one_first(study):
     with forked.forking() as compute:
         rows = [compute(tiny.__name__, tiny, case) for case in [*tiny.CASES, *tiny.CASES]]
     assert len({row["process"] for row in rows}) == 4
+    # What others do is counted from the beginning of each, not of the first.
+    assert len({row["began"] for row in rows}) == 4
     (first,) = {row["first"] for row in rows}
     # It is gone with the run.
     assert first != os.getpid() and not Path(f"/proc/{first}").exists()
