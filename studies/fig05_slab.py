@@ -16,7 +16,7 @@ from studies.common.slab import LENGTH, TIMES, packing_of, slab
 from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import order, pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 NUMBERS = (1_000, 3_000, 10_000, 30_000, 100_000)
 LAWS = (("laguerre", None), ("calibrated", "center"), ("calibrated", "surface"), ("platonic", "center"))

@@ -16,7 +16,7 @@ from studies.common import sphere_in_time
 from studies.common.sphere_in_time import NUMBERS, SIZES
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 TIMES = (2.0, 5.0, 10.0)
 # Points along a side of the slice; at sizes that are not drawn in a full run, fewer.

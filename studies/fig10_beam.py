@@ -19,7 +19,7 @@ from studies.common.cases import laws_by_size
 from studies.common.slices import slice_means
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {

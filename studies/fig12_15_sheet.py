@@ -21,7 +21,7 @@ from demheat import referee
 from studies.common.cases import laws_by_size
 from studies.harness.cells import cell, numbers
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 PAPER = printed("fig12_15_sheet")
 STOP, OUTPUTS = 7.878, 60

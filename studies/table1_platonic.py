@@ -14,7 +14,7 @@ from demheat import referee
 from demheat.scene import Material, Scene
 from studies.harness.figures import BLUE, GREEN, GREY, ORANGE, PINK
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 PAPER = printed("table1_platonic")
 WANTED = (6.2, 7.2, 7.5)  # the middle one is the law's default

@@ -19,7 +19,7 @@ from test_layers import refused
         ("demheat.laws", "from demheat.network.calibrated import contact_facets"),
         ("references.exact", "from demheat import gallery"),
         ("references.fem", "import demheat"),
-        ("references.bounds", "from studies.harness.store import printed"),
+        ("references.bounds", "from studies.harness.printed import printed"),
         ("references.exact.forms", "import numba"),
         ("references.fem", "import gmsh"),
         ("references.meshes", "import gmsh"),

@@ -6,7 +6,7 @@ import numpy as np
 
 from demheat import referee
 from studies.harness.pick import pick
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 PAPER = printed("ct_search")
 NUMBER = 3_000  # particles of a row's packings

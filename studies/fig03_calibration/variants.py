@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from studies.harness.pick import pick
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 # What else the level depends on, one change at a time; on the paper's load and in the periodic cell.
 VARIANTS = {

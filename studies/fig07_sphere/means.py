@@ -5,7 +5,7 @@ from studies.common.paper_network import WALLED
 from studies.common.paper_variants import interval, variants
 from studies.common.sphere_in_time import ACCURACY, SIZES
 from studies.harness.pick import pick
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 PAPER = printed("fig07_sphere")
 # Sizes of quadratic elements that are marched with a tenth of the temporal error.

@@ -6,7 +6,7 @@ import numpy as np
 
 from demheat import referee
 from studies.harness.cells import cell, numbers
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 COSTED = 11.0  # mean radii of the halo whose cost is a row's
 TOUCHING = 2.0  # mean radii from a wall within which particles may touch it

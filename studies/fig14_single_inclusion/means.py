@@ -2,7 +2,7 @@
 
 from studies.fig14_single_inclusion.scenes import SCENES, label
 from studies.harness.pick import pick
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 PAPER = printed("fig14_single_inclusion")
 

@@ -19,7 +19,7 @@ from studies.fig15_16_fields.tables import error_columns, largest
 from studies.harness import methods
 from studies.harness.cells import cell
 from studies.harness.pick import order, pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 # Table 2, in edges of the cube.
 POINTS = {"A": (0.5, 0.5, 0.5), "B": (0.08, 0.5, 0.5), "C": (0.5, 0.92, 0.5)}

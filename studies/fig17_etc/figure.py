@@ -14,7 +14,7 @@ from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, PINK, RED, SKY, look
 from studies.harness.pick import pick, with_size
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 HERE = {"kind": "periodic", "boundary": "gradient", "realisation": 0, "axes": "y"}
 PAPER = printed("fig17_etc")

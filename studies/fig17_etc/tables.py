@@ -22,7 +22,7 @@ from studies.fig17_etc.means import (
 from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import pick, with_size
-from studies.harness.store import printed
+from studies.harness.printed import printed
 from studies.harness.table import markdown
 
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")

@@ -26,7 +26,7 @@ from studies.fig18_fields.tables import COMPARED
 from studies.harness import methods
 from studies.harness.methods import EDGE, resolution
 from studies.harness.pick import pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 
 # What rows of the paper's network run, by this name: others do not change with it.
 OWN = "network"

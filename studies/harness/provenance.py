@@ -16,6 +16,7 @@ from pathlib import Path
 
 from demheat.machine import host, machine
 from studies.harness.methods import path_of
+from studies.harness.threads import threads
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("demheat", "references", "benchmark", "studies")
@@ -24,9 +25,10 @@ LIBRARIES = ("numpy", "scipy", "numba", "pyamg", "scikit-fem", "gmsh", "pyfftw",
 SAME = ("code", "machine", "threads", "versions")
 # The same where only its numbers count, not its costs: rows may come from several machines.
 ANYWHERE = ("code", "versions")
-# Names of a module that no number depends on, and a module of such.
+# Names of a module that no number depends on, and modules of such: what methods declare, and this one, by whose hash
+# a row may name what it keeps on disk.
 DESCRIBING = {"__all__", "__version__", "METHODS"}
-DECLARING = "demheat.method"
+APART = ("demheat.method", "studies.harness.provenance")
 
 
 def provenance(study, case):
@@ -71,11 +73,6 @@ def guest_case(study, key):
     key : str
     """
     return study.guest_case(key) if hasattr(study, "guest_case") else None
-
-
-def threads():
-    """Threads a row may use: NUMBA_NUM_THREADS where set, else every processor this process may use."""
-    return int(os.environ.get("NUMBA_NUM_THREADS") or len(os.sched_getaffinity(0)))
 
 
 def row_environment():
@@ -149,9 +146,9 @@ def code_hash(study_file, module=""):
     """Hash of the source that a row runs, 12 hexadecimal digits.
 
     Covers what `run` and `warm_up` of the study reach inside the study module, and every module of ours that they or
-    the named one import, directly or not. Comments, docstrings, layout, imports of ours and what a method declares of
-    itself do not count, nor where a file lies: neither moving a module nor drawing a figure anew must repeat hours of
-    solves.
+    the named one import, directly or not, but this one. Comments, docstrings, layout, imports of ours and what a method
+    declares of itself do not count, nor where a file lies: neither moving a module nor drawing a figure anew must
+    repeat hours of solves.
 
     Parameters
     ----------
@@ -160,41 +157,51 @@ def code_hash(study_file, module=""):
         Path of the module that the case names, if any.
     """
     study_file = Path(study_file)
-    used = _reached(_parse(study_file).body, ("run", "warm_up"))
+    used = _run_by(_parse(study_file))
     texts, seen = {_text(used)}, set()
     queue = [*_imported(used), (module, True)]
     while queue:
         name, deep = queue.pop()
+        if (name, deep) in seen:
+            continue
+        seen.add((name, deep))
         path = _file_of(name)
         # Of a study that is a package its own parts import no more than `_reached` found.
         own = path == study_file and not deep
-        if path is None or name == DECLARING or own or (name, deep) in seen:
+        if path is None or name in APART or own:
             continue
-        seen.add((name, deep))
         tree = _parse(path)
-        texts.add(_text(tree.body))
-        # A package is run by importing any of its modules, but only as far as its top-level statements.
-        queue += _imported([tree] if deep else [node for node in tree.body if not isinstance(node, ast.FunctionDef)])
+        texts.add(_text(tuple(tree.body)))
+        queue += _needed(tree, deep)
     return hashlib.sha256("\n".join(sorted(texts - {""})).encode()).hexdigest()[:12]
 
 
 @cache
 def _parse(path):
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    for node in ast.walk(tree):
+    for node in _statements(tree):
         if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
             del node.body[0]
     return tree
 
 
+def _statements(node):
+    """A statement, or a module, and all statements inside; a tenth of what `ast.walk` visits."""
+    yield node
+    for part in ("body", "orelse", "handlers", "finalbody", "cases"):
+        for inner in getattr(node, part, ()):
+            yield from _statements(inner)
+
+
+# What is made of trees is kept as long as they are: a module counts in a hundred hashes.
+@cache
 def _text(nodes):
     """Statements as text, without imports of ours and what only describes a module (`__all__`, `METHODS`)."""
     return "\n".join(filter(None, (_dump(node) for node in nodes if not _bound(node) & DESCRIBING)))
 
 
-@cache
 def _dump(node):
-    """One statement as text; empty if it is an import of ours. A module's statements count in many hashes."""
+    """One statement as text; empty if it is an import of ours."""
     kept = _Moved().visit(copy.deepcopy(node)) if _imports_in(node) else node
     return "" if kept is None else ast.dump(kept)
 
@@ -202,7 +209,7 @@ def _dump(node):
 @cache
 def _imports_in(node):
     """Import statements inside another one."""
-    return [part for part in ast.walk(node) if isinstance(part, ast.Import | ast.ImportFrom)]
+    return [part for part in _statements(node) if isinstance(part, ast.Import | ast.ImportFrom)]
 
 
 class _Moved(ast.NodeTransformer):
@@ -213,6 +220,12 @@ class _Moved(ast.NodeTransformer):
 
     def visit_ImportFrom(self, node):  # noqa: N802
         return None if (node.module or "").split(".")[0] in PACKAGES else node
+
+
+@cache
+def _run_by(tree):
+    """Top-level statements of a study that a row uses."""
+    return tuple(_reached(tree.body, ("run", "warm_up")))
 
 
 def _reached(body, roots):
@@ -234,6 +247,12 @@ def _bound(node):
     if isinstance(node, ast.Import | ast.ImportFrom):
         return {(alias.asname or alias.name).split(".")[0] for alias in node.names}
     return {part.id for part in ast.walk(node) if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)}
+
+
+@cache
+def _needed(tree, deep):
+    """Imports of ours in a module; of a package that one of its modules runs, those that this makes it execute."""
+    return _imported([tree] if deep else [node for node in tree.body if not isinstance(node, ast.FunctionDef)])
 
 
 def _imported(nodes):

@@ -136,9 +136,3 @@ def replaced(path):
     path.parent.mkdir(parents=True, exist_ok=True)
     with paths.replaced(path) as temporary:
         yield temporary
-
-
-def printed(study):
-    """Numbers that the paper prints for a study, {quantity: value}, from studies/paper/STUDY.csv."""
-    with (Path(__file__).parents[1] / "paper" / f"{study}.csv").open(newline="", encoding="utf-8") as file:
-        return {row["quantity"]: float(row["value"]) for row in csv.DictReader(file)}

@@ -24,7 +24,7 @@ from studies.common.paper_variants import parted, values, variants
 from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import largest, pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 from studies.many_inclusions.means import network_errors
 from studies.many_inclusions.scenes import FRACTION, inside, spheres
 

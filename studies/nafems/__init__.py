@@ -15,7 +15,7 @@ from demheat import referee
 from studies.harness import methods
 from studies.harness.cost import measured
 from studies.harness.pick import order, pick, present
-from studies.harness.store import printed
+from studies.harness.printed import printed
 from studies.nafems.scenes import LENGTH, WIDTH, problem
 
 PAPER = printed("nafems")

@@ -161,8 +161,9 @@ def _kept(name):
         with np.load(path) as stored:
             return dict(stored)
     found = _worked_out(name)
-    from studies.harness.store import replaced
+    from demheat.paths import replaced
 
+    path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as temporary:
         np.savez(temporary, **found)
     return found

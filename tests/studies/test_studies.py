@@ -103,7 +103,7 @@ def test_cases_are_sound(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_new_drawing_repeats_no_row(name, monkeypatch):
-    """Neither what draws nor what judges is part of a row's code; what looks at its fields is."""
+    """Neither what draws, judges nor keeps rows is part of a row's code; what looks at its fields is."""
     study, parse, seen = runner.load(name), provenance._parse, set()
     monkeypatch.setattr(provenance, "_parse", lambda path: seen.add(path.relative_to(provenance.ROOT)) or parse(path))
     provenance.code_hash.cache_clear()
@@ -114,6 +114,9 @@ def test_a_new_drawing_repeats_no_row(name, monkeypatch):
     # Tables of files are others.
     ours = {path.stem for path in seen if path.parts[0] == "studies"}
     assert not ours & {"figures", "figure", "sphere_looks", "tables", "table", "pick"}
+    # Nor what keeps the books of rows.
+    harness = {path.stem for path in seen if path.parts[:2] == ("studies", "harness")}
+    assert harness <= {"__init__", "cells", "cost", "methods", "printed", "threads"}
     assert name != "fig15_16_fields" or {"field_errors", "slices", "halo"} <= names
 
 

@@ -1,5 +1,6 @@
 """The hash of the code that a row runs."""
 
+import ast
 import textwrap
 from types import ModuleType
 
@@ -114,3 +115,52 @@ def test_code_hash_follows_the_packages_own_function(tree):
     before = code("")
     write("demheat/inner.py", "thing = 2")
     assert code("") != before
+
+
+def test_the_books_of_rows_do_not_count(tree):
+    """A row may name what it keeps on disk by the hash of some code; how that is made is not the row's."""
+    write, code = tree
+    write("studies/harness/__init__.py", "")
+    write("studies/harness/provenance.py", "def code_hash():\n    return 1")
+    write("studies/one.py", "def run():\n    from studies.harness.provenance import code_hash\n    return code_hash()")
+    before = code("")
+    write("studies/harness/provenance.py", "def code_hash():\n    return 2")
+    assert code("") == before
+
+
+INSIDE = (ast.Module, ast.stmt, ast.excepthandler, ast.match_case)
+NESTED = """
+class Body:
+    async def inside(self):
+        if 1:
+            import one
+        elif 2:
+            import two
+        else:
+            import three
+for k in ():
+    import four
+else:
+    import five
+try:
+    import six
+except OSError:
+    import seven
+else:
+    import eight
+finally:
+    import nine
+match 1:
+    case 1:
+        with 2:
+            while 3:
+                import ten
+"""
+
+
+def test_statements_inside_statements():
+    tree = ast.parse(NESTED)
+    assert {*provenance._statements(tree)} == {node for node in ast.walk(tree) if isinstance(node, INSIDE)}
+    assert [part.names[0].name for part in provenance._imports_in(tree)] == [
+        *("one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten")
+    ]
