@@ -186,7 +186,7 @@ def _parse(path):
 
 
 def _statements(node):
-    """A statement, or a module, and all statements inside; a tenth of what `ast.walk` visits."""
+    """A statement, or a module, and all statements inside: a twelfth of what `ast.walk` visits."""
     yield node
     for part in ("body", "orelse", "handlers", "finalbody", "cases"):
         for inner in getattr(node, part, ()):
