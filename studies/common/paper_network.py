@@ -26,7 +26,8 @@ PRESSURE = 120.0
 def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
     """Cases of the network: every packing under every kind of walls.
 
-    Their method is `NAME`: a study's `MODULES` names what they run, so that its other rows do not change with it.
+    Their method is `NAME`: a study's `MODULES` names what they run, so that its other rows do not change with it. There
+    it is spelt out, as all that `run` reaches counts in the code of every row.
 
     Parameters
     ----------
@@ -157,23 +158,54 @@ def solved(scenes, packing, held, replicas=1):
     return fields, row | {name: last.stats.get(name) for name in ("unknowns", "iterations", "residual", "mean_radius")}
 
 
-def unscaled(field, matrix):
+def fields_and_row(scenes, packing, held, particles, seed, replicas=1):
+    """Scenes of one box by one packing of a case: their fields, and the row of the case.
+
+    Parameters
+    ----------
+    scenes : dict of str to Scene
+        As those of `solved`, by the column of their conductivity.
+    packing, held, particles, seed, replicas
+        Of a case.
+
+    Returns
+    -------
+    fields : dict of str to Field
+    row : dict
+        That of `solved`, and of each scene its conductivity over the matrix's with C_t = 1.
+    """
+    one = packed(_size(scenes), packing, held, particles, seed, replicas)
+    fields, row = solved(scenes, one, held, replicas)
+    return fields, row | {column: unscaled(field) for column, field in fields.items()}
+
+
+def _size(scenes):
+    return next(iter(scenes.values())).size
+
+
+def unscaled(field):
     """Conductivity with C_t = 1 over the matrix's.
 
     Parameters
     ----------
     field : Field
         From `solved`.
-    matrix : float, W/(m K)
     """
-    return field.conductivity / (matrix * field.stats["calibration"])
+    return field.conductivity / (field.scene.matrix.conductivity * field.stats["calibration"])
 
 
-def warm_up(held):
-    """Load and compile by a tiny packing; keeps nothing on disk."""
+def warm_up(scenes, packing, held, particles, seed, replicas=1):
+    """Make and keep the packing, which is not part of what is compared; load and compile by a tiny one, kept nowhere.
+
+    Parameters
+    ----------
+    scenes, packing, held, particles, seed, replicas
+        As those of `fields_and_row`.
+    """
     from demheat.gallery import sphere_in_cube
     from demheat.packing.relax import relax
 
+    packed(_size(scenes), packing, held, particles, seed, replicas)
     scene = sphere_in_cube(2.0, periodic=held == "periodic")
     # Fewer leave no bulk between walls.
     solved({"": scene}, relax(3_000, size=scene.size, periodic=held == "periodic"), held)

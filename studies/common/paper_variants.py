@@ -9,6 +9,7 @@ import numpy as np
 from demheat import referee
 from studies.common.paper_network import HELD, NAME, PACKINGS, calibrations
 from studies.harness.pick import Interval, pick, student
+from studies.harness.table import markdown
 
 PACKED = {"lsa": "LSA", "relaxed": "relaxed"}
 ACTING = {"center": "held at centres", "surface": "held at the wall", "periodic": "no walls"}
@@ -208,3 +209,25 @@ def lines_of(made, names, among=None):
         row["packings"] = max(each.number for each in found.values())
         rows.append(row | {"": "best" if (variant, number) == first else ""})
     return rows
+
+
+def shown(made, names, what, best="", among=None):
+    """A sentence on what a table of all variants shows, and the table; nothing without any.
+
+    Parameters
+    ----------
+    made, names, among
+        As those of `lines_of`.
+    what : str
+        Of the network and its errors, as the sentence goes on.
+    best : str
+        How it ends: which variant is the best.
+
+    Returns
+    -------
+    list of str
+    """
+    import pandas as pd
+
+    said = f"The paper's network {what}, means over packings with their 95 % intervals (Student's){best}."
+    return [said, markdown(pd.DataFrame(lines_of(made, names, among)))] if made else []

@@ -29,9 +29,8 @@ from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.cells import cell
 from studies.harness.pick import pick, present
 
-# What rows of the paper's network run, by this name: others do not change with it.
-OWN = "network"
-MODULES = {OWN: "studies.fig07_sphere.rows"}
+# What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
+MODULES = {"network": "studies.fig07_sphere.rows"}
 # Of the paper's network; the first is a quick run's.
 FEW, NETWORK, MOST = 3_000, PAPERS, 1_000_000
 
@@ -66,8 +65,8 @@ TIMEOUT = 3600.0
 
 def run(method, name=None, **knobs):
     """Errors of the centre in time."""
-    if method == OWN:
-        return import_module(MODULES[OWN]).network_row(**knobs, times=TIMES)
+    if method in MODULES:
+        return import_module(MODULES[method]).network_row(**knobs, times=TIMES)
     row = sphere_in_time.marched(TIMES, _look, method=method, **knobs)
     errors = np.array([row.pop(f"error_{t:g}") for t in TIMES])
     at, largest = referee.worst(errors)
@@ -86,8 +85,8 @@ def _look(field, exact):
 
 def warm_up(method, name=None, **knobs):
     """Make and keep the packing, load and compile."""
-    if method == OWN:
-        return import_module(MODULES[OWN]).warm_up(**knobs, times=(10.0,))
+    if method in MODULES:
+        return import_module(MODULES[method]).warm_up(**knobs, times=(10.0,))
     return sphere_in_time.prepare((1.0,), _look, method=method, **knobs)
 
 

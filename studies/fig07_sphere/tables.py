@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from studies.common.paper_variants import lines_of, parted, told_of
+from studies.common.paper_variants import parted, shown, told_of
 from studies.fig07_sphere.means import PAPER, TIGHTER, network_errors, plain
 from studies.harness.pick import pick
-from studies.harness.table import markdown
 
 
 def told(df):
@@ -15,18 +14,13 @@ def told(df):
     ----------
     df : data frame
     """
-    import pandas as pd
-
     network, others = parted(df)
-    said, made = [], network_errors(network)
+    made, among = network_errors(network), ["error_10s"]
+    names = {"error_10s": "at 10 s, K", "worst": "largest, K"}
+    what = "in all its variants: error of the centre at 10 s (signed) and the largest in time, K"
+    said = shown(made, names, what, "; the best has the least at 10 s", among)
     if made:
-        names = {"error_10s": "at 10 s, K", "worst": "largest, K"}
-        said = [
-            "The paper's network in all its variants: error of the centre at 10 s (signed) and the largest in time, K, "
-            "means over packings with their 95 % intervals (Student's); the best has the least at 10 s.",
-            markdown(pd.DataFrame(lines_of(made, names, ["error_10s"]))),
-            told_of(made, ["error_10s"], unit="K") + f" The paper prints {PAPER['centre_10s']:g} K with 1e5.",
-        ]
+        said.append(told_of(made, among, unit="K") + f" The paper prints {PAPER['centre_10s']:g} K with 1e5.")
     return said + list(_stall(others))
 
 

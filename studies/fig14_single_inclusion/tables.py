@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
-from studies.common.paper_variants import best_variant, lines_of, parted, told_of, variant_errors
+from studies.common.paper_variants import best_variant, parted, shown, told_of, variant_errors
 from studies.fig14_single_inclusion.means import PAPER, exact_of
 from studies.fig14_single_inclusion.scenes import CONTRASTS, WORDS
 from studies.harness.figures import LOOK
 from studies.harness.methods import resolution
 from studies.harness.pick import mean_errors, pick, with_size
-from studies.harness.table import markdown
 
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
 FIRST = ("dem", "dem-plain", "dem-calibrated", "fem", "fft", "maxwell")
@@ -76,17 +75,13 @@ def told(df):
     ----------
     df : data frame
     """
-    import pandas as pd
-
     network, others = parted(df)
-    said = []
     made = variant_errors(network, exact_of(df))
+    names = {word: word for word in WORDS} | {"half": "f = 0.5"}
+    best = "; the best is the one whose largest error at the four contrasts is least"
+    said = shown(made, names, "in all its variants: errors, %, by contrast", best, WORDS)
     if made:
-        names = {word: word for word in WORDS} | {"half": "f = 0.5"}
-        said = [
-            "The paper's network in all its variants: errors, %, by contrast, means over packings with their 95 % "
-            "intervals (Student's); the best is the one whose largest error at the four contrasts is least.",
-            markdown(pd.DataFrame(lines_of(made, names, WORDS))),
+        said += [
             told_of(made, WORDS),
             told_of(variant_errors(network, exact_of(df, "maxwell")), WORDS, "difference from Maxwell's formula")
             + f" In this measure the paper prints {PAPER['worst_error']:g} %.",

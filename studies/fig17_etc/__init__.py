@@ -28,9 +28,8 @@ from studies.harness.converged import converged
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
 
-# What rows of the paper's network run, by this name: others do not change with it.
-OWN = "network"
-MODULES = {OWN: "studies.fig17_etc.rows"}
+# What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
+MODULES = {"network": "studies.fig17_etc.rows"}
 DENSE = 0.5
 REALISATIONS = (0, 1, 2)
 # Resolutions, coarse to fine, of all methods on the first cell of a fraction, along y. Sizes are in edges of the cube.
@@ -132,8 +131,8 @@ def QUICK(case):
 
 def run(name, kind=None, fraction=None, realisation=None, boundary="gradient", axes="y", *, method, **knobs):
     """Solve one dispersion along some axes, or find its zeta_2; by the paper's network all first cells."""
-    if method == OWN:
-        return import_module(MODULES[OWN]).network_row(**knobs)
+    if method in MODULES:
+        return import_module(MODULES[method]).network_row(**knobs)
     made = [silica_epoxy.scene(kind, fraction, seed=realisation, axis="xyz".index(a), boundary=boundary) for a in axes]
     if name == "zeta2":
         return {"zeta2": methods.load(method).zeta2(made[0], order=ORDER), "number": len(made[0].inclusions)}
@@ -147,8 +146,8 @@ ORDER = 12
 
 def warm_up(name, kind=None, fraction=None, realisation=None, boundary="gradient", axes="y", *, method, **knobs):
     """Make the dispersion and the packing, load and compile."""
-    if method == OWN:
-        import_module(MODULES[OWN]).warm_up(**knobs)
+    if method in MODULES:
+        import_module(MODULES[method]).warm_up(**knobs)
         return
     made = silica_epoxy.scene(kind, fraction, seed=realisation, boundary=boundary)
     if "particles" in knobs:

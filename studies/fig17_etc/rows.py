@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-from studies.common import paper_network, silica_epoxy
-from studies.common.paper_network import unscaled
-from studies.fig17_etc.scenes import WALLED, first_cells
+from studies.common import paper_network
+from studies.fig17_etc.scenes import first_cells
 
 
-def network_row(packing, held, particles, seed):
+def _cells(held):
+    return {f"k_{fraction}": scene for fraction, scene in first_cells(held).items()}
+
+
+def network_row(held, **case):
     """All first cells by one packing of the network.
 
     Parameters
     ----------
-    packing, held : str
-        As of `studies.common.paper_network`.
-    particles, seed : int
+    held, case
+        As of `paper_network.fields_and_row`.
     """
-    scenes = first_cells(held)
-    made = paper_network.packed(scenes[f"{WALLED:g}"].size, packing, held, particles, seed)
-    fields, row = paper_network.solved(scenes, made, held)
-    return row | {f"k_{where}": unscaled(field, silica_epoxy.EPOXY.conductivity) for where, field in fields.items()}
+    return paper_network.fields_and_row(_cells(held), held=held, **case)[1]
 
 
-def warm_up(packing, held, particles, seed):
-    """Make and keep the dispersions and the packing, which are not part of what is compared; load what solves.
+def warm_up(held, **case):
+    """Make and keep the dispersions and the packing; load what solves.
 
     Parameters
     ----------
-    packing, held : str
-    particles, seed : int
+    held, case
+        As those of `network_row`.
     """
-    paper_network.packed(first_cells(held)[f"{WALLED:g}"].size, packing, held, particles, seed)
-    paper_network.warm_up(held)
+    paper_network.warm_up(_cells(held), held=held, **case)

@@ -7,7 +7,7 @@ import math
 from demheat import referee
 from references import bounds
 from studies.common import silica_epoxy
-from studies.common.paper_variants import best_variant, lines_of, told_of, worst_error
+from studies.common.paper_variants import best_variant, shown, told_of, worst_error
 from studies.fig17_etc.means import (
     CONTRAST,
     along_one_axis,
@@ -23,7 +23,6 @@ from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import pick, with_size
 from studies.harness.printed import printed
-from studies.harness.table import markdown
 
 COSTS = ("unknowns", "iterations", "cpu_s", "peak_mib")
 ESTIMATES = {
@@ -163,8 +162,6 @@ def told(df):
     ----------
     df : data frame
     """
-    import pandas as pd
-
     said = []
     for boundary, against in (("gradient", "periodic cells, against the multipoles"), ("walls", "")):
         made = network_errors(df, boundary)
@@ -172,11 +169,7 @@ def told(df):
             continue
         against = against or "the same spheres between isothermal walls, against the converged voxels"
         names = {name: f"f = {name}" for name in sorted({name for found in made.values() for name in found})}
-        said += [
-            f"The paper's network, {against}: errors, %, means over packings with their 95 % intervals (Student's).",
-            markdown(pd.DataFrame(lines_of(made, names))),
-            told_of(made),
-        ]
+        said += [*shown(made, names, f"on {against}: errors, %"), told_of(made)]
         if boundary == "gradient":
             off = worst_error(made[best_variant(made)])
             said[-1] += f" The paper prints {printed('fig17_etc')['dem_fft']:g} % between its DEM of 8e6 and its FFT"

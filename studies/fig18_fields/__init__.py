@@ -28,9 +28,8 @@ from studies.harness.methods import EDGE, resolution
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
 
-# What rows of the paper's network run, by this name: others do not change with it.
-OWN = "network"
-MODULES = {"dispersion": "demheat.packing.dispersion", OWN: "studies.fig18_fields.network"}
+# What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
+MODULES = {"dispersion": "demheat.packing.dispersion", "network": "studies.fig18_fields.network"}
 BOUNDARIES = ("gradient", "walls")
 NUMBERS = (30_000, 100_000, 300_000)
 # Longest edges, in edges of the cube.
@@ -45,11 +44,11 @@ NETWORK, MOST, REPLICAS = 150_000, 8_000_000, 4
 DEGREES = {"gradient": (8, 14), "walls": (6, 9)}
 # Between walls these rows keep pictures of many pixels.
 DRAWN = {
-    "multipole": ("order", DEGREES["walls"][-1]),
-    "dem": ("particles", NUMBERS[-1]),
-    "fem": ("size", SIZES["fem"][-1] * EDGE),
-    "fft": ("voxels", VOXELS[-1]),
-    OWN: ("particles", NETWORK),
+    "multipole": {"order": DEGREES["walls"][-1]},
+    "dem": {"particles": NUMBERS[-1]},
+    "fem": {"size": SIZES["fem"][-1] * EDGE},
+    "fft": {"voxels": VOXELS[-1]},
+    "network": {"particles": NETWORK, "held": "center", "packing": "lsa", "seed": 0},
 }
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -94,28 +93,26 @@ def run(name, boundary=None, *, method, **knobs):
     """Where the points lie; or the field of one method under one load."""
     from studies.fig18_fields import rows as fig18_rows
 
-    if method == OWN:
-        return import_module(MODULES[OWN]).network_row(**knobs, fine=_is_drawn(name, **knobs))
-    if boundary is None:
+    if name == "arrangement":
         return fig18_rows.arrangement_row()
+    if method in MODULES:
+        return import_module(MODULES[method]).network_row(**knobs, fine=_is_drawn(name, **knobs))
     return fig18_rows.field_row(boundary, method=method, **knobs, fine=_is_drawn(name, boundary, **knobs))
 
 
 def _is_drawn(name, boundary="walls", **knobs):
     """The finest row of each method between walls, and the paper's network as the paper has it."""
-    knob, finest = DRAWN.get(name, ("", None))
-    papers = {"held": "center", "packing": "lsa", "seed": 0} if name == OWN else {}
-    return boundary == "walls" and knob in knobs and knobs[knob] == finest and papers.items() <= knobs.items()
+    return boundary == "walls" and name in DRAWN and DRAWN[name].items() <= knobs.items()
 
 
 def warm_up(name, boundary=None, *, method, **knobs):
     """Make and keep the spheres and the packing, load and compile."""
     from studies.fig18_fields import rows as fig18_rows
 
-    if method == OWN:
-        import_module(MODULES[OWN]).warm_up(**knobs)
-    elif boundary is None:
+    if name == "arrangement":
         fig18_rows.spheres_in("walls")
+    elif method in MODULES:
+        import_module(MODULES[method]).warm_up(**knobs)
     else:
         fig18_rows.warm_up(boundary, method=method, **knobs)
 

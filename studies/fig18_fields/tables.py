@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from studies.common.paper_variants import lines_of, parted
+from studies.common.paper_variants import parted, shown
 from studies.fig18_fields.errors import BOUNDARIES, at_points, network_errors, network_means, witness
 from studies.harness import methods
 from studies.harness.figures import LOOK
 from studies.harness.methods import resolution
 from studies.harness.pick import pick
-from studies.harness.table import markdown
 
 # Eyre and Milton's scheme has the voxels of the scalar one, whose fields stand for both.
 COMPARED = tuple(method.name for method in methods.compared() if method.name != "fft-em")
@@ -72,18 +71,15 @@ def told(df, paper):
     paper : dict
         Printed numbers.
     """
-    import pandas as pd
-
-    said, others = [], parted(df)[1]
+    others = parted(df)[1]
     made = network_means(network_errors(df), tuple(NETWORK))
-    if made:
-        said = [
-            "The paper's network with halos of 11 mean radii, in all its variants: errors as above, means over "
-            "packings with their 95 % intervals (Student's); the best has the least error of the flux at its worst "
-            "point. The particles' temperatures do not depend on C_t; what is read between them goes with their flux, "
-            "that of the C_t found isothermally.",
-            markdown(pd.DataFrame(lines_of(made, NETWORK, ["worst_q"]))),
-        ]
+    best = (
+        "; the best has the least error of the flux at its worst point. The particles' temperatures do not depend on "
+        "C_t; what is read between them goes with their flux, that of the C_t found isothermally"
+    )
+    said = shown(
+        made, NETWORK, "with halos of 11 mean radii, in all its variants: errors as above", best, among=["worst_q"]
+    )
     place = pick(others, name="arrangement").iloc[0]
     gap = min(place[f"gap_{letter}"] for letter in "ABCD")
     said.append(f"The points of Table 3 lie {gap / place['band']:.2f} bands and more from any interface.")

@@ -28,9 +28,10 @@ from studies.harness.printed import printed
 from studies.many_inclusions.means import network_errors
 from studies.many_inclusions.scenes import FRACTION, inside, spheres
 
-# What rows of the paper's network and of solvers side by side run, by these names: others do not change with them.
-OWN, STEADY = "network", "steady"
-MODULES = {OWN: "studies.many_inclusions.rows", STEADY: "studies.common.peers"}
+# What rows of the paper's network, whose `NAME` is spelt out, and of solvers side by side run: others do not change
+# with their modules.
+STEADY = "steady"
+MODULES = {"network": "studies.many_inclusions.rows", STEADY: "studies.common.peers"}
 PARTICLES = (10_000, 30_000, 100_000, 1_000_000, 8_000_000)
 NETWORKS = {1: 10_000, 2: 100_000, 4: 1_000_000}  # replicas along an edge, and particles, of the paper's law
 # Of its packings: replicas along an edge, the packings that are repeated, and of which kinds; the first are those of
@@ -93,8 +94,8 @@ def run(name, gap=None, highest=None, *, method, **knobs):
     if method == STEADY:
         walled = silica_epoxy.scene("walled", FRACTION, seed=0, boundary="walls")
         return import_module(MODULES[STEADY]).steady(**knobs, scene=walled)
-    if method == OWN:
-        return import_module(MODULES[OWN]).network_row(**knobs)
+    if method in MODULES:
+        return import_module(MODULES[method]).network_row(**knobs)
     if highest is not None:
         knobs["order"] = highest
     # Nothing is kept: packings are part of the cost.
@@ -105,11 +106,11 @@ def run(name, gap=None, highest=None, *, method, **knobs):
 
 def warm_up(name, gap=None, highest=None, replicas=None, *, method, **knobs):
     """Make the dispersion, load and compile; what is solved for that is between walls and needs no replicas."""
-    if method == OWN:
-        import_module(MODULES[OWN]).warm_up(**knobs, replicas=replicas or 1)
-    elif method == STEADY:
+    if method == STEADY:
         silica_epoxy.scene("walled", FRACTION, seed=0, boundary="walls")
         methods.warm_up("dem", **knobs)
+    elif method in MODULES:
+        import_module(MODULES[method]).warm_up(**knobs, replicas=replicas or 1)
     else:
         spheres(gap)
         methods.warm_up(method, **knobs)

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 
 from studies.common import silica_epoxy
-from studies.common.paper_variants import PACKED, cell
+from studies.common.paper_variants import shown
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
-from studies.harness.table import markdown
 from studies.many_inclusions.means import network_errors
 
 SHOWN = ("unknowns", "iterations", "cpu_s")
@@ -69,20 +68,8 @@ def told(df, paper):
     paper : dict
         Printed numbers.
     """
-    import pandas as pd
-
-    made, said = network_errors(df), []
-    if made:
-        rows = [
-            {"packing": PACKED[variant.packing], "particles": number, "error, %": cell(found["spheres"])}
-            | {"packings": found["spheres"].number}
-            for (variant, number), found in made.items()
-        ]
-        said = [
-            "The paper's network on its own kind of packing and on relaxed ones, C_t of the periodic cell: means over "
-            "packings with their 95 % intervals (Student's), where there are more than one.",
-            markdown(pd.DataFrame(rows)),
-        ]
+    what = "on its own kind of packing and on relaxed ones, C_t of the periodic cell: errors, %"
+    said = shown(network_errors(df), {"spheres": "error, %"}, what, " where there are more than one")
     most = pick(df, name="fem-p1")["elements"].max() if "elements" in df else math.nan
     if most == most:
         said.append(f"The finest linear elements are {most:.3g} tetrahedra, the paper's {paper['tetrahedra']:.3g}.")

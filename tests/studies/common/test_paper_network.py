@@ -36,8 +36,8 @@ def test_one_solve_serves_both_calibrations(between, held):
         law = Calibrated(wall=held, factor=row[f"ct_{way}"])
         field = dem.solve(scene, law=law, packing=between)
         # The gap that 7.5 contacts ask for, found twice: the solver's tolerance is left.
-        k = paper_network.unscaled(fields["10"], 1.0) * row[f"ct_{way}"]
-        assert_allclose(field.conductivity, k, rtol=1e-6)
+        k = paper_network.unscaled(fields["10"]) * row[f"ct_{way}"]
+        assert_allclose(field.conductivity / scene.matrix.conductivity, k, rtol=1e-6)
     # `solve` calibrates between isothermal walls.
     usual = dem.solve(scene, law=Calibrated(wall=held), packing=between)
     assert_allclose(usual.stats["calibration"], row["ct_isothermal"], rtol=1e-6)
@@ -49,11 +49,13 @@ def test_replicas_have_the_calibration_of_one(tmp_path, monkeypatch):
     scene = sphere_in_cube(1.0001, periodic=True)
     one = paper_network.packed(scene.size, "lsa", "periodic", 8_000, 0, replicas=2)
     assert one.number == 1000 and one.size[0] == pytest.approx(0.05) and "lsa" in str(one.provenance)
-    fields, row = paper_network.solved({"": scene}, one, "periodic", replicas=2)
-    assert fields[""].stats["unknowns"] == 8000
+    case = {"packing": "lsa", "held": "periodic", "particles": 8_000, "seed": 0, "replicas": 2}
+    fields, row = paper_network.fields_and_row({"k_1": scene}, **case)
+    assert fields["k_1"].stats["unknowns"] == row["unknowns"] == 8000
     # A sphere hardly unlike its matrix: 1 + 3 f (s - 1)/(s + 2) = 1 + 1.6e-5 times the matrix's conductivity.
-    assert_allclose(fields[""].conductivity / scene.matrix.conductivity, 1.0, atol=3e-5)
-    assert fields[""].stats["calibration"] == row["ct_cell"]
+    assert_allclose(fields["k_1"].conductivity / scene.matrix.conductivity, 1.0, atol=3e-5)
+    assert fields["k_1"].stats["calibration"] == row["ct_cell"]
+    assert_allclose(row["k_1"] * row["ct_cell"], 1.0, atol=3e-5)
 
 
 def rows(**errors):
@@ -86,6 +88,9 @@ def test_errors_are_means_with_students_interval_and_the_best_is_named():
     assert "best is: LSA packing, no walls, C_t in the cell, largest error 0.5 %" in said
     (line,) = [each for each in paper_variants.lines_of(made, {"10": "10"}) if each[""] == "best"]
     assert line["10"] == "-0.50 +- 0.25" and line["packings"] == 3
+    said, table = paper_variants.shown(made, {"10": "error"}, "here: errors, %", "; best: least")
+    assert said.startswith("The paper's network here: errors, %, means") and said.endswith("(Student's); best: least.")
+    assert table.count("best") == 1 and table.count("\n") == 4
 
 
 def test_without_rows_nothing_is_said():
@@ -93,6 +98,7 @@ def test_without_rows_nothing_is_said():
     network, others = paper_variants.parted(df)
     assert len(network) == 0 and len(others) == 3
     assert paper_variants.variant_errors(network, {"10": 1.0}) == {} and paper_variants.told_of({}) == ""
+    assert paper_variants.shown({}, {"10": "error"}, "here") == []
     assert len(paper_variants.parted(df.drop(columns="name"))[1]) == 3
     single = paper_variants.interval(np.array([2.0]))
     assert single.number == 1 and np.isnan(single.half) and paper_variants.cell(single) == "+2.00"
