@@ -22,9 +22,8 @@ from studies.fig14_single_inclusion.scenes import FRACTIONS, SCENES, WORDS
 from studies.harness import methods
 from studies.harness.pick import extrapolated, pick, present, worst
 
-# What rows of the paper's network run, by this name: others do not change with it.
-OWN = "network"
-MODULES = {OWN: "studies.fig14_single_inclusion.rows"}
+# What rows of the paper's network run; its `NAME` is spelt out, so that others do not change with its module.
+MODULES = {"network": "studies.fig14_single_inclusion.rows"}
 # What stands beside the methods that every study compares.
 DEM_BESIDE = ("dem-plain", "dem-calibrated", "dem-arithmetic")
 BESIDE = (*DEM_BESIDE, "fem-straight", "fem-p1", "fft-plain", "fft-em-plain")
@@ -88,8 +87,8 @@ def QUICK(case):
 
 def run(name, scene=None, contrast=None, periodic=False, *, method, **solver):
     """Solve and compare with the exact value; of the paper's network, all scenes by one packing."""
-    if method == OWN:
-        return import_module(MODULES[OWN]).network_row(**solver)
+    if method in MODULES:
+        return import_module(MODULES[method]).network_row(**solver)
     fraction = FRACTIONS[scene]
     cube = sphere_in_cube(contrast, fraction=fraction, periodic=periodic)
     return methods.solve_row(cube, methods.exact_ratio(fraction, contrast), method=method, **solver)
@@ -97,8 +96,8 @@ def run(name, scene=None, contrast=None, periodic=False, *, method, **solver):
 
 def warm_up(name, scene=None, contrast=None, periodic=False, *, method, **solver):
     """Load the solver; make and keep the network's packing, which is not part of what is compared."""
-    if method == OWN:
-        import_module(MODULES[OWN]).warm_up(**solver)
+    if method in MODULES:
+        import_module(MODULES[method]).warm_up(**solver)
     else:
         methods.warm_up(method, **solver)
 
