@@ -186,6 +186,19 @@ def notes(df):
         )
 
 
+def words(df):
+    """What one set-up, and the least that a scene needs, save in the median."""
+    parts = []
+    for method, rows in pick(df[df["method"] != "multipole"], size="full").groupby("method", sort=False):
+        cubes = rows[(rows["cut"] == 8) & (rows["loads"] == 1)]
+        once, least = (each["three_s"] / each[name] for each, name in ((rows, "once_s"), (cubes, "least_s")))
+        parts.append(f"{once.median():.2g} and {least.median():.2g} ({methods.found()[method].title})")
+    return (
+        "processor time of three solves over that of one set-up for all three, and over that of the loads needed on an "
+        f"eighth of the body, medians: {', '.join(parts)}"
+    )
+
+
 def table(df):
     """What each scene triggers, and processor seconds: three solves, one set-up, the least."""
     solved = df[df["method"] != "multipole"].sort_values("size", ascending=False)

@@ -115,6 +115,21 @@ def _on_voxels(rows):
     yield "Sphere on voxels: exact values outside of their brackets", _outside(rows), 0
 
 
+def words(df):
+    """How many brackets hold, how wide they are, what narrow ones cost, and where methods' answers lie."""
+    from studies.brackets.means import beside, narrow
+
+    drawn, held = pick(df, part="drawn"), pick(df, part="judged", method="bracket").iloc[0]
+    others = pick(df, part="judged")
+    parts = [narrow(pick(df, part="refined", scene=scene), scene) for scene in REFINED]
+    return (
+        f"of {len(drawn)} drawn scenes with an exact conductivity {len(drawn) - _outside(drawn)} hold it, with a "
+        f"median width of {drawn['width_percent'].median():.2g} %; narrower ones cost more: {', '.join(parts)}; "
+        f"40 spheres at contrast 150 between walls to {held['width_percent']:.2g} % in {held['cpu_s']:.0f}, beside "
+        f"which stand the answers of {', '.join(beside(others[others['method'] != 'bracket'], held))}"
+    )
+
+
 def table(df):
     """Bounds of k over the matrix's, widths and costs.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from studies.harness.methods import found
 from studies.harness.pick import order
 
 
@@ -40,3 +41,36 @@ def place(rows):
     rows : DataFrame
     """
     return (rows["exact"] - rows["lower"]) / (rows["upper"] - rows["lower"])
+
+
+def narrow(rows, scene):
+    """The narrowest bracket of a scene and its cost, as a part of a sentence.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Of that scene.
+    scene : str
+    """
+    least = rows.loc[rows["width_percent"].idxmin()]
+    return f"{scene} to {least['width_percent']:.2g} % in {least['cpu_s']:.0f} CPU seconds"
+
+
+def beside(rows, held):
+    """Where answers of methods lie beside a bracket, in its widths, as parts of a sentence.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Of methods.
+    held : Series
+        Row of the bracket.
+    """
+    for _, row in rows.iterrows():
+        width, title = held["upper"] - held["lower"], found()[row["name"]].title
+        if row["k"] > held["upper"]:
+            yield f"{title} ({(row['k'] - held['upper']) / width:.2g} of its widths above)"
+        elif row["k"] < held["lower"]:
+            yield f"{title} ({(held['lower'] - row['k']) / width:.2g} of its widths below)"
+        else:
+            yield f"{title} (inside)"

@@ -103,6 +103,19 @@ def table(df):
     return lines(pick(df, part="unseen"), (*NAMES, *BESIDE))
 
 
+def words(df):
+    """How many intervals held, how wide they were, and what `effective` got right."""
+    from studies.estimates.means import answers_in_words, intervals_in_words
+
+    unseen, asked = (pick(df, part=part) for part in ("unseen", "effective"))
+    first = unseen[unseen["seed"] < UNSEEN + FEW]
+    return (
+        f"Of {len(unseen)} scenes that it was not tuned on the exact conductivity lay inside of the interval on "
+        f"{intervals_in_words(unseen, NAMES)}. On the first {len(first)} of them: {intervals_in_words(first, BESIDE)}. "
+        f"{answers_in_words(asked, ACCURACY)}"
+    )
+
+
 def plot(df):
     """What each method says of its error against its error, one point for each scene."""
     from studies.estimates.figure import draw

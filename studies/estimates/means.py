@@ -73,6 +73,39 @@ def lines(df, names):
     return pd.DataFrame([_line(df, name) for name in names if present(df, name)])
 
 
+def intervals_in_words(df, names):
+    """How many exact conductivities lie inside, and how wide the intervals are, as a part of a sentence.
+
+    Parameters
+    ----------
+    df : DataFrame
+        Of unseen scenes.
+    names : sequence of str
+    """
+    names = [name for name in names if present(df, name)]
+    held = [f"{inside(df, name).sum()} of {len(inside(df, name))} ({found()[name].title})" for name in names]
+    wide = [f"{over(df, name).median():.2g}" for name in names]
+    return f"{', '.join(held)}; half of it was {', '.join(wide)} times the error in the median"
+
+
+def answers_in_words(asked, accuracy):
+    """What `effective` got right, as a sentence.
+
+    Parameters
+    ----------
+    asked : DataFrame
+        Rows of it.
+    accuracy : float
+        That was asked for.
+    """
+    answered = asked[asked["worst_percent"].notna()]
+    right, held = (answered["worst_percent"] <= 100 * accuracy).sum(), answered["inside"].eq(True).sum()
+    return (
+        f"Of {len(asked)} scenes `effective` had {right} right to {100 * accuracy:g} %, {held} with all entries inside "
+        f"of their intervals."
+    )
+
+
 def _line(df, name):
     rows = answered(df, name)
     line = {"scenes": f"{len(rows)} unseen", "method": found()[name].title}

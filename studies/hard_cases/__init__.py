@@ -98,6 +98,22 @@ def notes(df):
     yield f"{len(verdicts(df))} cases on {len(df)} scenes; a thousand were asked for."
 
 
+def words(df):
+    """Cases and what became of them."""
+    from studies.hard_cases.means import verdicts
+
+    outcome = verdicts(df)["outcome"].value_counts()
+    verified, refused, warned, wrong, unjudged = (
+        int(outcome.get(name, 0)) for name in ("verified", "refused", "warned", "wrong", "open")
+    )
+    return (
+        f"{outcome.sum()} cases of {len(df)} drawn scenes: {verified} answers lie within what is allowed (mostly 5 to "
+        f"20 %, set before) of what is exact or certain, {refused} are refused with their reason, {warned} are farther "
+        f"off and came with a warning, {wrong} are silently wrong ({unjudged} have bounds too wide to judge by); of "
+        f"{df['relations'].sum():.0f} invariants {df['broken'].sum():.0f} are broken"
+    )
+
+
 def table(df):
     """Cases of each family by method: verified / refused / warned / silently wrong.
 

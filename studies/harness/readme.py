@@ -1,6 +1,7 @@
-"""Tables of studies inside other Markdown pages: what stands between two marks comes from a CSV.
+"""Tables and sentences of studies inside other Markdown pages: what stands between two marks comes from a CSV.
 
-A mark names a study, and a function of it that makes rows to print; without one it is `table`.
+A mark names a study, and a function of it: one that makes rows to print, without a name `table`, or one that says what
+came out in words, without a name `words`.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from studies.harness import runner
 from studies.harness.store import replaced
 from studies.harness.table import markdown, read_frame
 
-MARKED = re.compile(r"(<!-- table (\w+)(?: (\w+))? -->\n).*?(<!-- end of table -->)", re.DOTALL)
+MARKED = re.compile(r"(<!-- (table|words) (\w+)(?: (\w+))? -->).*?(<!-- end of \2 -->)", re.DOTALL)
 
 
 def filled(text, folder):
-    """Page with each marked table written anew from folder/NAME.csv.
+    """Page with each marked table and sentence written anew from folder/NAME.csv.
 
     Parameters
     ----------
@@ -35,21 +36,22 @@ def filled(text, folder):
         If a marked study has no rows in the folder, or no such function.
     """
 
-    def table(match):
-        path = Path(folder) / f"{match[2]}.csv"
+    def anew(match):
+        begin, kind, name, function, end = match.groups()
+        path = Path(folder) / f"{name}.csv"
         if not path.exists():
             raise ValueError(f"no {path}; run the study first")
-        study, name = runner.load(match[2]), match[3] or "table"
-        if not hasattr(study, name):
-            raise ValueError(f"<!-- table {match[2]} {name} -->: the study has no function {name}")
-        made = getattr(study, name)(read_frame(study, path))
-        return f"{match[1]}\n{markdown(made)}\n\n{match[4]}"
+        study, function = runner.load(name), function or kind
+        if not hasattr(study, function):
+            raise ValueError(f"{begin}: study {name} has no function {function}")
+        made = getattr(study, function)(read_frame(study, path))
+        return begin + (made if kind == "words" else f"\n\n{markdown(made)}\n\n") + end
 
-    return MARKED.sub(table, text)
+    return MARKED.sub(anew, text)
 
 
 def fill(page, folder):
-    """Write the marked tables of a page anew.
+    """Write what is marked in a page anew.
 
     Parameters
     ----------

@@ -9,10 +9,10 @@ A study is a module with
   with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
-  sentences below it that are made of the rows; `TIMEOUT`, seconds per row; `REPEATS`, how often a short `run` is called
-  at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called so (`sound.COSTS`); `REASONS`, by words of a
-  claim's sentence why its limit is no nearer to the value (more than three times needs one, and
-  `tests/studies/test_claims_can_fail.py` asks for it);
+  sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
+  `REPEATS`, how often a short `run` is called at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called
+  so (`sound.COSTS`); `REASONS`, by words of a claim's sentence why its limit is no nearer to the value (more than three
+  times needs one, and `tests/studies/test_claims_can_fail.py` asks for it);
 - where it takes methods that are not ours, `guests(method, quick=)`, the cases of one, and `guest_case(key)`, such a
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 

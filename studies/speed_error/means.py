@@ -155,6 +155,24 @@ def in_words(df, target):
     return f"For {target:g} % the DEM is " + "; ".join(parts) + "."
 
 
+def counts_in_words(df, target):
+    """On how many scenes each method for any shape is the cheapest, and where the DEM does not get there.
+
+    Parameters
+    ----------
+    df : data frame
+    target : float, %
+    """
+    best = winners(without_multipoles(df), targets=(target,))
+    scenes = [scene for scene in (*STEADY, *IN_TIME) if (df["scene"] == scene).any()]
+    parts = [f"{label(name)} on {count}" for name, count in best["name"].value_counts().items()]
+    none = [scene for scene in scenes if not (best["scene"] == scene).any()]
+    never = [scene for scene, ratio in lost(df, target).items() if np.isinf(ratio)]
+    said = f"of {len(scenes)} scenes {target:g} % costs least by {', by '.join(parts)}"
+    said += f"; none of them gets there with the resolutions tried on {_list(none)}" if none else ""
+    return said + (f"; the DEM alone does not on {_list(never)}" if never else "")
+
+
 def _list(names):
     return ", ".join(names)
 

@@ -1,5 +1,6 @@
-"""Tables between marks in Markdown pages: whose they are, and that several pages are written by one command."""
+"""Tables and sentences between marks in pages: whose they are, and that several pages are written by one command."""
 
+import re
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,14 @@ def test_a_mark_names_a_function_of_a_study():
     assert short.count("\n|") == 2 + 7 < whole.count("\n|")
     assert "peak_mib" in whole and "peak_mib" not in short
     assert filled(short, RESULTS) == short
+
+
+def test_a_sentence_stands_where_it_is_marked():
+    page = "- cases: <!-- words hard_cases -->old<!-- end of words -->; <!-- words needs -->old<!-- end of words -->.\n"
+    once = filled(page, RESULTS)
+    assert "old" not in once and once.count("\n") == 1 and once.endswith("<!-- end of words -->.\n")
+    assert re.match(r"- cases: <!-- words hard_cases -->\d+ cases of \d+ drawn scenes: ", once)
+    assert filled(once, RESULTS) == once
 
 
 def test_a_function_that_is_not_there_is_refused():
