@@ -203,7 +203,23 @@ def _text(nodes):
 def _dump(node):
     """One statement as text; empty if it is an import of ours."""
     kept = _Moved().visit(copy.deepcopy(node)) if _imports_in(node) else node
-    return "" if kept is None else ast.dump(kept)
+    return "" if kept is None else spelled(kept)
+
+
+def spelled(node):
+    """Syntax as text, alike on every Python: what is empty is left out, as newer ones have parts that older ones lack.
+
+    Parameters
+    ----------
+    node : ast.AST, list, or what a leaf holds
+    """
+    if isinstance(node, list):
+        return f"[{', '.join(map(spelled, node))}]"
+    if not isinstance(node, ast.AST):
+        return repr(node)
+    parts = ((name, getattr(node, name, None)) for name in node._fields)
+    said = (f"{name}={spelled(part)}" for name, part in parts if part is not None and part != [])
+    return f"{type(node).__name__}({', '.join(said)})"
 
 
 @cache

@@ -43,7 +43,7 @@ def filled(text, folder):
             raise ValueError(f"no {path}; run the study first")
         study, function = runner.load(name), function or kind
         if not hasattr(study, function):
-            raise ValueError(f"{begin}: study {name} has no function {function}")
+            raise ValueError(f"{begin}: the study has no function {function}")
         made = getattr(study, function)(read_frame(study, path))
         return begin + (made if kind == "words" else f"\n\n{markdown(made)}\n\n") + end
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from studies.harness import runner, sound
+from studies.harness import explained, runner, sound
 from studies.harness.claims import Claim
 from studies.harness.store import replaced
 from studies.harness.table import render
@@ -15,7 +16,7 @@ VERDICTS = ("ok", "FAIL", "not judged")
 
 
 class Chapter(NamedTuple):
-    """One study of a report; `problem` says why it has no page."""
+    """One study of a report; `problem` says why it has no page, `fails` which claims fail, and why."""
 
     name: str
     title: str
@@ -24,6 +25,7 @@ class Chapter(NamedTuple):
     rows: int
     count: dict[str, int]
     problem: str = ""
+    fails: Sequence[tuple[Claim, str]] = ()
 
     @property
     def verdicts(self):
@@ -65,7 +67,8 @@ def _chapter(name, path):
     except ValueError as error:
         return Chapter(name, title, [], "", 0, dict.fromkeys(sound.FAULTS, 0), str(error))
     found = sound.checked(study, path)
-    return Chapter(name, title, claims, text, len(found), sound.counted(found.values()))
+    fails = [(each, explained.why(study, each)) for each in claims if each.failed]
+    return Chapter(name, title, claims, text, len(found), sound.counted(found.values()), fails=fails)
 
 
 def headlines(found, wanted):
@@ -148,7 +151,8 @@ def readme(found, first, figures):
             "Written by `python -m studies report`; how to read and repeat it: [studies](../docs/studies.md).\n",
             "- [Ten claims first](#ten-claims-first)",
             "- [Figures of the papers](#figures-of-the-papers)",
-            "- [All studies](#all-studies)\n",
+            "- [All studies](#all-studies)",
+            "- [Claims that fail](#claims-that-fail)\n",
             "## Ten claims first\n",
             "|  | claim | value | limit | study |\n|---|---|--:|---|---|",
             *claims,
@@ -158,9 +162,22 @@ def readme(found, first, figures):
             "\n## All studies\n",
             "| study | what | claims | rows | whose costs do not count |\n|---|---|---|--:|---|",
             *lines,
+            "\n## Claims that fail\n",
+            f"{sum(len(each.fails) for each in found)} of {sum(len(each.claims) for each in found)}, each with its"
+            " reason where one is known.\n",
+            "| study | claim | value | limit | why |\n|---|---|--:|---|---|",
+            *_failed(found),
             "",
         ]
     )
+
+
+def _failed(found):
+    return [
+        f"| [{name}]({name}.md) | {_cell(claim.sentence)} | {claim.value:.3g} | {claim.limit} | {_cell(why)} |"
+        for name, fails in ((each.name, each.fails) for each in found)
+        for claim, why in fails
+    ]
 
 
 def _cell(text):

@@ -12,7 +12,8 @@ A study is a module with
   sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
   `REPEATS`, how often a short `run` is called at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called
   so (`sound.COSTS`); `REASONS`, by words of a claim's sentence why its limit is no nearer to the value (more than three
-  times needs one, and `tests/studies/test_claims_can_fail.py` asks for it);
+  times needs one, and `tests/studies/test_claims_can_fail.py` asks for it); `FAILS`, in the same way why claims on the
+  stored rows fail, or that nobody knows (asked for, too);
 - where it takes methods that are not ours, `guests(method, quick=)`, the cases of one, and `guest_case(key)`, such a
   case by its key alone, None if it is none: rows of a guest stay, and are drawn, when it is no longer there.
 

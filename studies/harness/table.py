@@ -7,6 +7,7 @@ import traceback
 from pathlib import Path
 from types import SimpleNamespace
 
+from studies.harness import explained
 from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
@@ -141,7 +142,7 @@ def _page(study, df, claims, figure):
             "limit": [c.limit for c in claims],
         }
     )
-    make = getattr(study, "table", _all_rows)
+    reasons, make = explained.told(study, claims), getattr(study, "table", _all_rows)
     table, caption = make(df), " ".join((make.__doc__ or "").split())
     return "\n\n".join(
         [
@@ -154,6 +155,7 @@ def _page(study, df, claims, figure):
             "## Claims",
             markdown(judged),
             *_unjudged(claims),
+            *(["\n".join(reasons)] if reasons else []),
             "## Where the numbers come from",
             _origin(study, df),
             "",

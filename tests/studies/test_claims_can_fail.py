@@ -6,7 +6,8 @@ Nothing is computed anew. A claim is as good as the worst rows that it accepts:
 - on results that are dealt out anew it fails at least once in six times. Where they cannot tell (the value is the
   worst that there is, so that any order of the rows is as good) or the limit is within three times the value, it must
   fail when the results are spoiled: ten times as large, a tenth, of the other sign, moved, scattered, denied;
-- its limit is within three times the value, or the study's `REASONS` says why not.
+- its limit is within three times the value, or the study's `REASONS` says why not;
+- where it fails the study's `FAILS` says why.
 """
 
 from functools import cache
@@ -20,7 +21,7 @@ import pandas as pd
 import pytest
 
 from studies.__main__ import study_names
-from studies.harness import runner
+from studies.harness import explained, runner
 
 RESULTS = Path(__file__).parents[2] / "results"
 DEALS, KEPT, NEAR = 6, 0.9, 3.0
@@ -118,6 +119,11 @@ def far(found):
     return sorted(s for s in loose if not any(words in s for words in reasons)) + unused + silent
 
 
+def unexplained(found):
+    """Claims that fail without a reason in the study's `FAILS`, and reasons of none that fails."""
+    return explained.unexplained(found.study, found.own.values())
+
+
 NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in STORED]
 
 
@@ -127,12 +133,12 @@ def test_claims_can_fail(name, refused):
     assert refused(stored(name)) == []
 
 
-def made_up(reasons=None, **claims):
+def made_up(reasons=None, fails=None, **claims):
     """A study of twenty rows whose error falls with their size, and claims by their sentences: value and limit."""
     size = np.arange(1.0, 21.0)
     df = pd.DataFrame({"size": size, "error": 1 / size, "cost": 1e-3 * size, "status": "ok", "note": ""})
     told = {"claims": lambda df: ((text, value(df), limit) for text, (value, limit) in claims.items())}
-    return judged(SimpleNamespace(CASES=[{"size": 1.0}], REASONS=reasons or {}, **told), df)
+    return judged(SimpleNamespace(CASES=[{"size": 1.0}], REASONS=reasons or {}, FAILS=fails or {}, **told), df)
 
 
 def test_claims_that_cannot_fail_are_refused():
@@ -156,3 +162,10 @@ def test_reasons_are_of_claims_and_have_words():
     assert far(made_up(**claims)) == ["wide"]
     assert far(made_up({"wide": "the rounding of twenty sums"}, **claims)) == []
     assert far(made_up({"wide": "rounding", "gone": "the rounding of twenty sums"}, **claims)) == ["gone", "wide"]
+
+
+def test_what_fails_is_explained():
+    claims = {"near": (lambda df: df["error"].max(), 0.5), "wide": (lambda df: df["error"].max(), 2.0)}
+    assert unexplained(made_up(**claims)) == ["near"]
+    assert unexplained(made_up(fails={"near": "nobody knows why"}, **claims)) == []
+    assert unexplained(made_up(fails={"near": "nobody knows why", "wide": "it holds"}, **claims)) == ["wide"]

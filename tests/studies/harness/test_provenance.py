@@ -163,3 +163,16 @@ def test_statements_inside_statements():
     assert {*provenance._statements(tree)} == {node for node in ast.walk(tree) if isinstance(node, INSIDE)}
     names = {part.names[0].name for part in provenance._imports_in(tree)}
     assert names == {"one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten"}
+
+
+def test_syntax_is_spelled_alike_on_every_python():
+    """`ast.dump` writes fields that are empty on some versions, and `type_params` from 3.12 on."""
+    tree = ast.parse("def area(radius):\n    return 3 * radius**2")
+    name = "Name(id='radius', ctx=Load())"
+    power = f"BinOp(left={name}, op=Pow(), right=Constant(value=2))"
+    product = f"BinOp(left=Constant(value=3), op=Mult(), right={power})"
+    said = f"FunctionDef(name='area', args=arguments(args=[arg(arg='radius')]), body=[Return(value={product})])"
+    assert provenance.spelled(tree.body[0]) == said
+    # None, False and 0 are no absence.
+    values = ("None", "False", "0", "0.0", "''", "[]")
+    assert len({provenance.spelled(ast.parse(f"x = {value}")) for value in values}) == len(values)
