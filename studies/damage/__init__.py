@@ -28,6 +28,12 @@ REASONS = {
     "first links gone": "two gone links beside each other count as one or three: a part of twice their share, .01",
     "effective medium theory": "draws of the small lattice scatter by 3 %, as two of them in quick rows",
 }
+# Why claims on the stored rows fail.
+FAILS = {
+    "spheres that have come off, FEM": (
+        "both sizes of elements give nearly one mesh, which the surfaces of the spheres rule"
+    ),
+}
 
 
 def _at(name, value):

@@ -35,6 +35,13 @@ REASONS = {
     "lsa packings, periodic cell": "means of three packings, each of which scatters by .2 % at 1e5 and more below",
     "of one replica": "a field that repeats, solved to 1e-10 of the heat",
 }
+# Why claims on the stored rows fail.
+FAILS = {
+    "C_t off the printed 0.806": (
+        "no packing, load or calibration gives it with the printed spread of radii; ct_search asks which other set "
+        "would"
+    ),
+}
 
 
 def _case(loading, packing, particles, seed, domain="cube", **more):

@@ -41,6 +41,11 @@ REASONS = {
     "heat entering that does not leave": "1e-11 of the heat that the equations leave, by their rounds",
     "heat lost over heat moved": "of the DEM rounding of some thousand steps; of elements what each step leaves",
 }
+# Why claims on the stored rows fail.
+FAILS = {
+    "T4, dem: order": "half a power below theory was asked for; why it stays below is not known",
+    "T3, fem: order": "half a power below theory was asked for; why it stays below is not known",
+}
 
 
 def _cases():

@@ -19,6 +19,15 @@ PAPER = {}
 TIMEOUT = 900.0
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {f"relation {name}": "rounding, which differs by processor" for name in ("uniform", "scaled", "reversed")}
+# Why claims on the stored rows fail.
+FAILS = {
+    "fft, finest, but for patterns": (
+        "one limit was set for all scenes; the table says on which the voxels are too coarse"
+    ),
+    "multipole, finest, but for patterns": (
+        "one limit was set for all scenes; spheres that nearly touch need more degrees"
+    ),
+}
 MODULES = {GUEST: "studies.sphere_benchmark.ways"}
 KEY = re.compile(rf"name=(.+),scene=([\w. -]+),step=(\d+),method={GUEST}")
 IN_TIME = ("dem", "fem")
