@@ -49,6 +49,10 @@ SOLVED = 1_000_000  # particles of the matrix that pyamg solves too
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "Multipoles: last degree": "small beside the least error that is judged by them",
+    "peak memory, GiB": "what a machine of 16 GiB can give",
+    "within the paper's 0.5 %": "the paper's own number is the limit",
+    "off FFT, 512^3": "the paper's own number is the limit",
+    "CPU time over that of pyamg's": "to be no slower than the library is what is asked",
     "what float32 changes": "numbers in single precision are rounded to 6e-6 %",
 }
 PAPER = printed("many_inclusions")
@@ -155,7 +159,7 @@ def _witness(df):
 
 
 def _dem(df):
-    for number, limit in ((PARTICLES[0], 2.0), (PARTICLES[-2], 0.05), (PARTICLES[-1], 0.007)):
+    for number, limit in ((PARTICLES[0], 1.5), (PARTICLES[-2], 0.006), (PARTICLES[-1], 0.004)):
         rows = pick(df, name="dem", particles=number)
         yield f"DEM, {number} elements: error, %", largest(rows, "error_percent"), limit
     rows = pick(df, name="dem", particles=PARTICLES[-1]).assign(peak_gib=lambda found: found["peak_mib"] / 1024)
@@ -172,7 +176,7 @@ def _dem(df):
 
 def _others(df):
     for name, finest in (("fft", VOXELS[-1]), ("fft-em", COARSER[-1])):
-        for voxels, limit in ((VOXELS[0], 0.8), (finest, 0.05)):
+        for voxels, limit in ((VOXELS[0], 0.8), (finest, 0.04)):
             rows = pick(df, name=name, voxels=voxels)
             yield f"{methods.found()[name].title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
     limit = converged(df[df["precision"].isna()] if "precision" in df else df, "fft")
