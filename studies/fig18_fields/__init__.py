@@ -218,7 +218,7 @@ def _network(made, found):
     text = f"The paper's network, {MOST} particles, halos of 11 mean radii, against the multipoles, gradient, "
     text += "worst point of Table 3: "
     within = PAPER["within_temperature"]
-    yield text + f"temperature, % of degrees Celsius (the paper prints {within:g})", min(w[2] for w in off), within
+    yield text + f"temperature, % of degrees Celsius (the paper prints {within:g})", min(w[2] for w in off), within / 10
     # Its text says 3 %, its table 3.1.
     yield text + "flux, % of theirs (the paper's table: 3.1)", min(w[1] for w in off), 3.1
 

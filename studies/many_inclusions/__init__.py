@@ -166,7 +166,8 @@ def _dem(df):
     yield f"DEM, {PARTICLES[-1]} elements: peak memory, GiB", largest(rows, "peak_gib"), 14.0
     fine = pick(df, name="dem").groupby("per_inclusion")["error_percent"].max().abs()
     if len(fine) == len(PARTICLES):
-        few = min(number for number in fine.index if (fine[fine.index >= number] <= PAPER["dem_fft"]).all())
+        enough = (number for number in fine.index if (fine[fine.index >= number] <= PAPER["dem_fft"]).all())
+        few = min(enough, default=math.inf)
         yield "DEM: elements per inclusion from which it is within the paper's 0.5 %", few, PAPER["per_inclusion"]
     rows = pick(df, name=STEADY, particles=SOLVED)
     for peer in ("ruge_stuben", "aggregation") if len(rows) else ():
