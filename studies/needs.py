@@ -67,6 +67,10 @@ REASONS = {
     "over those of an eighth": "one limit for all methods: an eighth of the body",
     "over the bound told": "it is a bound, and certain: it need not be near",
 }
+# Why claims on the stored rows fail.
+FAILS = {
+    "fft: CPU-s of three solves over those of one set-up": "what is set up once is a small part of an FFT solve",
+}
 TIMEOUT = 1800.0
 
 

@@ -44,7 +44,7 @@ REASONS = {
 FAILS = {
     "over the plane, T in degrees Celsius": "not reproduced; how the paper's network could be so near is open",
     "largest error of the flux over the flux there": (
-        "a halo as wide as a third of the sphere smears the jump of the flux at the interface, however many particles"
+        "not reproduced: a halo smears the jump of the flux at the interface over its own width"
     ),
 }
 PAPER = printed("fig15_16_fields")

@@ -25,7 +25,7 @@ FAILS = {
         "one limit was set for all scenes; the table says on which the voxels are too coarse"
     ),
     "multipole, finest, but for patterns": (
-        "one limit was set for all scenes; spheres that nearly touch need more degrees"
+        "one limit was set for all scenes; not looked into, perhaps too few degrees where spheres nearly touch"
     ),
 }
 MODULES = {GUEST: "studies.sphere_benchmark.ways"}

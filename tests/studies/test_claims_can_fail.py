@@ -128,7 +128,7 @@ NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name fo
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("refused", [holding_anyhow, without_rows, far])
+@pytest.mark.parametrize("refused", [holding_anyhow, without_rows, far, unexplained])
 def test_claims_can_fail(name, refused):
     assert refused(stored(name)) == []
 
