@@ -35,7 +35,7 @@ REASONS = {
 }
 # Why claims on the stored rows fail.
 FAILS = {
-    "beyond all caches: share of the triad's bandwidth": "an aim that was set before, and is missed",
+    "share of the triad's bandwidth": "an aim that was set before, and is missed",
     "over LAMMPS with its usual forces": "an aim that was set before, and is missed",
 }
 # Seconds over seconds, which their names do not tell.
