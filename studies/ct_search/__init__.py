@@ -22,6 +22,7 @@ from studies.harness.pick import pick, present
 
 SPREADS, LINKS, MEANS = (0.0, 0.1, 0.15, 0.2, 0.3), (6.5, 7.0, 7.5, 8.0), ("arithmetic", "harmonic")
 PAPER = means.PAPER
+# Why claims on the stored rows fail.
 FAILS = {"All that is printed at once": "no set of spread, links and mean radius gives all: docs/decisions/printed.md"}
 TIMEOUT = 3600.0
 

@@ -38,7 +38,7 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "DEM: exponent of the CPU time in inclusions": (
-        "not looked into: kept packings and small scenes bend the line, stages are nearer to one"
+        "not looked into; perhaps as packings are kept and small scenes have a cost of their own"
     ),
     "CPU time over that of the code before": (
         "the packing, which takes most of the wall time of either, is in both; without it was not looked into"

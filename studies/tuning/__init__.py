@@ -35,7 +35,7 @@ FAILS = {
     "Sphere, error: order in the particle size less 3": (
         "powers of unlike sign add up: an order fitted over a decade is no property of the scheme"
     ),
-    "scatter of a packing's error": ("2.5 is what independent errors of the bulk would leave; why it is more is open"),
+    "scatter of a packing's error": "2.5 is what independent errors of the bulk would leave; why it is more is open",
 }
 
 
