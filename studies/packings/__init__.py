@@ -22,11 +22,16 @@ SCATTER = {"equal": (2e-4, 0.016), "gaussian": (5e-4, 0.025)}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "CPU time of spheropack over ours": "what was asked for, and compilers differ",
+    "mean packing fraction": "two standard deviations of one packing",
     "gaussian radii: mean number of neighbours": "two standard deviations of one packing",
     "Radii shrunk": "rounding, and far below the gaps of a packing at pressure 1e6, some 1e-6",
     "Largest overlap": "rounding, and far below the gaps of a packing at pressure 1e6, some 1e-6",
     "start slope": "three of its standard errors",
-    "stretched by 3 %": "twice what an isotropic packing may have",
+}
+# Why claims on the stored rows fail.
+FAILS = {
+    "CPU seconds, points to packing": "an aim that was set on another machine, not looked into",
+    "start slope": "not looked into",
 }
 PAPER = {}
 TIMEOUT = 3600.0
@@ -136,11 +141,15 @@ def _own_claims(df):
         yield f"Memory per sphere of {LARGE}, bytes", large["bytes_per_sphere"].max(), 1000.0
         off = abs(large["slope_mean"] - large["slope_exact"]) / large["slope_error"]
         yield "S2(r): start slope, mean of 7 directions, off -surface/4, standard errors", off.max(skipna=False), 3.0
-        for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):
-            # Links of one sphere repel each other: twenty packings were all within 1.1 of independent links' scatter.
-            yield f"Isotropy: largest deviation of the {name}, standard deviations", large[column].max(), 2.0
-        text = "Isotropy: the same of the fabric tensor where a packing is stretched by 3 %, least"
-        yield text, large["strained_sd"].min(), ">= 4"
+        # 3 % move the mean of n_x^2 by .03 (2/3 - 2/5), 20 standard errors of 6e5 links: half of that at least.
+        text = f"Isotropy: deviation of the fabric tensor where the packing of {LARGE} is stretched by 3 %"
+        yield text, large["strained_sd"].min(), ">= 10"
+    even = ours[ours["radii"] != "ten"]
+    for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):
+        # Links of one sphere repel each other: twenty packings were all within 1.1 of independent links' scatter.
+        # Of the wide mixture's links most are a few large spheres': they are no independent draws.
+        text = f"Isotropy, but for the wide mixture: largest deviation of the {name} in any packing, standard deviations"
+        yield text, even[column].max(skipna=False), 2.0
     cylinder = pick(ours, part="walls", domain="cylinder-y")
     excess = (cylinder["phi_core"] - cylinder["phi_reached"]).min(skipna=False)
     yield "Round walls: packing fraction of the core minus that of the whole cylinder", excess, ">= 0.01"

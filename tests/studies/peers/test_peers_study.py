@@ -3,12 +3,21 @@
 import pandas as pd
 import pytest
 
+from studies import peers
 from studies.peers import cases, figure, means, tables
+
+HERTZ = [case for case in peers.CASES if case["name"] == "grains" and case["scene"].endswith("Hertz radius")]
 
 
 def rows(*found):
     columns = ("name", "given", "scene", "size", "order", "conductivity", "error_percent", "cpu_s")
     return pd.DataFrame([dict(zip(columns, row, strict=True)) for row in found])
+
+
+@pytest.mark.parametrize("case", HERTZ, ids=lambda case: case["scene"])
+def test_our_beds_warm_up(case):
+    """A bed at random has no layers to choose; a row whose warm-up raises has failed."""
+    peers.warm_up(**case)
 
 
 def test_a_row_that_another_beats_in_both_is_not_drawn():
