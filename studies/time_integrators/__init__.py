@@ -36,7 +36,6 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "share of the triad's bandwidth": "an aim that was set before, and is missed",
-    "over LAMMPS with its usual forces": "an aim that was set before, and is missed",
 }
 # Seconds over seconds, which their names do not tell.
 COSTS = ("bandwidth_share", "over_lammps")
