@@ -227,7 +227,7 @@ def plot(df):
             share = rows[column] / rows["three_s"]
             axis.barh(np.arange(len(names)) + 0.36 * number - 0.18, share, 0.34, color=colour, label=label)
         for place, seconds in enumerate(rows["three_s"]):
-            axis.annotate(f" {seconds:.2g} s", (1.05, place), va="center", fontsize=8, color=GREY)
+            axis.annotate(f" {seconds:.2g} s", (1.1, place), va="center", fontsize=8, color=GREY)
         axis.axvline(1.0, color=GREY, linewidth=1)
         axis.set_axisbelow(True)
         axis.grid(axis="y", visible=False)

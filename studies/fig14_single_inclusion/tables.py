@@ -40,7 +40,9 @@ def lines(df):
         row |= {column: float(cost[column].mean()) for column in COSTS}
         made = group[group["packing_cached"].astype(str) == "False"]
         rows.append(row | {"packing_s": float(made["packing_s"].mean())})
-    return pd.DataFrame(rows)
+    found = pd.DataFrame(rows)
+    # Where all packings came from the cache nothing is said of making them.
+    return found if found["packing_s"].notna().any() else found.drop(columns="packing_s")
 
 
 def short(df):

@@ -87,7 +87,7 @@ def _ranked(ax, rows):
         ax.barh(words, seconds, left=left, color=colour, label=stage)
         left += seconds
     ax.set(xlabel="wall time, s", title="demheat.mpi: unknowns on one rank and on two")
-    ax.legend()
+    ax.legend(ncols=4, loc="upper left", bbox_to_anchor=(-0.2, -0.12))
     ax.invert_yaxis()
 
 
