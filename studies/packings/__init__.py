@@ -148,8 +148,8 @@ def _own_claims(df):
     for column, name in (("fabric_sd", "fabric tensor"), ("fourth_sd", "<n_i^4>")):
         # Links of one sphere repel each other: twenty packings were all within 1.1 of independent links' scatter.
         # Of the wide mixture's links most are a few large spheres': they are no independent draws.
-        text = f"Isotropy, but for the wide mixture: largest deviation of the {name} in any packing, standard deviations"
-        yield text, even[column].max(skipna=False), 2.0
+        text = f"Isotropy, but for the wide mixture: largest deviation of the {name} in any packing"
+        yield f"{text}, standard deviations", even[column].max(skipna=False), 2.0
     cylinder = pick(ours, part="walls", domain="cylinder-y")
     excess = (cylinder["phi_core"] - cylinder["phi_reached"]).min(skipna=False)
     yield "Round walls: packing fraction of the core minus that of the whole cylinder", excess, ">= 0.01"
