@@ -104,7 +104,7 @@ def warm_up(name, given, scene, method, **knobs):
     if method == "grains":
         from studies.peers import beds
 
-        beds.solved(beds.BEDS[scene], *([4] if "n" in knobs else []))
+        beds.solved(beds.BEDS[scene], 4 if "n" in knobs else None)
     elif method not in MODULES:
         knobs.pop("n", None)
         methods.warm_up(method, **knobs)
