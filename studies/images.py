@@ -142,6 +142,19 @@ def notes(df):
         )
 
 
+def words(df):
+    """How far the DEM and the nearest method on voxels are off the conductivity of the finest image of a known one."""
+    own, particles = _own(df), df["particles"].max()
+    n = max(own)
+    dem = _abs(_added(df, own, name="dem-plain", n=n, particles=particles))
+    others = {name: _abs(_added(df, own, name=name, n=n)) for name in ON_VOXELS}
+    nearest = min((name for name in others if others[name] is not None), key=others.get)
+    return (
+        f"with {particles:.0f} particles it is {dem:.2g} % off the conductivity of an image of {n}^3 voxels; "
+        f"{methods.found()[nearest].title}, on these voxels is {others[nearest]:.2g} % off"
+    )
+
+
 def plot(df):
     """Errors against the voxel: of the image, and of methods on it."""
     from matplotlib import pyplot

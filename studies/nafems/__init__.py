@@ -252,6 +252,20 @@ def notes(df):
             yield f"{which}, {name}: the order is {found:.2f} and not {ORDERS[which, name]:g}: {why}."
 
 
+def words(df):
+    """The finest quadratic elements beside the most particles: error over the body, unknowns and cost."""
+    parts = []
+    for which in ("T3", "T4"):
+        dem = pick(df, problem=which, name="dem", particles=NUMBERS[-1]).iloc[0]
+        fem = pick(df, problem=which, name="fem", edge=EDGES["fem"][-1]).iloc[0]
+        parts.append(
+            f"on {which} an error over the body of {fem['rms_percent']:.2g} % by {fem['unknowns']:.0f} unknowns in "
+            f"{fem['cpu_s']:.2g} CPU-seconds, the DEM's {dem['rms_percent']:.2g} % by {dem['unknowns']:.0f} in "
+            f"{dem['cpu_s']:.2g}"
+        )
+    return "; ".join(parts)
+
+
 def plot(df):
     """Errors of the two problems that are not linear, against unknowns; the plate's temperature."""
     from studies.nafems.figure import drawn

@@ -179,6 +179,12 @@ def notes(df):
     yield markdown(_means(df, ["rattlers", "backbone_z", "gap_7.5", "under_2", "fabric_sd", "fourth_sd"]))
 
 
+def words(df):
+    """What relaxing overlapping spheres costs beside packing hard ones."""
+    lsa, relax = (pick(df, part="large", maker=maker).iloc[0] for maker in ("lsa", "relax"))
+    return f"{lsa['cpu_s'] / relax['cpu_s']:.0f} times cheaper with {LARGE} spheres"
+
+
 def _means(df, columns):
     """Means of each kind of packing, with the number of packings and, of packing fractions, their scatter."""
     keys = ["part", "maker", "particles", "radii", "domain", "growth"]

@@ -158,6 +158,16 @@ def table(df):
     return lines(df)
 
 
+def words(df):
+    """How many times nearer the FFT is than the DEM where voxels are exact or nearly so, over parts and contrasts."""
+    ratios = []
+    for part in ("square rods", "diagonal"):
+        dem, fft = (pick(df, part=part, name=n, **_at(part, n, 1)).set_index("contrast") for n in ("dem", "fft"))
+        ratios.extend((dem["error_percent"] / fft["error_percent"]).abs())
+    both = [methods.resolution({"name": name} | _at(part, name, 1)) for name in ("fft", "dem")]
+    return f"with {both[0]} is {min(ratios):.0f} to {max(ratios):.0f} times nearer than the DEM with {both[1]}"
+
+
 def plot(df):
     """Errors by shape and method; those of fibres against the contrast."""
     from studies.shapes.figure import draw

@@ -126,6 +126,13 @@ def words(df):
     return means.counts_in_words(df, 0.1)
 
 
+def losses(df):
+    """On how many scenes some other method for any shape is cheaper than the DEM, by accuracy."""
+    from studies.speed_error import means
+
+    return means.losses_in_words(df)
+
+
 def plot(df):
     """Error against CPU time, a panel for each scene, and of the flux at points for two of them."""
     from studies.speed_error.figure import draw

@@ -173,6 +173,20 @@ def counts_in_words(df, target):
     return said + (f"; the DEM alone does not on {_list(never)}" if never else "")
 
 
+def losses_in_words(df):
+    """On how many scenes the DEM is not the cheapest method for any shape, by target.
+
+    Parameters
+    ----------
+    df : data frame
+    """
+    parts = []
+    for target in TARGETS:
+        ratios = lost(df, target).values()
+        parts.append(f"on {sum(ratio > 1 for ratio in ratios)} of {len(ratios)} to {target:g} %")
+    return ", ".join(parts)
+
+
 def _list(names):
     return ", ".join(names)
 
