@@ -153,4 +153,5 @@ def _slopes(axes, errors):
     for power, text, colour in ((1, "order 1", GREY), (2, "order 2", BLACK)):
         line = errors.iloc[0] * (numbers / numbers[0]) ** (-power / 3)
         axes.plot(numbers, line, color=colour, linewidth=0.8, linestyle=(0, (1, 2)))
-        axes.annotate(text, (numbers[1], line[1]), fontsize=8, color=colour, ha="right", va="bottom")
+        place = {"xytext": (0, 7), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+        axes.annotate(text, (numbers[1], line[1]), fontsize=8, color=colour, **place)

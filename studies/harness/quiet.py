@@ -1,11 +1,13 @@
-"""How much of the processors others use: a cost is one of a quiet machine, or its row says that it is not."""
+"""How much of a row's time was not its own: processors that others used, and kernels that it had to compile."""
 
 from __future__ import annotations
 
 import math
 import os
 import resource
+import sys
 import time
+from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
@@ -22,6 +24,23 @@ PAUSE = 2.0
 LOOKS = 3
 # Each processor's count may be wrong by so much, s.
 TICK = 1 / os.sysconf("SC_CLK_TCK")
+
+
+@contextmanager
+def compiling():
+    """Seconds that this process compiles kernels in the meantime, as a list that is filled at the end.
+
+    A warm-up is small, and the first row on a machine that meets a kernel of large bodies alone compiles it within its
+    time. What Numba takes from its cache does not count.
+    """
+    spent = []
+    if "numba" not in sys.modules:
+        yield spent
+        return
+    from numba.core.event import install_timer
+
+    with install_timer("numba:compile", spent.append):
+        yield spent
 
 
 class Moment(NamedTuple):

@@ -340,11 +340,14 @@ def compute_row(study, case, *, warm=True):
 
 
 def _quietly_measured(study, case):
-    """A run's metrics and costs, with the larger share of others in this process's life before it and during it."""
+    """A run's metrics and costs, with what of its time was not its own: see `quiet`."""
     before, begin = quiet.others(quiet.START), quiet.moment()
-    metrics, cost = measured_again(study.run, case, most=getattr(study, "REPEATS", RUNS))
+    with quiet.compiling() as spent:
+        metrics, cost = measured_again(study.run, case, most=getattr(study, "REPEATS", RUNS))
     noise = quiet.loudest(before, quiet.others(begin))
-    return metrics, cost | ({"noise": noise} if noise == noise else {})
+    # Of several calls the cheapest counts, and the first compiles.
+    compiled = {"compile_s": sum(spent)} if spent and cost["repeats"] == 1 else {}
+    return metrics, cost | compiled | ({"noise": noise} if noise == noise else {})
 
 
 def write_json(row, path):

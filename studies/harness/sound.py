@@ -20,7 +20,8 @@ def faults(study, row):
 
     - stale: other code than today's made it; a method that is not ours has no code that is known here.
     - dirty: its code was at no commit.
-    - noisy: others used more than a tenth of the processors around it, or nobody knows; only rows with costs are.
+    - noisy: others used more than a tenth of the processors around it, or nobody knows, or it compiled kernels in
+      more than a tenth of its time; only rows with costs are.
 
     Parameters
     ----------
@@ -36,9 +37,14 @@ def faults(study, row):
     wrong = (
         ours and row.get("code") != code_of(study, row),
         str(row.get("commit")).endswith("+"),
-        math.isfinite(_number(row.get("cpu_s"))) and not _number(row.get("noise")) <= NOISY,
+        math.isfinite(_number(row.get("cpu_s"))) and not _quiet(row),
     )
     return tuple(name for name, yes in zip(FAULTS, wrong, strict=True) if yes)
+
+
+def _quiet(row):
+    compiled, wall = _number(row.get("compile_s")), _number(row.get("wall_s"))
+    return _number(row.get("noise")) <= NOISY and not compiled > NOISY * wall
 
 
 def counted(found):

@@ -39,17 +39,19 @@ def _inclusions(ax, df):
         label = LOOK[name][0] + (f": exponent {fit.iloc[0]:.2f}" if len(fit) else "")
         ax.plot(group["number"], group["cpu_s"], **look(name, label=label))
     ax.set(xscale="log", yscale="log", xlabel="inclusions", ylabel="CPU time, s", title="From scene to conductivity")
+    # Room for the legend above the lines.
+    ax.set_ylim(top=10 * ax.get_ylim()[1])
     _slope(ax)
-    ax.legend()
+    ax.legend(loc="upper left")
 
 
 def _slope(ax):
     """A line of slope one through the middle of the panel."""
     (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
     x = np.array([left, right])
-    ax.plot(x, np.sqrt(low * high) * x / np.sqrt(left * right), color=GREY, linewidth=0.8, linestyle=":", zorder=0)
+    y = np.sqrt(low * high) * x / np.sqrt(left * right)
+    ax.plot(x, y, color=GREY, linewidth=0.8, linestyle=":", zorder=0, label="linear")
     ax.set(xlim=(left, right), ylim=(low, high))
-    ax.text(right, np.sqrt(low * high) * np.sqrt(right / left), "linear ", color=GREY, ha="right", va="bottom")
 
 
 def _stages(ax, rows, by, label):

@@ -35,6 +35,8 @@ def stored(tiny):
         # Nobody knows; a row that was refused has no costs to spoil.
         ({"noise": ""}, ("noisy",)),
         ({"noise": "", "cpu_s": "", "status": "unsupported"}, ()),
+        ({"compile_s": "0.11", "wall_s": "1.0"}, ("noisy",)),
+        ({"compile_s": "0.09", "wall_s": "1.0"}, ()),
         ({"noise": "0.9", "commit": "1+", "code": "x"}, ("stale", "dirty", "noisy")),
         # No repository: nothing to be dirty.
         ({"commit": ""}, ()),
@@ -106,6 +108,15 @@ def test_rows_say_what_others_did(tiny):
     tiny.ran()
     for row in tiny.rows().values():
         assert 0 <= float(row["noise"]) <= 1 and row["triad_gbs"] == "12.5" and row["repeats"] == "1"
+
+
+def test_rows_say_what_they_compiled(tiny):
+    """A row of one call says it; of several calls the first compiles, and the cheapest counts."""
+    kernel = "def run(name, x):\n    numba.njit(lambda x: x + 1)(1)"
+    tiny.write(**{"import os, time": "import numba, os, time", "def run(name, x):": kernel})
+    tiny.ran()
+    for row in tiny.rows().values():
+        assert 0 < float(row["compile_s"]) <= float(row["wall_s"])
 
 
 def test_short_rows_are_repeated(tiny, tmp_path):
