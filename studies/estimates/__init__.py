@@ -110,6 +110,12 @@ def table(df):
     return lines(pick(df, part="unseen"), (*NAMES, *BESIDE))
 
 
+def costs(df):
+    """What an estimate costs over its solve, medians over scenes."""
+    rows = [(name, df[f"{name}_more_s"] / df[f"{name}_cpu_s"]) for name in ("dem", "fft", "fem")]
+    return ", ".join(f"{ratio.median():.2g} ({found()[name].title})" for name, ratio in rows)
+
+
 def words(df):
     """How many intervals held, how wide they were, and what `effective` got right."""
     from studies.estimates.means import answers_in_words, intervals_in_words

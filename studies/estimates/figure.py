@@ -28,8 +28,8 @@ def draw(df, names):
         _panel(axes, df, name)
     np.atleast_1d(panels)[0].set_ylabel("half of the interval that it gives, %")
     held = min(inside(df, name).mean() for name in names)
-    share = "all" if held == 1 else f"at least {100 * held:.0f} % of the"
-    figure.suptitle(f"On {len(df)} unseen scenes the exact conductivity lies inside of {share} intervals")
+    share = "all" if held == 1 else f"at least {np.floor(1000 * held) / 10:g} % of the"
+    figure.suptitle(f"On up to {len(df)} unseen scenes the exact conductivity lies inside of {share} intervals")
     return figure
 
 

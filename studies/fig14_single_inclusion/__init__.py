@@ -131,7 +131,7 @@ def _dem_claims(df):
     yield text, extrapolated(third, COARSE, PARTICLES[1], name="dem"), 0.01
     mine, theirs = (worst(third, name=name, particles=PARTICLES[1]) for name in ("dem", "dem-calibrated"))
     if mine is not None and theirs is not None:
-        yield "DEM default: worst error over that of the paper's network, same packings", mine / theirs, 0.015
+        yield "DEM default: worst error over that of the paper's network", mine / theirs, 0.015
         yield "DEM default: worst error over the one that the paper prints", mine / PAPER["worst_error"], 0.1
     # A hundred times what the solver leaves of the residual.
     balance = df[df["method"] == "dem"]["heat_imbalance"].max(skipna=False)

@@ -8,12 +8,12 @@ Odd and prime grids and single precision are among the knobs, which are drawn to
 
 What is right is exact, or lies between certain bounds (`references.bracket`, at most 10 % wide, 2 % where it is cheap;
 a case whose bounds are wider is "open" and counts for nothing). Verified: within the allowed error of that. What is
-allowed was set before any value was seen: the error that a method declares, grown with the first order of the size of
-its elements over the thinnest feature, but at least 5 % (nobody need be better where a body is a few elements thick)
-and at most 20 %; a tenth of a per cent where a method claims to be exact. Silently wrong: off by more without a
-warning; or, with or without one, no number, a conductivity beyond Voigt's and Reuss's bounds for the method's own
-volume fractions, or a refusal without a reason. Temperatures, of walls that meet and in time, are judged alike, from
-2 % of the span.
+allowed was set before any value was seen, but for the rules named below: the error that a method declares, grown with
+the first order of the size of its elements over the thinnest feature, but at least 5 % (nobody need be better where a
+body is a few elements thick) and at most 20 %; a tenth of a per cent where a method claims to be exact. Silently
+wrong: off by more without a warning; or, with or without one, no number, a conductivity beyond Voigt's and Reuss's
+bounds for the method's own volume fractions, or a refusal without a reason. Temperatures, of walls that meet and in
+time, are judged alike, from 2 % of the span.
 
 Three rules were changed since the first values were seen. Gaps of an element or more count as features too; narrower
 ones earn nothing: what they spoil must be said. Networks (of contacts, facets or links) claim no elementary bounds and
@@ -108,9 +108,9 @@ def words(df):
     )
     return (
         f"{outcome.sum()} cases of {len(df)} drawn scenes: {verified} answers lie within what is allowed (mostly 5 to "
-        f"20 %, set before) of what is exact or certain, {refused} are refused with their reason, {warned} are farther "
-        f"off and came with a warning, {wrong} are silently wrong ({unjudged} have bounds too wide to judge by); of "
-        f"{df['relations'].sum():.0f} invariants {df['broken'].sum():.0f} are broken"
+        f"20 %, set before but for three rules) of what is exact or certain, {refused} are refused with their reason, "
+        f"{warned} are farther off and came with a warning, {wrong} are silently wrong ({unjudged} have bounds too "
+        f"wide to judge by); of {df['relations'].sum():.0f} invariants {df['broken'].sum():.0f} are broken"
     )
 
 

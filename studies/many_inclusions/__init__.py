@@ -3,8 +3,9 @@
 Section 5 of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799) at its full size, on two processors: one
 periodic cell of fig17_etc, a fifth of it spheres, under a mean gradient. Errors are those of the conductivity against
 Rayleigh's multipole method at its highest degree here. The DEM's costs are those from the scene to the conductivity,
-its packing made on the spot. The steady solver stands beside plain pyamg on the matrix of such spheres between walls.
-FEM also meets a cell of 124 spheres whose least gap is a thousandth of a diameter.
+its packing made on the spot, beyond two million particles as replicas of a smaller one. The steady solver stands
+beside plain pyamg on the matrix of such spheres between walls. FEM also meets a cell of 124 spheres whose least gap is
+a thousandth of a diameter.
 
 The paper's network is here twice: "DEM as in the paper" on replicas of small relaxed packings that are made on the
 spot; and on packings of `studies/common/paper_network.py`, from the cache: 150 000 particles of both kinds, and 8e6,

@@ -75,7 +75,8 @@ def _threads(ax, df):
     words = [f"{methods.found()[row['name']].title}: {row['stage']}" for _, row in finest.iterrows()]
     ax.barh(words, finest["efficiency"], color=[LOOK[name][1] for name in finest["name"]])
     ax.axvline(0.8, color=GREY, linestyle=":")
-    ax.set(xlabel="wall time of one thread over two, halved", title="Two threads, finest cell of both", xlim=(0, 1.1))
+    ax.set(xlabel="wall time of one thread over two, halved", title="Two threads, finest cell of both")
+    ax.set_xlim(0, max(1.1, 1.05 * finest["efficiency"].max()))
     ax.invert_yaxis()
 
 

@@ -137,7 +137,10 @@ def notes(df):
     from studies.harness.table import markdown
     from studies.sphere_benchmark import tables
 
-    return ["Over all scenes, at each resolution:", markdown(tables.by_method(df))]
+    return [
+        "Over the scenes that each has, at each resolution; coarse ones are of fewer scenes:",
+        markdown(tables.by_method(df)),
+    ]
 
 
 def plot(df):
