@@ -111,8 +111,8 @@ def table(df):
     """Error, %, of each method and contrast against the number of particles, and the order.
 
     Of the default that is the mean over three packings up to 100 000 particles; all else is of one packing.
-    Its error changes sign between 10 000 and 100 000 particles, so that its order, fitted to absolute values, is none of
-    the scheme (docs/decisions/order.md).
+    Its error changes sign between 10 000 and 100 000 particles, so that its order, fitted to absolute values, is none
+    of the scheme (docs/decisions/order.md).
     """
     import pandas as pd
 
