@@ -183,7 +183,7 @@ def losses_in_words(df):
     parts = []
     for target in TARGETS:
         ratios = lost(df, target).values()
-        parts.append(f"on {sum(ratio > 1 for ratio in ratios)} of {len(ratios)} to {target:g} %")
+        parts.append(f"on {sum(ratio > 1 for ratio in ratios)} of {len(ratios)} scenes to {target:g} %")
     return ", ".join(parts)
 
 
