@@ -1,4 +1,4 @@
-"""Command line of the studies: list, run, render, row, jobs, gather, check, report."""
+"""Command line of the studies: list, run, render, row, jobs, gather, replay, accept, check, report."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from pathlib import Path
 import studies
 from demheat import fresh
 from studies import contents
-from studies.harness import jobs, quiet, runner, sound
+from studies.harness import jobs, quiet, replay, runner, sound
 from studies.harness.cluster import spreading
 from studies.harness.forked import forking, serve
 from studies.harness.machines import origins
@@ -47,8 +47,8 @@ def main(words=None):
 
 def _parser():
     parser = argparse.ArgumentParser(prog="python -m studies", description=__doc__)
-    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | jobs | gather | check | report")
-    names = actions.add_parser("list", help="name the studies, and say whether stored rows are those of this code")
+    actions = parser.add_subparsers(required=True, metavar="list | run | render | row | ... | report")
+    names = actions.add_parser("list", help="name the studies, their rows, and how many are stored")
     names.set_defaults(action=_list)
     run = actions.add_parser("run", help="bring studies up to date (all, if none is named) and judge their claims")
     run.add_argument("names", nargs="*", metavar="NAME")
@@ -71,6 +71,7 @@ def _parser():
     row.add_argument("name", metavar="NAME")
     row.add_argument("case", metavar="CASE", help="key as in the column 'case', or number in CASES")
     row.add_argument("--json", metavar="FILE", help="write the row there, in JSON, for `gather`")
+    row.add_argument("--values", action="store_true", help="once, without a warm-up: its costs mean nothing then")
     row.add_argument("--parent", type=int, help=argparse.SUPPRESS)
     row.set_defaults(action=_row)
     first = actions.add_parser("first")  # of which rows are copies
@@ -85,17 +86,30 @@ def _parser():
     gather.add_argument("name", metavar="NAME")
     gather.add_argument("files", metavar="FILE", nargs="+")
     gather.set_defaults(action=_gather)
-    check = actions.add_parser("check", help="list stale, dirty and noisy rows; exit status 1 if there are any")
+    words = "make stored rows again, two side by side, and compare what they hold; exit status 1 if a value has moved"
+    again = actions.add_parser("replay", help=words)
+    again.add_argument("names", nargs="*", metavar="NAME")
+    again.add_argument("--all", action="store_true", help="not the quick rows alone")
+    again.add_argument("--old", action="store_true", help="only rows that this code has neither made nor made again")
+    again.set_defaults(action=_replay)
+    words = "make rows again that a change of code has moved, and print old and new side by side; costs stay"
+    accepted = actions.add_parser("accept", help=words)
+    accepted.add_argument("names", nargs="*", metavar="NAME")
+    accepted.set_defaults(action=_accept)
+    words = "say of which commits rows are, when they were last replayed, which are missing, dirty or noisy"
+    check = actions.add_parser("check", help=f"{words}; exit status 1 if any is missing")
     check.add_argument("names", nargs="*", metavar="NAME")
     check.add_argument("--rows", action="store_true", help="name every one of them")
+    words = "exit status 1 also for a row that this code has neither made nor replayed, or whose cost does not count"
+    check.add_argument("--release", action="store_true", help=words)
     check.set_defaults(action=_check)
     words = "write the pages of all studies found in DIR, DIR/README.md and, in one, DIR/index.html"
     report = actions.add_parser("report", help=words)
     words = "also write the tables marked in these pages anew"
     report.add_argument("--page", metavar="FILE", type=Path, nargs="+", default=[], help=words)
     report.set_defaults(action=_report)
-    for each in (names, run, render, array, gather, check, report):
-        where = STORED if each in (names, check) and STORED.is_dir() else DEFAULT_OUT
+    for each in (names, run, render, array, gather, again, accepted, check, report):
+        where = STORED if each in (names, again, accepted, check) and STORED.is_dir() else DEFAULT_OUT
         each.add_argument("--out", default=where, metavar="DIR", type=Path, help=f"default {where}")
     return parser
 
@@ -113,14 +127,13 @@ def _list(arguments):
         study = runner.load(name)
         quick = sum(bool(study.QUICK(case)) for case in study.CASES)
         kept = read_rows(arguments.out / f"{name}.csv")
-        rows = runner.state(study, kept)
+        stored = len(study.CASES) - len(replay.lacking(study, arguments.out / f"{name}.csv"))
         machines = len(set(origins(kept.values())))
         # Without docstrings (python -OO) the name must do.
         title = (study.__doc__ or name).strip().splitlines()[0]
-        stored = ", ".join(f"{count:3} {word}" for word, count in rows.items())
-        stored += f"; {machines} machines" if machines > 1 else ""
-        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick; {stored}   {title}")
-    print(f"Rows stored in {arguments.out}: held, made by this code; stale, by other code; missing, not made.")
+        more = f"; {machines} machines" if machines > 1 else ""
+        print(f"{name:24} {len(study.CASES):4} rows, {quick:3} quick, {stored:4} stored{more}   {title}")
+    print(f"Rows stored in {arguments.out}; `python -m studies check` says of which code they are.")
     return 0
 
 
@@ -139,6 +152,8 @@ def _run(arguments):
         # Rows side by side would wait for each other.
         knobs["compute"] = quiet.quietly(compute, seconds=arguments.wait, say=_say)
         for name in chosen:
+            if not (spread or arguments.method) and arguments.force is not True:
+                replay.bear_out(name, arguments.out, quick=arguments.quick, say=_say)
             path = runner.run_study(name, arguments.out, spread=spread, **knobs)
             status |= _show(name, path)
     return status
@@ -202,10 +217,10 @@ def _row(arguments):
     case = runner.find_case(study, arguments.case)
     if arguments.json and not arguments.parent:
         # For itself alone: with a time limit, and a row whatever happens.
-        row = runner.spawn_row(arguments.name, study, case)
+        row = runner.spawn_row(arguments.name, study, case, values=arguments.values)
         runner.write_json(row, arguments.json)
         return 0 if row["status"] in runner.KEPT else 1
-    row = runner.compute_row(study, case)
+    row = runner.compute_row(study, case, warm=not arguments.values)
     if arguments.json:
         runner.write_json(row, arguments.json)
         return 0
@@ -231,24 +246,66 @@ def _gather(arguments):
     return 0
 
 
+def _replay(arguments):
+    tasks = []
+    for name, study, path in _stored(arguments):
+        cases = replay.stored_cases(study, path, quick=not arguments.all, unproved=arguments.old)
+        tasks += [(name, study, case) for case in cases]
+    wrong = [each for _, found in replay.replayed(tasks, arguments.out, _say) for each in found]
+    print(*wrong, sep="\n", end="\n" if wrong else "")
+    rows = len({(each.study, each.case) for each in wrong})
+    print(f"{arguments.out}: {len(tasks)} rows made again, {rows} of them with values that moved")
+    return int(bool(wrong))
+
+
+def _accept(arguments):
+    from studies.harness.accept import accept
+
+    touched = accept([name for name, *_ in _stored(arguments)], arguments.out, _say)
+    for name in touched:
+        _show(name, runner.csv_of(name, arguments.out))
+    if touched:
+        print(f"pages that show them: python -m studies report --out {arguments.out} --page README.md docs/*.md")
+    return 0
+
+
 def _check(arguments):
-    chosen, every = arguments.names or study_names(), []
-    for name in chosen:
-        study, path = runner.load(name), runner.csv_of(name, arguments.out)
-        if not path.exists() and not arguments.names:
-            continue
-        if not path.exists():
-            raise ValueError(f"no {path}; run the study first")
-        found = sound.checked(study, path)
+    every, absent, old = [], 0, 0
+    for name, study, path in _stored(arguments):
+        found, rows, gone = sound.checked(study, path), read_rows(path), replay.lacking(study, path)
         every += found.values()
-        print(f"{name:24} {len(found):4} rows: {sound.told(sound.counted(found.values()))}")
+        absent += len(gone)
+        unproved = [key for key in found if not sound.proved(study, rows[key])]
+        old += len(unproved)
+        print(
+            f"{name:24} {len(found):4} rows: {sound.told(sound.counted(found.values()))}; {sound.ages(rows.values())}"
+        )
+        _name_some("missing", gone, arguments.rows)
+        if arguments.release:
+            _name_some("of other code, not replayed", unproved, arguments.rows)
         for wrong in dict.fromkeys(filter(None, found.values())):
-            keys = [key for key, each in found.items() if each == wrong]
-            shown = len(keys) if arguments.rows else NAMED
-            more = [f"and {len(keys) - shown} more"] if len(keys) > shown else []
-            print(*(f"    {', '.join(wrong)}: {word}" for word in [*keys[:shown], *more]), sep="\n")
-    print(f"{arguments.out}: {len(every)} rows: {sound.told(sound.counted(every))}")
-    return int(any(every))
+            _name_some(", ".join(wrong), [key for key, each in found.items() if each == wrong], arguments.rows)
+    print(
+        f"{arguments.out}: {len(every)} rows: {absent} missing, {old} of other code and not replayed by this one, "
+        + sound.told(sound.counted(every))
+    )
+    return int(bool(absent) or arguments.release and (old > 0 or any(every)))
+
+
+def _stored(arguments):
+    """Name, study and file of the studies that are named, or of all that have rows."""
+    for name in arguments.names or study_names():
+        study, path = runner.load(name), runner.csv_of(name, arguments.out)
+        if path.exists():
+            yield name, study, path
+        elif arguments.names:
+            raise ValueError(f"no {path}; run the study first")
+
+
+def _name_some(word, keys, every):
+    shown = len(keys) if every else NAMED
+    more = [f"and {len(keys) - shown} more"] if len(keys) > shown else []
+    print(*(f"    {word}: {key}" for key in [*keys[:shown], *more]), sep="\n", end="\n" if keys else "")
 
 
 def _report(arguments):

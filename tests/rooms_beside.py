@@ -99,6 +99,9 @@ BESIDE = {
     ),
     "benchmark.make": ("benchmark",),
     "studies.harness": ("demheat", "references", "studies.harness"),
+    # Headlines are among what a change is shown by.
+    "studies.contents": (),
+    "studies.harness.accept": ("studies.contents", "studies.harness"),
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),

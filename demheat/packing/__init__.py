@@ -5,8 +5,9 @@
 
 import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.cache import cached, grown, relaxed
+from demheat.packing.cache import grown, relaxed
 from demheat.packing.domain import cut, replicate
+from demheat.packing.kept import cached
 from demheat.packing.neighbours import contacts
 from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal, Uniform
 from demheat.packing.relax import settle

@@ -16,7 +16,7 @@ import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
 from demheat.packing.base import Packing, check_box, make_packing
-from demheat.packing.cache import LSA, cached, code_hash
+from demheat.packing.kept import LSA, cached, code_hash
 from demheat.packing.lsa import LEAST_SIDES, lsa
 from demheat.packing.radii import Gaussian, distribution
 from demheat.powers import cube_root, cubed
@@ -103,7 +103,7 @@ def dispersion(
     periodic : bool
         A periodic cell, whose faces spheres may cross; or walls, with all spheres inside.
     folder : path, optional
-        Default `demheat.packing.cache.cache_folder()`.
+        Default `demheat.packing.kept.cache_folder()`.
     gap, method, seed
         As in `Placing`.
 

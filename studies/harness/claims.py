@@ -84,7 +84,7 @@ def broken(what, error, *, why=""):
 def judged(study, df):
     """Claims of a study on its rows; first, that none failed.
 
-    A claim that rests on costs of rows that are stale, dirty or noisy (`sound.faults`) is not judged; nor are, of a run
+    A claim that rests on costs of rows that are dirty or noisy (`sound.faults`) is not judged; nor are, of a run
     that has not ended, those whose rows are not there yet.
 
     Parameters
@@ -137,7 +137,7 @@ def _yielded(study, df, *, quiet=False):
 
 def _unmoved(study, df, claims):
     """Those of some claims, as keys, that stay as they are whatever the costs of rows whose costs do not count."""
-    unsound = np.array([bool(faults(study, row)) for row in df.to_dict("records")], dtype=bool)
+    unsound = np.array([bool(faults(row)) for row in df.to_dict("records")], dtype=bool)
     columns = [name for name in cost_columns(study, df) if df[name].dtype.kind in "fi"]
     same = set(map(_key, claims))
     if not unsound.any():

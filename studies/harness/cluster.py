@@ -8,8 +8,11 @@ from functools import cache
 from demheat.cluster import cluster, completed, row_environment
 from studies.harness import runner
 from studies.harness.cost import triad_gbs
-from studies.harness.provenance import ANYWHERE, provenance
+from studies.harness.provenance import provenance
 from studies.harness.store import case_key
+
+# What rows of all workers must agree in.
+ORIGIN = ("commit", "versions")
 
 
 @contextmanager
@@ -44,14 +47,14 @@ def spread_over(client):
     """
 
     def spread(name, study, cases):
-        expected = [_origin(provenance(study, case)) for case in cases]
-        _check_workers(client, name, case_key(cases[0]), expected[0])
+        expected = _origin(provenance(study))
+        _check_workers(client, name, expected)
         tasks = [(name, case_key(case)) for case in cases]
         for number, row in completed(client, row_of, tasks, label=name):
             if isinstance(row, Exception):
                 row = _failed(study, cases[number], f"{type(row).__name__}: {row}")
-            elif _origin(row) != expected[number]:
-                row = _failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected[number])}")
+            elif _origin(row) != expected:
+                row = _failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected)}")
             yield row
 
     return spread
@@ -73,16 +76,15 @@ def row_of(name, key):
     return {**row, "triad_gbs": bandwidth}
 
 
-def origin_of(name, key):
+def origin_of(name):
     """What a row of this machine would say of its code and libraries.
 
     Parameters
     ----------
-    name, key : str
-        As those of `row_of`.
+    name : str
+        Of the study.
     """
-    study = runner.load(name)
-    return _origin(provenance(study, runner.find_case(study, key)))
+    return _origin(provenance(runner.load(name)))
 
 
 @cache
@@ -91,16 +93,16 @@ def _bandwidth():
 
 
 def _origin(row):
-    return {name: str(row[name]) for name in ANYWHERE}
+    return {name: str(row[name]) for name in ORIGIN}
 
 
 def _told(row):
-    return ", ".join(f"{name} {row[name]}" for name in ANYWHERE)
+    return ", ".join(f"{name} {row[name]}" for name in ORIGIN)
 
 
-def _check_workers(client, name, key, expected):
+def _check_workers(client, name, expected):
     """Raise ValueError if a worker has other code or libraries than we: before an hour's solve."""
-    for worker, origin in client.run(origin_of, name, key, on_error="return").items():
+    for worker, origin in client.run(origin_of, name, on_error="return").items():
         if isinstance(origin, OSError):
             continue  # died meanwhile; what takes its place is known by its rows
         if isinstance(origin, Exception):
@@ -111,4 +113,4 @@ def _check_workers(client, name, key, expected):
 
 def _failed(study, case, note):
     note = " ".join(note.split())
-    return {"case": case_key(case), **case, "status": "failed", "note": note, **provenance(study, case)}
+    return {"case": case_key(case), **case, "status": "failed", "note": note, **provenance(study)}

@@ -32,8 +32,15 @@ PATIENCE = 5.0
 
 
 @contextmanager
-def forking():
+def forking(*, values=False, count=None):
     """Have a first process while rows are made.
+
+    Parameters
+    ----------
+    values : bool
+        Values alone count, see `runner.spawn_row`.
+    count : int, optional
+        Threads of a row; default all.
 
     Yields
     ------
@@ -41,7 +48,7 @@ def forking():
         As `runner.spawn_row`.
     """
     if not sys.platform.startswith("linux"):
-        yield runner.spawn_row
+        yield partial(runner.spawn_row, environment=provenance.row_environment(count), values=values)
         return
     first, made_of = None, None
 
@@ -50,8 +57,8 @@ def forking():
         now = _sources()
         if first is None or first.poll() is not None or now != made_of:
             _end(first)
-            first, made_of = _begun(), now
-        return runner.spawn_row(name, study, case, start=partial(_started, first))
+            first, made_of = _begun(count), now
+        return runner.spawn_row(name, study, case, start=partial(_started, first), values=values)
 
     try:
         yield compute
@@ -59,12 +66,12 @@ def forking():
         _end(first)
 
 
-def _begun():
+def _begun(count):
     """The first process, in the environment of rows: libraries read it when they are loaded."""
     words = [sys.executable, "-m", "studies", "first", str(os.getpid())]
     # Unbuffered, so that nothing that is there to be read hides from `select`.
     pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "bufsize": 0}
-    return subprocess.Popen(words, start_new_session=True, env=provenance.row_environment(), **pipes)
+    return subprocess.Popen(words, start_new_session=True, env=provenance.row_environment(count), **pipes)
 
 
 def _end(first):
@@ -162,11 +169,12 @@ def _numba_ready():
 
 
 def _prepared(name, key):
-    """Load a study and what the row's method needs, and hash what it runs; if that fails, the row will say so."""
+    """Load a study and what the row's method needs; if that fails, the row will say so."""
     with suppress(Exception):
         study = runner.load(name)
         case = runner.find_case(study, key)
-        provenance.code_of(study, case)
+        # What is loaded now is what the row says it was made of.
+        provenance.commit(study.__file__)
         load(provenance.module_of(study, case.get("method", "")))
 
 

@@ -73,7 +73,7 @@ def _cpu(metrics, cost):
 
 def _packings():
     """Files of the packings that are kept; none before somebody packs."""
-    cache = sys.modules.get("demheat.packing.cache")
+    cache = sys.modules.get("demheat.packing.kept")
     folder = cache.cache_folder() if cache else None
     return frozenset(folder.iterdir()) if folder and folder.is_dir() else frozenset()
 

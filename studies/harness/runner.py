@@ -10,6 +10,7 @@ A study is a module with
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
 - optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
   sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
+  `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`);
   `REPEATS`, how often a short `run` is called at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called
   so (`sound.COSTS`); `REASONS`, by words of a claim's sentence why its limit is no nearer to the value (more than three
   times needs one, and `tests/studies/test_claims_can_fail.py` asks for it); `FAILS`, in the same way why claims on the
@@ -40,9 +41,9 @@ from demheat.progress import stage
 from studies.harness import quiet
 from studies.harness.beside import counted
 from studies.harness.cost import measured
-from studies.harness.provenance import ANYWHERE, SAME, code_of, guest_case, provenance
+from studies.harness.provenance import ANYWHERE, SAME, guest_case, machine, provenance, threads, versions
 from studies.harness.repeated import RUNS, measured_again
-from studies.harness.sound import faults
+from studies.harness.sound import faults, held
 from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows, replaced
 
 TIMEOUT = 1800.0
@@ -105,8 +106,8 @@ def find_case(study, case):
 def run_study(name, out, *, quick=False, force=False, method=None, say=print, compute=None, spread=None):
     """Bring DIR/NAME.csv up to date and return its path.
 
-    Rows whose case, code, machine, threads and versions still hold are reused, unless forced. Rows of cases that are
-    not asked for now (a full run's, in a quick one) stay.
+    Rows that the present code has made or borne out (`replay.bear_out`), on this machine, are reused, unless forced.
+    Rows of cases that are not asked for now (a full run's, in a quick one) stay.
 
     Parameters
     ----------
@@ -211,45 +212,16 @@ def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME
     """
     rows = read_rows(path)
     wanted = [case for case in study.CASES if not quick or study.QUICK(case)] if cases is None else cases
-    sound = (lambda row: not faults(study, row)) if force == "unsound" else (lambda row: not force)
+    here = {"machine": machine(), "threads": threads(), "versions": versions()}
+    here = {name: str(here[name]) for name in same}
+    sound = (lambda row: not faults(row)) if force == "unsound" else (lambda row: not force)
 
     def holds(case):
         row = rows.get(case_key(case))
-        return _holds(row, study, case, same) and sound(row)
+        kept = row is not None and row.get("status") in KEPT and all(row.get(name) == here[name] for name in same)
+        return kept and held(study, row) and sound(row)
 
     return wanted, [case for case in wanted if not holds(case)]
-
-
-def state(study, rows):
-    """How many of a study's cases have a stored row that the code beside it would give again.
-
-    Only the code counts here: rows that were measured on another machine are no less its own, though `run_study` would
-    repeat them.
-
-    Parameters
-    ----------
-    study : module
-    rows : dict of str to dict
-        From `store.read_rows`.
-
-    Returns
-    -------
-    dict of str to int
-        "held", "stale" (made by other code) and "missing".
-    """
-    found = dict.fromkeys(("held", "stale", "missing"), 0)
-    for case in study.CASES:
-        row = rows.get(case_key(case))
-        code = code_of(study, case)
-        found["missing" if row is None else "held" if row.get("code") == code else "stale"] += 1
-    return found
-
-
-def _holds(row, study, case, same):
-    if row is None or row.get("status") not in KEPT:
-        return False
-    now = provenance(study, case)
-    return all(row.get(name) == str(now[name]) for name in same)
 
 
 def _progress(number, total, row, elapsed):
@@ -266,7 +238,7 @@ def _short(key):
     return key.split(",method=")[0]
 
 
-def spawn_row(name, study, case, *, environment=None, start=None):
+def spawn_row(name, study, case, *, environment=None, start=None, values=False):
     """Compute a row in a process of its own; whatever happens to that process, a row comes back.
 
     Parameters
@@ -279,6 +251,8 @@ def spawn_row(name, study, case, *, environment=None, start=None):
         Of that process; default that of this one.
     start : callable (words, log, limit) -> int, optional
         Does what the command line says with these words, in a process of its own; default: a fresh one.
+    values : bool
+        Values alone count: once, without a warm-up.
 
     Returns
     -------
@@ -289,16 +263,16 @@ def spawn_row(name, study, case, *, environment=None, start=None):
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
         answer, log = Path(folder) / "row.json", Path(folder) / "log"
-        words = ["row", name, key, "--json", str(answer)]
+        words = ["row", name, key, "--json", str(answer), *(["--values"] if values else [])]
         try:
             code = (start or partial(_started, environment=environment))(words, log, limit)
         except subprocess.TimeoutExpired:
             note = f"not finished after {limit:g} s"
-            return {**base, "status": "timeout", "note": note, **provenance(study, case)}
+            return {**base, "status": "timeout", "note": note, **provenance(study)}
         try:
             return json.loads(answer.read_text(encoding="utf-8"))
         except (OSError, ValueError):
-            return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study, case)}
+            return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study)}
 
 
 def _started(words, log, limit, *, environment):
@@ -336,7 +310,7 @@ def compute_row(study, case, *, warm=True):
         if clash:
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
         result = {"status": "ok", "note": "", **cost, **beside, **metrics}
-    return {**row, **result, **row, **provenance(study, case)}
+    return {**row, **result, **row, **provenance(study)}
 
 
 def _quietly_measured(study, case):

@@ -1,4 +1,4 @@
-"""Which rows' costs count: those of this code, of a commit, measured while the machine was quiet."""
+"""Which rows' costs count: those of a commit, measured while the machine was quiet; and how old rows are."""
 
 from __future__ import annotations
 
@@ -6,26 +6,29 @@ import math
 import re
 from collections import Counter
 
-from studies.harness.provenance import code_of, guest_case
+from studies.harness.provenance import guest_case, of_this_code
 from studies.harness.quiet import NOISY
 from studies.harness.store import case_key, read_rows
 
-STALE, DIRTY, NOISE = FAULTS = ("stale", "dirty", "noisy")
+DIRTY, NOISE = FAULTS = ("dirty", "noisy")
+# Commits that are named.
+MOST_COMMITS = 2
 # Columns of costs, by their names: seconds, memory, speeds. A study's own `COSTS` are besides.
 COSTS = re.compile(r".+_s|(\w+_)?(mib|gbs)|(\w+_)?us_per_\w+|(\w+_)?particle_steps")
 
 
-def faults(study, row):
-    """What is wrong with a row, in the order of FAULTS.
+def faults(row):
+    """What is wrong with the costs of a row, in the order of FAULTS.
 
-    - stale: other code than today's made it; a method that is not ours has no code that is known here.
+    Costs are measurements of a commit, a machine and a day, which stand in the row: they are no less so when the code
+    has changed since.
+
     - dirty: its code was at no commit.
     - noisy: others used more than a tenth of the processors around it, or nobody knows, or it compiled kernels in
       more than a tenth of its time; only rows with costs are.
 
     Parameters
     ----------
-    study : module
     row : mapping
         Of a file or of a data frame.
 
@@ -33,12 +36,7 @@ def faults(study, row):
     -------
     tuple of str
     """
-    ours = guest_case(study, str(row.get("case"))) is None
-    wrong = (
-        ours and row.get("code") != code_of(study, row),
-        str(row.get("commit")).endswith("+"),
-        math.isfinite(_number(row.get("cpu_s"))) and not _quiet(row),
-    )
+    wrong = ("+" in str(row.get("commit")), math.isfinite(_number(row.get("cpu_s"))) and not _quiet(row))
     return tuple(name for name, yes in zip(FAULTS, wrong, strict=True) if yes)
 
 
@@ -64,7 +62,7 @@ def counted(found):
 
 
 def told(count):
-    """Such numbers in words, as "3 stale, 0 dirty, 1 noisy"."""
+    """Such numbers in words, as "0 dirty, 1 noisy"."""
     return ", ".join(f"{number} {name}" for name, number in count.items())
 
 
@@ -83,7 +81,31 @@ def checked(study, path):
     """
     cases = {case_key(case) for case in study.CASES}
     rows = read_rows(path).items()
-    return {key: faults(study, row) for key, row in rows if key in cases or guest_case(study, key) is not None}
+    return {key: faults(row) for key, row in rows if key in cases or guest_case(study, key) is not None}
+
+
+def proved(study, row):
+    """Whether a row's values are those of the present code: it has made them, or made them again and found the same.
+
+    Parameters
+    ----------
+    study : module
+    row : mapping
+        Of a file.
+    """
+    commits = (row.get("values_commit") or row.get("commit"), row.get("replayed_commit"))
+    return any(of_this_code(str(commit or ""), study.__file__) for commit in commits)
+
+
+def held(study, row):
+    """Whether a run need not make a row: its values are proved, or a replay of another row of its group bears them out.
+
+    Parameters
+    ----------
+    study, row
+        As those of `proved`.
+    """
+    return proved(study, row) or of_this_code(row.get("borne_commit") or "", study.__file__)
 
 
 def cost_columns(study, df):
@@ -114,3 +136,19 @@ def total(found):
     """
     count = {name: sum(each.count[name] for each in found) for name in FAULTS}
     return f"{sum(each.rows for each in found)} rows: {told(count)}"
+
+
+def ages(rows):
+    """Of which commits rows are, most first, and when they were last replayed, in words.
+
+    Parameters
+    ----------
+    rows : iterable of mapping
+    """
+    rows = list(rows)
+    count = Counter(str(row.get("values_commit") or row.get("commit") or "no commit") for row in rows)
+    said = [f"{number} of {commit}" for commit, number in count.most_common(MOST_COMMITS)]
+    said += [f"{len(count) - MOST_COMMITS} commits more"] if len(count) > MOST_COMMITS else []
+    again = [row["replayed_when"] for row in rows if row.get("replayed_when")]
+    last = f"{len(again)} replayed, last {max(again)[:10]}" if again else "none replayed"
+    return f"{', '.join(said)}; {last}"

@@ -12,11 +12,15 @@ from demheat import paths
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
+# Where values are from that were made anew without their costs; when they were last made again and found the same; and
+# which code found another row of their group the same.
+VALUES = ("values_commit", "values_when", "replayed_commit", "replayed_when", "borne_commit")
 TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,
-    *("status", "note", "code", "commit", "when", "machine", "host", "threads", "versions"),
+    *("status", "note", "commit", "when", "machine", "host", "threads", "versions"),
     *("load", "beside", "noise", "compile_s", "triad_gbs"),
+    *VALUES,
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20

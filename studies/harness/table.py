@@ -12,10 +12,12 @@ from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
 from studies.harness.sound import counted, faults, told
-from studies.harness.store import case_key, read_rows, replaced
+from studies.harness.store import VALUES, case_key, read_rows, replaced
 
+# Columns of words, whatever they look like: a commit may be a number.
+WORDS = ("case", "note", "commit", *VALUES)
 # What every row has.
-NEEDED = ("case", "status", "note", "code", "commit", "when", "machine", "threads", "versions", "load")
+NEEDED = ("case", "status", "note", "commit", "when", "machine", "threads", "versions", "load")
 
 
 def render(study, csv_path):
@@ -84,7 +86,7 @@ def read_frame(study, csv_path):
     lacking = [name for name in NEEDED if any(name not in row for row in rows.values())]
     if lacking or not rows:
         raise ValueError(f"{csv_path}: {f'lacks the columns {lacking}' if lacking else 'has no rows'}; run the study")
-    df = pd.read_csv(csv_path, dtype={"case": str, "note": str, "code": str})
+    df = pd.read_csv(csv_path, dtype=dict.fromkeys(WORDS, str))
     ours = df["case"].isin([case_key(case) for case in study.CASES])
     guests = df["case"].map(lambda key: guest_case(study, key) is not None)
     return of_one_machine(df[ours | guests].reset_index(drop=True).fillna({"note": ""}))
@@ -179,18 +181,26 @@ def _unjudged(claims):
 
 def _all_rows(df):
     """Every row."""
-    return df.drop(columns=[c for c in ("code", "commit", "when", "machine", "host", "threads", "versions") if c in df])
+    return df.drop(
+        columns=[c for c in ("commit", "when", "machine", "host", "threads", "versions", *VALUES) if c in df]
+    )
 
 
 def _origin(study, df):
     guests = sum(guest_case(study, key) is not None for key in df["case"])
     others = f" and {guests} of methods that are not ours" if guests else ""
     lines = [f"- rows: {len(df) - guests} of {len(study.CASES)} cases{others}; " + _counts(df["status"])]
-    count = counted(faults(study, row) for row in df.to_dict("records"))
+    count = counted(faults(row) for row in df.to_dict("records"))
     lines.append(f"- rows whose costs do not count: {told(count)}")
     for name in ("commit", "machine", "threads", "versions"):
         lines.append(f"- {name}: " + " / ".join(str(v) for v in df[name].dropna().unique()))
     lines.append(f"- made between {df['when'].min()} and {df['when'].max()}")
+    for what, words in (
+        ("values", "values made anew since, without their costs"),
+        ("replayed", "replayed and the same"),
+    ):
+        again = df[f"{what}_commit"].dropna() if f"{what}_commit" in df else ()
+        lines += [f"- {words}: {len(again)} rows, by " + " / ".join(again.unique())] if len(again) else []
     lines.append(f"- load average of the machine meanwhile: {df['load'].min():.1f} to {df['load'].max():.1f}")
     if "noise" in df and df["noise"].notna().any():
         lines.append(f"- share of the processors that others used: at most {df['noise'].max():.1%}")

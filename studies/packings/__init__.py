@@ -34,6 +34,7 @@ FAILS = {
     "start slope": "not looked into",
 }
 PAPER = {}
+COSTS = ("bytes_per_sphere",)
 TIMEOUT = 3600.0
 
 

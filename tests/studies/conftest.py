@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pytest
 
 from studies.__main__ import main
-from studies.harness import provenance, quiet, runner, store
+from studies.harness import quiet, runner, store
 
 TINY = '''
 """A tiny study.
@@ -72,8 +72,6 @@ def tiny(tmp_path, monkeypatch):
             text = text.replace(old, new)
         file.write_text(text)
         sys.modules.pop(name, None)
-        provenance.code_hash.cache_clear()
-        provenance._parse.cache_clear()
 
     def run(*options):
         (tmp_path / "log").write_text("")

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-import demheat.packing.cache as cache
+from demheat.packing import kept
 from demheat.packing.base import make_packing
-from demheat.packing.cache import cache_folder, cached, code_hash, relaxed
+from demheat.packing.cache import relaxed
+from demheat.packing.kept import cache_folder, cached, code_hash
 from demheat.packing.radii import Gaussian, Uniform
 
 
@@ -111,7 +112,7 @@ def test_a_killed_write_leaves_nothing(tmp_path, monkeypatch):
         file.write(b"half")
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(cache.np, "savez", killed)
+    monkeypatch.setattr(kept.np, "savez", killed)
     with pytest.raises(KeyboardInterrupt):
         cached(Maker(), {}, folder=tmp_path)
     assert list(tmp_path.iterdir()) == []
@@ -184,13 +185,13 @@ def test_numpy_numbers_are_numbers(tmp_path):
 
 def test_new_code_retires_old_packings(tmp_path, monkeypatch):
     relaxed(200, steps=5, folder=tmp_path)
-    monkeypatch.setattr(cache, "code_hash", lambda *modules: "newer")
+    monkeypatch.setattr("demheat.packing.cache.code_hash", lambda *modules: "newer")
     assert not relaxed(200, steps=5, folder=tmp_path).provenance["cached"]
 
 
 def test_code_hash_reads_the_sources():
     assert code_hash("demheat.packing.base") != code_hash("demheat.packing.radii")
-    assert len(code_hash(*cache.LSA)) == 64
+    assert len(code_hash(*kept.LSA)) == 64
 
 
 def test_nothing_is_cached_of_bad_input(tmp_path):
@@ -203,13 +204,13 @@ def test_no_flipped_bit_loads_another_packing_or_raises(tmp_path):
     """A bit of each seventh byte, names and shapes of the arrays included: the file is whole or made again."""
     made = cached(Maker(), {}, folder=tmp_path)
     (path,) = tmp_path.iterdir()
-    raw, text = path.read_bytes(), json.dumps({"format": cache.FORMAT})
+    raw, text = path.read_bytes(), json.dumps({"format": kept.FORMAT})
     noticed = 0
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         for place in range(0, len(raw), 7):
             path.write_bytes(raw[:place] + bytes([raw[place] ^ 1 << place % 8]) + raw[place + 1 :])
-            found = cache._load(path, text)
+            found = kept._load(path, text)
             noticed += found is None
             if found is not None:
                 same(made, found)
@@ -238,7 +239,7 @@ def test_without_any_home_packings_are_made_and_a_line_says_so(monkeypatch):
 
     monkeypatch.delenv("DEMHEAT_CACHE", raising=False)
     monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
-    monkeypatch.setattr(cache.Path, "expanduser", nobody)
+    monkeypatch.setattr(kept.Path, "expanduser", nobody)
     with pytest.warns(UserWarning, match="packing not cached: no home. Set DEMHEAT_CACHE"):
         packing = cached(Maker(), {})
     same(packing, Maker()())

@@ -17,7 +17,6 @@ CASES = [{"name": name, "size": size} for name in ("ours", "theirs") for size in
 def study(monkeypatch):
     made = ModuleType("made")
     made.CASES, made.QUICK, made.__file__ = CASES, (lambda case: case["size"] == 1), __file__
-    monkeypatch.setattr("studies.harness.sound.code_of", lambda study, row: "now")
 
     def claims(df):
         ours, theirs = (df[df["name"] == name] for name in ("ours", "theirs"))
@@ -34,7 +33,7 @@ def study(monkeypatch):
 
 def frame(**changed):
     """Good rows of all cases; columns change where they are given, by the number of the row."""
-    good = {"status": "ok", "code": "now", "commit": "abc", "noise": 0.01, "error_percent": 0.5, "peak_mib": 50.0}
+    good = {"status": "ok", "commit": "abc", "noise": 0.01, "error_percent": 0.5, "peak_mib": 50.0}
     df = pd.DataFrame([{"case": case_key(case), **case, **good, "cpu_s": 2.0 + case["size"]} for case in CASES])
     for column, (number, value) in changed.items():
         df.loc[number, column] = value
@@ -51,7 +50,7 @@ def test_good_rows_are_judged(study):
     assert set(found.values()) == {"ok"} and len(found) == 6
 
 
-@pytest.mark.parametrize("wrong", [{"noise": 0.5}, {"noise": math.nan}, {"commit": "abc+"}, {"code": "then"}])
+@pytest.mark.parametrize("wrong", [{"noise": 0.5}, {"noise": math.nan}, {"commit": "abc+"}])
 def test_costs_that_do_not_count_are_not_judged(study, wrong):
     """Of one row of theirs: whatever rests on ours alone, and all errors, is judged as before."""
     ((column, value),) = wrong.items()

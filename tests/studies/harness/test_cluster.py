@@ -62,7 +62,7 @@ def test_killed_workers_lose_no_row(tiny):
 def test_a_worker_with_other_code_is_refused(tiny, monkeypatch):
     """Its rows would be made for nothing: none of them holds here."""
 
-    found = {"tcp://dying": OSError("closed"), "tcp://other": {"code": "another", "versions": "those"}}
+    found = {"tcp://dying": OSError("closed"), "tcp://other": {"commit": "another", "versions": "those"}}
 
     class Client:
         def run(self, function, *args, on_error):
@@ -73,7 +73,7 @@ def test_a_worker_with_other_code_is_refused(tiny, monkeypatch):
             runner.run_study(tiny.name, tiny.out, say=lambda line: None, spread=spread_over(Client()))
         assert tiny.rows() == {}
 
-    refused("worker tcp://other has code another, versions those: must be as here")
+    refused("worker tcp://other has commit another, versions those: must be as here")
     found["tcp://other"] = ModuleNotFoundError("studies")
     refused(f"a worker cannot make rows of '{tiny.name}': ModuleNotFoundError: studies")
 

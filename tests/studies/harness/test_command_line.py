@@ -19,7 +19,7 @@ def test_run_writes_rows_page_and_figure(tiny, capsys):
     row = tiny.rows()["name=plain,x=1.5"]
     assert row["square"] == "2.25" and row["status"] == "ok" and row["note"] == ""
     assert float(row["wall_s"]) >= 0 and float(row["cpu_s"]) >= 0 and float(row["peak_mib"]) >= 0
-    assert row["code"] and row["when"] and row["machine"] and row["threads"] and "numpy" in row["versions"]
+    assert row["commit"] and row["when"] and row["machine"] and row["threads"] and "numpy" in row["versions"]
     # A warm process: the rows' own environment, not that of the tests.
     assert (row["layer"], row["spin"]) == ("workqueue", "PASSIVE")
     page = (tiny.out / f"{tiny.name}.md").read_text()
@@ -75,7 +75,7 @@ def test_list_says_what_is_stored(tiny, capsys, monkeypatch):
     tiny.run("--quick")
     monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name])
     assert main(["list", "--out", str(tiny.out)]) == 0
-    assert "2 rows,   1 quick;   1 held,   0 stale,   1 missing   A tiny study." in capsys.readouterr().out
+    assert "2 rows,   1 quick,    1 stored   A tiny study." in capsys.readouterr().out
 
 
 def test_ctrl_c_ends_a_run_with_a_line_and_no_process_left(tiny, tmp_path):

@@ -81,9 +81,9 @@ def test_one_page_with_everything_in_it(reported, capsys):
     links = [href for href in page.attributes("a", "href") if href.startswith("#")]
     assert set(links) - {"#brackets"} == {"#first", "#figures", "#all", f"#{reported.name}"}
     assert text.count("<table>") == text.count('<div class="scroll"><table>') == 2
-    assert "2 rows: 0 stale" in page.text and "commit" in page.text
+    assert "2 rows: 2 dirty" in page.text and "commit" in page.text
     said = capsys.readouterr().out
-    assert "index.html; 2 rows: 0 stale, " in said and "3 claims: no claim failed, 0 not judged" in said
+    assert "index.html; 2 rows: 2 dirty, " in said and "3 claims: no claim failed, 0 not judged" in said
 
 
 def test_headlines_are_those_of_the_claims(reported):

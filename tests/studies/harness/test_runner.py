@@ -1,9 +1,7 @@
 """Rows are run, reused and resumed, on a study small enough to break on purpose."""
 
 import errno
-import importlib
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +10,6 @@ from pathlib import Path
 
 import pytest
 
-from demheat import declared
 from studies.__main__ import main
 from studies.harness import provenance, runner, store
 
@@ -35,70 +32,26 @@ def test_quick_is_a_subset_and_full_adds_the_rest(tiny):
     assert tiny.ran(quick=True) == [] and len(tiny.rows()) == 2
 
 
-def test_only_what_a_row_runs_invalidates_it(tiny):
+def test_a_row_that_this_code_has_made_again_holds(tiny):
+    """Whatever commit has measured its costs; a row whose values alone were made anew holds by these."""
     tiny.ran()
-    tiny.write(**{"A tiny study": "A renamed study", "axes.plot": "axes.semilogy", "def _log": "# why\ndef _log"})
-    assert tiny.ran() == []
-    tiny.write(**{"x * x": "x * x + 0"})
-    assert len(tiny.ran()) == 2
-    tiny.write(**{"x * x": "x * x + 0", '"warm "': '"warmer "'})
-    assert len(tiny.ran()) == 2
+    path, here = tiny.out / f"{tiny.name}.csv", next(iter(tiny.rows().values()))["commit"]
+    old = [row | {"commit": "1"} for row in tiny.rows().values()]
+    for columns in (("replayed_commit", "values_commit"), ("borne_commit", "borne_commit")):
+        store.write_rows(path, [row | {column: here} for row, column in zip(old, columns, strict=True)])
+        assert tiny.ran() == []
+    store.write_rows(path, [old[0] | {"replayed_commit": "2"}, old[1] | {"values_commit": "2"}])
+    assert tiny.ran() == ["plain", "second"]
 
 
 @pytest.mark.parametrize("column", provenance.SAME)
-def test_other_code_machine_threads_or_versions_invalidate(tiny, column):
+def test_another_machine_threads_or_versions_invalidate(tiny, column):
     tiny.ran()
     path = tiny.out / f"{tiny.name}.csv"
     rows = list(tiny.rows().values())
     rows[0][column] = "another"
     store.write_rows(path, rows)
     assert tiny.ran() == ["plain"]
-
-
-MOVED = """
-from studies.harness import methods
-CASES = [{"x": 1.5, "method": "toy"}]
-QUICK = bool
-
-def run(x, method):
-    return {"square": methods.load(method).solve(x)}
-"""
-
-
-def test_a_renamed_module_loses_no_row(tmp_path, monkeypatch):
-    """The method is a file with a helper; then a folder whose solver and helper have other names and places."""
-    home, name = tmp_path / f"home_{tmp_path.name}", f"moved_{tmp_path.name}"
-    monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(provenance, "ROOT", tmp_path)
-    monkeypatch.setattr(provenance, "PACKAGES", (home.name,))
-    monkeypatch.setattr(declared, "HOMES", (home.name,))
-    solve, helper = "def solve(x):\n    return square(x)\n", "def square(x):\n    return x * x\n"
-
-    def rows(**files):
-        shutil.rmtree(home, ignore_errors=True)
-        for path, text in {"__init__": "", **files}.items():
-            (home / f"{path}.py").parent.mkdir(parents=True, exist_ok=True)
-            (home / f"{path}.py").write_text(text)
-        for cached in (provenance.code_hash, provenance._parse, provenance._found, importlib.invalidate_caches):
-            getattr(cached, "cache_clear", cached)()
-        for module in [each for each in sys.modules if each.startswith((home.name, name))]:
-            del sys.modules[module]
-        runner.run_study(name, tmp_path, say=lambda line: None, compute=lambda *a: made.append(1) or computed(*a))
-        return store.read_rows(tmp_path / f"{name}.csv"), len(made)
-
-    def computed(_, study, case):
-        return runner.compute_row(study, case, warm=False)
-
-    made = []
-    (tmp_path / f"{name}.py").write_text(MOVED)
-    before = rows(toy=f"from {home.name}.helper import square\n{solve}", helper=helper)
-    assert before[1] == 1 and before[0]["x=1.5,method=toy"]["square"] == "2.25"
-    files = {"toy/__init__": f"from {home.name}.toy.core import solve\n", "toy/deep/power": helper}
-    moved = files | {"toy/core": f"from {home.name}.toy.deep.power import square\n{solve}"}
-    assert rows(**moved) == before
-    # The check can fail: other code is another row.
-    other = moved | {"toy/deep/power": helper.replace("x * x", "x**2")}
-    assert rows(**other)[1] == 2
 
 
 def test_bad_rows_do_not_stop_the_run(tiny, capsys):
@@ -113,7 +66,7 @@ def test_bad_rows_do_not_stop_the_run(tiny, capsys):
     assert rows["refuses"]["note"] == "not for x = 3"
     assert rows["raises"]["note"] == "RuntimeError in run: no convergence after 7 iterations"
     assert "SIGABRT" in rows["dies"]["note"] and "8 s" in rows["sleeps"]["note"]
-    assert all(row["code"] for row in rows.values())
+    assert all(row["commit"] for row in rows.values())
     assert status == 1 and "FAIL: Rows that failed or ran out of time: 3" in capsys.readouterr().err
     # Failed rows are tried again, refusals are not.
     again = []
@@ -197,23 +150,6 @@ def test_metrics_may_repeat_parameters_or_leave_them_open(tiny, value):
     assert row["status"] == "ok" and float(row["x"]) == 1.5
 
 
-def test_state_tells_held_from_stale_from_missing(tiny):
-    def state():
-        return runner.state(runner.load(tiny.name), tiny.rows())
-
-    assert state() == {"held": 0, "stale": 0, "missing": 2}
-    tiny.ran(quick=True)
-    assert state() == {"held": 1, "stale": 0, "missing": 1}
-    tiny.write(**{"axes.plot": "axes.semilogy"})
-    assert state()["held"] == 1
-    tiny.write(**{"x * x": "x * x + 0"})
-    assert state() == {"held": 0, "stale": 1, "missing": 1}
-    # Rows of another machine are this code's all the same.
-    tiny.write()
-    store.write_rows(tiny.out / f"{tiny.name}.csv", [row | {"machine": "another"} for row in tiny.rows().values()])
-    assert state() == {"held": 1, "stale": 0, "missing": 1}
-
-
 def test_two_runs_on_one_folder_lose_no_row(tiny):
     """While one computes its row another run makes both: the first one must not write its older view."""
 
@@ -229,8 +165,8 @@ def test_two_runs_on_one_folder_lose_no_row(tiny):
 
 
 def test_what_rows_must_agree_in():
-    """A row of another machine or with other threads has other costs, of other code or versions other numbers."""
-    assert set(provenance.SAME) == {"code", "machine", "threads", "versions"}
+    """A row of another machine or with other threads has other costs, of other versions other numbers."""
+    assert set(provenance.SAME) == {"machine", "threads", "versions"}
 
 
 def test_a_folder_that_cannot_be_written_is_found_before_the_first_row(tiny, tmp_path, capsys, monkeypatch):
@@ -283,7 +219,7 @@ def test_a_row_ends_with_all_that_it_started(tiny, tmp_path):
 def test_without_docstrings(tiny):
     code = f"import studies.__main__ as m; m.study_names = lambda: ['{tiny.name}']; m.main(['list'])"
     done = subprocess.run([sys.executable, "-OO", "-c", code], capture_output=True, text=True, check=True)
-    assert tiny.name in done.stdout.split("missing")[1]
+    assert tiny.name in done.stdout.split("stored")[1]
 
 
 def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):

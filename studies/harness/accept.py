@@ -1,0 +1,197 @@
+"""A change of code accepted: rows whose values it moves are made again, old and new side by side.
+
+Rows of a group (`replay.group_of`) whose replay has moved get new values; their costs stay, as those of the commit and
+the day on which they were measured. Rows that did not move are left alone.
+"""
+
+from __future__ import annotations
+
+import math
+
+from studies import contents
+from studies.harness import replay, runner
+from studies.harness.claims import judged
+from studies.harness.store import TAIL, add_rows, case_key, read_rows
+from studies.harness.table import markdown, read_frame
+from studies.harness.tolerance import COUNTED, moved, value_columns
+
+
+def accept(names, out, say):
+    """Make again the rows of the groups that a replay finds moved, and say what that did to claims and values.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of studies; those without rows are passed over.
+    out : path
+        Folder of the rows.
+    say : callable (str)
+
+    Returns
+    -------
+    list of str
+        Studies whose rows were made again.
+    """
+    studies = {name: runner.load(name) for name in names if runner.csv_of(name, out).exists()}
+    frames = {name: read_frame(study, runner.csv_of(name, out)) for name, study in studies.items()}
+    before = {
+        name: (judged(studies[name], frame), read_rows(runner.csv_of(name, out))) for name, frame in frames.items()
+    }
+    with replay.side_by_side() as compute:
+        groups = _moved_groups(studies, out, say, compute)
+        todo = [
+            (name, study, case)
+            for name, study in studies.items()
+            for case in replay.stored_cases(study, runner.csv_of(name, out), unproved=True)
+            if (name, replay.group_of(case)) in groups
+        ]
+        say(f"{len(groups)} groups moved; {len(todo)} rows are made again")
+        fresh = _made_again(todo, out, say, compute)
+    touched = [name for name in studies if any(task[0] == name for task in todo)]
+    for name in touched:
+        say(compared(name, studies[name], *before[name], out, fresh))
+    return touched
+
+
+def _now(study, path):
+    """Claims of a study as they are judged now, and its rows."""
+    return judged(study, read_frame(study, path)), read_rows(path)
+
+
+def _moved_groups(studies, out, say, compute):
+    """Pairs of a study's name and a group whose cheapest row, made again, is not what is stored."""
+    tasks = []
+    for name, study in studies.items():
+        path = runner.csv_of(name, out)
+        cases = replay.stored_cases(study, path, unproved=True)
+        tasks += [(name, study, case) for case in replay.cheapest(read_rows(path), cases).values()]
+    say(f"{len(tasks)} rows are made again, one of each group")
+    found = replay.replayed(tasks, out, say, compute=compute)
+    return {(task[0], replay.group_of(task[2])) for task, wrong in found if wrong}
+
+
+def _made_again(tasks, out, say, compute):
+    """Put new values into stored rows as they come; returns the rows as made, by study and case."""
+    fresh = {}
+    for number, (task, row) in enumerate(zip(tasks, compute(tasks), strict=True), start=1):
+        name, study, case = task
+        path, key = runner.csv_of(name, out), case_key(case)
+        stored = read_rows(path)[key]
+        wrong = moved(name, study, case, stored, row)
+        add_rows(path, {key: renewed(study, case, stored, row)}, replay.keys_of(study, path))
+        fresh[name, key] = row
+        say(f"[{number}/{len(tasks)}] {name} {key}: {replay.told(wrong)}")
+    return fresh
+
+
+def renewed(study, case, stored, row):
+    """A stored row with the values of a new one, and with its own costs.
+
+    Parameters
+    ----------
+    study : module
+    case : dict
+    stored, row : mapping
+
+    Returns
+    -------
+    dict
+    """
+    # A column that the new row has no longer is empty; what is neither a value nor a cost (a note) is the new row's.
+    old = {name: stored[name] for name in stored if name in TAIL and name not in COUNTED}
+    costs = {name: stored[name] for name in stored if name not in TAIL and name not in _new_names(study, case, stored)}
+    values = {name: row.get(name) for name in _new_names(study, case, [*stored, *row])}
+    state = {name: row.get(name) for name in ("status", "note", "residual")}
+    return {**case, **costs, **values, **old, **state, "values_commit": row["commit"], "values_when": row["when"]}
+
+
+def _new_names(study, case, names):
+    aside = [name for name in names if name not in TAIL and name.endswith(("note", "warning", "version", "remark"))]
+    return [*value_columns(study, case, dict.fromkeys(names)), *aside]
+
+
+def compared(name, study, claims, rows, out, fresh):
+    """What new values did to a study, in Markdown: claims and groups of rows, old and new.
+
+    Parameters
+    ----------
+    name : str
+    study : module
+    claims : list of Claim
+        Before.
+    rows : dict of str to dict
+        Before.
+    out : path
+    fresh : dict of (str, str) to dict
+        Rows as made, by study and case.
+    """
+    now = judged(study, read_frame(study, runner.csv_of(name, out)))
+    return "\n\n".join([f"## {name}", *_claims(name, claims, now), _groups(name, study, rows, fresh)])
+
+
+def _claims(name, before, now):
+    import pandas as pd
+
+    old = {claim.sentence: claim for claim in before}
+    heads = [words for study, words in contents.HEADLINES if study == name]
+    lines = []
+    for claim in now:
+        was = old.get(claim.sentence)
+        if was is None or (str(was.value), was.verdict) == (str(claim.value), claim.verdict):
+            continue
+        lines.append(
+            {
+                "": "headline" if any(words in claim.sentence for words in heads) else "",
+                "claim": claim.sentence,
+                "old": f"{was.value:.4g}",
+                "new": f"{claim.value:.4g}",
+                "limit": claim.limit,
+                "verdict": was.verdict if was.verdict == claim.verdict else f"{was.verdict} -> {claim.verdict}",
+            }
+        )
+    return [markdown(pd.DataFrame(lines))] if lines else ["No claim has another value."]
+
+
+def _groups(name, study, rows, fresh):
+    """Errors and costs of each group, old and new; seconds of new rows are of two side by side, without a warm-up."""
+    import pandas as pd
+
+    lines = {}
+    for case in study.CASES:
+        row = fresh.get((name, case_key(case)))
+        if row is not None:
+            group = ", ".join(str(value) for _, value in replay.group_of(case))
+            lines.setdefault(group, []).append((rows[case_key(case)], row))
+    table = []
+    for group, pairs in lines.items():
+        old, new = ([_number(row.get("error_percent")) for row in side] for side in zip(*pairs, strict=True))
+        table.append(
+            {
+                "rows": group,
+                "number": len(pairs),
+                "worst |error|, %": _arrow(max(map(abs, old)), max(map(abs, new))),
+                "median |error|, %": _arrow(_median(old), _median(new)),
+                "CPU-s, measured -> beside others": _arrow(
+                    *(
+                        math.fsum(filter(math.isfinite, (_number(row.get("cpu_s")) for row in side)))
+                        for side in zip(*pairs, strict=True)
+                    )
+                ),
+            }
+        )
+    return markdown(pd.DataFrame(table))
+
+
+def _arrow(old, new):
+    return f"{old:.3g} -> {new:.3g}" if math.isfinite(old + new) else ""
+
+
+def _median(values):
+    return sorted(map(abs, values))[len(values) // 2]
+
+
+def _number(value):
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        return math.nan

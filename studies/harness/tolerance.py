@@ -1,0 +1,148 @@
+"""How near a value that is made again must come to the stored one.
+
+A row's bits depend on its case alone, not on threads, so on the machine and the versions that a row names its values
+return but for rounding: libraries choose their kernels by the load of a moment, and sums are then taken in another
+order. What an iteration leaves is its tolerance, which a last bit may move it across. Under other versions or on
+another processor iterations may end a step earlier, collisions and meshers take another turn: such a row is held to
+what the method itself scatters by.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import NamedTuple
+
+from demheat.machine import machine
+from studies.harness.provenance import versions
+from studies.harness.sound import cost_columns
+from studies.harness.store import TAIL
+
+# Columns that end a row and are values all the same.
+COUNTED = ("unknowns", "iterations")
+# What says how a row was made and not what came out of it.
+ASIDE = re.compile(r"case|packing_cached|(.+_)?(note|version)|remark|warning|solver")
+
+
+class Tolerance(NamedTuple):
+    """A value may differ by `relative` times the larger of both, and by `absolute` in the column's own unit besides."""
+
+    relative: float
+    absolute: float
+
+
+class Moved(NamedTuple):
+    """A value that a replay does not give again."""
+
+    study: str
+    case: str
+    column: str
+    stored: str
+    found: str
+    tolerance: Tolerance
+
+    def __str__(self):
+        allowed = f"{self.tolerance.relative:g} relative, {self.tolerance.absolute:g} absolute"
+        return (
+            f"{self.study} {self.case}: {self.column} stored {_short(self.stored)}, found {_short(self.found)}, "
+            f"tolerance {allowed}; if it is meant: python -m studies accept {self.study}"
+        )
+
+
+# By a column's name, the first that fits; a study's own `TOLERANCES`, in the same form, come before.
+TOLERANCES = {
+    # Solvers stop at 1e-8 of the heat at most; a step more or less is a matter of a last bit.
+    r"iterations|.+_iterations": Tolerance(0.02, 1.0),
+    # What is nought but for rounding and solvers: no digit of it need return.
+    r"residual|.+_residual|heat_imbalance|imbalance|asymmetry.*|linear_error": Tolerance(0.0, 1e-7),
+    # Of a value that solvers leave 1e-9 of, in per cent.
+    r".*percent.*|.*error.*|.*_off|.*_half": Tolerance(1e-7, 1e-6),
+    r".*": Tolerance(1e-8, 1e-12),
+}
+# Of a row from another machine or of other versions: half a per cent of a value, which is what meshes and packings of
+# the quick rows scatter by.
+ELSEWHERE = Tolerance(5e-3, 5e-3)
+
+
+def value_columns(study, case, names):
+    """Columns that a replay compares: neither parameters nor costs, nor what says how a row was made.
+
+    Parameters
+    ----------
+    study : module
+    case : mapping
+    names : iterable of str
+    """
+    names = [name for name in names if name not in case and not ASIDE.fullmatch(name)]
+    costs = set(cost_columns(study, names))
+    return [name for name in names if name not in costs and (name not in TAIL or name in COUNTED)]
+
+
+def tolerance_of(study, column):
+    """Tolerance of a column; None if its values are not compared.
+
+    Parameters
+    ----------
+    study : module
+    column : str
+    """
+    declared = getattr(study, "TOLERANCES", {}) | TOLERANCES
+    return next(tolerance for form, tolerance in declared.items() if re.fullmatch(form, column))
+
+
+def moved(name, study, case, stored, found):
+    """Values of a row that was made again which are not those that are stored, and its status.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    study : module
+    case : dict
+    stored, found : mapping
+        Of the file, as text; and as it was made.
+
+    Returns
+    -------
+    list of Moved
+    """
+    same = stored.get("machine") == machine() and stored.get("versions") == versions()
+    key, status = stored["case"], (stored.get("status"), str(found.get("status")))
+    if status[0] != status[1]:
+        return [Moved(name, key, "status", status[0], f"{status[1]} ({found.get('note')})", Tolerance(0, 0))]
+    columns = value_columns(study, case, dict.fromkeys([*stored, *found]))
+    pairs = ((column, _text(stored.get(column)), _text(found.get(column))) for column in columns)
+    wrong = []
+    for column, old, new in pairs:
+        tolerance = tolerance_of(study, column)
+        if tolerance is None:
+            continue
+        tolerance = tolerance if same else Tolerance(*map(max, zip(tolerance, ELSEWHERE, strict=True)))
+        if not _near(old, new, tolerance):
+            wrong.append(Moved(name, key, column, old, new, tolerance))
+    return wrong
+
+
+def _text(value):
+    return "" if value is None or value != value else str(value)
+
+
+def _near(old, new, tolerance):
+    """Whether two cells, of one number or of many, are as near as they must be; words must be the same."""
+    if old == new:
+        return True
+    try:
+        pairs = list(zip(map(float, old.split()), map(float, new.split()), strict=True))
+    except ValueError:
+        return False
+    return bool(pairs) and all(_close(*pair, tolerance) for pair in pairs)
+
+
+def _close(old, new, tolerance):
+    if old == new or (math.isnan(old) and math.isnan(new)):
+        return True
+    return abs(old - new) <= tolerance.absolute + tolerance.relative * max(abs(old), abs(new))
+
+
+def _short(text, most=40):
+    return repr(text if len(text) <= most else f"{text[:most]}...")

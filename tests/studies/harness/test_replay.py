@@ -1,0 +1,131 @@
+"""Stored rows are made again: what moved is told, what did not is stamped, and a change is accepted by a command."""
+
+import pytest
+
+from studies.__main__ import main
+from studies.harness import provenance, replay, runner, store
+
+CASES = '{"name": "plain", "x": 3.0}, {"name": "slow", "x": 4.0}'
+
+
+@pytest.fixture
+def old(tiny, monkeypatch):
+    """Rows of an older commit with costs, and a replay that makes rows in this process and lists them."""
+    tiny.write(CASES)
+    tiny.made()
+    path = tiny.out / f"{tiny.name}.csv"
+    costs = {"plain": ("0.5", "0.3"), "second": ("0.2", "0.2"), "slow": ("0.1", "0.1")}
+    rows = [
+        row
+        | {"commit": "0123456789", "when": "then", "noise": "0.01"}
+        | dict(zip(("wall_s", "cpu_s"), costs[row["name"]], strict=True))
+        for row in tiny.rows().values()
+    ]
+    rows[2]["wall_s"] = "0.9"
+    store.write_rows(path, rows)
+    tiny.replayed = []
+
+    def made(tasks):
+        for _, study, case in tasks:
+            tiny.replayed.append(store.case_key(case))
+            yield runner.compute_row(study, case, warm=False)
+
+    class Beside:
+        def __enter__(self):
+            return made
+
+        def __exit__(self, *error):
+            return None
+
+    monkeypatch.setattr(replay, "side_by_side", Beside)
+    tiny.path = path
+    return tiny
+
+
+def ran(tiny, *words):
+    return main([words[0], tiny.name, "--out", str(tiny.out), *words[1:]])
+
+
+def test_rows_that_come_back_are_stamped(old, capsys):
+    before = old.rows()
+    assert ran(old, "replay", "--all") == 0
+    for key, row in old.rows().items():
+        assert row.pop("replayed_commit") == provenance.commit(old.file) and row.pop("replayed_when")[:2] == "20"
+        assert {name: value for name, value in row.items() if value} == {n: v for n, v in before[key].items() if v}
+    assert f"{old.out}: 4 rows made again, 0 of them with values that moved" in capsys.readouterr().out
+    # And then no older rows are left.
+    assert ran(old, "replay", "--all", "--old") == 0
+    assert "0 rows made again" in capsys.readouterr().out
+
+
+def test_a_value_that_moved_is_named(old, capsys):
+    old.write(CASES, **{"x * x": "x * x + 1e-6"})
+    before = old.rows()
+    assert ran(old, "replay") == 1
+    said = capsys.readouterr().out
+    assert f"{old.name} name=plain,x=1.5: square stored '2.25', found '2.250001', tolerance 1e-08 relative" in said
+    assert f"python -m studies accept {old.name}" in said
+    assert old.rows() == before
+
+
+def test_the_cheapest_of_a_group_bears_out_the_others(old):
+    """plain has two rows: the one of x = 1.5 took less time."""
+    old.write(CASES, **{"x * x": 'x * x + (name == "plain")'})
+    replay.bear_out(old.name, old.out, say=lambda line: None)
+    assert old.replayed == ["name=slow,x=4.0", "name=second,x=2.0", "name=plain,x=1.5"]
+    here = provenance.commit(old.file)
+    assert [row["borne_commit"] for row in old.rows().values()] == ["", here, "", here]
+    # Nor is what is borne out looked at again, or made; it is not proved, though.
+    del old.replayed[:]
+    replay.bear_out(old.name, old.out, say=lambda line: None)
+    assert old.replayed == ["name=plain,x=1.5"]
+    assert old.ran() == ["plain", "plain"]
+    del old.replayed[:]
+    assert ran(old, "replay", "--all", "--old") == 0 and old.replayed == []
+    old.write(CASES, **{"x * x": "x * x + 1"})
+    assert ran(old, "replay", "--all", "--old") == 1 and len(old.replayed) == 4
+
+
+def test_an_accepted_change_gives_moved_rows_new_values_and_leaves_costs_and_the_others(old, capsys):
+    old.write(CASES, limit=10, **{"x * x": 'x * x * (2 if name == "plain" else 1)'})
+    before = {row["name"] + row["x"]: row for row in old.rows().values()}
+    assert ran(old, "accept") == 0
+    said = capsys.readouterr().out
+    assert "1 groups moved; 2 rows are made again" in said
+    assert "|     | squares are small | 16  | 18  | <= 10 | FAIL    |" in said
+    after = {row["name"] + row["x"]: row for row in old.rows().values()}
+    assert [after[name]["square"] for name in ("plain1.5", "plain3.0")] == ["4.5", "18.0"]
+    for name, row in after.items():
+        kept = ("cpu_s", "wall_s", "commit", "when", "noise")
+        assert {each: row[each] for each in kept} == {each: before[name][each] for each in kept}
+        new = provenance.commit(old.file) if name.startswith("plain") else ""
+        assert row["values_commit"] == new
+    # What is accepted is this code's.
+    del old.replayed[:]
+    assert ran(old, "accept") == 0 and old.replayed == []
+
+
+def test_a_killed_accept_goes_on(old):
+    """Rows that have new values are not made again; the others of their group still are."""
+    old.write(CASES, **{"x * x": "x * x + 1"})
+    study = runner.load(old.name)
+    rows = old.rows()
+    done = rows["name=plain,x=1.5"] | {"square": "3.25", "values_commit": provenance.commit(old.file)}
+    store.write_rows(old.path, [done, *list(rows.values())[1:]])
+    assert ran(old, "accept") == 0
+    assert "name=plain,x=1.5" not in old.replayed
+    assert [row["square"] for row in old.rows().values()] == [str(case["x"] ** 2 + 1) for case in study.CASES]
+
+
+def test_a_replay_of_nothing_says_so(tiny, capsys):
+    assert main(["replay", tiny.name, "--out", str(tiny.out)]) == 2
+    assert f"{tiny.name}.csv; run the study first" in capsys.readouterr().err
+
+
+def test_rows_side_by_side_are_made_in_processes_of_one_thread(tiny, monkeypatch):
+    tiny.ran()
+    study = runner.load(tiny.name)
+    with replay.side_by_side(2) as compute:
+        rows = list(compute([(tiny.name, study, case) for case in study.CASES]))
+    assert [row["square"] for row in rows] == [2.25, 4.0]
+    assert {row["threads"] for row in rows} == {1} and {row["status"] for row in rows} == {"ok"}

@@ -1,0 +1,91 @@
+"""What a replay compares, and how near values must come."""
+
+from types import ModuleType
+
+import pytest
+
+from demheat.machine import machine
+from studies.harness.provenance import versions
+from studies.harness.tolerance import Tolerance, moved, value_columns
+
+CASE = {"name": "dem", "contrast": 10.0}
+HERE = {"machine": machine(), "versions": versions()}
+STORED = {"case": "name=dem,contrast=10.0", "name": "dem", "contrast": "10.0", "status": "ok"} | HERE
+
+
+def study(**tolerances):
+    found = ModuleType("study")
+    found.TOLERANCES, found.COSTS = tolerances, ("ratio",)
+    return found
+
+
+def columns_moved(column, stored, found, here=None, **origin):
+    row = {"status": "ok", column: found}
+    return [each.column for each in moved("mine", here or study(), CASE, STORED | {column: stored} | origin, row)]
+
+
+@pytest.mark.parametrize(
+    ("column", "stored", "found", "differs"),
+    [
+        ("k_ratio", "1.3943256949", 1.3943256949, False),
+        ("k_ratio", "1.3943256949", 1.3943256949 * (1 + 5e-9), False),
+        ("k_ratio", "1.3943256949", 1.3943256949 * (1 + 5e-8), True),
+        ("k_ratio", "1.3943256949", float("nan"), True),
+        ("k_ratio", "", None, False),
+        ("k_ratio", "1.0", None, True),
+        ("k_ratio", "", 1.0, True),
+        # A difference of two such values, in per cent.
+        ("error_percent", "1e-05", 1.05e-5, False),
+        ("error_percent", "1e-05", 1.3e-5, True),
+        # Nought but for rounding.
+        ("heat_imbalance", "3e-09", 5e-9, False),
+        ("heat_imbalance", "3e-09", 5e-7, True),
+        ("unknowns", "1337", 1337, False),
+        ("unknowns", "1337", 1338, True),
+        ("iterations", "59", 60, False),
+        ("iterations", "59", 65, True),
+        ("profile", "1.0 2.0 3.0", "1.0 2.0 3.00000001", False),
+        ("profile", "1.0 2.0 3.0", "1.0 2.0 3.001", True),
+        ("profile", "1.0 2.0 3.0", "1.0 2.0", True),
+        ("integrator", "euler", "rkl2", True),
+        # Costs, and how the row was made.
+        ("cpu_s", "1.0", 2.0, False),
+        ("ratio", "1.0", 2.0, False),
+        ("packing_cached", "True", False, False),
+        ("fft_note", "one", "another", False),
+        ("commit", "one", "another", False),
+    ],
+)
+def test_what_is_compared_and_how(column, stored, found, differs):
+    assert columns_moved(column, stored, found) == ([column] if differs else [])
+
+
+def test_a_study_declares_its_own():
+    loose = study(**{"k_.*": Tolerance(1e-2, 0.0), "drawn": None})
+    assert columns_moved("k_ratio", "1.0", 1.005, loose) == []
+    assert columns_moved("k_ratio", "1.0", 1.05, loose) == ["k_ratio"]
+    assert columns_moved("drawn", "1.0", 2.0, loose) == []
+
+
+@pytest.mark.parametrize("origin", [{"machine": "another"}, {"versions": "others"}])
+def test_a_row_from_elsewhere_is_held_to_what_methods_scatter_by(origin):
+    assert columns_moved("k_ratio", "1.0", 1.004, **origin) == []
+    assert columns_moved("k_ratio", "1.0", 1.02, **origin) == ["k_ratio"]
+
+
+def test_a_status_that_changes_is_named_with_its_note():
+    (wrong,) = moved("mine", study(), CASE, STORED, {"status": "failed", "note": "RuntimeError: no convergence"})
+    assert (wrong.column, wrong.stored) == ("status", "ok") and "no convergence" in wrong.found
+
+
+def test_what_is_red_says_all_that_a_reader_needs():
+    (wrong,) = moved("mine", study(), CASE, STORED | {"k_ratio": "1.0"}, {"status": "ok", "k_ratio": 2.0})
+    text = "mine name=dem,contrast=10.0: k_ratio stored '1.0', found '2.0', tolerance 1e-08 relative, 1e-12 absolute"
+    assert str(wrong) == f"{text}; if it is meant: python -m studies accept mine"
+
+
+def test_parameters_are_no_values():
+    assert value_columns(study(), CASE, ["case", "name", "contrast", "k", "wall_s", "unknowns", "note"]) == [
+        "k",
+        "unknowns",
+    ]

@@ -1,0 +1,109 @@
+"""Stored rows made again: what the record holds, this code gives.
+
+`replayed.csv` has the rows, `executed.txt` the files of the engine and the references that they execute; both are
+written by `tests/tools/replayed.py`. The other quick rows are compared in `test_studies.py`, by `make test-slow`.
+"""
+
+import ast
+import csv
+import gc
+from pathlib import Path
+
+import pytest
+
+from studies.__main__ import study_names
+from studies.harness import provenance, runner, store
+from studies.harness.replay import absent
+from studies.harness.tolerance import moved
+
+HERE = Path(__file__).parent
+STORED = provenance.ROOT / "results"
+with (HERE / "replayed.csv").open(newline="", encoding="utf-8") as file:
+    CHOSEN = [(row["study"], row["case"]) for row in csv.DictReader(file)]
+EXECUTED = set((HERE / "executed.txt").read_text(encoding="utf-8").split())
+# What a case says of the code that makes its row.
+KINDS = ("name", "method", "law", "integrator", "scheme", "rule")
+# Files and folders of which no quick row is made, and why.
+READ = "read, written or asked in a terminal: compared to the letter or the bit by tests of its own"
+DRAWN = "drawn"
+LARGE = "several processes or less memory: compared with the plain way by tests of its own"
+FULL = "full rows alone, and tests of its own"
+NO_ROWS = {
+    "demheat/commands": READ,
+    "demheat/files": READ,
+    "demheat/packing/io": READ,
+    "demheat/grains/contact_files.py": READ,
+    "demheat/pictures.py": DRAWN,
+    "demheat/scene/html.py": DRAWN,
+    "references/mesh/export.py": DRAWN,
+    "demheat/mpi": LARGE,
+    "demheat/petsc.py": LARGE,
+    "demheat/ranks.py": LARGE,
+    "demheat/streamed": LARGE,
+    "demheat/tiles": LARGE,
+    "demheat/sweeps": LARGE,
+    "demheat/cluster.py": LARGE,
+    "references/fem/ranks.py": LARGE,
+    "references/fem/shares.py": LARGE,
+    "references/fft/pencils.py": LARGE,
+    "references/fft/ranks.py": LARGE,
+    "references/fft/slabs.py": LARGE,
+    "demheat/fresh.py": LARGE,
+    "demheat/scene/shapes/creases.py": FULL,
+    "demheat/scene/shapes/parted.py": FULL,
+    "demheat/scene/shapes/union.py": FULL,
+    "references/bracket/voxels/tensor.py": FULL,
+    "references/exact/inclined.py": FULL,
+    "references/multipole/at_rest.py": FULL,
+    "references/multipole/lane_kernels.py": FULL,
+    "references/mesh/size_kernels.py": FULL,
+    "references/mesh/size_table.py": FULL,
+    "references/mesh/turns.py": FULL,
+    "references/richardson.py": FULL,
+}
+
+
+# Coarse packings may not resolve every gap of a random dispersion.
+@pytest.mark.filterwarnings("ignore:.*do not fit into gaps:UserWarning", "ignore:gaps beside inclusions:UserWarning")
+@pytest.mark.parametrize(("name", "key"), CHOSEN, ids=lambda word: word[:60])
+def test_a_stored_row_is_found_again(name, key):
+    study = runner.load(name)
+    case, rows = runner.find_case(study, key), store.read_rows(STORED / f"{name}.csv")
+    assert key in rows, f"{name} {key}: no stored row; python -m studies run {name} --out results"
+    row = runner.compute_row(study, case, warm=False)
+    gc.collect()
+    gc.freeze()
+    if absent(row):
+        pytest.skip(row["note"])
+    assert list(map(str, moved(name, study, case, rows[key], row))) == []
+
+
+def test_no_stored_row_is_missing():
+    for name in study_names():
+        stored = store.read_rows(STORED / f"{name}.csv")
+        missing = [key for key in map(store.case_key, runner.load(name).CASES) if key not in stored]
+        assert missing == [], f"{name}: python -m studies run {name} --out results"
+
+
+def test_every_study_method_law_and_integrator_of_a_quick_row_is_replayed():
+    wanted, chosen = set(), set()
+    for name in study_names():
+        study = runner.load(name)
+        for case in filter(study.QUICK, study.CASES):
+            kinds = {("study", name), *((kind, str(case[kind])) for kind in KINDS if case.get(kind))}
+            wanted |= kinds
+            chosen |= kinds if (name, store.case_key(case)) in CHOSEN else set()
+    assert wanted - chosen == set(), "python tests/tools/replayed.py chooses rows anew"
+
+
+def test_every_file_that_makes_numbers_is_executed():
+    def works(path):
+        return any(isinstance(node, ast.FunctionDef) for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
+
+    files = [path for home in ("demheat", "references") for path in (provenance.ROOT / home).rglob("*.py")]
+    names = {str(path.relative_to(provenance.ROOT)) for path in files if works(path)}
+    spared = {name for name in names if any(name == one or name.startswith(f"{one}/") for one in NO_ROWS)}
+    assert names - spared - EXECUTED == set(), "python tests/tools/replayed.py chooses rows anew"
+    # No reason is idle.
+    assert [one for one in NO_ROWS if not any(name == one or name.startswith(f"{one}/") for name in names)] == []
+    assert [name for name in EXECUTED if not (provenance.ROOT / name).exists()] == []
