@@ -62,6 +62,14 @@ def test_a_refusal_says_both_numbers_and_what_fits(monkeypatch):
         limits.check_memory("n", 10**400, 10**402)
 
 
+@pytest.mark.parametrize("check", [lambda n: limits.check_memory("n", 1, n), lambda n: limits.check_free("file", n)])
+def test_all_that_is_free_may_be_taken_and_no_more(monkeypatch, check):
+    monkeypatch.setattr(limits, "free_memory", lambda: 2.0 * limits.GIB)
+    check(2 * limits.GIB)
+    with pytest.raises(ValueError, match="takes 2 GiB of memory or more, and 2 GiB are free"):
+        check(2 * limits.GIB + 1)
+
+
 def test_little_is_not_looked_up(monkeypatch):
     monkeypatch.setattr(limits, "free_memory", None)
     limits.check_memory("n", 100, limits.SMALL)

@@ -5,9 +5,10 @@ from scipy.sparse.linalg import spsolve
 
 from demheat import Flux, Material, Scene, Sphere
 from demheat.build import network_of
-from demheat.conduction.balance import residual, system_of
+from demheat.conduction.balance import at_walls, residual, system_of, throughput
 from demheat.conduction.steady import matrix, solve_steady
 from demheat.laws import Laguerre
+from demheat.network.base import row_numbers
 from demheat.packing.cache import relaxed
 
 # Networks are solved here, not judged: how near the ball is to its walls for their particles does not matter.
@@ -64,6 +65,21 @@ def test_heat_in_is_heat_out():
     solution = solve_steady(built(scene), scene, tolerance=1e-12)
     # The sum of n residuals of 1e-12 of the passing heat, relative to the heat through the box: n^(1/3) tolerances.
     assert abs(solution.wall_heat.sum()) < 20e-12 * np.abs(solution.wall_heat).sum()
+
+
+def test_heat_that_passes_a_particle_is_what_enters_and_what_leaves_it():
+    """Twice what enters, through walls as well as links: nothing is stored."""
+    scene = ball(10.0, **WALLS)
+    network = built(scene, number=200)
+    solution = solve_steady(network, scene, tolerance=1e-12)
+    system = system_of(network, scene, np.ones(len(network.volumes), bool))
+    row, x = row_numbers(network.indptr), solution.temperature
+    flows = network.conductance * (x[network.indices] - x[row])
+    _, walls = at_walls(system, scene, x)
+    entering = np.bincount(row, np.maximum(flows, 0.0), len(x))
+    entering += np.bincount(network.wall_particle, np.maximum(walls, 0.0), len(x))
+    # The solver's tolerance of the heat that passes all particles, over that of the least.
+    assert_allclose(throughput(system, x - system.level), 2 * entering, rtol=1e-8)
 
 
 def test_flux_wall_gives_the_same_field_as_its_temperature():

@@ -23,6 +23,7 @@ SAME = [
     (units.FLUX, 10.0, ["mW/cm2"]),
     (units.GRADIENT, 1000.0, ["K/mm", "degC/mm", "kK/m"]),
     (units.VELOCITY, 1 / 3600, ["m/h"]),
+    (units.VELOCITY, 1 / 60, ["m/min", "m min^-1"]),
     (units.POWER_DENSITY, 1e6, ["W/cm3", "MW/m3"]),
 ]
 

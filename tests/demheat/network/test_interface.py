@@ -2,7 +2,9 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.network.interface import link_conductivity
+from demheat.network.base import Facets
+from demheat.network.interface import connect, link_conductivity
+from demheat.packing.base import make_packing
 
 
 def test_harmonic_is_resistances_in_series():
@@ -34,3 +36,25 @@ def test_shares_beyond_the_link_are_cut():
 def test_unknown_rule():
     with pytest.raises(ValueError, match="interface = 'geometric'"):
         link_conductivity(np.ones(1), np.ones(1), np.ones(1), rule="geometric")
+
+
+@pytest.mark.parametrize("resistance", [0.0, 0.7])
+def test_parts_of_a_link_are_those_on_either_side_of_its_facet(resistance):
+    """Two cells between walls, of .3 and .7 of the way: in series as the layers that they are, from either end."""
+    packing = make_packing(np.array([[0.2, 0.5, 0.5], [0.6, 0.5, 0.5]]), np.full(2, 0.1), (1, 1, 1), False, {})
+    facets = Facets(
+        indptr=np.array([0, 1, 2]),
+        indices=np.array([1, 0], np.uint32),
+        image=np.array([13, 13], np.uint8),
+        area=np.full(2, 0.25),
+        distance=np.array([0.1, 0.3]),
+        wall_particle=np.array([0, 1]),
+        wall_side=np.array([0, 1]),
+        wall_area=np.full(2, 0.25),
+        wall_distance=np.array([0.2, 0.4]),
+        volumes=np.array([0.3, 0.7]),
+    )
+    between = (lambda here, there: np.full(len(here), resistance)) if resistance else None
+    network = connect(packing, facets, np.array([0, 1]), np.array([2.0, 10.0]), resistance=between)
+    assert_allclose(network.conductance, 0.25 / (0.1 / 2.0 + 0.3 / 10.0 + resistance), rtol=1e-14)
+    assert_allclose(network.wall_conductance, [0.25 * 2.0 / 0.2, 0.25 * 10.0 / 0.4], rtol=1e-14)
