@@ -234,3 +234,10 @@ def test_closer_twins_in_gaps_are_asked_of_the_law():
     lone = [conform(base, scene(*coat[:1]), seed=1, gap_spacing=each).provenance["twins"] for each in (0.85, 0.4)]
     assert lone[0] == lone[1]
     assert Laguerre().gap_spacing == GAP_SPACING
+
+
+def test_twins_beyond_the_other_side_are_none():
+    """Both would be of the matrix."""
+    normals = fibonacci_sphere(20)
+    twins = conforming._Twins(0.5 + 0.01 * normals, normals, np.tile([0.003, 0.03], 10))
+    assert conforming._in_place(twins, scene(Sphere((0.5, 0.5, 0.5), 0.01, OTHER))).tolist() == [True, False] * 10

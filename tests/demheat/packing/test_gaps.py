@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.spatial import cKDTree
 
 from demheat import Layer, Material, Scene, Sphere
 from demheat.packing.gaps import Interfaces
@@ -54,6 +55,25 @@ def test_way_to_wall():
     assert_allclose(interfaces.way_to_wall(points, normals), [0.1, 0.1 / 0.6, np.inf, 0.125], rtol=1e-14)
     assert_allclose(interfaces.way_to_wall(points, normals, facing=0.9), [0.1, np.inf, np.inf, np.inf], rtol=1e-14)
     assert np.all(np.isinf(Interfaces(scene("equal", True), 0.3).way_to_wall(points, normals)))
+
+
+def test_a_gap_to_a_wall_is_one_to_the_mirror_image():
+    interfaces = Interfaces(
+        Scene((1, 1, 1), MATRIX, [Sphere((0.3, 0.5, 0.5), 0.25, OTHER)], walls={"y-": 0.0, "y+": 1.0}), 0.3
+    )
+    points, normals = np.array([[0.05, 0.5, 0.5], [0.3, 0.75, 0.5]]), np.array([[-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    assert_allclose(interfaces.width(points, normals, np.zeros(2, int)), [0.1, 0.5], rtol=1e-13)
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+def test_points_on_a_plane_have_six_neighbours_each(axis):
+    """A triangular pattern of 1 by sqrt(3)/2 spacings: in squares of that they would have four within 1.2 spacings."""
+    (plane,) = surfaces_of(Scene((1, 1, 1), MATRIX, [Layer(axis, 0.4, 1.0, OTHER)], walls={"y-": 0.0, "y+": 1.0}))
+    points, normals = plane.pattern(0.05, np.random.default_rng(1))
+    assert np.array_equal(normals, np.tile(np.eye(3)[axis], (len(points), 1))) and np.all(points[:, axis] == 0.4)
+    tree = cKDTree(np.delete(points, axis, axis=1), boxsize=1.0)
+    # Found 5.9, as points are jittered by a tenth of the spacing each way.
+    assert 5.5 < tree.count_neighbors(tree, 1.2 * 0.05) / len(points) - 1 < 6.1
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])

@@ -226,6 +226,9 @@ def test_pressure_of_the_hard_sphere_fluid():
 @pytest.mark.parametrize("rate", [1e-12, 0.1])
 def test_energy_and_momentum(rate, monkeypatch):
     motion = Motion(lsa(300, phi=0.5, seed=2), np.random.default_rng(0))
+    # At thermal velocity 1, and not all together: rounding of sums of 300.
+    assert_allclose(motion.spheres[:, 3:6].sum(axis=0), 0, atol=1e-12)
+    assert_allclose(np.mean(motion.spheres[:, 3:6] ** 2), 1, rtol=1e-12)
     run = kernels.run
 
     def spied(bounds, *arguments):

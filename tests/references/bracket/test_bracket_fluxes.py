@@ -8,6 +8,7 @@ from demheat import gallery
 from references.bracket.equations import balanced_flux
 from references.bracket.faces import CORNERS, interfaces, number_faces
 from references.bracket.fluxes import REFERENCE, answers, fields, mappings, masses
+from references.bracket.solver import OF_MOMENTS
 from references.fem.quadrature import rule
 from references.mesh import make
 
@@ -29,6 +30,19 @@ def test_each_field_has_one_moment():
         wanted = np.zeros((3, 12))
         wanted[range(3), range(3 * face, 3 * face + 3)] = 1
         assert moments == pytest.approx(wanted, abs=1e-13)
+
+
+def test_no_face_passes_more_than_is_told_of_its_moments():
+    """One moment alone, some with both signs, and any."""
+    a, b, c = REFERENCE[CORNERS[0]]
+    area = np.cross(b - a, c - a) / 2
+    places = np.random.default_rng(1).dirichlet(np.ones(3), 2000)
+    normal = fields((places @ REFERENCE[CORNERS[0]]).T)[:, :3] @ area
+    moments = np.vstack([np.eye(3), [[1, -1, 0], [1, 1, -1]], np.random.default_rng(2).normal(size=(50, 3))])
+    passing = np.abs(moments @ normal.T).mean(axis=1) / np.abs(moments).sum(axis=1)
+    # Of one moment alone corners are 9, -3 and -3: 1.6875 one way, .6875 the other; by 2000 points.
+    assert passing[0] == pytest.approx(2.375, rel=0.05)
+    assert passing.max() < OF_MOMENTS
 
 
 def test_faces_are_shared(mesh):

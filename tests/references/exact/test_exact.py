@@ -92,6 +92,21 @@ def test_laminate_in_a_periodic_cell():
     assert_allclose(field.temperature_at([[0, 0, 0], [1.0, 2.0, 3.0]]), [0, np.dot(OBLIQUE, BOX)], atol=1e-14)
 
 
+def test_both_faces_of_a_layer_that_resists_count_in_a_periodic_cell():
+    """Also where one of them is the face of the cell."""
+    for start in (0.0, 0.3):
+        layer = Layer(1, start, start + 0.5, B, resistance=0.7)
+        field = exact.solve(Scene(BOX, A, [layer], gradient=(0.0, 1.0, 0.0)))
+        assert_allclose(field.conductivity, 2.0 / (1.5 / 2 + 0.5 / 6 + 2 * 0.7), rtol=1e-14)
+
+
+def test_a_sphere_s_resistance_is_in_units_of_the_matrix():
+    sphere = Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0), resistance=0.06)
+    field = exact.solve(Scene((1.0, 1.0, 1.0), A, [sphere], gradient=(0.0, 1.0, 0.0)))
+    known = lattice.conductivity("sc", 10.0, 4 / 3 * math.pi * 0.3**3, resistance=0.06 * 2.0 / 0.3)
+    assert_allclose(field.conductivity, 2.0 * known, rtol=1e-12)
+
+
 def test_flux_wall_across_layers_and_side_wall_mean():
     scene = Scene(BOX, A, LAYERS, walls={"y-": Flux(4.0), "y+": 0.0, "x-": Flux(0.0)})
     field = exact.solve(scene)

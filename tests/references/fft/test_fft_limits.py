@@ -10,7 +10,7 @@ from numpy.testing import assert_allclose
 
 from demheat.scene import Flux, Layer, Material, Scene, Sphere
 from references import exact, fft
-from references.fft import eyre_milton, solver
+from references.fft import eyre_milton, rules, solver
 from references.voxels import links as voxel_links
 
 # Grids here are coarse on purpose.
@@ -105,6 +105,18 @@ def test_links_want_some_voxels():
         assert fft.solve(Scene(inclusions=[ball], **slim), voxels=(10, 4, 5)).stats["rule"] == "laminate"
         assert fft.solve(Scene(inclusions=[ball], **slim), voxels=(10, 5, 5)).stats["rule"] == "links"
     assert fft.solve(Scene(inclusions=[layer], **slim), voxels=(8, 2, 2), rule="links").conductivity > 2.0
+
+
+@pytest.mark.parametrize(("wide", "said"), [(0.9, True), (1.3, True), (1.5, False)])
+def test_gaps_of_a_voxel_or_so_are_said(wide, said):
+    """Of 20 voxels along a side, between two spheres that conduct 100 times as well."""
+    radius = 0.2 - wide / 40
+    spheres = [Sphere((x, 0.5, 0.5), radius, Material(100.0)) for x in (0.3, 0.7)]
+    scene = Scene((1.0,) * 3, Material(1.0), spheres, walls={"y-": 0.0, "y+": 1.0})
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        rules.warn_of_thin(scene, "links", (20,) * 3)
+    assert [str(each.message).startswith("gaps beside inclusions [0, 1]") for each in caught] == [True] * said
 
 
 def test_a_body_without_conductivity_conducts_nothing():

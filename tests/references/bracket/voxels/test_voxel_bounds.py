@@ -7,7 +7,7 @@ from demheat import gallery
 from demheat.scene import Flux, Layer, Material, Scene, Sphere
 from references import bracket, exact, multipole
 from references.bracket import voxels
-from references.bracket.voxels import image
+from references.bracket.voxels import image, solver
 
 # Of bounds that are both exact but for what counts as rounding, 1e-11 each way.
 EXACT = 1e-10
@@ -151,6 +151,16 @@ def test_one_bound_is_that_of_both():
     values = np.random.default_rng(2).uniform(0.1, 3.0, (4, 3, 5))
     both = voxels.bounds(values, gradient=(0, 1, 0), refine=2)
     assert voxels.upper_bound(values, gradient=(0, 1, 0), refine=2) == both.upper
+
+
+def test_what_counts_as_rounding_is_taken_off_both_bounds(monkeypatch):
+    """Of places, so much of the contrast for each body twice, which 1e-12 of the box hides."""
+    scene = gallery.sphere_in_cube(5.0)
+    here = voxels.solve(scene, voxels=4)
+    monkeypatch.setattr(solver, "GRAIN", 1e-3)
+    there = voxels.solve(scene, voxels=4)
+    assert there.lower == pytest.approx(here.lower * (1 - 2e-3 * 5), rel=EXACT)
+    assert there.upper == pytest.approx(here.upper * (1 + 2e-3 * 5), rel=EXACT)
 
 
 def test_axes_units_and_threads_change_nothing():
