@@ -5,7 +5,12 @@
 draws breaks by a seed over all modules of demheat, references and studies/harness (`mutants` says which), applies each
 in a throw-away copy of the tree and runs tests in it, nearest first, until one fails: those named after the module,
 those that import it, the rest of their folder, those of all methods. A test that runs over its limit has seen it too;
-one that fails in the sound copy as well says nothing and is marked so. Breaks already in the table are passed over.
+one that fails in the sound copy as well says nothing and is left out. Breaks already in the table are passed over.
+
+    python tests/tools/breaks.py --from tests/tools/chosen.csv --out seen.csv [--near] [--part 1/4]
+
+tries the breaks of a list instead (columns module, before, after, meaning; `before` stands once in the module), and
+asks all of `make test`, nearest first; with --near only the tests of the module's folder.
 
 In the table `caught` is yes, no, or ? (see `note`); "equal" is written by hand for a break that changes no result, with
 the reason in `note`.
@@ -32,7 +37,8 @@ from tools.mutants import Mutant, mutants  # noqa: E402
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("demheat", "references", "studies/harness")
 # Parts of the tree that tests need.
-NEEDED = ("demheat", "references", "studies", "tests", "results", "docs", "*.md", "*.toml", "Makefile", "CITATION.cff")
+NEEDED = ("demheat", "references", "studies", "tests", "results", "docs", "benchmark", "examples", "*.md", "*.toml")
+NEEDED += ("Makefile", "CITATION.cff", "LICENSE")
 # What sees methods as wholes, for breaks that the tests of their folder let pass.
 WIDE = ("tests/test_methods.py", "tests/demheat/test_dem.py", "tests/demheat/test_laws.py", "tests/test_pores.py")
 WIDE += ("tests/test_order.py", "tests/test_bad_inputs.py")
@@ -73,7 +79,29 @@ def drawn(count, seed, root=ROOT, packages=PACKAGES):
     return [Break(module, random.Random(f"{seed}.{k}").choice(each)) for k, (module, each) in enumerate(places[:count])]
 
 
-def stages(module, root=ROOT):
+def listed(path, root=ROOT):
+    """Breaks of a list, and its rows whose text no longer stands once in their module.
+
+    Parameters
+    ----------
+    path : Path
+        A table of module, before, after and meaning.
+    root : Path
+    """
+    found, gone = [], []
+    for row in rows(path):
+        source, before = root / row["module"], row["before"]
+        text = source.read_text(encoding="utf-8") if source.is_file() else ""
+        if text.count(before) != 1:
+            gone.append(row)
+            continue
+        start = text.index(before)
+        line, end = text.count("\n", 0, start) + 1, start + len(before)
+        found.append(Break(Path(row["module"]), Mutant(line, start, end, row["meaning"], before, row["after"])))
+    return found, gone
+
+
+def stages(module, root=ROOT, rest=False):
     """Lists of test files to run one after another for a break of a module, none twice, none empty.
 
     Parameters
@@ -81,6 +109,8 @@ def stages(module, root=ROOT):
     module : Path
         From the root.
     root : Path
+    rest : bool
+        All others too, folder by folder.
     """
     package = module.parent if module.stem == "__init__" else module.with_suffix("")
     near, exact = _mirror(package, root)
@@ -92,8 +122,10 @@ def stages(module, root=ROOT):
     wide = [root / name for name in WIDE if (root / name).is_file()]
     if module.parts[0] == "studies":
         wide = sorted((root / "tests" / "studies").glob("test_*.py"))
+    folders = {path.relative_to(root).parts[:2]: None for path in everywhere} if rest else {}
+    others = [[path for path in everywhere if path.relative_to(root).parts[:2] == folder] for folder in folders]
     done, found = set(), []
-    for group in (named, importing, beside, wide):
+    for group in (named, importing, beside, wide, *others):
         fresh = [path.relative_to(root).as_posix() for path in dict.fromkeys(group) if path not in done]
         done.update(group)
         found += [fresh] if fresh else []
@@ -122,7 +154,7 @@ def pytest_runtest_setup(item):
 
 
 class Copies:
-    """A sound copy of the tree, and broken copies of that; machine code of sound kernels is shared by all.
+    """A sound copy of the tree, and broken copies of that; machine code is kept by content and shared by all.
 
     Parameters
     ----------
@@ -133,13 +165,13 @@ class Copies:
     """
 
     def __init__(self, folder, root=ROOT, limit=TEST):
-        self.folder, self.sound, self.kernels = folder, folder / "sound", folder / "kernels"
-        self.limit = limit
+        self.folder, self.sound, self.limit = folder, folder / "sound", limit
+        self.kernels = Path(os.environ.get("NUMBA_CACHE_DIR") or folder / "kernels")
         for path in (path for pattern in NEEDED for path in root.glob(pattern)):
             copy = shutil.copytree if path.is_dir() else shutil.copy2
             (self.sound / path.relative_to(root).parent).mkdir(parents=True, exist_ok=True)
             copy(path, self.sound / path.relative_to(root))
-        self.kernels.mkdir()
+        self.kernels.mkdir(exist_ok=True)
         self.trusted, self.lock = {}, Lock()
 
     def of(self, broken):
@@ -176,6 +208,7 @@ class Copies:
             "BREAKS_TEST": str(self.limit),
         }
         words = [sys.executable, "-m", "pytest", "-v", "-x", "-p", "no:cacheprovider", "-p", "tools.breaks", *options]
+        words += [f"--deselect={name}" for name, sound in list(self.trusted.items()) if not sound]
         log = tree.parent / "log"
         with log.open("w") as out:
             process = subprocess.Popen(
@@ -201,7 +234,7 @@ class Copies:
                 self.trusted[test] = self.ran(self.sound, [test]) is None
         return self.trusted[test]
 
-    def first_seen(self, broken, wide=True):
+    def first_seen(self, broken, wide=True, rest=False):
         """The first test that sees a break, or None.
 
         Parameters
@@ -209,23 +242,37 @@ class Copies:
         broken : Break
         wide : bool
             Run the tests of all methods too.
+        rest : bool
+            And all others.
         """
         copy, nearest = self.of(broken), True
         try:
-            for tests, plain in self._calls(broken.module, wide):
-                options = ("-m", "twin") if plain else ("-m", "not slow")
-                by = self.ran(copy, tests, *options, plain=plain)
-                # Far from the module a test may fail by chance: once more.
-                if by and (nearest or "::" not in by or self.ran(copy, [by.split(" (")[0]], plain=plain)):
+            for tests, plain in self._calls(broken.module, wide, rest):
+                if by := self._sees(copy, tests, plain, nearest):
                     return by
                 nearest = False
         finally:
             shutil.rmtree(copy.parent)
         return None
 
-    def _calls(self, module, wide):
+    def _sees(self, copy, tests, plain, nearest):
+        """The first of some tests that sees the break of a copy, or None."""
+        by_chance = []
+        while by := self.ran(copy, tests, "-m", "twin" if plain else "not slow", *by_chance, plain=plain):
+            name = by.split(" (")[0]
+            if name.startswith("tests/") and not self.is_trusted(name):
+                if "::" not in name:  # cannot even be read
+                    return None
+            # Far from the module a test may fail by chance: once more.
+            elif nearest or "::" not in by or self.ran(copy, [name], plain=plain):
+                return by
+            else:
+                by_chance.append(f"--deselect={name}")
+        return None
+
+    def _calls(self, module, wide, rest):
         """Test files to run together, and whether without compiling: kernels are tried so first, which is fast."""
-        found = stages(module, self.sound)
+        found = stages(module, self.sound, rest)
         if module.stem.endswith("kernels"):
             yield found[0], True
         yield from ((tests, False) for tests in (found if wide else found[:-1] or found))
@@ -252,18 +299,17 @@ def _seen(log, status):
     return f"{last[-1] if last else 'import'} ({how})"
 
 
-def tried(broken, copies, wide=True):
+def tried(broken, copies, wide=True, rest=False):
     """One row of the table.
 
     Parameters
     ----------
     broken : Break
     copies : Copies
-    wide : bool
+    wide, rest : bool
+        As in `Copies.first_seen`.
     """
-    by = copies.first_seen(broken, wide)
-    if by and by.startswith("tests/") and not copies.is_trusted(by.split(" (")[0]):
-        return [*broken.key(), "?", by, "fails in the sound copy too"]
+    by = copies.first_seen(broken, wide, rest)
     return [*broken.key(), "yes" if by else "no", by or "", ""]
 
 
@@ -280,7 +326,7 @@ def rows(path):
         return list(csv.DictReader(file))
 
 
-def run(breaks, out, *, jobs=1, wide=True, root=ROOT, limit=TEST):
+def run(breaks, out, *, jobs=1, wide=True, rest=False, root=ROOT, limit=TEST):
     """Try breaks that are not in the table yet, and add them.
 
     Parameters
@@ -289,7 +335,8 @@ def run(breaks, out, *, jobs=1, wide=True, root=ROOT, limit=TEST):
     out : Path
     jobs : int
         At once.
-    wide : bool
+    wide, rest : bool
+        As in `Copies.first_seen`.
     root : Path
     limit : float, s
         As in `Copies`.
@@ -300,7 +347,7 @@ def run(breaks, out, *, jobs=1, wide=True, root=ROOT, limit=TEST):
         out.write_text(",".join(COLUMNS) + "\n", encoding="utf-8")
 
     def try_one(broken):
-        row = tried(broken, copies, wide)
+        row = tried(broken, copies, wide, rest)
         with lock, out.open("a", newline="", encoding="utf-8") as file:
             csv.writer(file, lineterminator="\n").writerow(row)
             print(f"{row[0]}:{row[1]}: {row[3]}  ->  {row[4]}: {row[6] or 'UNSEEN'}", flush=True)
@@ -314,20 +361,29 @@ def run(breaks, out, *, jobs=1, wide=True, root=ROOT, limit=TEST):
 def main():
     """The command line."""
     words = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    words.add_argument("count", type=int)
-    words.add_argument("--seed", type=int, required=True)
+    words.add_argument("count", type=int, nargs="?")
+    words.add_argument("--seed", type=int)
+    words.add_argument("--from", dest="list", type=Path, metavar="FILE", help="breaks of a list, drawn by nobody")
+    words.add_argument("--part", default="1/1", metavar="K/N", help="every Nth of them, from the Kth on")
     words.add_argument("--out", type=Path, default=Path("breaks.csv"))
     words.add_argument("--jobs", type=int, default=1)
     words.add_argument("--near", action="store_true", help="only tests of the module's folder")
     words.add_argument("--unseen", action="store_true", help="try again those of the table that nothing saw")
     given = words.parse_args()
+    if (given.list is None) == (given.count is None or given.seed is None):
+        words.error("give a count and --seed, or --from")
     if given.unseen:
         kept = [row for row in rows(given.out) if row["caught"] in ("yes", "equal")]
         with given.out.open("w", newline="", encoding="utf-8") as file:
             table = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             table.writeheader()
             table.writerows(kept)
-    run(drawn(given.count, given.seed), given.out, jobs=given.jobs, wide=not given.near)
+    breaks, gone = listed(given.list) if given.list else (drawn(given.count, given.seed), [])
+    for row in gone:
+        print(f"{row['module']}: {row['before']!r} does not stand there once: passed over")
+    part, parts = map(int, given.part.split("/"))
+    near = given.near
+    run(breaks[part - 1 :: parts], given.out, jobs=given.jobs, wide=not near, rest=bool(given.list) and not near)
     seen = [row["caught"] for row in rows(given.out)]
     print(f"{seen.count('yes')} of {len(seen)} seen, {seen.count('equal')} change nothing")
 

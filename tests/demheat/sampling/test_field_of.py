@@ -1,11 +1,11 @@
-"""Which cell a point is in, where centres alone do not tell."""
+"""Which cell a point is in, where centres alone do not tell; what a wall's facets have in common."""
 
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from demheat.sampling.field_of import _Locator
+from demheat.sampling.field_of import _Locator, _wall_mean
 
 
 @pytest.mark.parametrize("periodic", [False, True])
@@ -24,3 +24,8 @@ def test_a_point_is_in_the_radical_cell_around_it(periodic):
     assert np.mean(cell != np.linalg.norm(apart, axis=2).argmin(axis=1)) > 0.2
     # Rounding of coordinates.
     assert np.abs(offsets - apart[np.arange(200), cell]).max() < 1e-14
+
+
+def test_facets_of_a_wall_count_by_their_area_where_they_have_a_temperature():
+    assert _wall_mean(np.array([1.0, 4.0, np.nan, 9.0]), np.array([2.0, 1.0, 5.0, 0.0])) == 2.0
+    assert np.isnan(_wall_mean(np.full(2, np.nan), np.ones(2)))
