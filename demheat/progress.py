@@ -110,10 +110,11 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
     callable
         To be called with the share done, 0 to 1, as often as one likes, or never.
     """
-    if not _heard():
+    thread = threading.get_ident()
+    # Within one of its own name it would only say that again: kernels compiled where all are.
+    if not _heard() or any(each.name == name for each in _open.get(thread, ())):
         yield _unheard
         return
-    thread = threading.get_ident()
     stack = _open.setdefault(thread, [])
     current = _Open(name, tuple(stack), before)
     stack.append(current)

@@ -79,6 +79,21 @@ def test_a_stage_that_says_nothing_is_spoken_for(heard, monkeypatch):
     assert not progress._open and until(lambda: not progress._work.is_set())
 
 
+def test_a_stage_within_its_like_is_said_once(heard):
+    """As kernels that are compiled one by one while all are."""
+    with progress.stage("compiling, once") as whole:
+        with progress.stage("compiling, once") as part:
+            part(0.5)
+        with progress.stage("cells") as cells, progress.stage("compiling, once") as part:
+            part(0.5)
+            cells(0.5)
+        whole(0.5)
+    # What others say of silent ones besides has no share.
+    told = [progress.line(report) for report in heard if report.share == 0.5]
+    assert [line.partition(":")[0] for line in told] == ["compiling, once"] * 2 and len(told) == 2
+    assert told[0].startswith("compiling, once: cells: 50%") and told[1].startswith("compiling, once: 50%")
+
+
 def test_a_long_stage_speaks_while_short_ones_come_and_go_in_it(heard, monkeypatch):
     monkeypatch.setattr(progress, "PAUSE", 0.01)
     monkeypatch.setattr(progress, "SILENT", 0.05)
