@@ -6,9 +6,8 @@ import math
 
 import numpy as np
 
-from demheat.files.images.base import check_there, mapped
+from demheat.files.images.base import check_there, mapped, told_in_one_line
 from demheat.files.source import shown
-from demheat.scene.inputs import one_line
 
 # Types of a MetaImage.
 ELEMENTS = {
@@ -31,10 +30,9 @@ MILLI = 1e-3
 
 def read_npy(path):
     """An array of NumPy."""
-    try:
+    # A changed header is parsed as Python: what it raises is not known.
+    with told_in_one_line(path, "array of NumPy"):
         return np.lib.format.open_memmap(path, mode="r"), None
-    except (ValueError, EOFError) as error:
-        raise ValueError(f"{path}: no array of NumPy, or a part of one: {one_line(error)}") from None
 
 
 def read_meta(path):

@@ -9,7 +9,10 @@ import numpy as np
 from demheat.packing.base import Packing, check_box
 from demheat.packing.io import npz
 from demheat.packing.io.found import Found
+from demheat.scene.inputs import one_line
 
+# Letters of what a library says: it may show all that it has found.
+LONGEST = 300
 NAMES = ("centers", "radii", "size", "periodic", "provenance", "domain")
 
 
@@ -48,7 +51,7 @@ def read(path) -> Found:
     except FileNotFoundError:
         raise
     except (OSError, TypeError, ValueError) as error:
-        raise ValueError(f"{path}: not a whole packing archive: {error}") from None
+        raise ValueError(f"{path}: not a whole packing archive: {one_line(error)[:LONGEST]}") from None
     return Found(spheres, size, periodic, domain=str(arrays["domain"]), provenance=provenance)
 
 

@@ -87,7 +87,7 @@ def _array(name, member, length):
     count = 1
     for side in shape:
         count *= side
-    if dtype.kind not in KINDS or min(shape, default=1) < 0 or count * dtype.itemsize > length:
+    if dtype.kind not in KINDS or min(shape, default=1) < 0 or member.tell() + count * dtype.itemsize != length:
         what = "real numbers or text, all there, nothing pickled"
         found = f"{shape} of {dtype}"[:100]
         raise ValueError(f"{name}: found {found} in {length} bytes; expected {what}")

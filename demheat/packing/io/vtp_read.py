@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import re
 import xml.etree.ElementTree as ET
 import zlib
 
@@ -17,6 +18,7 @@ from demheat.scene.bodies import ROUND_AXES
 
 TYPES = {"Float64": "f8", "Float32": "f4", "UInt8": "u1", "Int8": "i1", "String": "u1"}
 HEADERS = {"UInt32": "u4", "UInt64": "u8"}
+ENCODING = re.compile(rb"""(?:\xef\xbb\xbf)?\s*<\?xml[^>]*?encoding\s*=\s*["']([\w.:-]*)""")
 RADII = ("radius", "radii", "diameter")
 # Elements of a file; bytes of the longest field; and memory over the length of a file.
 MOST_ELEMENTS, MOST_FIELD, COPIES = 10_000, 10_000, 4
@@ -87,7 +89,11 @@ class _File:
         if kind not in TYPES:
             raise ValueError(f"found the array {name} of type {kind}; expected one of {', '.join(TYPES)}")
         if format == "ascii":
-            values = np.array((element.text or "").split(), dtype=float)
+            most = MOST_FIELD if count is None else count
+            words = (element.text or "").split(maxsplit=most)
+            if len(words) > most:
+                raise ValueError(f"found more than {most} values of {name}; expected {most} at most")
+            values = np.array(words, dtype=float)
         else:
             raw, coded = (element.text or "").strip().encode(), True
             if format == "appended":
@@ -123,6 +129,10 @@ class _File:
 
 def _parsed(text):
     """The XML, unless it has a document type, whose entities might expand without end, or very many elements."""
+    said = ENCODING.match(text)
+    if b"\0" in text or said and said[1].lower() not in (b"utf-8", b"us-ascii", b"ascii"):
+        # What is looked for below would be written in other bytes.
+        raise ValueError(f"found XML in {said[1].decode() if said else 'UTF-16 or the like'}; expected UTF-8 or ASCII")
     if b"<!DOCTYPE" in text:
         raise ValueError("found a document type; expected none")
     parser, first, count = ET.XMLPullParser(("start",)), None, 0

@@ -232,3 +232,59 @@ def test_polydata_whose_xml_expands(tmp_path):
     refused(put(tmp_path, bomb, ".vtp"), "found a document type")
     many = VTK_ASCII.replace("<PolyData>", "<PolyData>" + "<a/>" * 20_000)
     refused(put(tmp_path, many, ".vtp"), "more than 10000 elements")
+
+
+@pytest.mark.parametrize("encoding", ["utf-16", "utf-16-le", "utf-16-be", "utf-32", "cp037", "latin-1", "utf-8"])
+@pytest.mark.parametrize("said", [False, True])
+def test_polydata_in_other_letters(tmp_path, encoding, said):
+    """What is looked for in the bytes of a file would not be found, and expat reads it all the same."""
+    head, tail = VTK_ASCII.partition("?>\n")[::2]
+    head = head.partition(" encoding")[0] + f' encoding="{encoding}"' * said
+    text = head + '?>\n<!DOCTYPE a [<!ENTITY b "bbbbbbbbbb">]>\n' + tail
+    path = tmp_path / "a.vtp"
+    # A declaration in plain letters, and the rest in others, is what 8 bits more allow.
+    path.write_bytes(text.encode(encoding))
+    if encoding in ("latin-1", "utf-8") and not (said and encoding == "latin-1"):
+        refused(path, "found a document type")
+    elif encoding == "cp037":
+        refused(path, "a.vtp")
+    else:
+        refused(path, "found XML in .*; expected UTF-8 or ASCII")
+
+
+@pytest.mark.parametrize("mark", ["", "\N{BYTE ORDER MARK}"])
+@pytest.mark.parametrize("encoding", ["utf-8", "UTF-8", "us-ascii"])
+def test_polydata_in_usual_letters(tmp_path, mark, encoding):
+    head, tail = VTK_ASCII.partition("?>\n")[::2]
+    text = f'{mark}{head.partition(" encoding")[0]} encoding="{encoding}"?>\n{tail}'
+    assert io.read(put(tmp_path, text, ".vtp")).number == io.read(put(tmp_path, VTK_ASCII, ".vtp")).number
+
+
+def test_polydata_with_more_numbers_than_points(tmp_path):
+    begin = VTK_ASCII.index('Name="radius"')
+    begin = VTK_ASCII.index(">", begin) + 1
+    many = VTK_ASCII[:begin] + "0.5 " * 200_000 + VTK_ASCII[begin:]
+    refused(put(tmp_path, many, ".vtp"), "found more than [0-9]+ values of radius")
+
+
+def test_an_array_of_more_bytes_than_its_shape_takes(tmp_path, small):
+    """Zeros behind the numbers of an array would be unpacked for nothing."""
+    path = tmp_path / "a.npz"
+    io.write(awkward(0), path)
+    with zipfile.ZipFile(path) as archive:
+        members = {name: archive.read(name) for name in archive.namelist() if name != "checksum.npy"}
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content + bytes(30_000) * (name == "radii.npy"))
+    refused(path, r"radii: found \(60,\) of float64 in [0-9]+ bytes; expected real numbers or text, all there")
+
+
+def test_an_archive_whose_names_differ(tmp_path):
+    """The library shows all of the longer one."""
+    path = tmp_path / "a.npz"
+    io.write(awkward(0), path)
+    data = bytearray(path.read_bytes())
+    length = data.index(b"centers.npy") - 4
+    data[length : length + 2] = struct.pack("<H", 2000)
+    path.write_bytes(bytes(data))
+    refused(path, "a.npz: not a whole packing archive: File name in directory 'centers.npy' and header")
