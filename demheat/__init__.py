@@ -6,6 +6,7 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 
 import warnings
 
+from demheat import terminal  # noqa: F401 - first, so that a command is interrupted without a traceback from here on
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress

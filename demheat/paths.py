@@ -1,11 +1,11 @@
-"""Names of files as users give them, and files written whole or not at all."""
+"""Names of files as users give them, files written whole or not at all, and folders in which one writes at a time."""
 
 from __future__ import annotations
 
 import os
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
@@ -24,6 +24,8 @@ def checked_path(path) -> Path:
 def replaced(path: Path) -> Iterator[Path]:
     """Path of a temporary file that takes the place of `path` at the end, unless an exception comes first.
 
+    Errors of the system, such as a full disk, name `path`.
+
     Parameters
     ----------
     path : Path
@@ -34,5 +36,36 @@ def replaced(path: Path) -> Iterator[Path]:
     try:
         yield part
         os.replace(part, path)
+    except OSError as error:
+        # Without a name, as writes are, or of the part, of which nobody knows. NumPy's have no number either.
+        if error.filename not in (None, str(part)) or isinstance(error, BrokenPipeError):
+            raise
+        if error.errno is None:
+            raise OSError(f"{path}: cannot be written: {error}") from None
+        raise OSError(error.errno, error.strerror, str(path)) from None
     finally:
-        part.unlink(missing_ok=True)
+        with suppress(OSError):
+            part.unlink(missing_ok=True)
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Wait for others that write into a folder, and let them wait; without locks where the system has none.
+
+    Parameters
+    ----------
+    folder : Path
+    """
+    try:
+        import fcntl
+
+        handle = os.open(folder, os.O_RDONLY)
+    except (ImportError, OSError):
+        yield
+        return
+    try:
+        with suppress(OSError):
+            fcntl.flock(handle, fcntl.LOCK_EX)
+        yield
+    finally:
+        os.close(handle)

@@ -9,6 +9,7 @@ from pathlib import Path
 
 import studies
 from demheat import fresh
+from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
 from studies import contents
 from studies.harness import jobs, quiet, replay, runner, sound
 from studies.harness.cluster import spreading
@@ -18,8 +19,6 @@ from studies.harness.provenance import row_environment
 from studies.harness.store import read_rows
 
 DEFAULT_OUT, STORED = Path("out"), Path("results")
-# As a shell says of a command that SIGINT ended.
-INTERRUPTED = 130
 # Processes on one machine: more is a slip.
 MOST_WORKERS = 1024
 # Seconds that a run waits in all for others to leave the machine to it; a clean run is given hours.
@@ -30,15 +29,21 @@ NAMED = 3
 
 def main(words=None):
     """Do what the command line says and return the exit status: 0 only if no claim failed, 130 if interrupted."""
-    arguments = _parser().parse_args(words)
     for stream in (sys.stdout, sys.stderr):
         # A page may hold a letter that a terminal of another alphabet has not: that must not cost the run.
         getattr(stream, "reconfigure", lambda **knobs: None)(errors="backslashreplace")
+    return finished(lambda: _done(words), "studies")
+
+
+def _done(words):
+    arguments = _parser().parse_args(words)
     try:
         return arguments.action(arguments)
     except (ValueError, OSError) as error:
-        print(f"studies: {error}", file=sys.stderr)
-        return 2
+        if of_output(error):
+            raise
+        print(f"studies: {told(error)}", file=sys.stderr)
+        return BAD
     except KeyboardInterrupt:
         kept = ": rows done are kept; the same command goes on" if arguments.action is _run else ""
         print(f"\nstudies: interrupted{kept}", file=sys.stderr)

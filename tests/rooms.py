@@ -73,6 +73,7 @@ ENGINE = {
     "demheat.petsc": (),
     "demheat.vtk": (),
     "demheat.paths": (),
+    "demheat.terminal": (),
     "demheat.machine": (),
     "demheat.fresh": (),
     "demheat.cluster": (),
@@ -249,6 +250,7 @@ ENGINE = {
         "demheat.cheapest",
         "demheat.declared",
         "demheat.files",
+        "demheat.terminal",
         "demheat.commands",
     ),
     # Parts of a body that are made by themselves, for those who work on several, or on one after the other.
@@ -317,6 +319,7 @@ ENGINE = {
         "demheat.dem",
         "demheat.cheapest",
         "demheat.sweeps",
+        "demheat.terminal",
     ),
 }
 

@@ -105,5 +105,5 @@ BESIDE = {
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("demheat.fresh", "studies"),
+    "studies.__main__": ("demheat.fresh", "demheat.terminal", "studies"),
 }

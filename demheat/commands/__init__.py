@@ -1,7 +1,7 @@
 """The commands `demheat solve | compare | effective | recommend | view scene.toml`.
 
 Exit status: 0; 1 if a method that was asked for refused or failed; 2 for bad input, which one line on standard error
-names; 130 if interrupted.
+names; 130 if interrupted; 141, without a word, if nobody reads what is printed.
 """
 
 from __future__ import annotations
@@ -11,8 +11,9 @@ from importlib import import_module
 
 from demheat.commands.options import parser
 from demheat.files import read_file
+from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
 
-DONE, WITHOUT, BAD, INTERRUPTED = 0, 1, 2, 130
+DONE, WITHOUT = 0, 1
 
 
 def main(words=None) -> int:
@@ -46,11 +47,17 @@ def main(words=None) -> int:
     for stream in (sys.stdout, sys.stderr):
         # A name may hold a letter that a terminal of another alphabet has not: that must not cost the run.
         getattr(stream, "reconfigure", lambda **knobs: None)(errors="backslashreplace")
+    return finished(lambda: _done(words), "demheat")
+
+
+def _done(words):
     try:
         options = parser(version()).parse_args(words)
         command = import_module(f"demheat.commands.{options.command}")
         return command.run(read_file(options.scene), options)
     except (ValueError, OSError) as error:
+        if of_output(error):
+            raise
         return _said(error, BAD)
     except (NotImplementedError, RuntimeError, MemoryError, ImportError) as error:
         return _said(error, WITHOUT)
@@ -68,6 +75,5 @@ def version() -> str:
 
 
 def _said(error, status):
-    told = " ".join(str(error).split()) or type(error).__name__
-    print(f"demheat: {told}", file=sys.stderr)
+    print(f"demheat: {told(error)}", file=sys.stderr)
     return status

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from demheat.commands.words import aligned, names, scene_line, spread
 from demheat.declared import found
 from demheat.files.write import text_of_scene
 from demheat.paths import replaced
+from demheat.scene.inputs import one_line
 from demheat.slices import on_plane
 
 OUT = "demheat-out"
@@ -26,6 +28,8 @@ OUT = "demheat-out"
 ROUNDING = 1e-6
 # Pixels along the longer side of the slice in the picture.
 PIXELS = 121
+# Bytes of the file of such a slice, unpacked: a scene of a hundred thousand spheres is 40 MB of text there.
+LARGEST = 2**27
 
 
 def run(file, options) -> int:
@@ -141,7 +145,8 @@ def picture(scene, made, bounds, path: Path) -> Path:
 
     good = [row for row in made if row["status"] == "ok" and row["conductivity"]]
     entries = [(row["method"], *(_float(row[name]) for name in ("conductivity", "lower", "upper"))) for row in good]
-    figure = pictures.of_comparison(scene, entries, bounds, _slice(path, text_of_scene(scene)))
+    say = partial(print, file=sys.stderr)
+    figure = pictures.of_comparison(scene, entries, bounds, _slice(path, text_of_scene(scene), say))
     drawn = path.with_suffix(".png")
     with replaced(drawn) as part:
         figure.savefig(part, dpi=120)
@@ -149,22 +154,34 @@ def picture(scene, made, bounds, path: Path) -> Path:
 
 
 def _keep_slice(field, path, text, *, again):
-    """Temperatures over the middle plane, for the picture; a witness goes before others."""
+    """Temperatures over the middle plane, for the picture; a witness goes before others, all before a broken file."""
     from demheat.pictures import across_of
 
     if again or _slice(path, text) is None:
         axis = across_of(field.scene)
         temperature = on_plane(field, axis=axis, at=field.scene.size[axis] / 2, n=PIXELS).temperature
-        with replaced(path.with_suffix(".slice.npz")) as part:
+        with replaced(_slice_file(path)) as part:
             np.savez(part, temperature=temperature, scene=text)
 
 
-def _slice(path, text):
-    """What is kept of this very scene, or None."""
+def _slice_file(path):
+    return path.with_suffix(".slice.npz")
+
+
+def _slice(path, text, say=lambda line: None):
+    """What is kept of this very scene, or None; of a file that is none of ours a line is said."""
     try:
-        with np.load(path.with_suffix(".slice.npz")) as kept:
-            return kept["temperature"] if str(kept["scene"]) == text else None
-    except (OSError, ValueError, KeyError):
+        with _slice_file(path).open("rb") as stream, np.load(stream) as kept:
+            if sum(each.file_size for each in kept.zip.infolist()) > LARGEST:
+                raise ValueError(f"its arrays take more than {LARGEST} bytes")
+            temperature = kept["temperature"] if str(kept["scene"]) == text else None
+            if temperature is not None and (temperature.ndim != 2 or temperature.dtype != float):
+                raise ValueError("its temperatures are no plane of numbers")
+            return temperature
+    except FileNotFoundError:
+        return None
+    except Exception as error:  # noqa: BLE001 - of a file cut short, what NumPy and its decoders happen to raise
+        say(f"{_slice_file(path)}: no slice, or a part of one: {one_line(error)}; drawn without until a row is made")
         return None
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from demheat.commands.answers import Answer
 from demheat.commands.knobs import Asked
 from demheat.declared import HOMES
-from demheat.paths import replaced
+from demheat.paths import locked, replaced
 
 # What a row depends on: it is used again only if all of these are the same.
 KEY = ("method", "knobs", "with_interval", "scene", "code")
@@ -84,17 +84,20 @@ def read(path: Path) -> dict[tuple, dict[str, str]]:
 def add(path: Path, key: tuple[str, ...], row: dict[str, str]) -> None:
     """Put a row into a file as it is now, whole or not at all; rows of another scene or other code are dropped.
 
+    Others may do so at the same time: one waits for the other.
+
     Parameters
     ----------
     path : Path
     key : tuple of str
     row : dict
     """
-    rows = {other: old for other, old in read(path).items() if other[-2:] == key[-2:]} | {key: row}
-    with replaced(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows.values())
+    with locked(path.parent):
+        rows = {other: old for other, old in read(path).items() if other[-2:] == key[-2:]} | {key: row}
+        with replaced(path) as part, part.open("w", newline="", encoding="utf-8") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(rows.values())
 
 
 @cache

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import csv
-import os
 import tempfile
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 
 from demheat import paths
+from demheat.paths import locked
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
@@ -67,24 +67,6 @@ def check_writable(folder):
             file.write(bytes(ROOM))
     except OSError as error:
         raise ValueError(f"{folder}: must be a folder that can be written, with some room: {error}") from None
-
-
-@contextmanager
-def locked(folder):
-    """Wait for other runs that write into a folder, and let them wait; without locks where the system has none."""
-    try:
-        import fcntl
-
-        handle = os.open(folder, os.O_RDONLY)
-    except (ImportError, OSError):
-        yield
-        return
-    try:
-        with suppress(OSError):
-            fcntl.flock(handle, fcntl.LOCK_EX)
-        yield
-    finally:
-        os.close(handle)
 
 
 def add_rows(path, rows, keys):
