@@ -171,8 +171,8 @@ class Field:
         """
         if self.scene.image is not None:
             raise NotImplementedError(
-                "Field.error: an image has no other voxels to compare with; references.bracket.voxels bounds the "
-                "conductivity of its voxels for certain"
+                "Field.error: an image has no other voxels to compare with; bounds on voxels hold its conductivity for "
+                "certain (`demheat compare`, references.bracket.voxels)"
             )
         if self.estimator is None:
             raise NotImplementedError("Field.error: this method does not know its error")

@@ -45,8 +45,8 @@ def axis_loads(scene: Scene) -> tuple[Scene, Scene, Scene]:
     """
     check_scene(scene)
     scene.require(
-        "solve_axes knows a periodic cell and two opposite walls with temperatures, the others insulated; only these "
-        "have a tensor",
+        "loads along all axes are those of a periodic cell or of two opposite walls with temperatures, the others "
+        "insulated; only these have a tensor",
         steady=True,
         walls="one isothermal pair",
         takes=("resistance", "anisotropy", "dependence", "image"),

@@ -61,7 +61,8 @@ def loads_of(scene: Scene) -> Loads:
     wholes = dict(enumerate(axis_loads(scene)))
     if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
         raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")
-    scene.require("laws of error and symmetry are those of shapes; use solve_axes of a method", takes=("resistance",))
+    text = "what is cheapest is known of shapes of constant conductivities alone; `solve` by one method takes others"
+    scene.require(text, takes=("resistance",))
     planes = [plane is not None for plane in mirrors(scene)]
     diagonal = not scene.periodic or sum(planes) >= 2
     if not diagonal:

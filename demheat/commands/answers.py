@@ -88,7 +88,7 @@ def _with_interval(found, field):
     try:
         error = field.error
     except (NotImplementedError, RuntimeError) as reason:
-        return found._replace(notes=(f"no interval: {one_line(reason)}",))
+        return found._replace(notes=(f"no interval: {one_line(reason).removeprefix('Field.error: ')}",))
     cost = found.cost | {"interval_cpu_s": cpu_seconds() - cpu}
     return found._replace(lower=error.lower, upper=error.upper, how=error.how, cost=cost)
 

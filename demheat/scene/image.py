@@ -189,7 +189,7 @@ def _checked_labels(labels):
         kind = "masked" if np.ma.is_masked(labels) else labels.dtype
         raise ValueError(
             f"Image.labels of type {kind}: must be whole numbers, one for each material; grey values ask for a "
-            "threshold first, such as labels = array > 0.5"
+            "threshold first, above which all are of one label"
         )
     return labels
 

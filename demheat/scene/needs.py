@@ -26,23 +26,23 @@ WALLS = {
 }
 
 
-EXCHANGE = "heat exchanged with surroundings, is for the DEM and finite elements, in time also for series of slabs"
-IMAGE = "which FFT, finite elements, the DEM and bounds on voxels take"
+# Who takes what few do, for the end of a message.
+EXCHANGE = "heat exchanged with surroundings is for the DEM and finite elements, in time also for series of slabs"
+IMAGE = "images are for FFT, finite elements, the DEM and bounds on voxels"
+TENSOR = "tensors are for steady states of finite elements and of voxels"
+DEPENDENCE = "that is for steady states of the DEM and finite elements"
 
 
 def _tensors(scene):
     if scene.anisotropic:
         number = next(n for n, material in enumerate(scene.materials) if not material.isotropic)
-        yield f"Material.conductivity in phase {number} is a tensor, for finite elements and voxels"
+        yield f"Material.conductivity in phase {number} is a tensor", TENSOR
 
 
 def _dependences(scene):
     if scene.varies:
         number = next(n for n, material in enumerate(scene.materials) if material.dependence is not None)
-        yield (
-            f"Material.dependence in phase {number}, a conductivity that follows the temperature, is for steady states "
-            "of the DEM and finite elements"
-        )
+        yield f"Material.dependence in phase {number}, a conductivity that follows the temperature", DEPENDENCE
 
 
 # What few methods take of materials.
@@ -53,7 +53,7 @@ def check_steady(scene) -> None:
     """Raise unless a Scene has a steady state under loads that do not depend on time."""
     if scene.sources or scene.domain != "box":
         what = "heat sources" if scene.sources else f"a {scene.domain}"
-        raise NotImplementedError(f"{what}: only transients take them; use evolve")
+        raise NotImplementedError(f"{what}: only transients take them, by `evolve`, which is in Python alone")
     changing = [name for name, load in (scene.walls or {}).items() if callable(driver(load))]
     if changing:
         raise ValueError(f"Scene.walls: {changing} depend on time; must be numbers for a steady solution")
@@ -76,8 +76,8 @@ def check_transient(scene) -> None:
                 raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
 
 
-def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[str]:
-    """What in a Scene a method cannot do, one after the other.
+def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[tuple[str, str]]:
+    """What in a Scene a method cannot do, one after the other, and who can where only few do.
 
     Parameters
     ----------
@@ -86,32 +86,33 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
         As those of `Scene.require`.
     """
     if scene.image is not None and "image" not in takes:
-        yield f"Scene.image, {IMAGE}"
+        yield "Scene.image", IMAGE
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():
-        yield f"Scene.walls[{name!r}] = {load}, {EXCHANGE}"
+        yield f"Scene.walls[{name!r}] = {load}", EXCHANGE
     for name in MATERIALS:
         if name not in takes:
             yield from MATERIALS[name](scene)
     if walls is not None and not scene.periodic and not WALLS[walls](scene):
-        yield f"Scene.walls = {dict(scene.walls)}"
+        yield f"Scene.walls = {dict(scene.walls)}", ""
     if domain is not None and scene.domain != domain:
-        yield f"a {scene.domain}"
+        yield f"a {scene.domain}", ""
     if shapes == () and scene.inclusions:
-        yield f"inclusions in a {scene.domain}"
+        yield f"inclusions in a {scene.domain}", ""
     if shapes is not None and scene.image is None and not scene.only(*shapes):
         number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
         kind = scene.inclusions[number].kind
-        yield f"{'an' if kind[0] in 'aeio' else 'a'} {kind}, Scene.inclusions[{number}]"
+        yield f"{'an' if kind[0] in 'aeio' else 'a'} {kind}, Scene.inclusions[{number}]", ""
     parents = np.zeros(1) if nested else scene.parents()
     if np.any(parents):
         number = int(np.flatnonzero(parents)[0])
-        yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]"
+        yield f"Scene.inclusions[{number - 1}], nested in [{parents[number] - 1}]", ""
     if not pores and np.any(scene.mean_conductivities == 0):
-        yield "a conductivity is 0"
+        yield "a conductivity is 0", ""
     resisting = () if "resistance" in takes else np.flatnonzero(scene.resistances)
     if len(resisting):
         number = int(resisting[0]) - 1
         yield (
             f"Scene.inclusions[{number}].resistance = {scene.inclusions[number].resistance:g} m2 K/W, where only "
-            "perfect interfaces, 0, are known"
+            "perfect interfaces, 0, are known",
+            "",
         )

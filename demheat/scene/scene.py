@@ -347,7 +347,7 @@ class Scene:
         Parameters
         ----------
         knows : str
-            What the method knows, or what to do instead: messages end with it.
+            What the method knows, or what to do instead: behind what is found in a message, and before who takes it.
         steady : bool, optional
             True: a steady state is asked for, with loads that fix one, in a box and without sources. False: a transient
             is, with walls, an initial temperature and heat capacities.
@@ -375,8 +375,10 @@ class Scene:
         if steady is not None:
             (check_steady if steady else check_transient)(self)
         can = {"walls": walls, "domain": domain, "shapes": shapes, "nested": nested, "pores": pores}
-        for found in refusals(self, **can, takes=takes):
-            raise NotImplementedError(f"{found}: {knows}" if knows else found)
+        for found, others in refusals(self, **can, takes=takes):
+            # A remedy of the method's own goes before those of others.
+            reasons = [knows] if "; use " in knows else [knows, others]
+            raise NotImplementedError(": ".join(filter(None, (found, "; ".join(filter(None, reasons))))))
 
 
 def check_scene(scene, name="scene") -> None:

@@ -44,7 +44,7 @@ def estimate(scene: Scene, *, formula: str = "maxwell") -> float:
     """
     chosen("formula", formula, FORMULAS)
     check_scene(scene)
-    scene.require("bounds: formulas are of spheres in a matrix", shapes=(Sphere,))
+    scene.require("formulas are of spheres in a matrix", shapes=(Sphere,))
     found = {inclusion.material.conductivity for inclusion in scene.inclusions}
     if len(found) > 1:
         raise NotImplementedError(f"bounds: spheres of {len(found)} conductivities; formulas are of two phases")

@@ -60,7 +60,7 @@ def check_load(scene: Scene) -> None:
     takes = ("exchange", "anisotropy", "image")
     scene.require("on voxels temperatures jump nowhere, and conductivities are constants", steady=True, takes=takes)
     scene.require(
-        "fft.solve knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
+        "FFT knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
         "homogeneous problem is inverted by sines and cosines here",
         walls="one isothermal pair",
         takes=takes[1:],

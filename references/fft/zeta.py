@@ -142,7 +142,7 @@ def _held(raw, shape):
 
 def _two_phases(scene):
     """The scene with the indicator of its second phase as conductivity."""
-    scene.require("zeta_2 by the periodic Green projector: only periodic cells (Scene.gradient)", walls="none")
+    scene.require("zeta_2 by the periodic Green projector is that of a periodic cell (Scene.gradient)", walls="none")
     matrix = scene.matrix.conductivity
     others = sorted({inclusion.material.conductivity for inclusion in scene.inclusions} - {matrix})
     if len(others) != 1:

@@ -62,7 +62,7 @@ def zeta2(scene: Scene, *, order: int | None = None) -> float:
     check_scene(scene)
     if not scene.periodic:
         raise NotImplementedError("multipole: walls; zeta_2 is that of a periodic cell")
-    scene.require("multipole: zeta_2 is of two phases, without interfaces of their own")
+    scene.require("zeta_2 is of two phases, without interfaces of their own")
     spheres, _, _, unit = arrange(scene, any_matrix=True)
     if len(set(spheres.contrasts.tolist())) != 1:
         raise ValueError(

@@ -7,7 +7,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Flux, Layer, Material, MovingCylinder, Scene, Sphere, UniformSource
+from demheat import (
+    Convection,
+    Dependence,
+    Flux,
+    Image,
+    Layer,
+    Material,
+    MovingCylinder,
+    Scene,
+    Sphere,
+    UniformSource,
+    orthotropic,
+)
 
 A, B = Material(1.0), Material(2.0)
 BOX = (1.0, 1.0, 1.0)
@@ -329,6 +341,41 @@ def test_what_a_method_cannot_do_is_named_with_what_it_can(given, needs, what):
     given.require("it can all")
     with pytest.raises(NotImplementedError, match=f"^{what}: it knows better$"):
         given.require("it knows better", **needs)
+
+
+LABELS = np.zeros((2, 2, 2), dtype=int)
+OTHER = {"size": BOX, "walls": {"x-": 0.0, "x+": 1.0}}
+RISING = Dependence(((0.0, 1.0), (1.0, 2.0)))
+FEW = {
+    "image": (Scene.of_image(Image(LABELS, 1.0, {0: STEEL}), gradient=(1, 0, 0)), "Scene.image", "images are for"),
+    "exchange": (
+        Scene(size=BOX, matrix=STEEL, walls={"x-": 0.0, "x+": Convection(2.0, 5.0)}),
+        r"Scene.walls\['x\+'\] = Convection\(.*\)",
+        "heat exchanged with surroundings is for the DEM",
+    ),
+    "tensor": (
+        Scene(matrix=Material(orthotropic(1.0, 2.0, 3.0)), **OTHER),
+        "Material.conductivity in phase 0 is a tensor",
+        "tensors are for steady states of finite elements",
+    ),
+    "dependence": (
+        Scene(matrix=Material(1.0, dependence=RISING), **OTHER),
+        "Material.dependence in phase 0, a conductivity that follows the temperature",
+        "that is for steady states of the DEM and finite elements",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_what_few_methods_take_is_named_before_the_reason_and_who_takes_it(name):
+    given, what, others = FEW[name]
+    with pytest.raises(NotImplementedError, match=f"^{what}: it knows better; {others}"):
+        given.require("it knows better")
+    with pytest.raises(NotImplementedError, match=f"^{what}: {others}"):
+        given.require()
+    # Its own remedy is enough.
+    with pytest.raises(NotImplementedError, match=f"^{what}: it knows better; use another knob$"):
+        given.require("it knows better; use another knob")
 
 
 def test_what_a_method_can_do_is_not_refused():
