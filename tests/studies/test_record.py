@@ -33,6 +33,7 @@ NO_ROWS = {
     "demheat/files": READ,
     "demheat/packing/io": READ,
     "demheat/grains/contact_files.py": READ,
+    "demheat/terminal.py": READ,
     "demheat/pictures.py": DRAWN,
     "demheat/scene/html.py": DRAWN,
     "references/mesh/export.py": DRAWN,
