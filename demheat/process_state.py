@@ -1,4 +1,4 @@
-"""State that libraries keep for the whole process: changed by one thread at a time, and put back."""
+"""State that libraries keep for the whole process, changed by one thread at a time and put back; its processor time."""
 
 import os
 import threading
@@ -10,6 +10,24 @@ import numpy as np
 _RANDOM, _BLAS = threading.RLock(), threading.RLock()
 # How many are in `one_blas_thread` now, and what the first of them found.
 _within, _found = [0], []
+# Seconds of processor time of processes that work for this one and have not ended.
+_elsewhere = []
+
+
+def cpu_seconds() -> float:
+    """Processor seconds of this process, of its finished children, and of the mesher's process that it keeps."""
+    return sum(os.times()[:4]) + sum(_elsewhere)
+
+
+def count_elsewhere(seconds: float) -> None:
+    """Have `cpu_seconds` count what a process took for this one that has not ended.
+
+    Parameters
+    ----------
+    seconds : float
+        Negative when it has ended, for what was counted.
+    """
+    _elsewhere.append(seconds)
 
 
 @contextmanager

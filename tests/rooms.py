@@ -200,6 +200,7 @@ ENGINE = {
         "demheat.tensor",
         "demheat.limits",
         "demheat.method",
+        "demheat.process_state",
         "demheat.cheapest",
     ),
     # One function over many cases: of what it returns it knows a Field and the tensor of `effective`.
@@ -209,6 +210,7 @@ ENGINE = {
         "demheat.paths",
         "demheat.progress",
         "demheat.machine",
+        "demheat.process_state",
         "demheat.fresh",
         "demheat.cluster",
         "demheat.cheapest.effective",
@@ -247,6 +249,7 @@ ENGINE = {
         "demheat.slices",
         "demheat.paths",
         "demheat.pictures",
+        "demheat.process_state",
         "demheat.cheapest",
         "demheat.declared",
         "demheat.files",

@@ -7,7 +7,13 @@ BESIDE = {
     "references.midpoints": ("demheat.scene", "demheat.field", "demheat.limits"),
     "references.richardson": ("demheat.scene",),
     "references.voxels": ("demheat.scene", "demheat.progress", "references.voxels"),
-    "references.mesh": ("demheat.scene", "demheat.progress", "demheat.limits", "references.mesh"),
+    "references.mesh": (
+        "demheat.scene",
+        "demheat.process_state",
+        "demheat.progress",
+        "demheat.limits",
+        "references.mesh",
+    ),
     "references.exact": (
         "demheat.scene",
         "demheat.error",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -15,6 +14,7 @@ from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, ways
 from demheat.limits import free_memory
+from demheat.process_state import cpu_seconds
 from demheat.scene import Scene
 from demheat.scene.frozen import read_only
 from demheat.scene.inputs import chosen, finite, one_line
@@ -141,10 +141,10 @@ def effective(
     """
     accuracy, memory = _checked(accuracy, memory)
     allowed = _allowed(method)
-    clock, cpu = time.perf_counter(), _cpu_seconds()
+    clock, cpu = time.perf_counter(), cpu_seconds()
     loads = loads_of(scene)
     found, way, passed = _found(loads, accuracy, allowed, memory)
-    cost = {"cpu_s": _cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": way.rounds + 1}
+    cost = {"cpu_s": cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": way.rounds + 1}
     arrays = map(read_only, (found.tensor, found.tensor - found.half, found.tensor + found.half))
     return Effective(*arrays, way.method, dict(way.knobs), cost, found.how, loads.saved, passed)
 
@@ -225,8 +225,3 @@ def _said(way):
         return f"{way.method}: {f'no, {way.refused}' if way.refused else f'in doubt, {way.doubt}'}"
     cost = "cost unknown" if math.isnan(way.cpu_s) else f"about {way.cpu_s:.2g} CPU-s, {way.bytes / 2**20:.2g} MiB"
     return f"{way.method}: {cost}{f', beginning with {knobs_of(way)}' if way.knobs else ''}"
-
-
-def _cpu_seconds():
-    """Of this process and its finished children, the mesher's among them."""
-    return sum(os.times()[:4])

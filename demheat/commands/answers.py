@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import os
 import time
 import warnings
 from typing import NamedTuple
@@ -11,6 +10,7 @@ from typing import NamedTuple
 from demheat.commands.knobs import Asked
 from demheat.declared import load
 from demheat.field import Field
+from demheat.process_state import cpu_seconds
 from demheat.scene.inputs import one_line
 
 
@@ -99,11 +99,6 @@ def conductivity_of(field) -> float:
         return field.conductivity
     except ValueError:
         return math.nan
-
-
-def cpu_seconds() -> float:
-    """Processor seconds of this process and its finished children, the mesher's among them."""
-    return sum(os.times()[:4])
 
 
 def _cost(clock, cpu):

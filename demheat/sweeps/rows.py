@@ -14,6 +14,7 @@ import numpy as np
 from demheat.cheapest.effective import Effective
 from demheat.field import Field
 from demheat.machine import host, machine
+from demheat.process_state import cpu_seconds
 from demheat.scene.inputs import one_line, shown
 
 # Column of a file that finds a row again; what every row ends with.
@@ -30,13 +31,13 @@ def row_of(function: Callable, case: Mapping) -> dict:
     function : callable
     case : mapping
     """
-    wall, cpu = time.perf_counter(), time.process_time()
+    wall, cpu = time.perf_counter(), cpu_seconds()
     values, error = {}, ""
     try:
         values = _apart(values_of(function(**case)), case)
     except Exception as raised:
         error = f"{type(raised).__name__}: {one_line(raised)}"
-    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": time.process_time() - cpu}
+    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": cpu_seconds() - cpu}
     return {**case, **values, "error": error, **cost, **origin()}
 
 

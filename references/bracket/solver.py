@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from demheat.limits import free_memory
-from demheat.process_state import one_blas_thread
+from demheat.process_state import cpu_seconds, one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
 from demheat.scene.inputs import finite
 from references.bracket.energies import flux_energies, temperature_energies
@@ -173,13 +172,13 @@ def _unit_load(scene):
 
 
 def _once(scene, size, tolerance, drop, power):
-    begin = time.process_time()
+    begin = cpu_seconds()
     mesh = make(scene, size=size)
-    meshed = time.process_time()
+    meshed = cpu_seconds()
     lower, fluxes = _lower(scene, mesh, tolerance, drop, power)
-    bounded = time.process_time()
+    bounded = cpu_seconds()
     upper, temperatures = _upper(scene, mesh, tolerance, power)
-    cpu = {"mesh": meshed - begin, "lower": bounded - meshed, "upper": time.process_time() - bounded}
+    cpu = {"mesh": meshed - begin, "lower": bounded - meshed, "upper": cpu_seconds() - bounded}
     stats = {"size": mesh.stats["size"], "elements": len(mesh.cells), "unbalanced": fluxes.pop("unbalanced")}
     lower, upper = float(lower) * (1 - ROUNDING), float(upper) * (1 + ROUNDING)
     return Bracket(lower, upper, stats | {"temperatures": temperatures, "fluxes": fluxes, "cpu_s": cpu})

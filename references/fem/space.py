@@ -104,7 +104,9 @@ def tetrahedra(scene, mesh) -> Space:
     if mesh.faces is not None:
         stiffness = (stiffness + interfaces.exchange(mesh, dof)).tocsr()
     mass, volumes = _mass(mesh, capacities(scene)[mesh.phase])
-    lost = LOST if scene.domain == "box" else LOST_ON_ROUND if mesh.cells.shape[1] == 10 else LOST_ON_CHORDS
+    # Quadratic elements that were straightened are chords, too.
+    arcs = mesh.cells.shape[1] == 10 and not mesh.stats["straightened"]
+    lost = LOST if scene.domain == "box" else LOST_ON_ROUND if arcs else LOST_ON_CHORDS
     # Distance of nodes that are neighbours.
     edge = mesh.stats["size"] / (2 if mesh.cells.shape[1] == 10 else 1)
     view = partial(NodalField, scene, mesh, lost=lost)

@@ -1,30 +1,50 @@
 """gmsh in a process of its own: Ctrl-C ends it at once, and a crash of it is an error like others.
 
-gmsh's library keeps to itself until a mesh is done: no signal reaches Python meanwhile. What may last is therefore
-done by a child, which is ended with whatever ends the wait for it, and which ends itself with its parent.
+gmsh's library keeps to itself until a mesh is done: no signal reaches Python meanwhile; and its second mesh in a
+process may be another than its first, or end the process. So one worker is kept (`references.mesh.worker`), which forks
+for each mesh. It is ended with whatever ends the wait for it, and ends itself with its parent; a fork of the parent
+starts its own.
 """
 
 from __future__ import annotations
 
+import atexit
 import os
 import pickle
 import signal
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 
-# Estimated tetrahedra, of about 2 s: the child costs 1 s, most of it imports. Less is done here, in a thread.
-APART_FROM = 20_000
-# Seconds between two signs of life; the share done at which estimates of the time stay.
-PAUSE, LAST = 0.2, 0.95
+from demheat.process_state import count_elsewhere
+
+# Part of the work at which estimates of the time stay.
+LAST = 0.95
+# Of the worker. Threads would only take room: nothing there uses them. gmsh's HXT reads, on coarse round bodies, memory
+# that it has not written: the C library of Linux fills all with this byte's complement first (5 % of the time), so that
+# it crashes always, and its next size is taken, instead of now and then, or with another mesh each time.
+ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MALLOC_PERTURB_": "1"}
+# Workers of this process with the processor seconds that were counted of each; those of them that wait for work, at
+# most one, whatever the number of threads.
+_workers: dict[subprocess.Popen, float] = {}
+_idle: list[subprocess.Popen] = []
+
+
+class Stopped(RuntimeError):
+    """What a process is stopped for that it would do again."""
 
 
 def run_apart(
-    function: Callable, *arguments, seconds: float, done: Callable[[float], None], memory: float | None = None
+    function: Callable,
+    *arguments,
+    seconds: float,
+    done: Callable[[float], None],
+    memory: float | None = None,
+    most: float | None = None,
 ):
-    """Call function(*arguments) in a new process.
+    """Call function(*arguments) in another process.
 
     Parameters
     ----------
@@ -35,9 +55,11 @@ def run_apart(
     seconds : float
         That it takes, about.
     done : callable (share)
-        Called meanwhile with the share of them that is over.
+        Called meanwhile with the share of them that is over; what it raises ends the process.
     memory : float, bytes, optional
         Of addresses that the process may have: gmsh runs away on some geometries, and would take the machine's all.
+    most : float, s, optional
+        Of processor time that it may take.
 
     Returns
     -------
@@ -50,81 +72,115 @@ def run_apart(
         If the process was killed, as systems do that run out of memory.
     RuntimeError
         If it crashed, as gmsh does that wants more than `memory`.
+    Stopped
+        If it took more than the processor time allowed.
     Exception
         Whatever the function raises.
     """
-    # A session of its own: Ctrl-C in a terminal is for the parent alone, who ends the child.
-    knobs = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": os.name == "posix"}
-    with subprocess.Popen([sys.executable, __file__], **knobs) as child:
+    job = pickle.dumps((function, arguments, memory, most))
+    worker = _worker()
+    try:
+        status, answer = _waited(worker, job, seconds, done)
+    except (EOFError, OSError, pickle.UnpicklingError):
+        _end(worker)
+        raise RuntimeError(f"the mesher's process ended with status {worker.returncode}") from None
+    except BaseException:
+        _end(worker)
+        raise
+    if _idle or not hasattr(os, "fork"):
+        _end(worker)
+    else:
+        _idle.append(worker)
+    if status != 0:
+        _fail(status, most)
+    value, error = pickle.loads(answer)
+    if error is not None:
+        raise error
+    return value
+
+
+def _worker():
+    """One that waits for work, or a new one."""
+    while _idle:
         try:
-            # The path first, with which the rest is found.
-            pickle.dump(sys.path, child.stdin)
-            pickle.dump((function, arguments, memory), child.stdin)
-            child.stdin.flush()
-            begin = time.monotonic()
-            # Empty answers tell that the child is alive.
-            while (answer := pickle.load(child.stdout)) is None:
-                done(min((time.monotonic() - begin) / seconds, LAST))
-            value, error = answer
-            if error is not None:
-                raise error
-            return value
-        except (EOFError, BrokenPipeError):
-            _fail(child.wait())
-        finally:
-            child.kill()
+            worker = _idle.pop()
+        except IndexError:  # another thread was faster
+            break
+        if worker.poll() is None:
+            return worker
+        _end(worker)
+    if not sys.executable:
+        raise RuntimeError("meshes are made in a process of their own, and sys.executable does not say which program")
+    # A session of its own: Ctrl-C in a terminal is for the parent alone, who ends the worker.
+    how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": os.name == "posix"}
+    words = [sys.executable, Path(__file__).with_name("worker.py")]
+    worker = subprocess.Popen(words, env=os.environ | ENVIRONMENT, **how)
+    _workers[worker] = 0.0
+    return worker
 
 
-def _fail(status):
+def _waited(worker, job, seconds, done):
+    """Status and bytes of the answer."""
+    # Relative paths are those of this process, which may have moved since.
+    pickle.dump(([os.path.abspath(each) for each in sys.path], job), worker.stdin)
+    worker.stdin.flush()
+    begin = time.monotonic()
+    parts = []
+    while not isinstance(word := pickle.load(worker.stdout), tuple):
+        # None tells that it is alive.
+        if word is not None:
+            parts.append(word)
+        done(min((time.monotonic() - begin) / seconds, LAST))
+    status, spent = word
+    _workers[worker] += spent
+    count_elsewhere(spent)
+    return status, b"".join(parts)
+
+
+def _fail(status, most):
     if os.name == "posix" and status == -signal.SIGKILL:
         raise MemoryError("gmsh was killed, most likely for want of memory: ask for a larger size of the elements")
+    if os.name == "posix" and status == -signal.SIGXCPU:
+        raise Stopped(
+            f"gmsh was stopped after {most:.0f} s of processor time, many times what was expected: ask for another "
+            "size of the elements"
+        )
     raise RuntimeError(f"gmsh crashed: its process ended with status {status}")
 
 
-def main():
-    """What the child does: read a function and its arguments, write (answer, error), and None all the while."""
-    channel = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    # Nothing else may write there.
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
-    sys.path[:] = pickle.load(sys.stdin.buffer)
-    function, arguments, memory = pickle.load(sys.stdin.buffer)
-    _limit(memory)
-    over = threading.Event()
-    alive = threading.Thread(target=_say_alive, args=(channel, over), daemon=True)
-    for thread in (alive, threading.Thread(target=_end_with_parent, daemon=True)):
-        thread.start()
-    try:
-        answer = function(*arguments), None
-    except Exception as error:  # noqa: BLE001, the parent raises it
-        answer = None, error
-    over.set()
-    alive.join()
-    pickle.dump(answer, channel)
-    channel.flush()
-    # At once: nothing is left to do, and the parent may hang up first.
-    os._exit(0)
+def _end(worker):
+    """End a worker and its fork."""
+    if os.name == "posix" and worker.returncode is None:
+        try:
+            os.killpg(worker.pid, signal.SIGKILL)
+        except (ProcessLookupError, PermissionError):
+            pass
+    worker.kill()
+    for pipe in (worker.stdin, worker.stdout):
+        try:
+            pipe.close()
+        except OSError:  # what was not sent yet
+            pass
+    worker.wait()
+    # Now the system counts it among the children that have ended.
+    count_elsewhere(-_workers.pop(worker, 0.0))
 
 
-def _limit(memory):
-    if memory is not None and os.name == "posix":
-        import resource
-
-        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
-        limit = int(memory) if hard == resource.RLIM_INFINITY else min(int(memory), hard)
-        resource.setrlimit(resource.RLIMIT_AS, (limit, hard))
-
-
-def _say_alive(channel, over):
-    while not over.wait(PAUSE):
-        pickle.dump(None, channel)
-        channel.flush()
+def _forget():
+    """A forked child leaves its parent's workers alone, which are to hear when the parent ends."""
+    for worker in _workers:
+        for pipe in (worker.stdin, worker.stdout):
+            pipe.raw.close()
+        worker.returncode = 0
+    _workers.clear()
+    _idle.clear()
 
 
-def _end_with_parent():
-    # Nothing more is sent: the end of the pipe is the end of the parent. Not read by the buffer, which has a lock.
-    os.read(sys.stdin.fileno(), 1)
-    os._exit(1)
+@atexit.register
+def _end_all():
+    for worker in list(_workers):
+        _end(worker)
 
 
-if __name__ == "__main__":
-    main()
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_forget)

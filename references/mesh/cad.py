@@ -77,7 +77,7 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
         finer = sizes._replace(size=factor * sizes.size)
         return _attempt(scene, finer, Elements(algorithm, order == 2, bool(curved), cells), done)
 
-    return attempts(attempt, size)
+    return attempts(scene, attempt, size)
 
 
 class _Geometry(NamedTuple):
@@ -115,18 +115,18 @@ def _attempt(scene, sizes, elements, done):
 
 def _tetrahedra(geometry, sizes, elements):
     """Points, cells and phases, in unit lengths."""
-    with session() as gmsh:
-        phases = _cut_geometry(gmsh, geometry)
-        if geometry.periodic:
-            _tie_faces(gmsh, geometry.box)
-        # Kept until the end: gmsh has its address.
-        features = None
-        if len(sizes.balls) + len(sizes.shells) > MOST_FIELDS:
-            features = table(sizes, geometry.box)
-            look_up(gmsh, features)
-            sizes = sizes._replace(balls=sizes.balls[:0], shells=sizes.shells[:0])
-        _set_sizes(gmsh, sizes, geometry.box)
-        return tetrahedra(gmsh, phases, elements)
+    gmsh = session()
+    phases = _cut_geometry(gmsh, geometry)
+    if geometry.periodic:
+        _tie_faces(gmsh, geometry.box)
+    # Kept until the end: gmsh has its address.
+    features = None
+    if len(sizes.balls) + len(sizes.shells) > MOST_FIELDS:
+        features = table(sizes, geometry.box)
+        look_up(gmsh, features)
+        sizes = sizes._replace(balls=sizes.balls[:0], shells=sizes.shells[:0])
+    _set_sizes(gmsh, sizes, geometry.box)
+    return tetrahedra(gmsh, phases, elements)[:3]
 
 
 def _cut_geometry(gmsh, geometry):

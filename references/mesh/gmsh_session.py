@@ -4,17 +4,13 @@ from __future__ import annotations
 
 import ctypes
 import importlib
-import sys
-import threading
 import time
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import contextmanager
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.progress import stage
-from references.mesh.apart import APART_FROM, run_apart
+from references.mesh.apart import run_apart
 
 # Debian and Ubuntu packages of the libraries that gmsh's wheel links to and a bare system lacks (readelf -d, dpkg -S).
 PACKAGES = {
@@ -46,14 +42,18 @@ OPTIONS = {
     "Mesh.MaxNumThreads1D": 1,
     "Mesh.MaxNumThreads2D": 1,
     "Mesh.MaxNumThreads3D": 1,
+    # Defaults, for bits that are the same whatever they will be.
+    "General.NumThreads": 1,
+    "Mesh.RandomSeed": 1,
 }
-SET_LATER = ("Mesh.MeshSizeMax", "Mesh.Algorithm3D", "Mesh.SecondOrderLinear")
 # Of meshing, per tetrahedron of second order; found: 7e-5 to 1.2e-4.
 SECONDS_EACH = 1e-4
 # Addresses that gmsh may have in a process of its own: for libraries and threads, and for each tetrahedron that is
 # estimated several times what it needs (found: 1.9 kB). More than that must not take the machine's all.
 BASE_BYTES, MOST_BYTES_EACH = 4 * 2**30, 5_000
-_LOCK = threading.Lock()
+# Processor seconds after which gmsh is stopped: for the geometry of many inclusions, and so many times what meshing was
+# found to take.
+BASE_SECONDS, MOST_TIMES = 600.0, 20.0
 
 
 def load_gmsh():
@@ -110,11 +110,12 @@ class Elements(NamedTuple):
     estimated: float
 
 
-def attempts(attempt, size):
+def attempts(scene, attempt, size):
     """Mesh at the size asked for, or if gmsh fails at neighbouring ones.
 
     Parameters
     ----------
+    scene : Scene
     attempt : callable (factor on the size, number of gmsh's 3-D algorithm, done)
         One try; returns a Mesh, and calls done(share) meanwhile.
     size : float, m
@@ -128,11 +129,10 @@ def attempts(attempt, size):
     Raises
     ------
     RuntimeError
-        If gmsh fails at four neighbouring sizes.
+        If gmsh fails at four neighbouring sizes, or hangs.
     ImportError
         If gmsh or a system library that it needs is missing.
     """
-    load_gmsh()
     begin, errors = time.perf_counter(), []
     for number, (factor, algorithm) in enumerate(ATTEMPTS, start=1):
         try:
@@ -145,11 +145,14 @@ def attempts(attempt, size):
             continue
         stats = {"size": factor * size, "attempts": number, "mesh_s": time.perf_counter() - begin}
         return mesh._replace(stats=stats | mesh.stats)
-    raise RuntimeError(f"gmsh could not mesh the scene at any of {len(ATTEMPTS)} sizes ({'; '.join(errors)})")
+    raise RuntimeError(
+        f"gmsh could not mesh the {scene.domain} of {scene.size} m with {len(scene.inclusions)} inclusions at any of "
+        f"{len(ATTEMPTS)} sizes ({'; '.join(errors)})"
+    )
 
 
 def call_gmsh(function, *arguments, cells, done):
-    """Call function(*arguments), which works in a `session`, where it can be interrupted.
+    """Call function(*arguments), which works in a `session`, in another process.
 
     Parameters
     ----------
@@ -158,7 +161,7 @@ def call_gmsh(function, *arguments, cells, done):
     *arguments
         Which pickle takes.
     cells : float
-        Estimated number of tetrahedra: many are made in a process of their own.
+        Estimated number of tetrahedra.
     done : callable (share)
 
     Returns
@@ -166,37 +169,19 @@ def call_gmsh(function, *arguments, cells, done):
     object
         What the function returns.
     """
-    if cells >= APART_FROM and sys.executable:
-        memory = BASE_BYTES + cells * MOST_BYTES_EACH
-        return run_apart(function, *arguments, seconds=cells * SECONDS_EACH, done=done, memory=memory)
-    # A thread of its own shields the caller's OpenMP settings, which gmsh changes in its thread.
-    with ThreadPoolExecutor(1) as pool:
-        return pool.submit(function, *arguments).result()
+    seconds = cells * SECONDS_EACH
+    limits = {"memory": BASE_BYTES + cells * MOST_BYTES_EACH, "most": BASE_SECONDS + MOST_TIMES * seconds}
+    return run_apart(function, *arguments, seconds=seconds, done=done, **limits)
 
 
-@contextmanager
 def session():
-    """A fresh gmsh model; options, model and the caller's own gmsh session are afterwards as before."""
+    """gmsh with a new model, once in a process that ends then."""
     gmsh = load_gmsh()
-    with _LOCK:
-        mine = not gmsh.isInitialized()
-        if mine:
-            gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
-        before = {name: gmsh.option.getNumber(name) for name in (*OPTIONS, *SET_LATER)}
-        current = gmsh.model.getCurrent()
-        try:
-            for name, value in OPTIONS.items():
-                gmsh.option.setNumber(name, value)
-            gmsh.model.add("demheat")
-            yield gmsh
-        finally:
-            if mine:
-                gmsh.finalize()
-            else:
-                gmsh.model.remove()
-                gmsh.model.setCurrent(current)
-                for name, value in before.items():
-                    gmsh.option.setNumber(name, value)
+    gmsh.initialize(argv=[], readConfigFiles=False, run=False, interruptible=False)
+    for name, value in OPTIONS.items():
+        gmsh.option.setNumber(name, value)
+    gmsh.model.add("demheat")
+    return gmsh
 
 
 def look_up(gmsh, table):
@@ -237,6 +222,8 @@ def tetrahedra(gmsh, phases, elements):
     cells : (m, 4) or (m, 10) int32 array
         As in `Mesh`.
     phase : (m,) int32 array
+    surface : (t, 3) int32 array
+        Corners of the triangles that gmsh has put on all surfaces; -1 for a node of no cell.
 
     Raises
     ------
@@ -249,7 +236,7 @@ def tetrahedra(gmsh, phases, elements):
     gmsh.model.mesh.generate(3)
     if elements.quadratic:
         gmsh.model.mesh.setOrder(2)
-    kind, width = (11, 10) if elements.quadratic else (4, 4)
+    kind, width, flat = (11, 10, (9, 6)) if elements.quadratic else (4, 4, (2, 3))
     parts = {tag: gmsh.model.mesh.getElementsByType(kind, tag)[1].reshape(-1, width) for tag in phases}
     cells = np.concatenate(list(parts.values())).astype(np.int64)
     phase = np.repeat(np.array(list(phases.values()), np.int32), [len(part) for part in parts.values()])
@@ -262,4 +249,7 @@ def tetrahedra(gmsh, phases, elements):
     cells = cells.reshape(-1, width).astype(np.int32)
     if elements.quadratic:
         cells[:, [8, 9]] = cells[:, [9, 8]]  # gmsh lists edge 23 before 13
-    return coordinates.reshape(-1, 3)[used], cells, phase
+    number = np.full(len(tags), -1, dtype=np.int32)
+    number[used] = np.arange(len(used))
+    surface = gmsh.model.mesh.getElementsByType(flat[0])[1].reshape(-1, flat[1])[:, :3]
+    return coordinates.reshape(-1, 3)[used], cells, phase, number[place[surface.astype(np.int64)]]

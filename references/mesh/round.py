@@ -51,7 +51,7 @@ def make_round(scene, *, size, order):
         elements = Elements(algorithm, order == 2, True, CELLS * scene.volume / size**3)
         return _attempt(scene, factor * size, elements, done)
 
-    return attempts(attempt, size)
+    return attempts(scene, attempt, size)
 
 
 def _attempt(scene, size, elements, done):
@@ -59,23 +59,26 @@ def _attempt(scene, size, elements, done):
     scale = max(scene.size)
     box = np.array(scene.size) / scale
     what = scene.domain, box, size / scale, elements
-    points, cells, phase = call_gmsh(_tetrahedra, *what, cells=elements.estimated, done=done)
+    points, cells, phase, surface = call_gmsh(_tetrahedra, *what, cells=elements.estimated, done=done)
     pairs = snap(points, box, False)
     straightened, jacobian = straighten(points, cells, pairs) if elements.quadratic else (0, 1.0)
     volumes, curved = volumes_of(points[cells]) * scale**3, bent(points[cells])
     error = float(volumes.sum() / scene.volume - 1)
     if volumes.min() <= 0 or abs(error) > LARGEST_LOSS:
         raise RuntimeError(f"smallest element {volumes.min():.3g} m3, volume off by {error:.3g}")
+    faces, owners = _outer(cells)
+    if not np.array_equal(*(np.unique(np.sort(each[:, :3], axis=1), axis=0) for each in (faces, surface))):
+        raise RuntimeError("the elements do not fill what the triangles on the surface enclose")
     stats = {"straightened": straightened, "jacobian": jacobian, "volume_error": error}
-    return Mesh(points * scale, cells, phase, volumes, curved, _walls(scene, points, cells, box), pairs, stats)
+    return Mesh(points * scale, cells, phase, volumes, curved, _walls(scene, points, box, faces, owners), pairs, stats)
 
 
 def _tetrahedra(domain, box, size, elements):
-    """Points, cells and phases, in unit lengths."""
-    with session() as gmsh:
-        tag = _body(gmsh.model.occ, domain, box)
-        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-        return tetrahedra(gmsh, {tag: 0}, elements)
+    """Points, cells, phases and triangles on the surface, in unit lengths."""
+    gmsh = session()
+    tag = _body(gmsh.model.occ, domain, box)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    return tetrahedra(gmsh, {tag: 0}, elements)
 
 
 def _body(occ, domain, box):
@@ -91,8 +94,8 @@ def _body(occ, domain, box):
     return tag
 
 
-def _walls(scene, points, cells, box):
-    """Faces of one element only, by wall."""
+def _outer(cells):
+    """Faces (k, 3 or 6) of one element only, and the elements (k,)."""
     faces, owners = [], []
     for a, b, c in combinations(range(4), 3):
         middles = [EDGE_COLUMN[a, b], EDGE_COLUMN[b, c], EDGE_COLUMN[a, c]] if cells.shape[1] == 10 else []
@@ -101,7 +104,11 @@ def _walls(scene, points, cells, box):
     faces, owners = np.concatenate(faces), np.concatenate(owners)
     _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
     outer = first[count == 1]
-    faces, owners = faces[outer], owners[outer]
+    return faces[outer], owners[outer]
+
+
+def _walls(scene, points, box, faces, owners):
+    """The outer faces by wall."""
     walls, rest = {}, np.ones(len(faces), bool)
     if scene.domain != "sphere":
         axis = "xyz".index(scene.domain[-1])

@@ -1,19 +1,23 @@
-"""gmsh in a process of its own: answers, errors, crashes, Ctrl-C."""
+"""gmsh in a process of its own: answers, errors, crashes, Ctrl-C, the same bits each time."""
 
 import math
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
+import types
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from demheat.process_state import cpu_seconds
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
-from references.mesh import cad, gmsh_session, sizes
+from references.mesh import apart, cad, sizes
+from references.mesh import round as round_bodies
 from references.mesh.apart import run_apart
 
 ROOT = Path(__file__).parents[3]
@@ -52,6 +56,8 @@ def test_errors_are_those_of_the_function():
 
 
 def test_what_is_printed_there_does_no_harm(capfd):
+    # A new worker, which writes where this process does now.
+    apart._end_all()
     assert call(print, "loud")[0] is None
     assert capfd.readouterr() == ("", "loud\n")
 
@@ -75,15 +81,107 @@ def test_what_runs_away_is_stopped():
     assert "larger size" not in str(caught.value)
 
 
-def test_many_elements_are_made_apart_and_are_the_same(monkeypatch):
-    here = mesh.make(ball(), size=0.2)
-    monkeypatch.setattr(gmsh_session, "APART_FROM", 0)
-    calls, there = [], gmsh_session.run_apart
-    monkeypatch.setattr(gmsh_session, "run_apart", lambda *a, **k: calls.append(a[0]) or there(*a, **k))
-    apart = mesh.make(ball(), size=0.2)
-    assert calls == [cad._tetrahedra]
-    assert np.array_equal(apart.points, here.points) and np.array_equal(apart.cells, here.cells)
-    assert np.array_equal(apart.phase, here.phase)
+@pytest.mark.skipif(os.name != "posix", reason="limits of processor time")
+def test_what_hangs_is_stopped_and_not_tried_again():
+    with pytest.raises(RuntimeError, match="stopped after 1 s of processor time") as caught:
+        run_apart(_hang, seconds=1.0, done=lambda share: None, most=1.0)
+    # Of a kind that meshing at another size does not follow.
+    assert type(caught.value) is not RuntimeError
+
+
+def _hang():
+    while True:
+        pass
+
+
+def test_what_ends_the_wait_ends_the_work():
+    def tell(share):
+        raise KeyError("enough")
+
+    before = set(apart._workers)
+    with pytest.raises(KeyError, match="enough"):
+        run_apart(time.sleep, 600.0, seconds=1.0, done=tell)
+    assert not apart._idle and set(apart._workers) < before | {None}
+    assert call(math.sqrt, 9.0)[0] == 3.0
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="one worker for one mesh")
+def test_one_worker_is_kept_and_its_time_is_counted():
+    assert call(os.getppid)[0] == call(os.getppid)[0] == apart._idle[0].pid
+    assert call(os.getpid)[0] != call(os.getpid)[0]
+    before = cpu_seconds()
+    call(_burn)
+    # A tenth of a second, told in hundredths.
+    assert cpu_seconds() - before > 0.05
+    # It may be killed: another one is begun.
+    apart._idle[0].kill()
+    apart._idle[0].wait()
+    assert call(math.sqrt, 4.0)[0] == 2.0 and len(apart._workers) == 1
+
+
+def _burn():
+    end = time.process_time() + 0.1
+    while time.process_time() < end:
+        pass
+
+
+def test_threads_do_not_mix_their_answers():
+    found = {}
+
+    def work(k):
+        found[k] = [call(divmod, 100 * k + i, 7)[0] for i in range(5)]
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(3)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert found == {k: [divmod(100 * k + i, 7) for i in range(5)] for k in range(3)}
+    assert len(apart._idle) <= 1
+
+
+def test_shapes_that_only_this_process_has_are_refused(monkeypatch):
+    module = types.ModuleType("nowhere")
+    monkeypatch.setitem(sys.modules, "nowhere", module)
+    module.Mine = type("Mine", (), {"__module__": "nowhere"})
+    with pytest.raises(NotImplementedError, match="shape of one's own must be in a module.*nowhere"):
+        call(print, module.Mine())
+
+
+# gmsh reads there what it has not written: in the caller's process it crashed within five meshes, or made others.
+COARSE = Scene(
+    (2.184e-3, 0.232e-3, 0.232e-3), Material(1.0, 1.0, 1.0), walls={"x-": 1.0}, initial=0.0, domain="cylinder-x"
+)
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="memory is filled by the C library of Linux")
+def test_a_mesh_is_the_same_whatever_was_meshed_before():
+    first = mesh.make_round(COARSE, size=1.2e-4, order=2)
+    mesh.make(ball(), size=0.3, order=1)
+    for _ in range(4):
+        again = mesh.make_round(COARSE, size=1.2e-4, order=2)
+        assert again.stats["size"] == first.stats["size"]
+        assert np.array_equal(again.points, first.points) and np.array_equal(again.cells, first.cells)
+
+
+def test_crashes_name_the_scene(monkeypatch):
+    monkeypatch.setattr(round_bodies, "_tetrahedra", os.abort)
+    monkeypatch.setattr(round_bodies, "call_gmsh", lambda function, *_, **how: call(function))
+    with pytest.raises(RuntimeError, match=r"could not mesh the cylinder-x of \(0.002184, .* 4 sizes .*crashed.*-6"):
+        mesh.make_round(COARSE, size=1e-4, order=1)
+
+
+def test_bodies_that_are_not_filled_are_refused(monkeypatch):
+    """Elements with all their corners on the surface, as most are here: only the triangles there tell the gap."""
+    there = round_bodies.call_gmsh
+
+    def loses(*arguments, **how):
+        points, cells, phase, surface = there(*arguments, **how)
+        return points, cells[1:], phase[1:], surface
+
+    monkeypatch.setattr(round_bodies, "call_gmsh", loses)
+    with pytest.raises(RuntimeError, match="4 sizes.*do not fill what the triangles on the surface enclose"):
+        mesh.make_round(COARSE, size=1e-4, order=2)
 
 
 SCRIPT = """
@@ -119,8 +217,7 @@ def test_ctrl_c_ends_meshing_and_the_mesher():
     assert parent.returncode == 0
     # Not one stage after the mesh: it was not waited for.
     assert set(rest) == {"mesh", "interrupted", ""} or set(rest) == {"interrupted", ""}
-    with pytest.raises(ProcessLookupError):
-        os.kill(child, 0)
+    assert ended(child)
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
@@ -137,16 +234,76 @@ run_apart(time.sleep, 600.0, seconds=1.0, done=lambda share: os.kill(os.getpid()
     with subprocess.Popen([sys.executable, "-c", script], cwd=ROOT, stdout=subprocess.PIPE, text=True) as parent:
         child = int(parent.stdout.readline())
     assert parent.returncode == -signal.SIGKILL
+    assert ended(child)
+
+
+def ended(group):
+    """Whether all processes of a group end soon."""
     for _ in range(500):
-        try:
-            os.kill(child, 0)
-        except ProcessLookupError:
-            return
-        # Nobody may be left to reap it: a zombie has ended, too.
-        if Path(f"/proc/{child}/stat").exists() and Path(f"/proc/{child}/stat").read_text().split()[2] == "Z":
-            return
+        if not living(group):
+            return True
         time.sleep(0.02)
-    raise AssertionError("the mesher outlives its parent")
+    return False
+
+
+def living(group):
+    """Whether processes of a group live; nobody may be left to reap one that has ended."""
+    try:
+        os.killpg(group, 0)
+    except ProcessLookupError:
+        return False
+    stats = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        try:
+            stats.append(path.read_text().rpartition(")")[2].split())
+        except (FileNotFoundError, ProcessLookupError):
+            pass
+    return not stats or any(state != "Z" and int(own) == group for state, _, own, *_ in stats)
+
+
+FORKS = """
+import math, os, threading, time
+from references.mesh.apart import run_apart
+def root(x): return run_apart(math.sqrt, x, seconds=1.0, done=lambda share: None)
+def roots(): assert [root(float(i * i)) for i in mine] == mine
+mine = list(range(20))
+root(4.0)
+# A worker waits: it is the parent's, whatever its child does.
+children = [os.fork()]
+if children == [0]:
+    mine = list(range(50, 70))
+    roots()
+    os._exit(0)
+roots()
+found = []
+def slow(): found.append(run_apart(time.sleep, 0.5, seconds=1.0, done=lambda share: None))
+workers = [threading.Thread(target=each) for each in (roots, slow)]
+for worker in workers: worker.start()
+time.sleep(0.2)
+# One works: a child that ends as processes do must not end it.
+children.append(os.fork())
+if children[-1] == 0:
+    raise SystemExit
+for _ in range(2):
+    children.append(os.fork())
+    if children[-1] == 0:
+        try:
+            roots()
+            os._exit(0)
+        finally:
+            os._exit(1)
+for worker in workers: worker.join()
+ends = [os.waitpid(child, 0)[1] for child in children]
+assert ends == [0] * 4 and found == [None] and root(9.0) == 3.0, ends
+"""
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork here")
+def test_children_forked_while_threads_mesh():
+    # Python warns, since 3.12, of any fork while there are threads.
+    words = [sys.executable, "-W", "error", "-W", "ignore::DeprecationWarning", "-c", FORKS]
+    done = subprocess.run(words, cwd=ROOT, capture_output=True, text=True, timeout=60)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_hopeless_meshes_are_refused_before_they_are_begun(monkeypatch):

