@@ -10,6 +10,8 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from demheat.process_state import cpu_seconds
+
 MIB = 2**20
 
 
@@ -34,9 +36,9 @@ def measured(function, /, *args, **knobs):
     _give_back_freed_memory()
     peak_by = "VmHWM" if _reset_peak() else "ru_maxrss"
     base = _resident_mib()
-    wall, cpu = time.perf_counter(), _cpu_seconds()
+    wall, cpu = time.perf_counter(), cpu_seconds()
     value = function(*args, **knobs)
-    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": _cpu_seconds() - cpu}
+    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": cpu_seconds() - cpu}
     peak = _status_mib("VmHWM") if peak_by == "VmHWM" else _max_rss_mib()
     return value, {**cost, "peak_mib": max(peak - base, 0.0), "base_mib": base, "peak_by": peak_by}
 
@@ -72,11 +74,6 @@ def triad_gbs(*, threads=None, elements=8_000_000, repeats=5):
             list(pool.map(sweep, range(threads)))
             best = min(best, time.perf_counter() - start)
     return 24e-9 * elements / best
-
-
-def _cpu_seconds():
-    children = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return time.process_time() + children.ru_utime + children.ru_stime
 
 
 def _reset_peak():

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-import resource
 import sys
 import time
 from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
+from demheat.process_state import cpu_seconds
 from studies.harness.cost import triad_gbs
 
 STAT = Path("/proc/stat")
@@ -53,8 +53,7 @@ class Moment(NamedTuple):
 
 def moment():
     """Now; busy is not-a-number where the system does not tell (it does on Linux)."""
-    children = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return Moment(time.monotonic(), _busy(), time.process_time() + children.ru_utime + children.ru_stime)
+    return Moment(time.monotonic(), _busy(), cpu_seconds())
 
 
 def others(begin, end=None):
