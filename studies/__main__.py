@@ -298,13 +298,19 @@ def _check(arguments):
 
 
 def _stored(arguments):
-    """Name, study and file of the studies that are named, or of all that have rows."""
+    """Name, study and file of the studies that are named, or of all that have rows; of one at least."""
+    found = []
     for name in arguments.names or study_names():
         study, path = runner.load(name), runner.csv_of(name, arguments.out)
         if path.exists():
-            yield name, study, path
+            found.append((name, study, path))
         elif arguments.names:
             raise ValueError(f"no {path}; run the study first")
+    if not found:
+        raise ValueError(
+            f"--out {arguments.out}: must be a folder with rows of a study, as {runner.csv_of('NAME', arguments.out)}"
+        )
+    return found
 
 
 def _name_some(word, keys, every):

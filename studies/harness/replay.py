@@ -15,7 +15,7 @@ from queue import SimpleQueue
 from studies.harness import provenance, runner
 from studies.harness.forked import forking
 from studies.harness.sound import held, proved
-from studies.harness.store import add_rows, case_key, read_rows
+from studies.harness.store import add_rows, case_key, check_writable, read_rows
 from studies.harness.tolerance import moved
 
 # Parameters of a case that say which code makes its row, and not how much of it.
@@ -118,6 +118,7 @@ def replayed(tasks, out, say, *, compute=None):
         empty.
     """
     found = []
+    check_writable(out)
     with ExitStack() as stack:
         compute = compute or stack.enter_context(side_by_side())
         for number, (task, row) in enumerate(zip(tasks, compute(tasks), strict=True), start=1):
@@ -147,15 +148,14 @@ def told(wrong):
 
 
 def keys_of(study, path):
-    """Cases of a study and those of guests in its file, in order.
+    """Cases of a study in order, then all others in its file: of guests, or of another version. None is lost.
 
     Parameters
     ----------
     study : module
     path : path
     """
-    kept = [key for key in read_rows(path) if provenance.guest_case(study, key) is not None]
-    return list(dict.fromkeys([*map(case_key, study.CASES), *kept]))
+    return list(dict.fromkeys([*map(case_key, study.CASES), *read_rows(path)]))
 
 
 def bear_out(name, out, *, quick=False, say=print, compute=None):

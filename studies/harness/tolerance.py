@@ -21,7 +21,7 @@ from studies.harness.store import TAIL
 # Columns that end a row and are values all the same.
 COUNTED = ("unknowns", "iterations")
 # What says how a row was made and not what came out of it.
-ASIDE = re.compile(r"case|packing_cached|(.+_)?(note|version)|remark|warning|solver")
+ASIDE = re.compile(r"case|code|packing_cached|(.+_)?(note|version)|remark|warning|solver")
 
 
 class Tolerance(NamedTuple):

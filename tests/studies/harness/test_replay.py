@@ -117,9 +117,40 @@ def test_a_killed_accept_goes_on(old):
     assert [row["square"] for row in old.rows().values()] == [str(case["x"] ** 2 + 1) for case in study.CASES]
 
 
-def test_a_replay_of_nothing_says_so(tiny, capsys):
-    assert main(["replay", tiny.name, "--out", str(tiny.out)]) == 2
+@pytest.mark.parametrize("action", ["replay", "accept", "check"])
+def test_a_folder_without_rows_is_told_in_a_line(tiny, tmp_path, capsys, action):
+    assert main([action, tiny.name, "--out", str(tiny.out)]) == 2
     assert f"{tiny.name}.csv; run the study first" in capsys.readouterr().err
+    for folder in (tmp_path / "none", tmp_path):
+        assert main([action, "--out", str(folder)]) == 2
+        said = capsys.readouterr().err
+        assert said.startswith(f"studies: --out {folder}: must be a folder with rows") and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("action", ["replay", "accept"])
+def test_rows_that_cannot_be_read_or_written_stay_as_they_are(old, capsys, monkeypatch, action):
+    whole = old.path.read_bytes()
+    old.path.write_bytes(whole[: len(whole) // 2])
+    assert ran(old, action) == 2
+    said = capsys.readouterr().err
+    assert f"{old.path}: must hold rows of a study as CSV" in said and said.count("\n") == 1
+    assert old.path.read_bytes() == whole[: len(whole) // 2] and old.replayed == []
+    old.path.write_bytes(whole)
+
+    def full(*args, **knobs):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(store.tempfile, "TemporaryFile", full)
+    assert ran(old, action) == 2
+    assert "must be a folder that can be written" in capsys.readouterr().err
+    assert old.path.read_bytes() == whole and old.replayed == []
+
+
+def test_rows_of_another_version_are_not_lost(old):
+    rows = list(old.rows().values())
+    store.write_rows(old.path, [row | {"code": "5e59c7"} for row in [*rows, rows[0] | {"case": "name=gone,x=9.0"}]])
+    assert ran(old, "replay", "--all") == 0
+    assert [*old.rows()][-1] == "name=gone,x=9.0" and {row["code"] for row in old.rows().values()} == {"5e59c7"}
 
 
 def test_rows_side_by_side_are_made_in_processes_of_one_thread(tiny, monkeypatch):
