@@ -7,6 +7,7 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 import warnings
 
 from demheat import terminal  # noqa: F401 - first, so that a command is interrupted without a traceback from here on
+from demheat.deadline import budget
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.progress import on_progress
@@ -54,6 +55,7 @@ __all__ = [
     "Sphere",
     "UniformSource",
     "Union",
+    "budget",
     "effective",
     "evolve",
     "on_progress",

@@ -1,6 +1,8 @@
-"""Long compiled loops in blocks of a fraction of a second, between which Ctrl-C is heard and progress is told."""
+"""Long compiled loops in blocks of a fraction of a second: between them Ctrl-C is heard and budgets are looked at."""
 
 import time
+
+from demheat.deadline import look
 
 # Seconds that a block should last.
 SECONDS = 0.1
@@ -24,6 +26,7 @@ def blocks(number, first):
     """
     begin, length = 0, first
     while begin < number:
+        look("loops")
         end, started = min(number, begin + length), time.perf_counter()
         yield begin, end
         spent, begin = time.perf_counter() - started, end

@@ -15,7 +15,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 from typing import NamedTuple
+
+from demheat.deadline import limited, look
 
 # Seconds that a stage may last in silence, between two reports of it, and until somebody else speaks for it.
 SILENT, PAUSE, WAIT = 2.0, 0.2, 1.0
@@ -97,7 +100,7 @@ def on_progress(hook: Callable[[Report], None] | None):
 
 @contextmanager
 def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]]:
-    """A part of a computation that may be long; stages may lie in stages.
+    """A part of a computation that may be long; stages may lie in stages. Where a budget of time is over it ends.
 
     Parameters
     ----------
@@ -110,10 +113,11 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
     callable
         To be called with the share done, 0 to 1, as often as one likes, or never.
     """
+    look(name)
     thread = threading.get_ident()
     # Within one of its own name it would only say that again: kernels compiled where all are.
     if not _heard() or any(each.name == name for each in _open.get(thread, ())):
-        yield _unheard
+        yield partial(_unheard, name) if limited() else _unlimited
         return
     stack = _open.setdefault(thread, [])
     current = _Open(name, tuple(stack), before)
@@ -121,6 +125,7 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
     _wake_speaker()
 
     def done(share):
+        look(name)
         current.share = share
         now = time.monotonic()
         if now - current.last >= PAUSE:
@@ -173,7 +178,11 @@ def in_parts(name: str):
     return part
 
 
-def _unheard(share):
+def _unheard(name, share):
+    look(name)
+
+
+def _unlimited(share):
     pass
 
 

@@ -65,8 +65,9 @@ ENGINE = {
     "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.process_state": (),
-    "demheat.blocks": (),
-    "demheat.progress": (),
+    "demheat.deadline": (),
+    "demheat.blocks": ("demheat.deadline",),
+    "demheat.progress": ("demheat.deadline",),
     "demheat.limits": (),
     # Ranks of an MPI run, for whoever computes on them.
     "demheat.ranks": ("demheat.limits",),
@@ -167,6 +168,7 @@ ENGINE = {
     ),
     "demheat.dem": (
         "demheat.warm",
+        "demheat.deadline",
         "demheat.scene",
         "demheat.field",
         "demheat.tensor",
@@ -197,6 +199,7 @@ ENGINE = {
     # What methods cost and how far they are off, and the cheapest of them: it loads a method by its name alone.
     "demheat.cheapest": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.tensor",
         "demheat.limits",
         "demheat.method",
@@ -243,6 +246,7 @@ ENGINE = {
     # The commands of the terminal, on top of all.
     "demheat.commands": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.field",
         "demheat.laws",
         "demheat.method",
@@ -316,6 +320,7 @@ ENGINE = {
     # The front of the package and nothing else.
     "demheat": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.field",
         "demheat.laws",
         "demheat.progress",

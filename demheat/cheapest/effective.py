@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import time
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -13,6 +14,7 @@ import numpy as np
 from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, ways
+from demheat.deadline import budget, look
 from demheat.limits import free_memory
 from demheat.process_state import cpu_seconds
 from demheat.scene import Scene
@@ -42,6 +44,8 @@ class Effective:
         What symmetry saved.
     passed : tuple of str
         Methods that were tried before, and why they did not do.
+    cut : str
+        Where the time was over before the intervals were as narrow as they were asked for; else empty.
 
     Examples
     --------
@@ -60,6 +64,7 @@ class Effective:
     how: str
     saved: tuple[str, ...] = ()
     passed: tuple[str, ...] = field(default=(), repr=False)
+    cut: str = ""
 
     @property
     def accuracy(self) -> float:
@@ -100,7 +105,12 @@ class Recommendation(NamedTuple):
 
 
 def effective(
-    scene: Scene, *, accuracy: float = 1e-3, method: str | Sequence[str] | None = None, memory: float | None = None
+    scene: Scene,
+    *,
+    accuracy: float = 1e-3,
+    method: str | Sequence[str] | None = None,
+    memory: float | None = None,
+    seconds: float | None = None,
 ) -> Effective:
     """The effective conductivity tensor of a body to an accuracy, as cheaply as is known here.
 
@@ -118,6 +128,9 @@ def effective(
         Only these. "bracket" gives certain bounds, and is taken only if it is named.
     memory : float, bytes, optional
         That may be used. Default: four fifths of what is free.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`. Where they are over, the narrowest answer that is done is returned, with
+        its interval and a warning; its `accuracy` is then larger than what was asked for.
 
     Returns
     -------
@@ -131,6 +144,13 @@ def effective(
         If the load is another.
     RuntimeError
         If no method gets there in the memory, with what each lacks.
+    TimeoutError
+        If the seconds are over before there is any answer.
+
+    Warns
+    -----
+    UserWarning
+        If the seconds are over before there is an answer as narrow as it was asked for.
 
     Examples
     --------
@@ -143,26 +163,31 @@ def effective(
     allowed = _allowed(method)
     clock, cpu = time.perf_counter(), cpu_seconds()
     loads = loads_of(scene)
-    found, way, passed = _found(loads, accuracy, allowed, memory)
+    with budget(seconds):
+        found, way, passed, cut = _found(loads, accuracy, allowed, memory)
     cost = {"cpu_s": cpu_seconds() - cpu, "wall_s": time.perf_counter() - clock, "rounds": way.rounds + 1}
     arrays = map(read_only, (found.tensor, found.tensor - found.half, found.tensor + found.half))
-    return Effective(*arrays, way.method, dict(way.knobs), cost, found.how, loads.saved, passed)
+    return Effective(*arrays, way.method, dict(way.knobs), cost, found.how, loads.saved, passed, cut)
 
 
 def _found(loads, accuracy, allowed, memory):
-    """Answer, way and the ways that did not do; of all ways the one expected to cost least goes a step further."""
+    """Answer, way, ways that did not do, where time was over; of all ways the one that should cost least goes on."""
     left = [way for way in ways(loads, accuracy, memory) if way.method in allowed]
-    passed = []
+    passed, best = [], (math.inf, None, None)
     while left:
         way = min(left, key=lambda each: each.rank)
         left.remove(way)
         if not way.refused:
             try:
+                look(way.method)
                 found = answer(way, loads)
                 missing = excess(found, accuracy)
+                best = min(best, (missing, found, way), key=lambda each: each[0])
                 if missing <= 1:
-                    return found, way, tuple(passed)
+                    return found, way, tuple(passed), ""
                 way = finer(way, loads, missing, memory)
+            except TimeoutError as error:
+                return _so_far(best, accuracy, f"{way.method}: {one_line(error)}", passed)
             except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
                 way = way._replace(refused=one_line(error))
         if way.refused:
@@ -170,9 +195,21 @@ def _found(loads, accuracy, allowed, memory):
         else:
             left.append(way)
     if "bracket" in allowed:
-        found, knobs = certain(loads, accuracy)
-        return found, Way("bracket", knobs), tuple(passed)
+        try:
+            found, knobs = certain(loads, accuracy)
+        except TimeoutError as error:
+            return _so_far(best, accuracy, f"bracket: {one_line(error)}", passed)
+        return found, Way("bracket", knobs), tuple(passed), ""
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
+
+
+def _so_far(best, accuracy, why, passed):
+    """The narrowest answer when the time is over."""
+    missing, found, way = best
+    if found is None:
+        raise TimeoutError(f"effective: {why}; no answer is done by then: must be more, or a larger accuracy")
+    warnings.warn(f"effective: {why}; accuracy is {missing * accuracy:.2g} only", stacklevel=4)
+    return found, way, tuple(passed), why
 
 
 def recommend(scene: Scene, accuracy: float = 1e-3, *, memory: float | None = None) -> Recommendation:

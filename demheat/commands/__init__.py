@@ -55,12 +55,12 @@ def _done(words):
         options = parser(version()).parse_args(words)
         command = import_module(f"demheat.commands.{options.command}")
         return command.run(read_file(options.scene), options)
+    except (NotImplementedError, RuntimeError, MemoryError, ImportError, TimeoutError) as error:
+        return _said(error, WITHOUT)
     except (ValueError, OSError) as error:
         if of_output(error):
             raise
         return _said(error, BAD)
-    except (NotImplementedError, RuntimeError, MemoryError, ImportError) as error:
-        return _said(error, WITHOUT)
     except KeyboardInterrupt:
         print(
             "\ndemheat: interrupted; rows of `compare` that are done are kept, the same command goes on",

@@ -8,6 +8,7 @@ import warnings
 from typing import NamedTuple
 
 from demheat.commands.knobs import Asked
+from demheat.deadline import look
 from demheat.declared import load
 from demheat.field import Field
 from demheat.process_state import cpu_seconds
@@ -19,8 +20,9 @@ class Answer(NamedTuple):
 
     Attributes
     ----------
-    status : {"ok", "refused", "invalid", "failed"}
-        The method's answer; what it cannot do; a knob or a scene that makes no sense; what went wrong.
+    status : {"ok", "refused", "invalid", "failed", "stopped"}
+        The method's answer; what it cannot do; a knob or a scene that makes no sense; what went wrong; that the time
+        was over.
     conductivity, lower, upper : float, W/(m K)
         NaN where there is none.
     how : str
@@ -29,6 +31,8 @@ class Answer(NamedTuple):
         `wall_s`, `cpu_s` of the solve, loading and compiling included, and `interval_cpu_s`.
     notes : list of str
         Why there is no answer, and warnings.
+    cut : bool
+        Whether the time was over, before the answer or before its interval.
     field : Field or None
     """
 
@@ -39,6 +43,7 @@ class Answer(NamedTuple):
     how: str = ""
     cost: dict = {}
     notes: tuple = ()
+    cut: bool = False
     field: Field | None = None
 
 
@@ -56,7 +61,10 @@ def answered(scene, asked: Asked, *, interval: bool = True) -> Answer:
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
+            look("other methods")
             found = _run(scene, method, asked.knobs, interval)
+        except TimeoutError as error:
+            found = Answer("stopped", notes=(one_line(error),), cut=True)
         except NotImplementedError as error:
             found = Answer("refused", notes=(one_line(error),))
         except ValueError as error:
@@ -87,8 +95,9 @@ def _with_interval(found, field):
     cpu = cpu_seconds()
     try:
         error = field.error
-    except (NotImplementedError, RuntimeError) as reason:
-        return found._replace(notes=(f"no interval: {one_line(reason).removeprefix('Field.error: ')}",))
+    except (NotImplementedError, RuntimeError, TimeoutError) as reason:
+        note = f"no interval: {one_line(reason).removeprefix('Field.error: ')}"
+        return found._replace(notes=(note,), cut=isinstance(reason, TimeoutError))
     cost = found.cost | {"interval_cpu_s": cpu_seconds() - cpu}
     return found._replace(lower=error.lower, upper=error.upper, how=error.how, cost=cost)
 

@@ -6,6 +6,7 @@ Each row is stored as soon as its method is done; the same command goes on where
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
@@ -17,6 +18,7 @@ from demheat.commands.answers import answered
 from demheat.commands.bounds import bounds_of
 from demheat.commands.knobs import Asked, asked
 from demheat.commands.words import aligned, names, scene_line, spread
+from demheat.deadline import budget
 from demheat.declared import found
 from demheat.files.write import text_of_scene
 from demheat.paths import replaced
@@ -47,12 +49,13 @@ def run(file, options) -> int:
     folder.mkdir(parents=True, exist_ok=True)
     path = folder / f"{file.path.stem}.csv"
     print(f"{file.path}: {scene_line(file.scene)}", flush=True)
-    made = list(compared(file.scene, wanted, path, interval=not options.no_interval, force=options.force))
+    how = {"interval": not options.no_interval, "force": options.force, "seconds": options.seconds}
+    made = list(compared(file.scene, wanted, path, **how))
     bounds = bounds_of(file.scene)
     print("\n" + table(made, bounds))
     drawn = picture(file.scene, made, bounds, path)
     print(f"\nrows {path}, picture {drawn}")
-    return 1 if any(row["status"] in ("failed", "invalid") for row in made) else 0
+    return 1 if any(row["status"] in ("failed", "invalid", "stopped") for row in made) else 0
 
 
 def usual(*, everything: bool = False) -> list[str]:
@@ -67,8 +70,12 @@ def usual(*, everything: bool = False) -> list[str]:
     return [m.name for m in steady if everything or m.role != "beside" or m.call == "estimate"]
 
 
-def compared(scene, wanted: list[Asked], path: Path, *, interval: bool, force: bool) -> Iterator[dict[str, str]]:
+def compared(
+    scene, wanted: list[Asked], path: Path, *, interval: bool, force: bool, seconds: float | None = None
+) -> Iterator[dict[str, str]]:
     """Rows of methods on a scene, those that are stored and hold as they are; each new one is stored at once.
+
+    What the time did not suffice for is not stored: the same command goes on with it.
 
     Parameters
     ----------
@@ -77,24 +84,28 @@ def compared(scene, wanted: list[Asked], path: Path, *, interval: bool, force: b
     path : Path
         Of the rows; those of another scene, or by other code, are dropped.
     interval, force : bool
+    seconds : float, s, optional
+        That all may take.
     """
-    text = text_of_scene(scene)
-    known = rows.read(path)
+    text, known = text_of_scene(scene), rows.read(path)
+    how = {"interval": interval, "limit": partial(budget, seconds, begun=time.monotonic())}
     for each in wanted:
         key = rows.key_of(each, text, interval=interval)
         if force or key not in known:
-            known[key] = _made(scene, each, key, path, interval=interval)
-            rows.add(path, key, known[key])
+            known[key], whole = _made(scene, each, key, path, **how)
+            if whole:
+                rows.add(path, key, known[key])
         yield known[key]
 
 
-def _made(scene, each, key, path, *, interval):
-    """A new row; the field is let go before the next is made."""
+def _made(scene, each, key, path, *, interval, limit):
+    """A new row, and whether the time sufficed for all of it; the field is let go before the next is made."""
     print(f"{each.title} ...", file=sys.stderr, flush=True)
-    answer = answered(scene, each, interval=interval)
+    with limit():
+        answer = answered(scene, each, interval=interval)
     if answer.field is not None:
         _keep_slice(answer.field, path, text_of_scene(scene), again=each.method.role == "witness")
-    return rows.row_of(each, answer, key)
+    return rows.row_of(each, answer, key), not answer.cut
 
 
 def table(made, bounds) -> str:

@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
+
 from demheat.cheapest import effective
 from demheat.cheapest.ways import knobs_of
 from demheat.commands.words import decimals, names, scene_line
+from demheat.scene.inputs import one_line
 
 
 def run(file, options) -> int:
@@ -17,7 +21,11 @@ def run(file, options) -> int:
         Of `demheat.commands.options`.
     """
     accuracy = wanted_accuracy(file, options)
-    found = effective(file.scene, accuracy=accuracy, method=names(options.methods))
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        found = effective(file.scene, accuracy=accuracy, method=names(options.methods), seconds=options.seconds)
+    for each in dict.fromkeys(one_line(each.message) for each in caught if issubclass(each.category, UserWarning)):
+        print(f"demheat: warning: {each}", file=sys.stderr)
     print(f"{file.path}: {scene_line(file.scene)}\n")
     widths = found.upper - found.lower
     for row, width in zip(found.tensor, widths, strict=True):
@@ -28,7 +36,7 @@ def run(file, options) -> int:
     print(f"cost {found.cost['wall_s']:.2g} s, {found.cost['cpu_s']:.2g} CPU-s")
     for line in (*found.saved, *found.passed):
         print(line)
-    return 0
+    return 1 if found.cut else 0
 
 
 def wanted_accuracy(file, options) -> float:

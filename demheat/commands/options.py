@@ -15,7 +15,7 @@ COMMANDS = {
 }
 
 OPTIONS = ("--help", "--version", "--method", "--methods", "--knob", "--accuracy", "--no-interval", "--all", "--force")
-OPTIONS = (*OPTIONS, "--out", "--write")
+OPTIONS = (*OPTIONS, "--out", "--write", "--seconds")
 
 
 class Parser(argparse.ArgumentParser):
@@ -63,6 +63,9 @@ def _options(command, name):
         command.add_argument("--knob", action="append", default=[], metavar="NAME=VALUE", help="such as voxels=64")
     if name in ("effective", "recommend"):
         command.add_argument("--accuracy", type=float, metavar="PART", help="default: the file's, or 1e-3")
+    if several or name == "effective":
+        help_ = "that the command may take; what is done by then is told"
+        command.add_argument("--seconds", type=float, metavar="SECONDS", help=help_)
     if several:
         command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
     if name == "solve":

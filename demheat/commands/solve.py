@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import sys
+import time
 from pathlib import Path
 
 from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
+from demheat.deadline import budget
 from demheat.files.fields import check_target
+from demheat.method import SIZE
 from demheat.paths import replaced
 
 
@@ -24,15 +27,18 @@ def run(file, options) -> int:
     wanted = asked(file, names(options.methods), options.knob, default=("dem",))
     if options.write and len(wanted) > 1:
         raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
-    if options.write:
-        check_target(options.write)
+    for each in wanted if options.write else ():
+        if each.method.call == "estimate":
+            raise NotImplementedError(f"--write {options.write}: {each.method.name} is a formula and has no field")
+        check_target(options.write, mesh=each.method.resolution is SIZE and file.scene.image is None)
     folder = Path(options.out) if options.out else None
     if folder:
         folder.mkdir(parents=True, exist_ok=True)
     print(f"{file.path}: {scene_line(file.scene)}")
-    worst = 0
+    worst, begun = 0, time.monotonic()
     for each in wanted:
-        found = answered(file.scene, each, interval=not options.no_interval)
+        with budget(options.seconds, begun=begun):
+            found = answered(file.scene, each, interval=not options.no_interval)
         worst = max(worst, _shown(each, found))
         if folder and found.field is not None:
             _stored(folder, each.method.name, found.field)

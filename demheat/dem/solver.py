@@ -16,6 +16,7 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
+from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, expected, unknowns
 from demheat.dem.options import asked
@@ -36,6 +37,7 @@ def solve(
     seed: int = 0,
     solver: str = "auto",
     tolerance: float = 1e-8,
+    seconds: float | None = None,
     **knobs: object,
 ) -> Field:
     """Steady conduction in a scene by the discrete element method.
@@ -58,6 +60,8 @@ def solve(
         many; "amg-single" spares a tenth of the multigrid's memory and takes as many iterations.
     tolerance : float
         On the relative residual of the heat balance.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; `Field.error` is not in it.
     conforming, interface, gap_spacing, sparse, wall, coordination, gap : bool, str, float, str, str, float, float
         Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
         `demheat.Platonic`.
@@ -86,6 +90,8 @@ def solve(
         on them.
     RuntimeError
         If the solver does not converge.
+    TimeoutError
+        If the seconds are over.
 
     Warns
     -----
@@ -108,7 +114,8 @@ def solve(
     law, wanted = asked(law, particles, seed, knobs)
     scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image"))
     law.check(scene)
-    return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
+    with budget(seconds):
+        return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
 
 def solve_axes(

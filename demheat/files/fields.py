@@ -52,30 +52,39 @@ def write(field: Field, path, *, cells: int = 64) -> None:
         If the field has no mesh for a .vtu.
     """
     check_field(field)
-    path = check_target(path)
+    path = check_target(path, mesh=getattr(field, "elements", None) is not None)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
     make = WRITERS[path.suffix.lower()]
-    if make is _mesh and getattr(field, "elements", None) is None:
-        raise NotImplementedError(
-            f"path = {str(path)!r}: this field has no mesh; only finite elements do. Use .vti for a grid, or .vtp for "
-            "its own points"
-        )
     with replaced(path) as part, part.open("xb") as stream:
         make(field, stream, cells)
 
 
-def check_target(path) -> Path:
-    """The path of a file that a field can be written to, or a ValueError, before anything is solved.
+def check_target(path, *, mesh: bool) -> Path:
+    """The path of a file that a field can be written to, before anything is solved.
 
     Parameters
     ----------
     path : path
+    mesh : bool
+        Whether the field will have one.
+
+    Raises
+    ------
+    ValueError
+        If no field can be written there.
+    NotImplementedError
+        If a mesh is to be written that the field will not have.
     """
     path = checked_path(path)
     if path.suffix.lower() not in WRITERS:
         raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")
     if not path.parent.is_dir():
         raise ValueError(f"path = {str(path)!r}: there is no folder {str(path.parent)!r}")
+    if path.suffix.lower() == ".vtu" and not mesh:
+        raise NotImplementedError(
+            f"path = {str(path)!r}: this field has no mesh; only finite elements around shapes have, of an image they "
+            "are its voxels. Use .vti for a grid, or .vtp for its own points"
+        )
     return path
 
 

@@ -1,0 +1,102 @@
+"""Budgets of time: who looks at the clock, where, and what is left when one is over."""
+
+import threading
+import time
+from importlib import import_module
+
+import numpy as np
+import pytest
+
+import demheat
+from demheat import deadline, effective, gallery, progress, solve
+from demheat.cheapest.answers import Answer
+from references import fem, fft, multipole
+
+SPHERE = gallery.sphere_in_cube(5.0)
+METHODS = {
+    "dem": lambda: solve(SPHERE, particles=1000),
+    "amg": lambda: solve(SPHERE, particles=1000, solver="amg"),
+    "fem": lambda: fem.solve(SPHERE, size=0.02),
+    "fft": lambda: fft.solve(SPHERE, voxels=8),
+    "fft-em": lambda: fft.solve(SPHERE, voxels=8, scheme="eyre-milton"),
+    "multipole": lambda: multipole.solve(SPHERE),
+}
+# Where each looks more than once on its way.
+AGAIN = {
+    "dem": {"loops"},
+    "amg": {"equations"},
+    "fem": {"mesh", "assembly", "equations"},
+    "fft": {"iterations"},
+    "fft-em": {"iterations"},
+    "multipole": {"multipoles"},
+}
+
+
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")
+@pytest.mark.parametrize("name", METHODS)
+def test_methods_end_when_the_time_is_over(name, monkeypatch):
+    with pytest.raises(TimeoutError, match=r"^seconds = 1e-09 are over, in \w+"), demheat.budget(1e-9):
+        METHODS[name]()
+    looked = []
+    for home in ("demheat.progress", "demheat.blocks"):
+        monkeypatch.setattr(f"{home}.look", looked.append)
+    with demheat.budget(1000.0):
+        METHODS[name]()
+    assert {each for each in looked if looked.count(each) > 1} >= AGAIN[name]
+
+
+def test_seconds_of_a_solve():
+    with pytest.raises(TimeoutError, match=r"^seconds = 1e-09 are over"):
+        solve(SPHERE, particles=1000, seconds=1e-9)
+    assert solve(SPHERE, particles=1000, seconds=1000.0).conductivity > 40
+    for bad in (0, -1.0, float("nan"), float("inf"), "long", True):
+        with pytest.raises(ValueError, match="seconds = .*: must be a finite number > 0, or None"):
+            solve(SPHERE, particles=1000, seconds=bad)
+
+
+def test_the_first_to_end_counts_and_none_is_left():
+    with demheat.budget(1e-9), demheat.budget(1000.0), demheat.budget(None):
+        with pytest.raises(TimeoutError, match=r"seconds = 1e-09 are over, in this"):
+            deadline.look("this")
+        with pytest.raises(TimeoutError, match="in that"), progress.stage("that"):
+            pass
+    with demheat.budget(1000.0), pytest.raises(TimeoutError, match="seconds = 1e-09"), demheat.budget(1e-9):
+        deadline.look("this")
+    with demheat.budget(5.0, begun=time.monotonic() - 6.0), pytest.raises(TimeoutError, match="seconds = 5 are"):
+        deadline.look("this")
+    deadline.look("this")
+    assert not deadline.limited()
+
+
+def test_other_threads_have_their_own():
+    found = []
+    with demheat.budget(1e-9):
+        thread = threading.Thread(target=lambda: found.append(deadline.limited()))
+        thread.start()
+        thread.join()
+    assert found == [False]
+
+
+def test_effective_returns_the_narrowest_answer_that_is_done(monkeypatch):
+    halves = iter([1.2, 0.5, 0.6])
+
+    def answer(way, loads):
+        half = next(halves, None)
+        if half is None:
+            raise TimeoutError("seconds = 5 are over, in cells")
+        return Answer(40 * np.eye(3), half * np.eye(3), "stub")
+
+    # The module has the name of its function.
+    monkeypatch.setattr(import_module("demheat.cheapest.effective"), "answer", answer)
+    words = r"effective: \w+: seconds = 5 are over, in cells"
+    with pytest.warns(UserWarning, match=f"{words}; accuracy is 0.013 only"):
+        found = effective(gallery.random_dispersion(10), accuracy=1e-2, method=["fft", "dem"], seconds=5.0)
+    assert found.accuracy == 0.5 / 40 and found.upper[0, 0] == 40.5 and found.cut.endswith("in cells")
+    with pytest.raises(TimeoutError, match=f"{words}; no answer is done"):
+        effective(gallery.random_dispersion(10), accuracy=1e-2, method="fft", seconds=5.0)
+
+
+def test_effective_keeps_within_its_seconds():
+    with pytest.raises(TimeoutError, match="effective: fft: seconds = 1e-09 are over, in fft; no answer"):
+        effective(SPHERE, method="fft", seconds=1e-9)
+    assert effective(SPHERE, seconds=1000.0).cut == ""
