@@ -161,7 +161,7 @@ def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None,
         If not even one coarser run can be made.
     """
     fields = [field, *_coarser_runs(coarser, rule.levels)]
-    other = _quietly(also, fields[1]) if also else None
+    other = quietly(also, fields[1]) if also else None
     besides = [] if other is None else [fields[1], other]
     points, residual = _points(field.scene), residual + ROUNDING
 
@@ -206,7 +206,7 @@ def _coarser_runs(coarser, levels):
     runs = []
     for level in range(1, levels + 1):
         try:
-            runs.append(_quietly(coarser, level))
+            runs.append(quietly(coarser, level))
         except (ValueError, RuntimeError, NotImplementedError) as error:
             # The elements are too long for the scene: what there is must do.
             if not runs:
@@ -215,7 +215,14 @@ def _coarser_runs(coarser, levels):
     return runs
 
 
-def _quietly(run, of):
+def quietly(run, of):
+    """Call a function of one argument; its warnings are kept back.
+
+    Parameters
+    ----------
+    run : callable (of)
+    of : object
+    """
     with _QUIET, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return run(of)

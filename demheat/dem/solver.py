@@ -20,6 +20,7 @@ from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, expected, unknowns
 from demheat.dem.options import asked
+from demheat.dem.trial import check_contrast
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
 from demheat.progress import announced, stage
@@ -87,7 +88,7 @@ def solve(
     NotImplementedError
         For temperatures on walls that meet, or heat exchanged with surroundings, with wall "center" and a law other
         than "laguerre"; for replicas between walls with such a law; for surfaces with a resistance, unless facets lie
-        on them.
+        on them; for contrasts at which a trial with few particles drowns in rounding: mostly from 1e8 or 1e9 on.
     RuntimeError
         If the solver does not converge.
     TimeoutError
@@ -115,6 +116,7 @@ def solve(
     scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image"))
     law.check(scene)
     with budget(seconds):
+        check_contrast(scene, wanted, tolerance, partial(_answer, scene, law, solver=solver))
         return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
 
@@ -162,6 +164,7 @@ def solve_axes(
     check_solver(solver, tolerance)
     law, wanted = asked(law, particles, seed, knobs)
     law.check(scene)
+    check_contrast(scene, wanted, tolerance, partial(_answers, loads, law, solver=solver))
     return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
 
 
