@@ -39,13 +39,16 @@ NEAR = 1.4
 # contrasts .01 to 100, walls and periodic cells) 112, 92, 10 and 6 were beyond Voigt's or Reuss's bound with 1, 2, 3
 # and 4 voxels, with more none.
 LEAST_LINKED = 5
+# Voxels across an inclusion below which coarser voxels do not tell what is missing.
+FEWEST = 2.0
 
 
 def automatic(scheme, scene, shape) -> str:
     """The rule with the smallest measured error for the worst of the scene's interfaces.
 
     Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
-    voxels in a way not known here has the phase of their centres only, and an image cuts none. A side of fewer than
+    voxels in a way not known here, or has no surface that is found, has the phase of their centres only, and an image
+    cuts none. A side of fewer than
     `LEAST_LINKED` voxels has no links.
 
     Parameters
@@ -55,7 +58,8 @@ def automatic(scheme, scene, shape) -> str:
     shape : (3,) tuple of int
         Voxels along each axis.
     """
-    if scene.image is not None or not (_registered(paint, scene) and _registered(cut, scene)):
+    traceable = all(shape.traceable for shape in scene.inclusions)
+    if scene.image is not None or not (traceable and _registered(paint, scene) and _registered(cut, scene)):
         return "plain"
     if scheme == "eyre-milton":
         return "laminate"
@@ -92,8 +96,7 @@ def warn_of_thin(scene, rule, shape) -> None:
     shape : (3,) tuple of int
         Voxels along each axis.
     """
-    spacing = np.array(scene.size) / shape
-    voxel, left = float(spacing.max()), coats(scene)
+    voxel, left = float(np.max(np.array(scene.size) / shape)), coats(scene)
     thin = np.flatnonzero(left < voxel)
     if len(thin):
         k = scene.mean_conductivities
@@ -104,18 +107,47 @@ def warn_of_thin(scene, rule, shape) -> None:
             f"{voxel:.3g} m, down to {left[thin].min():.3g} m: {what}; use more voxels",
             stacklevel=4,
         )
-    # Laminates are exact for layers of any thickness that they see.
-    small = narrower(scene, spacing) & [rule != "laminate" or not each.flat for each in scene.inclusions]
-    small |= narrower(scene, FULL * spacing)
-    k = scene.tensors if scene.anisotropic else scene.conductivities[:, None, None]
-    small &= np.any(k[1:] != k[scene.parents()[1:]], axis=(1, 2))
-    if small.any():
+    small = smaller(scene, rule, shape)
+    if len(small):
         warnings.warn(
-            f"inclusions {_listed(np.flatnonzero(small))} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
+            f"inclusions {_listed(small)} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
             f"{MISSED[rule]}; use more voxels",
             stacklevel=4,
         )
     _warn_of_gaps(scene, rule, shape, voxel)
+
+
+def smaller(scene, rule, shape, voxels=1.0) -> np.ndarray:
+    """Inclusions that are narrower than a voxel, or so many, and stand out: an int array.
+
+    Parameters
+    ----------
+    scene : Scene
+    rule : {"plain", "laminate", "links"}
+    shape : (3,) tuple of int
+        Voxels along each axis.
+    voxels : float
+    """
+    spacing = voxels * np.array(scene.size) / shape
+    # Laminates are exact for layers of any thickness that they see.
+    small = narrower(scene, spacing) & [rule != "laminate" or not each.flat for each in scene.inclusions]
+    small |= narrower(scene, FULL * spacing)
+    k = scene.tensors if scene.anisotropic else scene.conductivities[:, None, None]
+    return np.flatnonzero(small & np.any(k[1:] != k[scene.parents()[1:]], axis=(1, 2)))
+
+
+def unsure(scene, rule, shape) -> np.ndarray:
+    """Inclusions of which refinement tells too little: coats thinner than a voxel, and what is little wider than that.
+
+    Parameters
+    ----------
+    scene : Scene
+    rule : {"plain", "laminate", "links"}
+    shape : (3,) tuple of int
+        Voxels along each axis.
+    """
+    thin = np.flatnonzero(coats(scene) < np.max(np.array(scene.size) / shape))
+    return np.union1d(thin, smaller(scene, rule, shape, FEWEST))
 
 
 def _warn_of_gaps(scene, rule, shape, voxel):

@@ -19,6 +19,7 @@ TOUCH = 1e-12
 GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
 GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
 GEOMETRY |= {"parts", "width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
+GEOMETRY |= {"traceable"}
 
 
 class Shape(ABC):
@@ -58,6 +59,8 @@ class Shape(ABC):
     convex = True
     # Whether it may be wider than a box with walls, which cut it.
     overhangs = False
+    # Whether its surface can be found: distances and normals are those to it.
+    traceable = True
 
     def __init_subclass__(cls, **knobs):
         """Refuse a class that changes the geometry of a finished shape: what knows that by its type would not ask."""

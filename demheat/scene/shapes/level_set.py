@@ -14,6 +14,8 @@ from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import check_resistance
 from demheat.scene.shapes.samples import CELLS, volume_by_cells
 from demheat.scene.shapes.solid import Solid
+from demheat.scene.shapes.traced import CELLS as FINEST
+from demheat.scene.shapes.traced import Traced, leads, traced, unit
 
 # Of the longest side of its limits: step of the differences that make its gradient, and how near to 0 is on it.
 STEP, ON = 1e-5, 1e-12
@@ -32,12 +34,15 @@ class LevelSet(Solid):
     Exact: what lies inside, by the function's sign. Not exact: distances, which are those to a point of the surface
     that Newton's steps along the gradient find; beside a smooth surface it is the nearest one to second order of the
     distance, farther away it may be another. So pairs with other shapes are told apart by the limits alone, and the
-    volume, by planes in small cells, is right to some 1e-4.
+    volume, by planes in small cells, is right to some 1e-4. Where such steps are seen to miss the surface, as of a
+    sign, a mask, or a distance cut off, squared or cubed, changes of sign alone tell where that is, as finely as cells
+    of 1/64 of the longest limit (`demheat.scene.shapes.traced`); what is rougher has no surface for who needs one.
 
     Parameters
     ----------
     function : callable (n, 3) float array, m -> (n,) float array
-        Continuous, with a gradient where it is 0; above 0 on the limits and beyond.
+        Not above 0 inside; above 0 elsewhere, also on the limits and beyond. Best if it is smooth, with a gradient
+        that leads to where it is 0.
     limits : pair of (3,) sequences of float, m
         Lowest and highest coordinates of a box that holds it.
     material : Material
@@ -65,6 +70,7 @@ class LevelSet(Solid):
     resistance: float = field(default=0.0, kw_only=True)
 
     convex = False
+    _made_from = None
 
     def __post_init__(self):
         if not callable(self.function):
@@ -97,7 +103,23 @@ class LevelSet(Solid):
     @cached_property
     def volume(self) -> float:
         """Volume, m3: in cells that the surface cuts by the plane nearest to their middles, of two sizes."""
-        return volume_by_cells(self, *self.bounds())
+        if self.traceable:
+            return volume_by_cells(self, *self.bounds())
+        return float(np.prod(np.subtract(*self.limits))) * -len(self._inner) / CELLS**3
+
+    @property
+    def traceable(self) -> bool:
+        """Whether its surface can be found; see `Shape.traceable`."""
+        return self._trace is not None
+
+    @cached_property
+    def _trace(self) -> Traced | bool | None:
+        """Distances that were measured; True if the function's own values lead to its surface, None if nothing does."""
+        if self._made_from is not None:
+            shape, move = self._made_from
+            return move(shape._trace) if isinstance(shape._trace, Traced) else shape._trace
+        low, high = self.bounds()
+        return leads(self._onto, self._holds, low, high) or traced(self._holds, low, high)
 
     def turned(self, order: Sequence[int]) -> LevelSet:
         """The same set with axes order[0], order[1], order[2] as axes 0, 1, 2."""
@@ -106,7 +128,8 @@ class LevelSet(Solid):
             return self
         back, function = np.argsort(order), self.function
         limits = tuple(tuple(end[axis] for axis in order) for end in self.limits)
-        return self._moved(function=lambda points: function(points[:, back]), limits=limits)
+        made = self._moved(function=lambda points: function(points[:, back]), limits=limits)
+        return made._with(self, lambda trace: trace.turned(order))
 
     def placed(self, center: Sequence[float]) -> LevelSet:
         """The same set with the middle of its limits elsewhere; see `Shape.placed`."""
@@ -115,7 +138,13 @@ class LevelSet(Solid):
             return self
         function = self.function
         limits = tuple(vector("LevelSet.limits", np.array(end) + shift) for end in self.limits)
-        return self._moved(function=lambda points: function(points - shift), limits=limits)
+        made = self._moved(function=lambda points: function(points - shift), limits=limits)
+        return made._with(self, lambda trace: trace.placed(shift))
+
+    def _with(self, shape, move):
+        """Itself, made from another whose surface, once found, need only be moved."""
+        object.__setattr__(self, "_made_from", (shape, move))
+        return self
 
     def sure_distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance to its limits, 0 within, m; see `Shape.sure_distance`."""
@@ -185,6 +214,9 @@ class LevelSet(Solid):
             inside[within] = self._values(offsets[within] + self.center) <= 0
         return inside
 
+    def _holds(self, points):
+        return self._inside(points - np.array(self.center))
+
     def _gradient(self, points):
         """Central differences, (n, 3) float array, 1/m."""
         step = STEP * float(np.subtract(self.limits[1], self.limits[0]).max())
@@ -213,7 +245,7 @@ class LevelSet(Solid):
         """A near point of the surface for each, (n, 3) float array, m, and its outward normal."""
         points = offsets + self.center
         feet, going = self._onto(points), np.arange(len(points))
-        normals = _unit(self._gradient(feet))
+        normals = unit(self._gradient(feet))
         for _ in range(ALONG):
             aside = points[going] - feet[going]
             away = np.linalg.norm(aside, axis=1)
@@ -223,22 +255,30 @@ class LevelSet(Solid):
             nearer = self._onto(feet[going] + 0.5 * aside)
             better = np.linalg.norm(points[going] - nearer, axis=1) < away
             going = going[better]
-            feet[going], normals[going] = nearer[better], _unit(self._gradient(nearer[better]))
+            feet[going], normals[going] = nearer[better], unit(self._gradient(nearer[better]))
         return feet, normals
 
     def _surface(self, offsets):
+        if self._trace is not True:
+            return self._distance(offsets), self._normal(offsets)
         feet, normals = self._feet(offsets)
         away = np.linalg.norm(offsets + self.center - feet, axis=1)
         return np.where(self._inside(offsets), -away, away), normals
 
     def _distance(self, offsets):
-        return self._surface(offsets)[0]
+        if self._trace is True:
+            return self._surface(offsets)[0]
+        away = np.abs(self._traced().distance(offsets + self.center))
+        return np.where(self._inside(offsets), -away, away)
 
     def _normal(self, offsets):
-        return self._surface(offsets)[1]
+        return self._surface(offsets)[1] if self._trace is True else self._traced().normal(offsets + self.center)
 
-
-def _unit(vectors):
-    """Vectors of length 1, along x where there is none."""
-    length = np.linalg.norm(vectors, axis=1, keepdims=True)
-    return np.divide(vectors, length, out=np.tile([1.0, 0.0, 0.0], (len(vectors), 1)), where=length > 0)
+    def _traced(self):
+        if self._trace is None:
+            raise NotImplementedError(
+                f"LevelSet.function: its sign changes too often to find a surface in {FINEST} cells along the longest "
+                "limit; must be smoother, or take what asks only for what lies inside: rule 'plain' of FFT, "
+                "conforming=False of the DEM"
+            )
+        return self._trace
