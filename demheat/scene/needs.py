@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from demheat.scene.edges import SLOWEST, edge_order
 from demheat.scene.parts import driver
 
 
@@ -61,6 +62,13 @@ def check_steady(scene) -> None:
         raise ValueError(
             f"Scene.walls = {dict(scene.walls)}: a steady solution needs at least one wall with a temperature, its own "
             "or that of surroundings"
+        )
+    order = edge_order(scene)
+    if order < SLOWEST:
+        raise NotImplementedError(
+            "edges of boxes meet where good and bad conductors alternate: errors of any elements go with their size to "
+            f"the power {order:.2g} there, so that no number of them is enough (see demheat.scene.edges); must be "
+            "boxes that keep apart or share a face, or contrasts below 25"
         )
 
 

@@ -1,0 +1,62 @@
+"""Edges of boxes that meet: how slowly errors fall there, and from which contrast on there is no answer."""
+
+import math
+
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Material, Scene, solve
+from demheat.scene import Box, Sphere, Union
+from demheat.scene.edges import edge_order, power
+from references import fft
+
+
+def board(contrast, depth=0.5, shift=0.0):
+    """A checkerboard across z; its conductivity is the root of the contrast (Keller 1964)."""
+    sides, good = (0.5, 0.5, depth), Material(contrast)
+    boxes = [Box((x, x + (x > 0.5) * shift, depth / 2), sides, good) for x in (0.25, 0.75)]
+    return Scene((1.0, 1.0, depth), Material(1.0), boxes, gradient=(0, 1, 0))
+
+
+@pytest.mark.parametrize("contrast", [2.0, 10.0, 25.0, 1000.0])
+def test_power_at_the_edges_of_a_board_is_the_exact_one(contrast):
+    exact = 4 / math.pi * math.atan(contrast**-0.5)
+    # Powers are tried in steps of 1/2000, the first beyond the root counts.
+    assert_allclose(power([contrast, 1, contrast, 1]), exact, rtol=0, atol=1 / 2000)
+    assert_allclose(edge_order(board(contrast)), min(1, 2 * exact), rtol=0, atol=1 / 1000)
+
+
+def test_power_of_other_edges():
+    assert power([5.0] * 4) == power([0.0] * 4) == power([5.0, 5.0, 1.0, 1.0]) == 1.0
+    # A corner of a perfect conductor or insulator: 2/3, as around any angle of 270 degrees.
+    assert_allclose([power([1e9, 1, 1, 1]), power([0, 1, 1, 1])], 2 / 3, atol=1 / 2000)
+    assert power([1.0, 0.0, 1.0, 0.0]) == 1 / 2000
+
+
+def test_boxes_that_keep_apart_or_share_a_face_are_as_all_others():
+    good, cell = Material(1000.0), {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0), "gradient": (0, 1, 0)}
+    one = Box((0.25, 0.25, 0.5), (0.3, 0.3, 0.3), good)
+    for other in (Box((0.7, 0.7, 0.5), (0.3, 0.3, 0.3), good), Box((0.25, 0.55, 0.5), (0.3, 0.3, 0.3), good)):
+        assert edge_order(Scene(inclusions=[one, other], **cell)) == 1.0
+    assert edge_order(Scene(inclusions=[Sphere((0.5, 0.5, 0.5), 0.3, good)], **cell)) == 1.0
+    # Edge on edge, by half of their lengths, turned alike; and as parts of a union.
+    turned = [Box(c, (0.3, 0.3, 0.3), good, rotation=(0, 0, math.pi / 4)) for c in ((0.3, 0.5, 0.4), (0.3, 0.5, 0.4))]
+    step = 0.3 * math.sqrt(2)
+    turned[1] = Box((0.3 + step, 0.5, 0.55), (0.3, 0.3, 0.3), good, rotation=(0, 0, math.pi / 4))
+    assert edge_order(Scene(inclusions=turned, **cell)) < 0.1
+    assert edge_order(Scene(inclusions=[Union(turned, good)], **cell)) < 0.1
+
+
+@pytest.mark.parametrize("method", [fft.solve, solve])
+@pytest.mark.parametrize("contrast", [30.0, 1000.0])
+def test_boards_of_high_contrast_are_refused(method, contrast):
+    with pytest.raises(NotImplementedError, match="edges of boxes meet"):
+        method(board(contrast, depth=0.0625))
+
+
+@pytest.mark.parametrize("contrast", [2.0, 10.0, 24.0])
+@pytest.mark.parametrize("rule", ["auto", "links", "plain"])
+def test_intervals_of_boards_know_how_slowly_errors_fall(contrast, rule):
+    # With first order instead, the interval of links at 24 is half as wide as the error.
+    error = fft.solve(board(contrast), voxels=24, rule=rule).error
+    assert error.lower <= math.sqrt(contrast) <= error.upper
