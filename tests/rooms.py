@@ -30,7 +30,8 @@ ENGINE = {
         "demheat.scene.parts",
         "demheat.scene.shapes",
     ),
-    "demheat.scene.needs": ("demheat.scene.parts",),
+    "demheat.scene.edges": ("demheat.scene.shapes",),
+    "demheat.scene.needs": ("demheat.scene.edges", "demheat.scene.parts"),
     "demheat.scene.functions": ("demheat.scene.inputs", "demheat.scene.parts"),
     "demheat.scene.html": (),
     "demheat.scene.scene": (

@@ -24,11 +24,15 @@ EXECUTED = set((HERE / "executed.txt").read_text(encoding="utf-8").split())
 # What a case says of the code that makes its row.
 KINDS = ("name", "method", "law", "integrator", "scheme", "rule")
 # Files and folders of which no quick row is made, and why.
+REFUSED = "says no, or ends what takes too long: tests of its own"
 READ = "read, written or asked in a terminal: compared to the letter or the bit by tests of its own"
 DRAWN = "drawn"
 LARGE = "several processes or less memory: compared with the plain way by tests of its own"
 FULL = "full rows alone, and tests of its own"
 NO_ROWS = {
+    "demheat/deadline.py": REFUSED,
+    "demheat/dem/trial.py": REFUSED,
+    "demheat/scene/edges.py": REFUSED,
     "demheat/commands": READ,
     "demheat/files": READ,
     "demheat/packing/io": READ,
@@ -52,6 +56,7 @@ NO_ROWS = {
     "demheat/fresh.py": LARGE,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,
+    "demheat/scene/shapes/traced.py": FULL,
     "demheat/scene/shapes/creases.py": FULL,
     "demheat/scene/shapes/parted.py": FULL,
     "demheat/scene/shapes/union.py": FULL,
