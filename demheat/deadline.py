@@ -6,13 +6,12 @@ Nothing is killed. Between two looks is a block of compiled loops, an iteration 
 
 from __future__ import annotations
 
-import math
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
-from numbers import Real
 from typing import NamedTuple
+
+from demheat.scene.inputs import finite
 
 
 class _Deadline(NamedTuple):
@@ -26,8 +25,7 @@ class _Deadline(NamedTuple):
 _now: ContextVar[_Deadline | None] = ContextVar("deadline", default=None)
 
 
-@contextmanager
-def budget(seconds: float | None, *, begun: float | None = None) -> Iterator[None]:
+def budget(seconds: float | None, *, begun: float | None = None) -> AbstractContextManager[None]:
     """Let what is computed within take so many seconds, by any method; of budgets in budgets the first to end counts.
 
     Parameters
@@ -36,6 +34,10 @@ def budget(seconds: float | None, *, begun: float | None = None) -> Iterator[Non
         None changes nothing.
     begun : float, s, optional
         When they began, by `time.monotonic`, where several parts share them. Default: now.
+
+    Returns
+    -------
+    context manager
 
     Raises
     ------
@@ -59,12 +61,14 @@ def budget(seconds: float | None, *, begun: float | None = None) -> Iterator[Non
     seconds = 1e-09 are over, in ...
     """
     if seconds is None:
-        yield
-        return
-    good = isinstance(seconds, Real) and not isinstance(seconds, bool) and math.isfinite(seconds) and seconds > 0
-    if not good:
-        raise ValueError(f"seconds = {seconds!r}: must be a finite number > 0, or None")
-    outer, own = _now.get(), _Deadline(float(seconds), (time.monotonic() if begun is None else begun) + seconds)
+        return nullcontext()
+    seconds = finite("seconds", seconds, "a finite number > 0, or None", lambda v: v > 0)
+    return _until(seconds, time.monotonic() if begun is None else begun)
+
+
+@contextmanager
+def _until(seconds, begun):
+    outer, own = _now.get(), _Deadline(seconds, begun + seconds)
     before = _now.set(own if outer is None or own.end < outer.end else outer)
     try:
         yield

@@ -66,7 +66,7 @@ ENGINE = {
     "demheat.laws": ("demheat.scene",),
     "demheat.threads": (),
     "demheat.process_state": (),
-    "demheat.deadline": (),
+    "demheat.deadline": ("demheat.scene",),
     "demheat.blocks": ("demheat.deadline",),
     "demheat.progress": ("demheat.deadline",),
     "demheat.limits": (),
