@@ -266,12 +266,13 @@ def _replay(arguments):
 def _accept(arguments):
     from studies.harness.accept import accept
 
-    touched = accept([name for name, *_ in _stored(arguments)], arguments.out, _say)
+    touched, failed = accept([name for name, *_ in _stored(arguments)], arguments.out, _say)
     for name in touched:
         _show(name, runner.csv_of(name, arguments.out))
     if touched:
         print(f"pages that show them: python -m studies report --out {arguments.out} --page README.md docs/*.md")
-    return 0
+    print(*(f"not made again: {line}" for line in failed), sep="\n", end="\n" if failed else "")
+    return int(bool(failed))
 
 
 def _check(arguments):

@@ -11,7 +11,7 @@ import math
 from studies import contents
 from studies.harness import replay, runner
 from studies.harness.claims import judged
-from studies.harness.store import TAIL, add_rows, case_key, read_rows
+from studies.harness.store import TAIL, VALUES, add_rows, case_key, read_rows
 from studies.harness.table import markdown, read_frame
 from studies.harness.tolerance import COUNTED, moved, value_columns
 
@@ -29,14 +29,13 @@ def accept(names, out, say):
 
     Returns
     -------
-    list of str
+    touched : list of str
         Studies whose rows were made again.
+    failed : list of str
+        Rows that could not be made again, and why: they stay as they were.
     """
     studies = {name: runner.load(name) for name in names if runner.csv_of(name, out).exists()}
-    frames = {name: read_frame(study, runner.csv_of(name, out)) for name, study in studies.items()}
-    before = {
-        name: (judged(studies[name], frame), read_rows(runner.csv_of(name, out))) for name, frame in frames.items()
-    }
+    before = {name: _now(study, runner.csv_of(name, out)) for name, study in studies.items()}
     with replay.side_by_side() as compute:
         groups = _moved_groups(studies, out, say, compute)
         todo = [
@@ -46,11 +45,11 @@ def accept(names, out, say):
             if (name, replay.group_of(case)) in groups
         ]
         say(f"{len(groups)} groups moved; {len(todo)} rows are made again")
-        fresh = _made_again(todo, out, say, compute)
+        fresh, failed = _made_again(todo, out, say, compute)
     touched = [name for name in studies if any(task[0] == name for task in todo)]
     for name in touched:
         say(compared(name, studies[name], *before[name], out, fresh))
-    return touched
+    return touched, failed
 
 
 def _now(study, path):
@@ -71,17 +70,22 @@ def _moved_groups(studies, out, say, compute):
 
 
 def _made_again(tasks, out, say, compute):
-    """Put new values into stored rows as they come; returns the rows as made, by study and case."""
-    fresh = {}
+    """Put new values into stored rows as they come; the rows as made, by study and case, and those that were not."""
+    fresh, failed = {}, []
     for number, (task, row) in enumerate(zip(tasks, compute(tasks), strict=True), start=1):
         name, study, case = task
         path, key = runner.csv_of(name, out), case_key(case)
+        if row["status"] not in runner.KEPT or replay.absent(row):
+            # A row that there is must not give way to none.
+            failed.append(f"{name} {key}: {row['status']}, {row['note']}")
+            say(f"[{number}/{len(tasks)}] {failed[-1]}")
+            continue
         stored = read_rows(path)[key]
         wrong = moved(name, study, case, stored, row)
         add_rows(path, {key: renewed(study, case, stored, row)}, replay.keys_of(study, path))
         fresh[name, key] = row
         say(f"[{number}/{len(tasks)}] {name} {key}: {replay.told(wrong)}")
-    return fresh
+    return fresh, failed
 
 
 def renewed(study, case, stored, row):
@@ -102,7 +106,9 @@ def renewed(study, case, stored, row):
     costs = {name: stored[name] for name in stored if name not in TAIL and name not in _new_names(study, case, stored)}
     values = {name: row.get(name) for name in _new_names(study, case, [*stored, *row])}
     state = {name: row.get(name) for name in ("status", "note", "residual")}
-    return {**case, **costs, **values, **old, **state, "values_commit": row["commit"], "values_when": row["when"]}
+    # What was said of the old values is not said of these.
+    state |= dict.fromkeys(VALUES, "") | {"values_commit": row["commit"], "values_when": row["when"]}
+    return {**case, **costs, **values, **old, **state}
 
 
 def _new_names(study, case, names):

@@ -28,7 +28,7 @@ REFUSED = "says no, or ends what takes too long: tests of its own"
 READ = "read, written or asked in a terminal: compared to the letter or the bit by tests of its own"
 DRAWN = "drawn"
 LARGE = "several processes or less memory: compared with the plain way by tests of its own"
-FULL = "full rows alone, and tests of its own"
+FULL = "in no quick row; tests of its own"
 NO_ROWS = {
     "demheat/deadline.py": REFUSED,
     "demheat/dem/trial.py": REFUSED,

@@ -105,6 +105,27 @@ def test_an_accepted_change_gives_moved_rows_new_values_and_leaves_costs_and_the
     assert ran(old, "accept") == 0 and old.replayed == []
 
 
+def test_a_row_that_cannot_be_made_again_stays(old, capsys):
+    """The cheapest of its group has moved, and this one fails now: it must not give way to nothing."""
+    old.write(CASES, **{"def run(name, x):": "def run(name, x):\n    x = x * 2 if x < 3 else 1 / (x - 3)"})
+    before = old.rows()
+    assert ran(old, "accept") == 1
+    said = capsys.readouterr().out
+    assert f"not made again: {old.name} name=plain,x=3.0: failed, ZeroDivisionError in run" in said
+    after = old.rows()["name=plain,x=3.0"]
+    assert {name: value for name, value in after.items() if value} == {
+        name: value for name, value in before["name=plain,x=3.0"].items() if value
+    }
+    assert old.rows()["name=plain,x=1.5"]["square"] == "9.0"
+
+
+def test_new_values_lose_what_was_said_of_the_old_ones(old):
+    store.write_rows(old.path, [row | {"replayed_commit": "1", "borne_commit": "1"} for row in old.rows().values()])
+    old.write(CASES, **{"x * x": "x * x + 1"})
+    assert ran(old, "accept") == 0
+    assert {row["replayed_commit"] + row["borne_commit"] for row in old.rows().values()} == {""}
+
+
 def test_a_killed_accept_goes_on(old):
     """Rows that have new values are not made again; the others of their group still are."""
     old.write(CASES, **{"x * x": "x * x + 1"})
