@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +16,6 @@ PRECISIONS = {"float64": np.float64, "float32": np.float32}
 # Found at contrasts 0.01 to 100: these leave an error of the conductivity, against the grid's own limit, below 1e-10
 # (cg: quadratic in the tolerance, so 1e-3 suffices for 1e-6) and 2e-7, of the flux field 1e-5 and 1e-6 of its mean.
 TOLERANCES = {"cg": 1e-5, "eyre-milton": 1e-6}
-# Of the iterations that Eyre and Milton's rate asks for: found are .56 to 1.5, at contrasts of 1e-4 to 1e6.
-LEAST_NEEDED = 0.5
 
 
 class Knobs(NamedTuple):
@@ -99,28 +96,6 @@ def _of_image(scene, knobs):
         return knobs._replace(rule="plain")
     scene.require("links have a harmonic mean; use rule 'plain'", pores=False, takes=("image",))
     return knobs
-
-
-def check_iterations(scene: Scene, knobs: Knobs) -> None:
-    """Raise NotImplementedError if Eyre and Milton's iteration cannot end within its limit, before it is begun.
-
-    Parameters
-    ----------
-    scene : Scene
-    knobs : Knobs
-    """
-    conducting = scene.mean_conductivities[scene.mean_conductivities > 0]
-    if knobs.scheme != "eyre-milton" or not len(conducting):
-        return
-    root = math.sqrt(conducting.max() / conducting.min())
-    # Each contracts by (root - 1) / (root + 1).
-    needed = -math.log(knobs.tolerance) * root / 2
-    if LEAST_NEEDED * needed > knobs.max_iterations:
-        raise NotImplementedError(
-            f"fft.solve: scheme 'eyre-milton' at a contrast of {root**2:.1e} takes about {needed:.1e} iterations, as "
-            f"the root of the contrast, and max_iterations = {knobs.max_iterations}: use scheme 'cg', or more "
-            "iterations or a larger tolerance"
-        )
 
 
 def _check_tensors(box, scheme, rule):

@@ -15,7 +15,7 @@ from demheat.scene import Scene
 from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
-from references.fft.checks import PRECISIONS, check_grid, check_iterations, check_load, check_scheme, checked, rule_of
+from references.fft.checks import PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
 from references.fft.estimate import estimated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import expected
@@ -153,7 +153,6 @@ def _solved(scenes, voxels, knobs):
     boxes = [turned_scene(scene, order) for scene, order in zip(scenes, orders, strict=True)]
     shapes = [tuple(grid[a] for a in order) for order in orders]
     knobs = rule_of(scenes[0], grid, knobs)
-    check_iterations(scenes[0], knobs)
     for box, shape in zip(boxes, shapes, strict=True):
         check_grid(box, knobs.rule, shape)
     itemsize = np.dtype(PRECISIONS[knobs.precision]).itemsize

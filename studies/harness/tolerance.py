@@ -20,6 +20,8 @@ from studies.harness.store import TAIL
 
 # Columns that end a row and are values all the same.
 COUNTED = ("unknowns", "iterations")
+# A number in a cell, which may hold one, a curve or a list of verdicts.
+NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*(?:[eE][-+]?\d+)?|nan|inf)(?![\w.])")
 # What says how a row was made and not what came out of it.
 ASIDE = re.compile(r"case|code|packing_cached|(.+_)?(note|version)|remark|warning|solver")
 
@@ -127,14 +129,12 @@ def _text(value):
 
 
 def _near(old, new, tolerance):
-    """Whether two cells, of one number or of many, are as near as they must be; words must be the same."""
+    """Whether two cells are as near as they must be: all numbers in them; what stands between must be the same."""
     if old == new:
         return True
-    try:
-        pairs = list(zip(map(float, old.split()), map(float, new.split()), strict=True))
-    except ValueError:
-        return False
-    return bool(pairs) and all(_close(*pair, tolerance) for pair in pairs)
+    pairs = zip(NUMBER.findall(old), NUMBER.findall(new), strict=False)
+    alike = NUMBER.sub("#", old) == NUMBER.sub("#", new)
+    return alike and all(_close(float(one), float(other), tolerance) for one, other in pairs)
 
 
 def _close(old, new, tolerance):

@@ -48,6 +48,10 @@ def columns_moved(column, stored, found, here=None, **origin):
         ("profile", "1.0 2.0 3.0", "1.0 2.0 3.001", True),
         ("profile", "1.0 2.0 3.0", "1.0 2.0", True),
         ("integrator", "euler", "rkl2", True),
+        ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "warned", -0.5912864124158449]]', False),
+        ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "warned", -0.5912864]]', True),
+        ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "wrong", -0.5912864124158446]]', True),
+        ("k", "nan", "1.0", True),
         # Costs, and how the row was made.
         ("cpu_s", "1.0", 2.0, False),
         ("ratio", "1.0", 2.0, False),
