@@ -36,7 +36,7 @@ def sweep(
     out : path, optional
         CSV file to which each row is added as it is done. A case that stands there without an error is not computed
         again, *whatever the function was then*: another function needs another file. Values of cases must be plain
-        then, so that a row can be found again. One sweep at a time may write a file.
+        then, so that a row can be found again. Several sweeps may write one file: each begins with the rows it finds.
     timeout : float, s, optional
         Of each case; needs a client.
 

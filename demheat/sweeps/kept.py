@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from demheat.paths import checked_path, replaced
+from demheat.paths import checked_path, locked, replaced
 from demheat.sweeps.cases import key_of
 from demheat.sweeps.rows import CASE, TAIL
 
@@ -38,20 +38,21 @@ class Kept:
         return {**case, **others, **ends, "error": found["error"]}
 
     def add(self, case: Mapping, row: Mapping) -> None:
-        """Put a row in the place of an older one of its case, and write all.
+        """Put a row in the place of an older one of its case, and write all, and what others have written meanwhile.
 
         Parameters
         ----------
         case, row : mapping
         """
         texts = {name: "" if value is None else str(value) for name, value in row.items()}
-        self.rows[key_of(case)] = {CASE: key_of(case), **texts}
-        seen = dict.fromkeys(name for each in self.rows.values() for name in each)
-        columns = [*(name for name in seen if name not in TAIL), *TAIL]
-        with replaced(self.path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(self.rows.values())
+        with locked(self.path.parent):
+            self.rows |= _read(self.path) | {key_of(case): {CASE: key_of(case), **texts}}
+            seen = dict.fromkeys(name for each in self.rows.values() for name in each)
+            columns = [*(name for name in seen if name not in TAIL), *TAIL]
+            with replaced(self.path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
+                writer.writeheader()
+                writer.writerows(self.rows.values())
 
 
 def opened(path) -> Kept:
@@ -67,8 +68,13 @@ def opened(path) -> Kept:
         raise ValueError(f"out = {str(path)!r}: must be a file in a folder that can be written: {error}") from None
     if path.is_dir() or not path.name:
         raise ValueError(f"out = {str(path)!r}: must be a file, and is a folder")
+    return Kept(path, _read(path))
+
+
+def _read(path):
+    """Rows of a file as it is now, by their cases; none of a file that is not there."""
     if not path.exists():
-        return Kept(path, {})
+        return {}
     try:
         with path.open(newline="", encoding="utf-8") as file:
             reader = csv.DictReader(file, strict=True)
@@ -78,7 +84,7 @@ def opened(path) -> Kept:
     whole = all(None not in row and None not in row.values() for row in rows)
     if not {CASE, *TAIL} <= set(columns) or not whole:
         raise ValueError(f"out = {str(path)!r}: must hold rows of a sweep as CSV; move it away, or mend it")
-    return Kept(path, {row[CASE]: row for row in rows})
+    return {row[CASE]: row for row in rows}
 
 
 def _parsed(text):

@@ -2,6 +2,8 @@
 
 import csv
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -101,6 +103,32 @@ def test_a_file_is_written_row_by_row_and_resumed(tmp_path):
     # More cases go into the same file, in any order of names.
     assert len(sweep(stopping, {"x": [9.0, 11.0]}, out=path)) == 2 and calls[5:] == [11.0]
     assert len(read(path)) == 5 and os.listdir(tmp_path) == ["rows.csv"]
+
+
+# Writes rows as soon as a line comes in, and takes a while from reading to writing, so that two of them meet.
+WRITER = """
+import sys
+import time
+from demheat.sweeps import kept
+read, kept._read = kept._read, lambda path: (read(path), time.sleep(0.005))[0]
+print(flush=True)
+sys.stdin.readline()
+mine, file = sys.argv[1], kept.opened(sys.argv[2])
+for number in range(20):
+    file.add({"x": mine, "n": number}, {"x": mine, "n": number, "error": ""})
+"""
+
+
+def test_two_processes_on_one_file_lose_no_row(tmp_path):
+    path, pipe = tmp_path / "rows.csv", subprocess.PIPE
+    command = (sys.executable, "-c", WRITER)
+    both = [subprocess.Popen([*command, mine, path], stdin=pipe, stdout=pipe, text=True) for mine in "ab"]
+    assert [each.stdout.readline() for each in both] == ["\n", "\n"]
+    for each in both:
+        each.stdin.write("\n")
+        each.stdin.flush()
+    assert [(each.communicate()[0], each.returncode) for each in both] == [("", 0)] * 2
+    assert {(row["x"], row["n"]) for row in read(path)} == {(mine, str(n)) for mine in "ab" for n in range(20)}
 
 
 def test_failed_cases_are_tried_again(tmp_path):
