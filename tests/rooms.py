@@ -185,6 +185,7 @@ ENGINE = {
         "demheat.dem",
     ),
     "demheat.damage": (
+        "demheat.deadline",
         "demheat.scene",
         "demheat.field",
         "demheat.laws",
@@ -274,6 +275,7 @@ ENGINE = {
     ),
     # A solve that is larger than the memory: slabs one after the other, kept on disk.
     "demheat.streamed": (
+        "demheat.deadline",
         "demheat.scene",
         "demheat.field",
         "demheat.laws",

@@ -27,6 +27,7 @@ BESIDE = {
     "references.bounds": ("demheat.scene", "demheat.method", "references.exact", "references.bounds"),
     "references.multipole": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.error",
         "demheat.field",
         "demheat.tensor",
@@ -40,6 +41,7 @@ BESIDE = {
     ),
     "references.fem": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.error",
         "demheat.field",
         "demheat.tensor",
@@ -55,6 +57,7 @@ BESIDE = {
     ),
     "references.bracket": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.limits",
         "demheat.process_state",
         "demheat.progress",
@@ -64,6 +67,7 @@ BESIDE = {
     ),
     "references.fft": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.error",
         "demheat.field",
         "demheat.tensor",
@@ -78,6 +82,7 @@ BESIDE = {
     ),
     "references.bracket.voxels": (
         "demheat.scene",
+        "demheat.deadline",
         "demheat.limits",
         "demheat.process_state",
         "demheat.progress",

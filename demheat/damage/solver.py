@@ -10,6 +10,7 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
+from demheat.deadline import timed
 from demheat.dem.options import asked
 from demheat.field import Field
 from demheat.laws import Calibrated, Laguerre, Platonic
@@ -19,6 +20,7 @@ from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import whole
 
 
+@timed
 def solve(
     scene: Scene,
     *,

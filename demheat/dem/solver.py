@@ -16,7 +16,7 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
-from demheat.deadline import budget
+from demheat.deadline import budget, timed
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, expected, unknowns
 from demheat.dem.options import asked
@@ -120,6 +120,7 @@ def solve(
         return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
 
+@timed
 def solve_axes(
     scene: Scene,
     *,

@@ -10,6 +10,7 @@ import numpy as np
 from demheat import dem
 from demheat.build import warn_of_twins
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
+from demheat.deadline import timed
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, unknowns
 from demheat.dem.options import Particles
@@ -32,6 +33,7 @@ KNOWS = "demheat.streamed solves steady conduction in boxes without pores, by th
 USUAL = 4
 
 
+@timed
 def solve(
     scene: Scene,
     *,

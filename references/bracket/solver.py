@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.limits import free_memory
 from demheat.process_state import cpu_seconds, one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
@@ -62,6 +63,7 @@ class Bracket:
         return 0.0 if self.upper == 0 else math.inf
 
 
+@timed
 def solve(scene: Scene, *, size: float | None = None, width: float | None = None, tolerance: float = 1e-10) -> Bracket:
     """Bound the conductivity of a scene along its load from both sides.
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene
 from references.bracket.energies import flux_energies, temperature_energies
@@ -58,6 +59,7 @@ class Tensor:
         return self.middle + self.radius
 
 
+@timed
 def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 1e-10) -> Tensor:
     """Bound the conductivity tensor of a periodic cell.
 

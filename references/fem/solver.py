@@ -7,6 +7,7 @@ from functools import partial
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.field import Field
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
@@ -29,6 +30,7 @@ ROUNDED, APART = 1e6, 1e-3
 GAP, FINE, STRONG = 2.0, 6.0, 12.0
 
 
+@timed
 def solve(
     scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
 ) -> Field:
@@ -87,6 +89,7 @@ def solve(
     return _solved([scene], order, size, curved, tolerance)[0]
 
 
+@timed
 def solve_axes(
     scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
 ) -> tuple[Field, Field, Field]:
@@ -152,7 +155,7 @@ def warn_of_gaps(scene, size) -> None:
         warnings.warn(
             f"gaps beside inclusions {near[:8]}{' and more' if len(near) > 8 else ''} have an element or so across at "
             f"edges of {size:.3g} m: linear ones may be off by a tenth; use smaller ones or order=2",
-            stacklevel=4,
+            stacklevel=5,
         )
 
 

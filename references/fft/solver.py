@@ -8,6 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.progress import announced
@@ -34,6 +35,7 @@ UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
+@timed
 def solve(
     scene: Scene,
     *,
@@ -108,6 +110,7 @@ def solve(
     return _solved([scene], voxels, knobs)[0]
 
 
+@timed
 def solve_axes(
     scene: Scene,
     *,

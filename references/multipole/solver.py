@@ -14,6 +14,7 @@ import math
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.process_state import one_blas_thread
@@ -29,6 +30,7 @@ from references.multipole.truncation import converged, field_truncation, truncat
 from references.threads import MOST_THREADS
 
 
+@timed
 def solve(
     scene: Scene,
     *,
@@ -88,6 +90,7 @@ def solve(
     return _solved(scene, points_per_axis, wanted)
 
 
+@timed
 def solve_axes(
     scene: Scene,
     *,

@@ -1,5 +1,6 @@
 """Budgets of time: who looks at the clock, where, and what is left when one is over."""
 
+import inspect
 import threading
 import time
 from importlib import import_module
@@ -8,11 +9,14 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat import deadline, effective, gallery, progress, solve
+from demheat import damage, deadline, effective, gallery, progress, solve
 from demheat.cheapest.answers import Answer
-from references import fem, fft, multipole
+from demheat.dem import solve_axes
+from references import bracket, fem, fft, multipole
+from references.bracket import voxels
 
 SPHERE = gallery.sphere_in_cube(5.0)
+CELL = gallery.sphere_in_cube(5.0, periodic=True)
 METHODS = {
     "dem": lambda: solve(SPHERE, particles=1000),
     "amg": lambda: solve(SPHERE, particles=1000, solver="amg"),
@@ -52,6 +56,49 @@ def test_seconds_of_a_solve():
     for bad in (0, -1.0, float("nan"), float("inf"), "long", True):
         with pytest.raises(ValueError, match="seconds = .*: must be a finite number > 0, or None"):
             solve(SPHERE, particles=1000, seconds=bad)
+
+
+# Functions with a budget of their own, at what they do in a second or so.
+TIMED = {
+    "dem axes": lambda seconds: solve_axes(SPHERE, particles=1000, seconds=seconds),
+    "fem": lambda seconds: fem.solve(SPHERE, size=0.05, order=1, seconds=seconds),
+    "fem axes": lambda seconds: fem.solve_axes(SPHERE, size=0.05, order=1, seconds=seconds),
+    "fft": lambda seconds: fft.solve(SPHERE, voxels=16, seconds=seconds),
+    "fft axes": lambda seconds: fft.solve_axes(SPHERE, voxels=16, seconds=seconds),
+    "multipole": lambda seconds: multipole.solve(SPHERE, seconds=seconds),
+    "multipole axes": lambda seconds: multipole.solve_axes(SPHERE, seconds=seconds),
+    "bracket": lambda seconds: bracket.solve(SPHERE, size=0.05, seconds=seconds),
+    "bracket tensor": lambda seconds: bracket.solve_tensor(CELL, size=0.05, seconds=seconds),
+    "voxels": lambda seconds: voxels.solve(SPHERE, voxels=4, seconds=seconds),
+    "voxels tensor": lambda seconds: voxels.solve_tensor(CELL, voxels=4, seconds=seconds),
+    "damage": lambda seconds: damage.solve(SPHERE, particles=1000, removed=0.1, seconds=seconds),
+}
+
+
+@pytest.mark.parametrize("name", TIMED)
+def test_seconds_of_every_solve(name):
+    with pytest.raises(TimeoutError, match=r"^seconds = 1e-09 are over"):
+        TIMED[name](1e-9)
+    assert not deadline.limited()
+    with pytest.raises(ValueError, match="seconds = -1.0: must be a finite number > 0, or None"):
+        TIMED[name](-1.0)
+    TIMED[name](1000.0)
+
+
+def test_a_timed_function_keeps_its_name_and_says_what_it_takes():
+    signature = inspect.signature(fft.solve)
+    assert fft.solve.__name__ == "solve" and list(signature.parameters)[-1] == "seconds"
+    assert list(inspect.signature(solve_axes).parameters)[-2:] == ["seconds", "knobs"]
+    for each in (fft.solve, solve_axes, bracket.solve):
+        # Once, and among the parameters.
+        before, _, after = inspect.getdoc(each).partition("seconds : float, s, optional\n    That it may take")
+        assert "Parameters\n---" in before and after.index("Returns\n---") < 100
+
+
+def test_a_warning_of_a_timed_function_is_of_the_line_that_called_it():
+    with pytest.warns(UserWarning, match="gaps beside inclusions") as seen:
+        fft.solve(SPHERE, voxels=8)
+    assert seen[0].filename == __file__
 
 
 def test_the_first_to_end_counts_and_none_is_left():

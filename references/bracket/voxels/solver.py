@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.limits import check_memory
 from demheat.progress import stage
 from demheat.scene import Scene
@@ -31,6 +32,7 @@ PAIR = "bounds on voxels know one pair of isothermal walls"
 PORES = "Fourier modes of a balanced flux fill pores; references.bracket.solve takes them"
 
 
+@timed
 def solve(
     scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
 ) -> Bracket:

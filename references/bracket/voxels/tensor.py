@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from demheat.deadline import timed
 from demheat.scene import Scene
 from references.bracket.solver import ROUNDING
 from references.bracket.tensor import Tensor
@@ -45,6 +46,7 @@ def bounds_tensor(
     return _tensor(conducting(values), resisting(values), load, effort)
 
 
+@timed
 def solve_tensor(
     scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
 ) -> Tensor:
