@@ -39,6 +39,22 @@ def measured(scene):
     return measures(scene_of(scene))
 
 
+def stored(csv_path):
+    """Rows of this study in a file, and those of links beside it.
+
+    Parameters
+    ----------
+    csv_path : path
+    """
+    import pandas as pd
+
+    from studies.harness import runner
+    from studies.harness.table import read_frame
+
+    files = {"speed_error": csv_path, "speed_error.links": Path(__file__).with_name("links.csv")}
+    return pd.concat([read_frame(runner.load(name), path) for name, path in files.items()])
+
+
 def usable(df):
     """Rows of steady solves that went well, with their method's knob and its value.
 
@@ -200,13 +216,10 @@ def ship(csv_path, file=shipped.FILE):
         Rows of this study.
     file : path
     """
-    from studies.harness import runner
     from studies.harness.store import replaced
-    from studies.harness.table import read_frame
 
-    df = read_frame(runner.load("speed_error"), csv_path)
     with replaced(file) as temporary:
-        temporary.write_text(written(fitted(df)), encoding="utf-8")
+        temporary.write_text(written(fitted(stored(csv_path))), encoding="utf-8")
     return Path(file)
 
 

@@ -95,7 +95,7 @@ def test_shipped_laws_are_those_of_the_stored_rows():
     """Else: `python -m studies.speed_error.laws`."""
     if not same_spheres():
         pytest.skip("the rows' processor drew other spheres of the same seed: docs/decisions/bits.md")
-    now, kept = laws.fitted(read_frame(study, STORED)), shipped.laws()
+    now, kept = laws.fitted(laws.stored(STORED)), shipped.laws()
     assert set(now) == set(kept)
     for name, law in now.items():
         assert law[:2] == kept[name][:2]
