@@ -33,6 +33,8 @@ SMALLEST, LARGEST, ROUNDS = 0.4, 0.9, 8
 FIRST, COARSER = 3.0, 1.25
 # Such a step is worth it where it leaves this part of the cost, or less.
 LEAST_SAVED = 0.98
+# Voxels along each axis with which the FFT's rule is that of any finer grid.
+ENOUGH = (32, 32, 32)
 # What coarser runs for the interval cost, of the solve.
 BESIDES = 1.5
 
@@ -117,11 +119,11 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
         return way._replace(refused=told)
     knob, power = KNOBS[way.method]
     wanted = min(0.9 * missing ** (-1 / ORDERS[way.method]), LARGEST)
-    value, part = way.knobs[knob], _largest(loads)
+    value, (law, part) = way.knobs[knob], _law(way.method, loads)
     if way.method == "fem":
         # Longer edges than those on the spheres change nothing there.
         value = min(value, ON_SPHERE * part.narrowest)
-    cost = predicted(way.method, part, _scaled(value, wanted, power))
+    cost = predicted(law, part, _scaled(value, wanted, power))
     if cost.bytes > memory:
         return way._replace(refused=f"{told}; narrower ones would need {_gib(cost.bytes)}")
     knobs = {knob: _scaled(value, max(wanted, SMALLEST), power)}
@@ -169,23 +171,28 @@ def _multipole(loads, accuracy, memory):
 def _refined(name, loads, accuracy, memory):
     if any(whole.resistances.any() for whole in loads.wholes.values()):
         return Way(name, {}, refused="its laws of error know perfect interfaces only")
-    (knob, power), part = KNOBS[name], _largest(loads)
-    value = needed(name, part, accuracy / INTERVAL, sure=False)
-    cost, first = predicted(name, part, value), value
+    (knob, power), (law, part) = KNOBS[name], _law(name, loads)
+    value = needed(law, part, accuracy / INTERVAL, sure=False)
+    cost, first = predicted(law, part, value), value
     # Laws of the error may be far off: begin with what costs little, its interval says how far to go from there.
-    while predicted(name, part, first).cpu_s > FIRST:
+    while predicted(law, part, first).cpu_s > FIRST:
         coarser = _scaled(first, COARSER, power)
-        if predicted(name, part, coarser).cpu_s > LEAST_SAVED * predicted(name, part, first).cpu_s:
+        if predicted(law, part, coarser).cpu_s > LEAST_SAVED * predicted(law, part, first).cpu_s:
             # What is left is paid for each inclusion, whatever the elements.
             break
         first = coarser
     way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads), cost.bytes), memory)
-    least = predicted(name, part, first).bytes
+    least = predicted(law, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
 
 
-def _largest(loads):
-    return measures(max(loads.parts.values(), key=lambda each: each.volume))
+def _law(method, loads):
+    """Name of a method's law, of the FFT that of the rule which its solver takes by itself, and what it is asked of."""
+    part = max(loads.parts.values(), key=lambda each: each.volume)
+    if method == "fft":
+        rule = import_module("references.fft.rules").automatic("cg", part, ENOUGH)
+        method = "fft" if rule == "laminate" else f"fft-{rule}"
+    return method, measures(part)
 
 
 def _scaled(value, edge, power):

@@ -7,11 +7,12 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Flux, Layer, Material, Scene, Sphere, effective, gallery, recommend
-from demheat.cheapest import ways
+from demheat import Ellipsoid, Flux, Layer, Material, Scene, Sphere, effective, gallery, recommend
+from demheat.cheapest import laws, ways
 from demheat.cheapest.loads import loads_of
+from demheat.cheapest.measures import measures
 from demheat.tensor import conductivity_tensor
-from references import exact, multipole
+from references import exact, fft, multipole
 from studies.common.drawn import scene_of
 
 # Not the function of the same name.
@@ -130,6 +131,28 @@ def test_recommendations_say_why():
     # What is expected not to fit is in doubt, what cannot even begin is none.
     assert "dem: in doubt, expected to need" in recommend(ASKEW, 1e-8, memory=1e9).why
     assert recommend(ASKEW, 1e-3, memory=1.0).method == ""
+
+
+@pytest.mark.parametrize(("contrast", "rule"), [(10.0, "laminate"), (1000.0, "links"), (0.0, "plain")])
+def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
+    """Laminates, which it leaves at high contrast, would have needed 1800 CPU-s and 14 GB at contrast 1000."""
+    scene = gallery.sphere_in_cube(contrast)
+    told = {way.method: way for way in recommend(scene, 1e-3).ways}["fft"]
+    part = measures(loads_of(scene).parts[0])
+    law = {"laminate": "fft"}.get(rule, f"fft-{rule}")
+    assert told.error == laws.predicted(law, part, laws.needed(law, part, 1e-3 / ways.INTERVAL, sure=False)).error
+    field = fft.solve(scene, voxels=told.knobs["voxels"])
+    assert field.stats["rule"] == rule
+    if contrast:  # what is said of pores is an upper end
+        assert told.cpu_s < 2.0 and told.bytes < 2**23
+        assert_allclose(field.conductivity, exact.solve(scene).conductivity, rtol=1e-3)
+
+
+def test_an_ellipsoid_that_conducts_well_is_no_case_for_a_large_machine():
+    """By laminates it was said to need 170 GiB and more; 60 voxels along the edge of an eighth do."""
+    body = Ellipsoid((0.5, 0.5, 0.5), (0.4, 0.3, 0.25), Material(1000.0))
+    told = {way.method: way for way in recommend(Scene((1.0,) * 3, Material(1.0), [body], gradient=(1, 0, 0))).ways}
+    assert not told["fft"].doubt and told["fft"].bytes < 2**28 and told["fft"].cpu_s < 60
 
 
 def test_what_costs_by_the_inclusion_is_not_made_coarser_without_end():
