@@ -34,7 +34,8 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "largest |dT|/T of any particle": (
-        "not reproduced by contacts, whichever way temperatures are held, see docs/decisions/printed.md"
+        "of single particles not reproduced by contacts, with temperatures in centres or at the wall; means over "
+        "slices with temperatures at the wall are within it (column `slices`), see docs/decisions/printed.md"
     ),
 }
 PAPER = printed("fig05_slab")

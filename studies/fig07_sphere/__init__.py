@@ -58,7 +58,7 @@ AS_PRINTED = Variant("lsa", "center", "flux")
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "heat lost over heat moved": "rounding; of elements the tolerance of each step's equations",
-    "over its 1.93 K": "within a factor of 1.8 either way is what is asked of other packings",
+    "over its 1.93 K": "within a factor of 1.8 either way is asked, as packings scatter: no reproduction",
     "over Laguerre": "the limit of both laws of contacts",
 }
 TIMEOUT = 3600.0

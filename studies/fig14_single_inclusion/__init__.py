@@ -217,6 +217,14 @@ def headline(df):
     return short(df)
 
 
+def words(df):
+    """The error of the DEM by its particles at contrast 10, on the scene on which its constants were found."""
+    from studies.fig14_single_inclusion.tables import lines
+
+    rows = lines(parted(df)[1]).query("method.str.contains('default')")
+    return ", ".join(f"{row['10']:+.2g} % with {row['resolution']}" for _, row in rows.iterrows())
+
+
 def notes(df):
     """The variants of the paper's network; what is a choice here, or a property of the scenes."""
     from studies.fig14_single_inclusion.tables import told

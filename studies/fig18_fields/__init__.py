@@ -1,11 +1,12 @@
 """Temperature and flux among 83 spheres, point by point: DEM, FEM and FFT against multipoles.
 
-Table 3 of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799): silica spheres in epoxy (0.195 and 1.5
-W/(m K)), a fifth of a cube of six diameters, 25 C at y = 0 and 35 C at y = L, the other faces insulated. Their
-arrangement is not published, so their numbers and ours differ; what can be compared is how far methods differ on one
-arrangement. Here the same spheres, none of which crosses a face and no two nearer than 0.02 diameters, are under two
-loads: "walls", as in the paper, and "gradient", in a periodic cell under the same mean gradient. Both have an exact
-witness, the multipole method: the walled box is an eighth of a periodic cell of its mirror images.
+Table 3 of Haddad et al. (Int. J. Thermal Sciences 164, 2021, 106799): silica spheres in epoxy (0.195 and 1.5 W/(m K)),
+a fifth of a cube of six diameters, 25 C at y = 0 and 35 C at y = L, the other faces insulated. Their arrangement is not
+published, so their numbers and ours differ; what can be compared is how far methods differ on one arrangement. Here the
+same spheres, none of which crosses a face and no two nearer than 0.02 diameters, the first of the arrangements drawn
+(seed 20) in which the paper's four points keep away from interfaces, are under two loads: "walls", as in the paper, and
+"gradient", in a periodic cell under the same mean gradient. Both have an exact witness, the multipole method: the
+walled box is an eighth of a periodic cell of its mirror images.
 
 Temperatures are in % of the span of 10 K, the flux is unsigned. All points lie on the plane x = L/2, sampled at
 51 x 51 points, and drawn at 200 x 200. "Away" is more than the mean diameter of 1e5 particles, 0.021 L, from interfaces

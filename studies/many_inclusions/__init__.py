@@ -214,6 +214,12 @@ def notes(df):
     return told(df, PAPER)
 
 
+def words(df):
+    """The error of the DEM with as many particles as the first page has for one sphere."""
+    rows = pick(errors(parted(df)[1]), name="dem", particles=100_000)
+    return f"{largest(rows, 'error_percent'):.2g} %"
+
+
 def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
     from studies.many_inclusions.figure import draw

@@ -22,7 +22,8 @@ REASONS = {f"relation {name}": "rounding, which differs by processor" for name i
 # Why claims on the stored rows fail.
 FAILS = {
     "fft, finest, but for patterns": (
-        "one limit was set for all scenes; the table says on which the voxels are too coarse"
+        "the study asks for laminate voxels, which the solver by itself leaves for links at high contrast: with these "
+        "the worst scene, sc-f50-s1000, is 0.023 % off on the same 64^3 voxels"
     ),
     "multipole, finest, but for patterns": (
         "one limit was set for all scenes; where spheres nearly touch degree 7 is too low: of 15 it errs by a twentieth"
