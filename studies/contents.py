@@ -8,7 +8,7 @@ HEADLINES = (
     ("many_inclusions", "DEM, 8000000 elements: error"),
     ("fig07_sphere", "Laguerre, 1e+06 particles: error of the centre at 10 s"),
     ("fig03_calibration", "1e5 particles, as in the paper: C_t"),
-    ("time_integrators", "particle-steps per second over LAMMPS with its usual"),
+    ("time_integrators", "particle-steps per second over whole steps of LAMMPS with its usual"),
     ("estimates", "DEM: share of exact conductivities inside of the interval"),
     ("brackets", "Exact values outside of their brackets, of"),
     ("hard_cases", "Silently wrong"),

@@ -84,16 +84,6 @@ def judged(study, df):
     return found
 
 
-def ratio(claim):
-    """How far the limit is from the value, as a factor; 1 where it is met, infinite beside a value of nothing."""
-    limit, value = float(claim.limit.split()[-1]), abs(claim.value)
-    if limit <= 0 or claim.limit.startswith("="):
-        return 1.0
-    above = claim.limit.startswith(">")
-    near, far = (limit, value) if above else (value, limit)
-    return float(far / near) if near else np.inf
-
-
 def as_bad(claim, others):
     """Whether the value is no better than most of some others: then no limit that it holds could tell them apart."""
     sign = -1 if claim.limit.startswith(">") else 1

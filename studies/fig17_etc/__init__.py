@@ -57,8 +57,8 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "worst error of its best variant": (
-        "not reproduced with 150000 particles, worst where spheres fill half; many_inclusions has 8e6 where they fill a "
-        "fifth, and there it is; half was not tried with as many"
+        "not reproduced with 150000 particles, worst where spheres fill half; many_inclusions has 8e6 where a fifth is "
+        "filled, and there it is; half was not tried with as many"
     ),
 }
 PAPER = printed("fig17_etc")

@@ -16,6 +16,8 @@ OPERATORS = {"<=": float.__le__, "<": float.__lt__, ">=": float.__ge__, ">": flo
 # Costs that do not count are drawn anew, each by a factor of one to three decades up, then by the same one down: the
 # largest and the least of some move by that. Twice, for ranks may stay as they were.
 DRAWS, DECADES = 2, (1.0, 3.0)
+# A claim that holds with no more room than this factor is a check that later code does as well.
+NEAR = 3.0
 COSTLY = "rests on costs that do not count"
 UNFINISHED = "rows are missing"
 
@@ -36,6 +38,15 @@ class Claim(NamedTuple):
     def failed(self):
         """Whether it was judged and does not hold."""
         return not (self.ok or self.why)
+
+    @property
+    def room(self):
+        """How far the limit is from the value, as a factor; 1 where it is met, infinite beside a value of nothing."""
+        limit, value = float(self.limit.split()[-1]), abs(self.value)
+        if limit <= 0 or self.limit.startswith("="):
+            return 1.0
+        near, far = (limit, value) if self.limit.startswith(">") else (value, limit)
+        return far / near if near else math.inf
 
     @property
     def verdict(self):

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from studies.harness import explained, runner, sound
-from studies.harness.claims import Claim
+from studies.harness.claims import NEAR, Claim
 from studies.harness.store import replaced
 from studies.harness.table import render
 
@@ -167,8 +167,20 @@ def readme(found, first, figures):
             " reason where one is known.\n",
             "| study | claim | value | limit | why |\n|---|---|--:|---|---|",
             *_failed(found),
+            f"\n{_near(found)}",
             "",
         ]
+    )
+
+
+def _near(found):
+    holding = [each for chapter in found for each in chapter.claims if each.ok]
+    near = sum(1 < each.room <= NEAR for each in holding)
+    return (
+        f"Of {len(holding)} that hold {near} have a limit within {NEAR:g} times the value: they check that later "
+        "code does as well, and most of these limits were set after the value was seen "
+        "([claims](../docs/decisions/claims.md)). Claims about a method are those whose limit is from elsewhere: what "
+        "a paper prints, a rate, another method."
     )
 
 

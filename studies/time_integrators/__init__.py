@@ -147,7 +147,7 @@ def _peer(df):
     for name, other in (tuple(FORCES), tuple(FORCES)[::-1]):
         (mine, limit), (theirs, _) = FORCES[name], FORCES[other]
         beside = f" ({faster[other]:.2g} over its {theirs})" if faster[other] == faster[other] else ""
-        text = f"Explicit kernel: particle-steps per second over LAMMPS with its {mine}{beside}"
+        text = f"Explicit kernel: particle-steps per second over whole steps of LAMMPS with its {mine}{beside}"
         value = None if faster[name] != faster[name] else faster[name]
         yield f"{text}, same links, one thread, 1e5 particles", value, f">= {limit}"
 

@@ -22,9 +22,10 @@ import pytest
 
 from studies.__main__ import study_names
 from studies.harness import explained, runner
+from studies.harness.claims import NEAR
 
 RESULTS = Path(__file__).parents[2] / "results"
-DEALS, KEPT, NEAR = 6, 0.9, 3.0
+DEALS, KEPT = 6, 0.9
 STORED = [name for name in study_names() if (RESULTS / f"{name}.csv").exists()]
 # Judged a dozen times or more, these take over two CPU-seconds each: `make test-slow`.
 SLOW = (
@@ -78,7 +79,7 @@ def holding_anyhow(found):
         excepted = any(words in claim.sentence for words in EXCEPTIONS)
         if not claim.ok or excepted or np.mean([other.ok for other in others] or [0]) < KEPT:
             continue
-        if not dealt.as_bad(claim, others) and dealt.ratio(claim) > NEAR:
+        if not dealt.as_bad(claim, others) and claim.room > NEAR:
             loose.append(claim.sentence)
         doubtful[key] = claim
     for rows in _spoiled(found.study, found.df):
@@ -113,7 +114,7 @@ def far(found):
     """Claims whose limit is more than three times the value without a reason, and reasons of none or of few words."""
     reasons = getattr(found.study, "REASONS", {})
     sentences = [claim.sentence for claim in found.own.values()]
-    loose = [claim.sentence for claim in found.own.values() if claim.ok and dealt.ratio(claim) > NEAR]
+    loose = [claim.sentence for claim in found.own.values() if claim.ok and claim.room > NEAR]
     unused = [words for words in reasons if not any(words in sentence for sentence in sentences)]
     silent = [words for words, reason in reasons.items() if len(reason.split()) < 4]
     return sorted(s for s in loose if not any(words in s for words in reasons)) + unused + silent
