@@ -80,7 +80,7 @@ def value_columns(study, case, names):
 
 
 def tolerance_of(study, column):
-    """Tolerance of a column; None if its values are not compared.
+    """Tolerance of a column.
 
     Parameters
     ----------
@@ -112,12 +112,10 @@ def moved(name, study, case, stored, found):
     if status[0] != status[1]:
         return [Moved(name, key, "status", status[0], f"{status[1]} ({found.get('note')})", Tolerance(0, 0))]
     columns = value_columns(study, case, dict.fromkeys([*stored, *found]))
-    pairs = ((column, _text(stored.get(column)), _text(found.get(column))) for column in columns)
-    wrong = []
-    for column, old, new in pairs:
+    parts, wrong = getattr(study, "COMPARED", {}), []
+    for column in columns:
+        old, new = (parts.get(column, str)(_text(row.get(column))) for row in (stored, found))
         tolerance = tolerance_of(study, column)
-        if tolerance is None:
-            continue
         tolerance = tolerance if same else Tolerance(*map(max, zip(tolerance, ELSEWHERE, strict=True)))
         if not _near(old, new, tolerance):
             wrong.append(Moved(name, key, column, old, new, tolerance))

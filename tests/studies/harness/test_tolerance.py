@@ -4,6 +4,7 @@ from types import ModuleType
 
 import pytest
 
+import studies.hard_cases as hard_cases
 from demheat.machine import machine
 from studies.harness.provenance import versions
 from studies.harness.tolerance import Tolerance, moved, value_columns
@@ -65,12 +66,25 @@ def test_what_is_compared_and_how(column, stored, found, differs):
 
 
 def test_a_study_declares_its_own():
-    loose = study(**{"k_.*": Tolerance(1e-2, 0.0), "drawn": None})
+    loose = study(**{"k_.*": Tolerance(1e-2, 0.0)})
     assert columns_moved("k_ratio", "1.0", 1.005, loose) == []
     assert columns_moved("k_ratio", "1.0", 1.05, loose) == ["k_ratio"]
-    assert columns_moved("drawn", "1.0", 2.0, loose) == []
     # The same form as one that all studies have.
     assert columns_moved("k", "1.0", 1.005, study(**{r".*": Tolerance(1e-2, 0.0)})) == []
+
+
+def test_a_study_says_what_of_a_cell_counts():
+    mine = study()
+    mine.COMPARED = {"verdicts": lambda cell: cell.partition(":")[0]}
+    assert columns_moved("verdicts", "ok 1.0: one", "ok 1.0: another", mine) == []
+    assert columns_moved("verdicts", "ok 1.0: one", "ok 1.1: one", mine) == ["verdicts"]
+
+
+def test_verdicts_of_hard_cases_are_compared_without_their_words():
+    cells = ['[["fft", "refused", NaN, NaN, "one"]]', '[["fft", "refused", NaN, NaN, "other"]]']
+    worse = '[["fft", "wrong", 0.2, 0.1, "one"]]'
+    assert columns_moved("verdicts", *cells, hard_cases) == []
+    assert columns_moved("verdicts", cells[0], worse, hard_cases) == ["verdicts"]
 
 
 @pytest.mark.parametrize("origin", [{"machine": "another"}, {"versions": "others"}])
