@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from demheat.gate import check_answer
 from demheat.scene import Scene
 from demheat.scene.bodies import inside
 from demheat.scene.frozen import ReadOnly, read_only
@@ -98,6 +99,14 @@ class Field:
         See `error`.
     elements : callable () -> ((n, 3) float array, m, (m, 4 or 10) int array), optional
         Nodes and tetrahedra of finite elements, in VTK's order, for `write`.
+    slack : float
+        By how much, relatively, the method is known to pass bounds of the conductivity by its own averages.
+
+    Raises
+    ------
+    RuntimeError
+        If no body with these fractions of its materials has the steady field's conductivity, or the body has others:
+        see `demheat.gate`.
 
     Examples
     --------
@@ -125,6 +134,7 @@ class Field:
     through: Callable[[int, float], float] | None = None
     estimator: Callable[[Field], Estimate] | None = None
     elements: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
+    slack: float = 0.0
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.
@@ -140,6 +150,7 @@ class Field:
             if self._has_pores:
                 evaluate = _outside_pores(evaluate, self.scene, in_pores)
             object.__setattr__(self, name, _guarded(evaluate, self.scene))
+        check_answer(self)
 
     @property
     def _has_pores(self):
@@ -280,7 +291,7 @@ class Field:
 
         A stored field has no temperature or flux at other points, and no error that was not asked for before.
         """
-        names = ("scene", "mean_flux", "fractions", "wall_temperature", "wall_heat", "stats", "time")
+        names = ("scene", "mean_flux", "fractions", "wall_temperature", "wall_heat", "stats", "time", "slack")
         return _restored, ({name: getattr(self, name) for name in names}, self.samples, self.__dict__.get("error"))
 
     def __copy__(self):

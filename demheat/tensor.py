@@ -12,6 +12,7 @@ from dataclasses import replace
 import numpy as np
 
 from demheat.field import Field, check_field
+from demheat.gate import check_tensor
 from demheat.scene import Scene, check_scene
 
 
@@ -79,6 +80,8 @@ def conductivity_tensor(fields: Sequence[Field]) -> np.ndarray:
     ------
     ValueError
         If they are not three fields of such loads on one body, or two walls have the same temperature.
+    RuntimeError
+        If no body with these fractions of its materials has such a tensor, see `demheat.gate`.
 
     Examples
     --------
@@ -99,7 +102,11 @@ def conductivity_tensor(fields: Sequence[Field]) -> np.ndarray:
     if not fields[0].scene.periodic:
         return np.diag([field.conductivity for field in fields])
     # The sum takes the sign off a zero.
-    return np.stack([-field.mean_flux / field.scene.gradient[j] for j, field in enumerate(fields)], axis=1) + 0.0
+    found = np.stack([-field.mean_flux / field.scene.gradient[j] for j, field in enumerate(fields)], axis=1) + 0.0
+    first = fields[0]
+    if isinstance(first, Field):
+        check_tensor(first.scene, found, first.fractions, first.stats, first.slack)
+    return found
 
 
 def _is_load(scene, first, axis):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from demheat import Layer, Material, Scene, Sphere, gallery
-from references.exact.solver import fractions
+from demheat.scene.volumes import fractions
 from studies.harness import methods
 
 METHODS = methods.found()

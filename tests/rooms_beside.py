@@ -58,6 +58,7 @@ BESIDE = {
     "references.bracket": (
         "demheat.scene",
         "demheat.deadline",
+        "demheat.gate",
         "demheat.limits",
         "demheat.process_state",
         "demheat.progress",
@@ -83,6 +84,7 @@ BESIDE = {
     "references.bracket.voxels": (
         "demheat.scene",
         "demheat.deadline",
+        "demheat.gate",
         "demheat.limits",
         "demheat.process_state",
         "demheat.progress",

@@ -11,6 +11,10 @@ from demheat.sampling.edges import edges_of, transformed
 from demheat.sampling.fluxes import cell_fluxes, filled, mean_flux
 from demheat.sampling.reconstruct import Reconstruction
 
+# Networks of contacts are calibrated in the mean over a body of one material, or not at all: errors declared of them,
+# at 2000 particles, are .13 to .4.
+CONTACTS = 0.5
+
 
 def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> Field:
     """The Field of a solved network.
@@ -54,6 +58,7 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> F
         time=time,
         through=lambda axis, position: heat_through(network, solution, axis, position),
         estimator=estimator,
+        slack=0.0 if network.cells else CONTACTS,
     )
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from demheat.scene import Scene, Sphere, check_scene
 from demheat.scene.inputs import chosen
+from demheat.scene.volumes import fractions
 from references.bounds.formulas import bruggeman, bruggeman_differential, maxwell, rayleigh
-from references.exact.solver import fractions
 
 FORMULAS = {
     "maxwell": maxwell,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from demheat.deadline import timed
+from demheat.gate import check_bracket
 from demheat.limits import free_memory
 from demheat.process_state import cpu_seconds, one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
@@ -112,7 +113,9 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
     scene, drop, power = _unit_load(scene)
     # The order of BLAS's sums, and so the last bits, is that of its threads.
     with one_blas_thread():
-        return _narrowed(scene, size, width, tolerance, drop, power)
+        found = _narrowed(scene, size, width, tolerance, drop, power)
+    check_bracket(scene, found.lower, found.upper)
+    return found
 
 
 def check(scene: Scene, tolerance: float, *, takes: tuple[str, ...] = ()) -> None:

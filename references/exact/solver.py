@@ -7,6 +7,7 @@ import numpy as np
 from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.scene import Scene, check_scene
+from demheat.scene.volumes import fractions
 from demheat.tensor import axis_loads
 from references.exact.fibre_forms import fibre_array
 from references.exact.forms import coated_spheres, cubic_array, insulated, laminate
@@ -120,20 +121,6 @@ def _digits(field):
     span = warm - cold if not field.scene.periodic else float(np.abs(field.scene.gradient) @ field.scene.size)
     flux = 10.0 ** -field.stats.get("field_digits", digits)
     return known(field, 10.0**-digits, f"exact to {digits:.0f} digits", temperature=flux * span)
-
-
-def fractions(scene):
-    """Exact volume fraction of each phase, (1 + number of inclusions,) float array.
-
-    Raises
-    ------
-    NotImplementedError
-        If a wall cuts a sphere.
-    """
-    volumes = np.append(scene.volume, [s.volume_in(scene.size, periodic=scene.periodic) for s in scene.inclusions])
-    # The innermost inclusion around each, or the matrix, gives up the place.
-    np.subtract.at(volumes, scene.parents()[1:], volumes[1:].copy())
-    return volumes / scene.volume
 
 
 def _wall_mean(scene, closed, axis, side):

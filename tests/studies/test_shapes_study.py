@@ -8,8 +8,8 @@ import pytest
 from numpy.testing import assert_allclose
 
 import studies.shapes as study
+from demheat.scene.volumes import fractions
 from references import exact
-from references.exact.solver import fractions
 from studies.shapes import cases, scenes, tables
 
 

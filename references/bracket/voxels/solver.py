@@ -8,6 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.deadline import timed
+from demheat.gate import check_bracket
 from demheat.limits import check_memory
 from demheat.progress import stage
 from demheat.scene import Scene
@@ -79,6 +80,7 @@ def solve(
     above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
     found = bracketed(above, below, load, effort)
     stats = found.stats | {"cut": len(above.table)}
+    check_bracket(scene, found.lower, found.upper)
     return Bracket(found.lower * max(1 - slack, 0.0), found.upper * (1 + slack), stats)
 
 

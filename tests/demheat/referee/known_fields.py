@@ -18,7 +18,8 @@ def field(scene, temperature, flux, *, conductivity=3.0, **rest):
 
     rest.setdefault("wall_temperature", scene.wall_temperatures)
     mean = np.array([0.0, -10.0 * conductivity, 0.0])
-    return Field(scene, mean, np.ones(1), sampler, temperature, flux, **rest)
+    # Their conductivities are no body's.
+    return Field(scene, mean, np.ones(1), sampler, temperature, flux, slack=np.inf, **rest)
 
 
 def exact_temperature(points):

@@ -1,0 +1,262 @@
+"""What every answer passes: no conductivity beyond what any body with these fractions of its materials can have.
+
+A method divides a body into elements, and knows by them how much there is of each material. The arithmetic and the
+harmonic mean over those fractions (Wiener's bounds) hold for whatever it solves on them: of a mean gradient or flux the
+temperature that is linear, or the flux that is uniform, is one of those among which the true one has the least energy.
+Where turns of the body take all axes to each other the narrower bounds of Hashin and Shtrikman hold. Both are widened
+by what elements of that size may not see: half of one on either side of every surface. What lies beyond is wrong,
+whatever the reason, and so are fractions that differ by more than that from the body's own.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from demheat.scene.symmetry import alike_axes
+from demheat.scene.volumes import fractions, sampled_fractions
+
+# Sums of as many numbers as there are unknowns, and iterations that stop at a residual: of the conductivity.
+ROUNDING, RESIDUAL = 1e-6, 10.0
+# Of the upper bound: rounding of what is none.
+NOTHING = 1e-12
+# What the share of a phase by sampling may be off: six standard deviations of as many points at random at most, which
+# those are more even than.
+NOISE = 0.05
+# Inclusions up to which symmetries are looked for: beyond them that costs more than what it might find is worth.
+FEW = 8
+HELP = "use more or smaller elements (particles, voxels, a finer mesh), or another rule, law or method"
+
+
+class Bounds(NamedTuple):
+    """Between which a conductivity lies, W/(m K), and whose they are."""
+
+    lower: float
+    upper: float
+    name: str
+
+
+def check_answer(field) -> None:
+    """Raise RuntimeError if a steady field's conductivity or fractions cannot be right.
+
+    Parameters
+    ----------
+    field : Field
+        One that says nothing of itself yet, in `stats`, is not done.
+    """
+    if field.time is not None or not field.stats:
+        return
+    try:
+        k = field.conductivity
+    except (ValueError, KeyError):
+        return
+    check_conductivity(field.scene, k, field.fractions, field.stats, field.slack)
+    _check_fractions(field)
+
+
+def check_conductivity(scene, k, fractions, stats, slack=0.0) -> None:
+    """Raise RuntimeError if a conductivity is none that a body with these fractions can have.
+
+    Parameters
+    ----------
+    scene : Scene
+    k : float, W/(m K)
+    fractions : (phases,) float array
+        As the method has them.
+    stats : mapping
+        With `unknowns` and `residual`, if there are any.
+    slack : float
+        Relative, of the method.
+    """
+    more = slack + ROUNDING + RESIDUAL * stats.get("residual", 0.0)
+    for bounds_of in (wiener, hashin_shtrikman):
+        bounds = bounds_of(scene, fractions)
+        if bounds is None or _within(k, bounds, more):
+            continue
+        wide = bounds_of(scene, fractions, unseen(scene, stats))
+        if not _within(k, wide, more):
+            raise RuntimeError(
+                f"no answer: the conductivity found, {k:.6g} W/(m K), lies beyond {bounds.name} bounds, "
+                f"{bounds.lower:.6g} to {bounds.upper:.6g} W/(m K), of bodies that hold as much of each material as "
+                f"these elements see, by more than their size explains ({wide.lower:.6g} to {wide.upper:.6g}); {HELP}"
+            )
+
+
+def check_tensor(scene, tensor, own, stats, slack=0.0) -> None:
+    """Raise RuntimeError if an eigenvalue of a conductivity tensor is none that a body with these fractions can have.
+
+    Parameters
+    ----------
+    scene : Scene
+        Of conductivities that are no tensors: bounds of those differ with direction.
+    tensor : (3, 3) float array, W/(m K)
+    own, stats, slack
+        Fractions and others, as those of `check_conductivity`.
+    """
+    for k in () if scene.anisotropic else np.linalg.eigvalsh(0.5 * (tensor + tensor.T)):
+        check_conductivity(scene, float(k), own, stats, slack)
+
+
+def check_bracket(scene, lower, upper) -> None:
+    """Raise RuntimeError if what should be bounds of a scene's conductivity cannot both be.
+
+    Parameters
+    ----------
+    scene : Scene
+    lower, upper : float, W/(m K)
+    """
+    try:
+        body = scene.image.fractions if scene.image is not None else fractions(scene)
+    except NotImplementedError:
+        return
+    for bounds in filter(None, (wiener(scene, body), hashin_shtrikman(scene, body))):
+        if lower > min(upper, bounds.upper) * (1 + ROUNDING) or upper < bounds.lower * (1 - ROUNDING):
+            raise RuntimeError(
+                f"no answer: {lower:.6g} to {upper:.6g} W/(m K), found as bounds, and {bounds.name}, "
+                f"{bounds.lower:.6g} to {bounds.upper:.6g} W/(m K), have nothing in common"
+            )
+
+
+def _within(k, bounds, more):
+    # Not a number where no wall has a temperature: pores all over.
+    return not (k < bounds.lower * (1 - more) - NOTHING * bounds.upper or k > bounds.upper * (1 + more))
+
+
+def wiener(scene, fractions, moved=None) -> Bounds:
+    """Wiener's bounds of the conductivity along a scene's load.
+
+    They hold in periodic cells and between two opposite walls, held or not: where surroundings exchange heat or a flux
+    enters, what the walls' temperatures and fluxes differ from their means is of the sign that makes them so.
+
+    Parameters
+    ----------
+    scene : Scene
+    fractions : (phases,) float array
+    moved : (phases,) float array, optional
+        By how much the fraction of each inclusion may be off, at the cost of what it lies in.
+    """
+    along, across = conductances(scene)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        resist = 1.0 / across
+        upper = fractions @ along
+        blocked = np.any((across == 0) & (fractions > 0)) or scene.resistances.any()
+        lower = 0.0 if blocked else 1.0 / (fractions[across > 0] @ resist[across > 0])
+        if moved is not None:
+            parents = parents_of(scene)
+            upper += moved @ np.abs(along - along[parents])
+            lower = 0.0 if not lower else 1.0 / (1.0 / lower + np.nansum(moved * np.abs(resist - resist[parents])))
+    return Bounds(float(lower), float(upper), "Wiener's")
+
+
+def hashin_shtrikman(scene, fractions, moved=None) -> Bounds | None:
+    """Hashin and Shtrikman's bounds, of few inclusions that conduct alike along x, y and z by symmetry; else None.
+
+    Parameters
+    ----------
+    scene, fractions, moved
+        As those of `wiener`.
+    """
+    held = scene.periodic or len(scene.wall_temperatures) == 2
+    simple = scene.image is None and not (scene.anisotropic or scene.varies or scene.resistances.any()) and held
+    if not simple or not 0 < len(scene.inclusions) <= FEW or alike_axes(scene) != (0, 0, 0):
+        return None
+    k, parents = scene.conductivities, parents_of(scene)
+    if fractions @ k == 0:
+        return None
+    ends = []
+    for other in (k.min(), k.max()):
+        with np.errstate(divide="ignore"):
+            part = 1.0 / (k + 2 * other)
+        total = fractions @ part if other else math.inf
+        if moved is not None and other:
+            total -= (1 if other == k.max() else -1) * float(moved @ np.abs(part - part[parents]))
+        # Fractions that may be that far off say nothing of the upper one.
+        ends.append(1.0 / total - 2 * other if total > 0 else float(k.max()))
+    return Bounds(max(ends[0], 0.0), min(ends[1], float(k.max())), "Hashin and Shtrikman's")
+
+
+def conductances(scene) -> tuple[np.ndarray, np.ndarray]:
+    """Of each phase, largest along the load, and least that resists across it, two (phases,) float arrays, W/(m K)."""
+    if not scene.anisotropic:
+        k = scene.mean_conductivities
+        return (k, k) if not scene.varies else _at_temperatures(scene, k)
+    load = np.array(scene.gradient) if scene.periodic else np.eye(3)[scene.axis]
+    load = load / np.linalg.norm(load)
+    tensors = scene.tensors
+    solid = tensors.any(axis=(1, 2))
+    across = np.zeros(len(tensors))
+    across[solid] = 1.0 / np.einsum("i,kij,j->k", load, np.linalg.inv(tensors[solid]), load)
+    return np.einsum("i,kij,j->k", load, tensors, load), across
+
+
+def _at_temperatures(scene, k):
+    """Where conductivities follow the temperature: the largest and the least.
+
+    Temperatures lie between those imposed; where a flux is, anywhere.
+    """
+    ends = [-np.inf, np.inf] if scene.wall_fluxes else list(scene.imposed_temperatures.values())
+    most, least = np.ones(len(k)), np.ones(len(k))
+    for number, material in enumerate(scene.materials):
+        if material.dependence is not None:
+            inner = [t for t, _ in material.dependence.points if min(ends) < t < max(ends)]
+            factors = material.dependence.factor(np.array(ends + inner))
+            most[number], least[number] = factors.max(), factors.min()
+    return k * most, k * least
+
+
+def parents_of(scene) -> np.ndarray:
+    """Phase that each was painted on; of an image the worst conductor beside the best, which any may border on."""
+    if scene.image is None:
+        return scene.parents()
+    k = scene.mean_conductivities
+    return np.where(k > np.median(k), np.argmin(k), np.argmax(k))
+
+
+def unseen(scene, stats) -> np.ndarray:
+    """By how much the fraction of each phase may be off: half an element at its surface, (phases,) float array.
+
+    Parameters
+    ----------
+    scene : Scene
+    stats : mapping
+        With `unknowns`, and `voxels` where elements are voxels; without either nothing may be off.
+    """
+    if scene.image is not None:
+        # Surfaces all over: as much as elements thrown at it at random would miss.
+        return np.full(len(scene.materials), 1.0 / math.sqrt(stats.get("unknowns", math.inf)))
+    if "voxels" in stats:
+        length = float(np.max(np.array(scene.size) / stats["voxels"]))
+    else:
+        length = (scene.volume / stats["unknowns"]) ** (1 / 3) if stats.get("unknowns") else 0.0
+    return np.concatenate([[0.0], np.minimum(0.5 * length * _areas(scene) / scene.volume, 1.0)])
+
+
+def _areas(scene):
+    """Area of the faces of each inclusion's bounds, at most the box's, (inclusions,) float array, m2."""
+    size = np.array(scene.size)
+    spans = [np.minimum(high - low, size) for low, high in (shape.bounds() for shape in scene.inclusions)]
+    x, y, z = np.array(spans).reshape(-1, 3).T
+    return 2 * (x * y + y * z + z * x)
+
+
+def _check_fractions(field):
+    """Compare materials that conduct alike as one: of many small inclusions each is but a few points."""
+    scene = field.scene
+    if len(field.fractions) < 2:
+        return
+    body = scene.image.fractions if scene.image is not None else sampled_fractions(scene)
+    kinds, kind = np.unique(scene.mean_conductivities, return_inverse=True)
+    off = np.bincount(kind, field.fractions - body, len(kinds))
+    if np.all(np.abs(off) <= NOISE):
+        return
+    moved = unseen(scene, field.stats)
+    may = np.bincount(kind, moved) + np.bincount(kind[parents_of(scene)], moved, len(kinds)) + NOISE + field.slack
+    worst = int(np.argmax(np.abs(off) - may))
+    if abs(off[worst]) > may[worst]:
+        raise RuntimeError(
+            f"no answer: of what conducts {kinds[worst]:.6g} W/(m K) these elements see {off[worst]:+.3g} of the "
+            f"body's volume more than there is, and their size explains {may[worst]:.3g}: a surface is not where the "
+            f"scene has it; {HELP}"
+        )
