@@ -11,19 +11,25 @@ from __future__ import annotations
 import math
 import threading
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 
+from demheat.gate import hashin_shtrikman, wiener
 from demheat.scene.bodies import inside
+from demheat.scene.edges import edge_order
+from demheat.scene.negligible import change_without
+from demheat.scene.volumes import fractions, known_fractions
 
 # Points at which temperatures of two runs are compared, and the seed that draws them.
 POINTS, SEED = 1000, 7
 # Rounding of a conductivity: sums of as many numbers as there are unknowns.
 ROUNDING = 1e-12
+# What formulas that must agree differ by.
+BESIDE = 1e-9
 # Filters of warnings belong to the process: one thread at a time changes and restores them.
 _QUIET = threading.Lock()
 
@@ -92,6 +98,28 @@ class Refinement(NamedTuple):
     coats: float = 0.0
 
 
+class Fine(NamedTuple):
+    """What is too fine for coarser runs to tell of it.
+
+    Attributes
+    ----------
+    unseen : sequence of int
+        Inclusions finer than the elements, which may make of the conductivity whatever bounds allow; those of which a
+        method holds nothing need not be named.
+    rough : float
+        What all inclusions make of the conductivity is off by this part, as some are hardly wider than elements.
+    radius : float, m
+        Of a ball about the middle of an unseen sphere that holds all that a method may see instead.
+    """
+
+    unseen: Sequence[int] = ()
+    rough: float = 0.0
+    radius: float = 0.0
+
+
+NOTHING = Fine()
+
+
 def known(field, relative, how, *, temperature=math.nan) -> Estimate:
     """The estimate of a method that knows its relative error.
 
@@ -132,8 +160,14 @@ def beside(field, other, how) -> Estimate:
     return Estimate(how, max(runs[0] - half, 0.0), runs[0] + half, flux, apart + error.temperature, runs)
 
 
-def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None, residual=0.0, steps=0.0) -> Estimate:
+def by_refinement(
+    field, coarser: Callable, rule: Refinement, *, how, also=None, residual=0.0, steps=0.0, fine=NOTHING
+) -> Estimate:
     """The estimate of a method by the changes that coarser elements make.
+
+    They do not show what all elements see alike: fractions of phases that are not the body's, which count as far as the
+    conductivity goes with them; and parts that are finer than any of the elements, which may be anything, within the
+    bounds of the body's own fractions.
 
     Warnings of the coarser runs, whose elements are too large for what the finest resolves, are kept back.
 
@@ -150,6 +184,7 @@ def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None,
         Relative, of the equations: what iterations may have left counts in full.
     steps : float
         What steps in time may have left, of the span of temperatures.
+    fine : Fine
 
     Returns
     -------
@@ -164,6 +199,9 @@ def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None,
     other = quietly(also, fields[1]) if also else None
     besides = [] if other is None else [fields[1], other]
     points, residual = _points(field.scene), residual + ROUNDING
+    slow = edge_order(field.scene)
+    if slow < 1:
+        rule = rule._replace(order=slow)
 
     def lacks(read, apart, order, safety):
         one, other = ([apart(read(a), read(b)) for a, b in pairwise(runs)] for runs in (fields, besides))
@@ -171,13 +209,66 @@ def by_refinement(field, coarser: Callable, rule: Refinement, *, how, also=None,
 
     k = _conductivity(field)
     half = lacks(_conductivity, _largest, rule.order, rule.safety) + residual * abs(k)
+    # What inclusions make of the conductivity goes with how much there is of them.
+    if k:
+        half += (misplaced(field) + fine.rough) * abs(k - field.scene.mean_conductivities[0])
     flux = lacks(lambda each: each.mean_flux, _largest, rule.order, rule.safety) + residual * _size(field.mean_flux)
     warmth = partial(_level_free, points=points)
     kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)
     kelvin += (residual + steps) * _span(field, warmth(field))
     if rule.coats and np.any(field.scene.parents()):
         half = rule.coats * max(half, abs(k) * kelvin / _drop(field, warmth(field)))
-    return Estimate(how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(_conductivity, fields)))
+    found = Estimate(how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(_conductivity, fields)))
+    return _with_unseen(found, field, k, fine)
+
+
+def misplaced(field) -> float:
+    """How much of its inclusions a method has too much or too little, over all that it has of them.
+
+    Those that conduct alike, in the same surroundings, count as one. 0 where it is not known how much there is.
+
+    Parameters
+    ----------
+    field : Field
+    """
+    scene = field.scene
+    try:
+        off = field.fractions - fractions(scene)
+    except NotImplementedError:
+        return 0.0
+    conducts, own = scene.mean_conductivities, float(field.fractions[1:].sum())
+    if not own:
+        return 0.0
+    _, kind = np.unique(np.stack([conducts, conducts[scene.parents()]])[:, 1:], axis=1, return_inverse=True)
+    return float(np.abs(np.bincount(kind.ravel(), off[1:])).sum()) / own
+
+
+def _with_unseen(estimate, field, k, fine):
+    """The same estimate, as far as bounds where there are parts that no elements see."""
+    scene = field.scene
+    if not len(scene.inclusions) or not math.isfinite(k):
+        return estimate
+    body = known_fractions(scene)
+    unseen = (body > 0) & (field.fractions == 0)
+    unseen[1 + np.array(fine.unseen, int)] = True
+    # What conducts as what it lies in is not to be seen.
+    conducts = scene.tensors
+    unseen &= np.any(conducts != conducts[scene.parents()], axis=(1, 2))
+    if not unseen.any():
+        return estimate
+    certain = wiener(scene, body)
+    narrower = hashin_shtrikman(scene, body) or certain
+    low, high = max(certain.lower, narrower.lower), min(certain.upper, narrower.upper)
+    # Rounding: an array of small spheres is as good as on a bound.
+    low, high = low - BESIDE * k, high + BESIDE * k
+    # How far the truth, and how far the answer may be from what the body is without them.
+    numbers = np.flatnonzero(unseen[1:])
+    most = k * sum(change_without(scene, numbers, radius) for radius in (0.0, fine.radius))
+    low, high = max(low, estimate.lower - most), min(high, estimate.upper + most)
+    low, high = min(low, k), max(high, k)
+    more = max(k - low, high - k) / k if k else math.inf
+    flux = max(estimate.flux, more * _size(field.mean_flux))
+    return estimate._replace(lower=low, upper=high, flux=flux, temperature=math.nan)
 
 
 def missing(changes, ratio, order) -> float:

@@ -17,6 +17,7 @@ other inclusions, however narrow or hot, enters: what the field is in S is bound
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -95,6 +96,29 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
             numbers = tuple(np.flatnonzero(chosen).tolist())
             return Negligible(numbers, bound, replace(scene, inclusions=left))
     return Negligible((), 0.0, scene)
+
+
+def change_without(scene: Scene, numbers: Sequence[int], least: float = 0.0) -> float:
+    """By how much the conductivity changes, relatively and at most, without some inclusions; infinite if unknown.
+
+    Parameters
+    ----------
+    scene : Scene
+    numbers : sequence of int
+        Places in `Scene.inclusions`.
+    least : float, m
+        Radius that smaller ones have instead of their own.
+    """
+    if scene.anisotropic or scene.varies or scene.wall_exchanges or scene.wall_fluxes:
+        return np.inf
+    radii, beta = _spheres(scene)
+    chosen = np.zeros(len(radii), bool)
+    chosen[list(numbers)] = True
+    radii = np.where(chosen, np.maximum(radii, least), radii)
+    if not np.all(np.isfinite(beta[chosen])):
+        return np.inf
+    kept, bound = _bound(scene, radii, beta, chosen)
+    return bound if np.all(kept == chosen) else np.inf
 
 
 def _spheres(scene):

@@ -1,6 +1,9 @@
 """How far a solution on voxels is off, by larger voxels of the same scene."""
 
-from demheat.error import Refinement, by_refinement
+import numpy as np
+
+from demheat.error import Fine, Refinement, by_refinement
+from references.fft.rules import unsure
 
 # By rule.
 RULES = {
@@ -28,4 +31,7 @@ def estimated(field, solve):
     def coarser(level):
         return solve(field.scene, voxels=[max(1, round(n / rule.ratio**level)) for n in shape])
 
-    return by_refinement(field, coarser, rule, how="larger voxels", residual=field.stats["residual"])
+    half_diagonal = 0.5 * float(np.linalg.norm(np.array(field.scene.size) / shape))
+    # A voxel that touches a small sphere, all of it, and what is left of the sphere itself.
+    fine = Fine(unsure(field.scene, field.stats["rule"], shape), radius=2 * half_diagonal)
+    return by_refinement(field, coarser, rule, how="larger voxels", residual=field.stats["residual"], fine=fine)

@@ -12,6 +12,7 @@ from demheat import Laguerre, Layer, Material, Scene, Sphere, evolve, gallery, s
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.error import Estimate, Refinement, beside, by_refinement, known, missing
+from demheat.scene.volumes import fractions
 from references import exact, fem, fft, multipole, series
 from references.fem import estimate as of_elements
 from references.fft import estimate as of_voxels
@@ -24,6 +25,7 @@ def made(level, *, off=1.0, scene=None):
     scene = scene or Scene((1.0,) * 3, Material(1.0), walls={"x-": 0.0, "x+": 1.0})
     return SimpleNamespace(
         scene=scene,
+        fractions=fractions(scene),
         time=None,
         conductivity=5 + off * 0.1 * 2 ** (1.5 * level),
         mean_flux=np.array([-5 - off * 0.1 * 2 ** (1.5 * level), 0.2 * 2 ** (1.5 * level), 0.0]),

@@ -1,0 +1,135 @@
+"""Intervals of parts that elements hardly see, or not at all: as wide as bounds, or as what is left out."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Layer, Material, Scene, Sphere, solve
+from demheat.error import misplaced
+from demheat.gate import wiener
+from demheat.scene import Cylinder, Ellipsoid
+from demheat.scene.negligible import change_without, negligible
+from demheat.scene.volumes import fractions, sampled_fractions
+from references import exact, fft, multipole
+
+UNIT, MIDDLE = (1.0, 1.0, 1.0), (0.5, 0.5, 0.5)
+
+
+def cell(*shapes, size=UNIT, load=(0, 1, 0)):
+    return Scene(size, Material(1.0), shapes, gradient=load)
+
+
+def quietly(method, scene, **knobs):
+    """A field, with what it warns of."""
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        return method(scene, **knobs), [str(each.message) for each in said]
+
+
+def holds(error, right):
+    return error.lower <= right <= error.upper
+
+
+SPECK = cell(Sphere(MIDDLE, 0.01, Material(1e6)))
+
+
+@pytest.mark.parametrize("knobs", [{"method": fft.solve, "voxels": 48}, {"method": solve, "particles": 2000}])
+def test_a_speck_is_off_by_no_more_than_spheres_that_small_can_be(knobs):
+    field, _ = quietly(**knobs, scene=SPECK)
+    right = exact.solve(SPECK).conductivity
+    assert holds(field.error, right)
+    # 3 (a/R)^3 each way, R half of the cell, and a that of a voxel's diagonal, or of a particle: 1/28, 1/20.
+    assert field.error.upper - field.error.lower <= 2 * 3 * (2 / 20) ** 3
+    assert math.isnan(field.error.temperature)
+
+
+def test_change_without_inclusions_is_that_of_what_may_be_left_out():
+    assert_allclose(change_without(SPECK, [0]), negligible(SPECK, 1e-3).bound, rtol=0)
+    assert change_without(cell(Sphere(MIDDLE, 0.3, Material(5.0))), [0]) == math.inf
+    assert change_without(cell(Layer(1, 0.5, 0.501, Material(1e-3))), [0]) == math.inf
+
+
+def test_a_layer_that_no_particle_sees_may_do_what_bounds_allow():
+    scene = cell(Layer(1, 0.5, 0.501, Material(1e-3)))
+    field, said = quietly(solve, scene, particles=1000)
+    assert any("take no part" in each for each in said)
+    assert field.conductivity == 1.0
+    # In series, which is the lower bound: 1 / (.999 + 1).
+    assert_allclose(field.error.lower, 1 / 1.999, rtol=1e-8)
+    plain, _ = quietly(solve, scene, particles=1000, conforming=False)
+    assert holds(plain.error, 1 / 1.999 * (1 + 1e-12))
+
+
+def test_layers_that_twins_resolve_keep_their_narrow_interval():
+    error = solve(cell(Layer(1, 0.4, 0.45, Material(0.1))), particles=1000).error
+    assert_allclose([error.lower, error.upper], 1 / (0.95 + 0.5), rtol=1e-6)
+
+
+@pytest.mark.parametrize("knobs", [{"method": fft.solve, "voxels": 24}, {"method": solve, "particles": 1000}])
+def test_a_coat_that_is_not_seen_may_do_what_bounds_allow(knobs):
+    scene = cell(Sphere(MIDDLE, 0.3535, Material(1e-3)), Sphere(MIDDLE, 0.35, Material(20.0)))
+    field, said = quietly(**knobs, scene=scene)
+    assert said
+    # A coat of 1 % is a resistance on the core, to some per cent of what it does.
+    same = cell(Sphere(MIDDLE, 0.35, Material(20.0), resistance=0.0035 / 1e-3))
+    assert holds(field.error, multipole.solve(same).conductivity)
+
+
+def test_what_is_narrower_than_two_voxels_may_do_what_bounds_allow():
+    scene = cell(Cylinder((0.5, 10, 0.5), 0.25, (0, 1, 0), Material(10.0)), size=(1.0, 20.0, 1.0), load=(1, 0, 0))
+    field, _ = quietly(fft.solve, scene, voxels=48)
+    # Of two voxels across all four are alike, of one too: nothing changed between runs.
+    assert holds(field.error, exact.solve(scene).conductivity)
+    assert_allclose(field.error.lower, wiener(scene, fractions(scene)).lower, rtol=1e-8)
+
+
+POOR = Material(1e-3)
+
+
+@pytest.mark.parametrize("shape", [Sphere(MIDDLE, 0.42, POOR), Cylinder(MIDDLE, 0.42, (0, 0, 1), POOR)])
+def test_fractions_that_are_off_count(shape):
+    scene, flat = cell(shape), (48, 48, 5) if isinstance(shape, Cylinder) else 48
+    field = fft.solve(scene, voxels=flat)
+    assert field.stats["rule"] == "plain"
+    # Plain voxels hold .3 % more, and coarser ones do not tell: by the change between them alone the intervals miss.
+    assert misplaced(field) > 1e-3
+    assert holds(field.error, exact.solve(scene).conductivity)
+
+
+def test_misplaced_is_relative_and_of_all_that_conduct_alike():
+    pair = [Sphere((x, 0.5, 0.5), 0.2, Material(1e-3)) for x in (0.26, 0.77)]
+    scene = cell(*pair)
+    field = fft.solve(scene, voxels=16, rule="plain")
+    off = field.fractions[1:] - fractions(scene)[1:]
+    assert_allclose(misplaced(field), abs(off.sum()) / field.fractions[1:].sum(), rtol=1e-12)
+    assert misplaced(fft.solve(cell(), voxels=4)) == 0.0
+
+
+def test_a_disc_with_a_rim_sharper_than_particles():
+    scene = cell(Ellipsoid(MIDDLE, (0.4, 0.04, 0.4), Material(1e-3)))
+    field = solve(scene, particles=2000)
+    assert misplaced(field) > 0.01
+    # Finite elements: .815, .5 % at most.
+    assert holds(field.error, 0.815)
+
+
+@pytest.mark.parametrize("width", [1.2, 1.8, 2.3])
+@pytest.mark.parametrize("contrast", [0.1, 1000.0])
+def test_spheres_hardly_wider_than_a_particle(width, contrast):
+    diameter = (6 / (math.pi * 2000)) ** (1 / 3)
+    scene = cell(Sphere(MIDDLE, 0.5 * width * diameter, Material(contrast)))
+    error = solve(scene, particles=2000).error
+    right = exact.solve(scene).conductivity
+    assert holds(error, right)
+    # And is no blanket: of what the sphere does, less than it all.
+    assert error.upper - error.lower < 2 * abs(right - 1)
+
+
+def test_sampled_fractions_are_those_of_the_volumes():
+    scene = cell(Sphere(MIDDLE, 0.4, Material(2.0)), Sphere((0.5, 0.5, 0.6), 0.2, Material(3.0)))
+    # 4096 points, more even than at random.
+    assert_allclose(sampled_fractions(scene), fractions(scene), atol=0.01)
+    assert_allclose(np.sum(sampled_fractions(scene)), 1.0, rtol=1e-12)
