@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.gate import hashin_shtrikman, wiener
+from demheat.gate import hashin_shtrikman, isotropic, wiener
 from demheat.scene.bodies import inside
 from demheat.scene.edges import edge_order
 from demheat.scene.negligible import change_without
@@ -257,7 +257,7 @@ def _with_unseen(estimate, field, k, fine):
     if not unseen.any():
         return estimate
     certain = wiener(scene, body)
-    narrower = hashin_shtrikman(scene, body) or certain
+    narrower = hashin_shtrikman(scene, body) if isotropic(scene) else certain
     low, high = max(certain.lower, narrower.lower), min(certain.upper, narrower.upper)
     # Rounding: an array of small spheres is as good as on a bound.
     low, high = low - BESIDE * k, high + BESIDE * k

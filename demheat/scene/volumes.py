@@ -6,7 +6,7 @@ import numpy as np
 
 # Points at which phases are asked for where volumes have no closed form, and steps of an even sequence of them (Roberts
 # 2018): powers of the inverse of the root of x^4 = x + 1.
-POINTS = 4096
+POINTS = 1024
 STEPS = 1.2207440846057596 ** -np.arange(1.0, 4.0)
 
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Convection, Dependence, Field, Image, Layer, Material, Scene, Sphere, gallery, solve
-from demheat.gate import check_bracket, check_tensor, hashin_shtrikman, unseen, wiener
+from demheat.gate import check_bracket, check_tensor, hashin_shtrikman, isotropic, unseen, wiener
 from demheat.scene import LevelSet
 from demheat.tensor import conductivity_tensor
 from references import bounds, fft
@@ -44,7 +44,7 @@ def test_bounds_of_isotropic_bodies_are_narrower():
     with pytest.raises(RuntimeError, match="Hashin and Shtrikman's"):
         field(CELL, 1.35)
     aside = Scene((1.0, 1.0, 1.01), Material(1.0), [BALL], gradient=(0, 1, 0))
-    assert hashin_shtrikman(aside, OWN) is None
+    assert isotropic(CELL) and not isotropic(aside)
     assert field(aside, 1.35).conductivity == 1.35
 
 
@@ -88,9 +88,9 @@ def test_walls_that_exchange_heat_are_judged_too():
 
 
 def test_fractions_must_be_those_of_the_body():
-    # By half a voxel at each face, .03, and what sampling may be off, .05, more may be seen.
-    assert field(CELL, 2.0, share=SHARE + 0.05).conductivity == 2.0
-    with pytest.raises(RuntimeError, match=r"see -0.1[23].* of the body's volume more"):
+    # By half a voxel at each face, .03, and what sampling may be off, .02, more may be seen.
+    assert field(CELL, 2.0, share=SHARE + 0.03).conductivity == 2.0
+    with pytest.raises(RuntimeError, match=r"see -0.1[2-4].* of the body's volume more"):
         field(CELL, 2.5, share=SHARE + 0.13)
     # Fewer voxels may be that far off.
     assert field(CELL, 2.5, share=SHARE + 0.13, stats={"unknowns": 1000}).conductivity == 2.5
