@@ -211,7 +211,7 @@ def by_refinement(
     half = lacks(_conductivity, _largest, rule.order, rule.safety) + residual * abs(k)
     # What inclusions make of the conductivity goes with how much there is of them.
     if k:
-        half += (misplaced(field) + fine.rough) * abs(k - field.scene.mean_conductivities[0])
+        half += (misplaced(field) + fine.rough) * abs(k - float(field.scene.mean_conductivities[0]))
     flux = lacks(lambda each: each.mean_flux, _largest, rule.order, rule.safety) + residual * _size(field.mean_flux)
     warmth = partial(_level_free, points=points)
     kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)

@@ -99,8 +99,9 @@ class Field:
         See `error`.
     elements : callable () -> ((n, 3) float array, m, (m, 4 or 10) int array), optional
         Nodes and tetrahedra of finite elements, in VTK's order, for `write`.
-    slack : float
-        By how much, relatively, the method is known to pass bounds of the conductivity by its own averages.
+    slack : (2,) tuple of float
+        By how much, relatively, the conductivity may be below and above its bounds (`demheat.gate`), as averages of the
+        method are known to be off, or as it knows of more than the scene tells, such as cracks.
 
     Raises
     ------
@@ -134,7 +135,7 @@ class Field:
     through: Callable[[int, float], float] | None = None
     estimator: Callable[[Field], Estimate] | None = None
     elements: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
-    slack: float = 0.0
+    slack: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.

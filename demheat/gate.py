@@ -55,7 +55,7 @@ def check_answer(field) -> None:
     _check_fractions(field)
 
 
-def check_conductivity(scene, k, fractions, stats, slack=0.0) -> None:
+def check_conductivity(scene, k, fractions, stats, slack=(0.0, 0.0)) -> None:
     """Raise RuntimeError if a conductivity is none that a body with these fractions can have.
 
     Parameters
@@ -66,10 +66,11 @@ def check_conductivity(scene, k, fractions, stats, slack=0.0) -> None:
         As the method has them.
     stats : mapping
         With `unknowns` and `residual`, if there are any.
-    slack : float
-        Relative, of the method.
+    slack : (2,) tuple of float
+        Relative, below and above.
     """
-    more = slack + ROUNDING + RESIDUAL * stats.get("residual", 0.0)
+    own = ROUNDING + RESIDUAL * stats.get("residual", 0.0)
+    more = slack[0] + own, slack[1] + own
     for bounds_of, holds in ((wiener, None), (hashin_shtrikman, isotropic)):
         bounds = bounds_of(scene, fractions)
         # Symmetries, and what elements may not see, are looked for only where that matters.
@@ -84,7 +85,7 @@ def check_conductivity(scene, k, fractions, stats, slack=0.0) -> None:
             )
 
 
-def check_tensor(scene, tensor, own, stats, slack=0.0) -> None:
+def check_tensor(scene, tensor, own, stats, slack=(0.0, 0.0)) -> None:
     """Raise RuntimeError if an eigenvalue of a conductivity tensor is none that a body with these fractions can have.
 
     Parameters
@@ -120,8 +121,9 @@ def check_bracket(scene, lower, upper) -> None:
 
 
 def _within(k, bounds, more):
+    least = bounds.lower * (1 - more[0]) if more[0] < 1 else 0.0
     # Not a number where no wall has a temperature: pores all over.
-    return not (k < bounds.lower * (1 - more) - NOTHING * bounds.upper or k > bounds.upper * (1 + more))
+    return not (k < least - NOTHING * bounds.upper or k > bounds.upper * (1 + more[1]))
 
 
 def wiener(scene, fractions, moved=None) -> Bounds:
@@ -239,15 +241,12 @@ def unseen(scene, stats) -> np.ndarray:
         length = float(np.max(np.array(scene.size) / stats["voxels"]))
     else:
         length = (scene.volume / stats["unknowns"]) ** (1 / 3) if stats.get("unknowns") else 0.0
-    return np.concatenate([[0.0], np.minimum(0.5 * length * _areas(scene) / scene.volume, 1.0)])
-
-
-def _areas(scene):
-    """Area of the faces of each inclusion's bounds, at most the box's, (inclusions,) float array, m2."""
+    # Of the faces of the bounds, and no more than all within them, or an element.
     size = np.array(scene.size)
     spans = [np.minimum(high - low, size) for low, high in (shape.bounds() for shape in scene.inclusions)]
     x, y, z = np.array(spans).reshape(-1, 3).T
-    return 2 * (x * y + y * z + z * x)
+    moved = np.minimum(length * (x * y + y * z + z * x), np.maximum(x * y * z, length**3))
+    return np.concatenate([[0.0], moved / scene.volume])
 
 
 def _check_fractions(field):
@@ -261,7 +260,7 @@ def _check_fractions(field):
     if np.all(np.abs(off) <= NOISE):
         return
     moved = unseen(scene, field.stats)
-    may = np.bincount(kind, moved) + np.bincount(kind[parents_of(scene)], moved, len(kinds)) + NOISE + field.slack
+    may = np.bincount(kind, moved) + np.bincount(kind[parents_of(scene)], moved, len(kinds)) + NOISE + max(field.slack)
     worst = int(np.argmax(np.abs(off) - may))
     if abs(off[worst]) > may[worst]:
         raise RuntimeError(

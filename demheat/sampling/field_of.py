@@ -16,7 +16,7 @@ from demheat.sampling.reconstruct import Reconstruction
 CONTACTS = 0.5
 
 
-def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> Field:
+def field_of(scene, network, solution, *, stats, time=None, estimator=None, slack=(0.0, 0.0)) -> Field:
     """The Field of a solved network.
 
     Parameters
@@ -30,6 +30,8 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> F
     time : float, s, optional
         Of a transient.
     estimator : callable (Field) -> Estimate, optional
+    slack : (2,) tuple of float
+        Of the field, where particles have cells.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None) -> F
         time=time,
         through=lambda axis, position: heat_through(network, solution, axis, position),
         estimator=estimator,
-        slack=0.0 if network.cells else CONTACTS,
+        slack=slack if network.cells else (CONTACTS, CONTACTS),
     )
 
 

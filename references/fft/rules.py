@@ -146,6 +146,8 @@ def unsure(scene, rule, shape) -> np.ndarray:
     shape : (3,) tuple of int
         Voxels along each axis.
     """
+    if not scene.inclusions:
+        return np.empty(0, int)
     thin = np.flatnonzero(coats(scene) < np.max(np.array(scene.size) / shape))
     return np.union1d(thin, smaller(scene, rule, shape, FEWEST))
 

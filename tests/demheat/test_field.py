@@ -11,7 +11,7 @@ BOX = (0.1, 0.2, 0.4)
 
 def field(scene, mean_flux, **rest):
     # No body conducts so: the gate, which has its own tests, lets it pass.
-    return Field(scene, np.array(mean_flux), np.ones(1), lambda: None, None, None, slack=np.inf, **rest)
+    return Field(scene, np.array(mean_flux), np.ones(1), lambda: None, None, None, slack=(1.0, np.inf), **rest)
 
 
 def test_periodic_conductivity_is_along_the_gradient():
@@ -46,7 +46,7 @@ def test_samples_are_made_once_and_only_when_asked_for():
         return Samples(*np.zeros((5, 1)))
 
     scene = Scene(BOX, Material(1.0), gradient=(1, 0, 0))
-    made = Field(scene, np.zeros(3), np.ones(1), sampler, None, None, slack=np.inf)
+    made = Field(scene, np.zeros(3), np.ones(1), sampler, None, None, slack=(1.0, np.inf))
     assert not calls
     assert made.samples is made.samples
     assert len(calls) == 1

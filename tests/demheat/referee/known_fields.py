@@ -19,7 +19,7 @@ def field(scene, temperature, flux, *, conductivity=3.0, **rest):
     rest.setdefault("wall_temperature", scene.wall_temperatures)
     mean = np.array([0.0, -10.0 * conductivity, 0.0])
     # Their conductivities are no body's.
-    return Field(scene, mean, np.ones(1), sampler, temperature, flux, slack=np.inf, **rest)
+    return Field(scene, mean, np.ones(1), sampler, temperature, flux, slack=(1.0, np.inf), **rest)
 
 
 def exact_temperature(points):
