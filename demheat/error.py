@@ -86,6 +86,8 @@ class Refinement(NamedTuple):
         What all is raised by where inclusions lie in others, whose interval is then at least as wide, relatively, as
         the temperature is expected to be off: errors of coat and core may cancel in the conductivity, wholly so in
         neutral spheres, and what is left between runs is chance. 0: nothing of that.
+    chance : bool
+        Whether elements hold too much or too little of phases by chance: changes between runs do not show that.
     """
 
     ratio: float
@@ -96,6 +98,7 @@ class Refinement(NamedTuple):
     temperature_safety: float
     also: float = 0.0
     coats: float = 0.0
+    chance: bool = False
 
 
 class Fine(NamedTuple):
@@ -209,9 +212,10 @@ def by_refinement(
 
     k = _conductivity(field)
     half = lacks(_conductivity, _largest, rule.order, rule.safety) + residual * abs(k)
-    # What inclusions make of the conductivity goes with how much there is of them.
     if k:
-        half += (misplaced(field) + fine.rough) * abs(k - float(field.scene.mean_conductivities[0]))
+        # What inclusions make of the conductivity goes with how much there is of them.
+        off = _unshown([misplaced(each) for each in fields], rule) + fine.rough
+        half += off * abs(k - float(field.scene.mean_conductivities[0]))
     flux = lacks(lambda each: each.mean_flux, _largest, rule.order, rule.safety) + residual * _size(field.mean_flux)
     warmth = partial(_level_free, points=points)
     kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)
@@ -222,10 +226,10 @@ def by_refinement(
     return _with_unseen(found, field, k, fine)
 
 
-def misplaced(field) -> float:
-    """How much of its inclusions a method has too much or too little, over all that it has of them.
+def misplaced(field) -> np.ndarray:
+    """How much more of its inclusions a method has than there is, over all that it has of them, (kinds,) float array.
 
-    Those that conduct alike, in the same surroundings, count as one. 0 where it is not known how much there is.
+    Those that conduct alike, in the same surroundings, are a kind. Empty where it is not known how much there is.
 
     Parameters
     ----------
@@ -235,12 +239,20 @@ def misplaced(field) -> float:
     try:
         off = field.fractions - fractions(scene)
     except NotImplementedError:
-        return 0.0
+        return np.empty(0)
     conducts, own = scene.mean_conductivities, float(field.fractions[1:].sum())
     if not own:
-        return 0.0
+        return np.empty(0)
     _, kind = np.unique(np.stack([conducts, conducts[scene.parents()]])[:, 1:], axis=1, return_inverse=True)
-    return float(np.abs(np.bincount(kind.ravel(), off[1:])).sum()) / own
+    return np.bincount(kind.ravel(), off[1:]) / own
+
+
+def _unshown(off, rule):
+    """What the first of some runs has misplaced, less what changes between them show already."""
+    if rule.chance or any(len(each) != len(off[0]) for each in off):
+        return float(np.abs(off[0]).sum())
+    shown = [missing(np.abs(changes), rule.ratio, rule.order) for changes in np.diff(off, axis=0).T]
+    return float(np.maximum(np.abs(off[0]) - shown, 0.0).sum())
 
 
 def _with_unseen(estimate, field, k, fine):

@@ -25,7 +25,7 @@ BENT = 0.01
 # random, one to three particles wide, contrasts .001 to 1000, up to .37.
 SMALL = 0.4
 CONFORMING = Refinement(RATIO, 2, 2.0, 1.0, 2.0, 1.0, also=1 / (1 - CLOSER), coats=1.5)
-PLAIN = Refinement(RATIO, 2, 1.0, 1.3, 1.0, 1.0)
+PLAIN = Refinement(RATIO, 2, 1.0, 1.3, 1.0, 1.0, chance=True)
 
 
 def estimator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, answer: Callable, *, steps: float = 0.0):
@@ -58,7 +58,7 @@ def _by_fewer(field, *, law, wanted, answer, steps) -> Estimate:
         return answer(law, replace(wanted, particles=fewer, packing=None, replicas=None, allow_few=True))
 
     rule = CONFORMING if law.conforming else PLAIN
-    if misplaced(field) > BENT:
+    if np.abs(misplaced(field)).sum() > BENT:
         rule = rule._replace(order=1.0)
 
     def closer(first):

@@ -7,7 +7,7 @@ from references.fft.rules import unsure
 
 # By rule.
 RULES = {
-    "plain": Refinement(2**0.5, 2, 1.0, 2.0, 1.0, 1.0),
+    "plain": Refinement(2**0.5, 2, 1.0, 2.0, 1.0, 1.0, chance=True),
     "laminate": Refinement(2**0.5, 2, 1.0, 1.2, 1.0, 1.0),
     "links": Refinement(2**0.5, 2, 1.0, 1.5, 1.0, 1.0),
 }

@@ -14,6 +14,7 @@ from demheat import gallery
 from demheat.field import Field, Samples
 from demheat.gallery import HADDAD, scaled, sphere_in_cube
 from demheat.scene import Layer, Scene
+from demheat.scene.volumes import fractions
 from studies.harness import methods
 
 CONTRAST = 10.0
@@ -136,7 +137,7 @@ def exact_of(name):
     return Field(
         scene=scene,
         mean_flux=found["mean_flux"],
-        fractions=np.array([1.0]),
+        fractions=fractions(scene),
         wall_temperature=scene.wall_temperatures,
         sampler=lambda: samples,
         temperature_at=lambda points: found["warm"],
