@@ -41,7 +41,7 @@ CHANGED = 5
 MODULES = {"all": "studies.hard_cases.ways"}
 # Errors of whole answers, of which solvers leave 1e-7: a verdict's words of a refusal may change, the rest may not.
 TOLERANCES = {"verdicts": Tolerance(1e-6, 1e-7)}
-COMPARED = {"verdicts": lambda cell: json.dumps([each[:-1] for each in json.loads(cell or "[]")])}
+COMPARED_AS = {"verdicts": lambda cell: json.dumps([each[:-1] for each in json.loads(cell or "[]")])}
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {"too wide to judge": "a share of a few scenes of one family, which others drawn would have doubled"}

@@ -112,7 +112,7 @@ def moved(name, study, case, stored, found):
     if status[0] != status[1]:
         return [Moved(name, key, "status", status[0], f"{status[1]} ({found.get('note')})", Tolerance(0, 0))]
     columns = value_columns(study, case, dict.fromkeys([*stored, *found]))
-    parts, wrong = getattr(study, "COMPARED", {}), []
+    parts, wrong = getattr(study, "COMPARED_AS", {}), []
     for column in columns:
         old, new = (parts.get(column, str)(_text(row.get(column))) for row in (stored, found))
         tolerance = tolerance_of(study, column)

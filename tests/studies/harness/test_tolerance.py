@@ -75,7 +75,7 @@ def test_a_study_declares_its_own():
 
 def test_a_study_says_what_of_a_cell_counts():
     mine = study()
-    mine.COMPARED = {"verdicts": lambda cell: cell.partition(":")[0]}
+    mine.COMPARED_AS = {"verdicts": lambda cell: cell.partition(":")[0]}
     assert columns_moved("verdicts", "ok 1.0: one", "ok 1.0: another", mine) == []
     assert columns_moved("verdicts", "ok 1.0: one", "ok 1.1: one", mine) == ["verdicts"]
 
