@@ -178,7 +178,7 @@ def _near(found):
     near = sum(1 < each.room <= NEAR for each in holding)
     return (
         f"Of {len(holding)} that hold {near} have a limit within {NEAR:g} times the value: they check that later "
-        "code does as well, and most of these limits were set after the value was seen "
+        "code does as well, and most of these limits were set, or came down to that, after the value was seen "
         "([claims](../docs/decisions/claims.md)). Claims about a method are those whose limit is from elsewhere: what "
         "a paper prints, a rate, another method."
     )
