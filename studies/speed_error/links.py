@@ -8,8 +8,7 @@ scene gets (`references.fft.rules.automatic`), so that rule needs a law, too. Th
 from pathlib import Path
 
 from studies.harness import methods
-from studies.speed_error import TIMEOUT, plot, run, warm_up
-from studies.speed_error.cases import STEADY, VOXELS
+from studies.speed_error.cases import STEADY, TIMEOUT, VOXELS
 
 __all__ = ["CASES", "FILE", "QUICK", "TIMEOUT", "claims", "in_words", "plot", "run", "warm_up"]
 FILE = Path(__file__).with_name("links.csv")
@@ -24,6 +23,27 @@ CASES = [methods.case("fft-links", scene=scene, voxels=voxels) for scene in SCEN
 def QUICK(case):
     """The coarsest."""
     return case["voxels"] == VOXELS[0]
+
+
+def run(name, scene, method, **knobs):
+    """One row, as the study's."""
+    from studies.speed_error import rows
+
+    return rows.solved(scene, method=method, **knobs)
+
+
+def warm_up(name, scene, method, **knobs):
+    """Load the solver."""
+    from studies.speed_error import rows
+
+    rows.warm_up(scene, method=method, **knobs)
+
+
+def plot(df):
+    """The study's panels."""
+    from studies.speed_error.figure import draw
+
+    return draw(df)
 
 
 def claims(df):
