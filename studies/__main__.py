@@ -5,13 +5,14 @@ from __future__ import annotations
 import argparse
 import os
 import sys
+from contextlib import ExitStack
 from pathlib import Path
 
 import studies
 from demheat import fresh
 from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
 from studies import contents
-from studies.harness import jobs, quiet, replay, runner, sound
+from studies.harness import jobs, lasting, quiet, replay, runner, sound
 from studies.harness.cluster import spreading
 from studies.harness.forked import forking, serve
 from studies.harness.machines import origins
@@ -153,15 +154,30 @@ def _run(arguments):
         knobs["method"] = arguments.method
         runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
-    with spreading(arguments.scheduler, arguments.workers, _say) as spread, forking() as compute:
-        # Rows side by side would wait for each other.
-        knobs["compute"] = quiet.quietly(compute, seconds=arguments.wait, say=_say)
-        for name in chosen:
+    with ExitStack() as stack:
+        spread = stack.enter_context(spreading(arguments.scheduler, arguments.workers, _say))
+        # Rows that are measured side by side would wait for each other.
+        alone = quiet.quietly(stack.enter_context(forking()), seconds=arguments.wait, say=_say)
+        alone.beside = stack.enter_context(replay.side_by_side())
+        knobs |= {"compute": alone, "spread": spread}
+        for number, name in enumerate(chosen):
             if not (spread or arguments.method) and arguments.force is not True:
                 replay.bear_out(name, arguments.out, quick=arguments.quick, say=_say)
-            path = runner.run_study(name, arguments.out, spread=spread, **knobs)
-            status |= _show(name, path)
+            if len(chosen) > 1:
+                _say(f"study {number + 1} of {len(chosen)}: {_to_run(chosen[number:], arguments)} left")
+            status |= _show(name, runner.run_study(name, arguments.out, **knobs))
     return status
+
+
+def _to_run(names, arguments):
+    """How many rows of some studies a run would make, and how long they take by those that are stored, in words."""
+    found = []
+    for name in names:
+        study, path = runner.load(name), runner.csv_of(name, arguments.out)
+        todo = runner.still_to_run(study, path, quick=arguments.quick, force=arguments.force)[1]
+        known = path if path.exists() else runner.csv_of(name, STORED)
+        found += lasting.seconds(study, known, todo).values()
+    return lasting.told(found)
 
 
 def _beside_stored(name, out):
@@ -291,6 +307,10 @@ def _check(arguments):
             _name_some("of other code, not replayed", unproved, arguments.rows)
         for wrong in dict.fromkeys(filter(None, found.values())):
             _name_some(", ".join(wrong), [key for key, each in found.items() if each == wrong], arguments.rows)
+    full = [
+        each for name, study, path in _stored(arguments) for each in lasting.seconds(study, path, study.CASES).values()
+    ]
+    print(f"made anew by two processors that nobody else uses: {lasting.told(full)}")
     print(
         f"{arguments.out}: {len(every)} rows: {absent} missing, {old} of other code and not replayed by this one, "
         + sound.told(sound.counted(every))

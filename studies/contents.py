@@ -6,7 +6,7 @@ HEADLINES = (
     ("fig14_single_inclusion", "FEM, P2 on curved elements of 0.04 L: worst error of any contrast"),
     ("fig14_single_inclusion", "FFT scalar CG, 128^3 laminate voxels: worst error of any contrast"),
     ("many_inclusions", "DEM, 8000000 elements: error"),
-    ("fig07_sphere", "Laguerre, 1e+06 particles: error of the centre at 10 s"),
+    ("fig08_sphere_field", "Laguerre, 1e+06 particles, 10 s: largest error"),
     ("fig03_calibration", "1e5 particles, as in the paper: C_t"),
     ("time_integrators", "particle-steps per second over whole steps of LAMMPS with its usual"),
     ("estimates", "DEM: share of exact conductivities inside of the interval"),

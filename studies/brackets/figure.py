@@ -9,8 +9,6 @@ from studies.brackets.means import place
 from studies.harness.figures import BLACK, GREY
 from studies.harness.pick import pick
 
-LINES = {"sphere": ("C0", "o", "one sphere, contrast 10"), "83 spheres": ("C1", "s", "83 spheres, contrast 7.7")}
-
 
 def draw(df):
     """Two panels.
@@ -29,9 +27,7 @@ def draw(df):
 
 
 def _widths(axes, rows, grids):
-    for scene, (colour, mark, label) in LINES.items():
-        mine = pick(rows, scene=scene)
-        axes.plot(mine["cpu_s"], mine["width_percent"], color=colour, marker=mark, label=label)
+    axes.plot(rows["cpu_s"], rows["width_percent"], "C0-o", label="one sphere, contrast 10")
     axes.plot(grids["cpu_s"], grids["width_percent"], "C0:o", fillstyle="none", label="the sphere on voxels")
     axes.set(xscale="log", yscale="log", xlabel="CPU seconds", ylabel="upper over lower bound less 1, %")
     axes.set_title("What a narrower bracket costs")

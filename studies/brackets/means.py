@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from studies.harness.methods import found
 from studies.harness.pick import order
 
 
-def narrowest(rows, *, cpu_s=np.inf):
-    """Least width of rows that cost at most so much, %; None if there is none.
+def narrowest(rows):
+    """Least width of rows, %; None if there is none.
 
     Parameters
     ----------
     rows : DataFrame
-    cpu_s : float, s
     """
-    rows = rows[rows["cpu_s"] <= cpu_s]
     return None if rows.empty else rows["width_percent"].min()
 
 

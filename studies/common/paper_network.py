@@ -47,6 +47,18 @@ def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
                 yield from (here | {"seed": seed} | repeated | {"method": NAME} for seed in seeds)
 
 
+def once(number):
+    """Cases of one packing of each kind under every kind of walls; of relaxed ones without walls, the least dear, more.
+
+    Parameters
+    ----------
+    number : int
+        Of particles.
+    """
+    yield from cases([number], seeds=SEEDS[:1])
+    yield from cases([number], held=["periodic"], packings=["relaxed"], seeds=SEEDS[1:])
+
+
 def calibrations(held):
     """Names of the calibrations that differ under a kind of walls."""
     return ("cell",) if held == "periodic" else ("flux", "isothermal")

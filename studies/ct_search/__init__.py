@@ -39,6 +39,11 @@ def QUICK(case):
     return case["spread"] in (0.15, 0.3) and (case["links"], case["mean"]) == (7.5, "arithmetic")
 
 
+def VALUES(case):
+    """All: nobody asks what they cost."""
+    return True
+
+
 def run(spread, links, mean, method):
     """C_t, scatter of the flux, errors of one sphere and links of one set, means over packings."""
     from studies.ct_search.rows import set_row

@@ -16,7 +16,7 @@ from studies.harness.pick import pick, present
 SEEDS = (0, 1, 2, 3)
 # Packings of a mean; all where the paper prints their scatter, of four.
 FEW = 3
-NUMBERS = {"relaxed": (1_000, 3_000, 10_000, 100_000, 1_000_000), "lsa": (3_000, 10_000, 100_000)}
+NUMBERS = {"relaxed": (1_000, 3_000, 10_000, 100_000), "lsa": (3_000, 10_000, 100_000)}
 LOADS = (("flux", "cube"), ("isothermal", "cube"), ("across", "cube"), ("periodic", "cube"), ("flux", "cylinder"))
 CUBE, DRUM = LOADS[0], LOADS[-1]
 # From the paper's way to the periodic cell, one cure at a time.
@@ -53,8 +53,14 @@ def _case(loading, packing, particles, seed, domain="cube", **more):
 
 
 def _seeds(packing, number, load):
-    """Of which packings; isothermal ends are shown beside the paper's load only."""
-    if number > VARIED or load[0] == "isothermal" or (packing, number, load) == ("lsa", VARIED, DRUM):
+    """Of which packings; isothermal ends are shown beside the paper's load only.
+
+    Of 1e5 hard spheres, two minutes each, none in a drum or with walls along the load alone.
+    """
+    dear = (packing, number) == ("lsa", VARIED)
+    if dear and (load == DRUM or load[0] == "across"):
+        return ()
+    if load[0] == "isothermal" or (number == VARIED and (load == DRUM or load[0] == "across")):
         return SEEDS[:1]
     return SEEDS if (number, load) == (VARIED, CUBE) else SEEDS[:FEW]
 
@@ -62,7 +68,7 @@ def _seeds(packing, number, load):
 def _cases():
     for packing, numbers in NUMBERS.items():
         for number in numbers:
-            for load in LOADS if number <= VARIED else [load for load in LOADS if load != DRUM]:
+            for load in LOADS:
                 yield from (_case(load[0], packing, number, seed, load[1]) for seed in _seeds(packing, number, load))
     for loading in ("flux", "periodic"):
         for change in list(VARIANTS.values())[1:]:
@@ -70,13 +76,14 @@ def _cases():
             if loading == "flux" or "spread" not in change:
                 yield _case(loading, "lsa", VARIED, 0, **change)
     for loading, cure in CURES:
-        yield from (_case(loading, "lsa", number, 0, **cure) for number in (10_000, VARIED))
+        numbers = (10_000, VARIED) if loading != "across" else (10_000,)
+        yield from (_case(loading, "lsa", number, 0, **cure) for number in numbers)
     for change in POLICIES:
         yield _case("periodic", "relaxed", 3_000, 0, **change)
         yield from (_case("periodic", "lsa", 10_000, seed, **change) for seed in SEEDS[:FEW])
     yield _case("flux", "lsa", 10_000, 0, sparse="drop")
     yield _case("periodic", "relaxed", 80_000, 0)
-    yield from (_case("periodic", "replicated", number, 0, replicas=2) for number in (80_000, 8_000_000))
+    yield _case("periodic", "replicated", 80_000, 0, replicas=2)
 
 
 CASES = list(_cases())
@@ -88,6 +95,11 @@ def QUICK(case):
     if not small or case["particles"] > 3_000 or case["loading"] == "isothermal" or case.get("sparse") == "keep":
         return False
     return case["particles"] == 3_000 or (case["loading"], case["domain"]) == ("flux", "cube")
+
+
+def VALUES(case):
+    """All: nobody asks what they cost."""
+    return True
 
 
 def run(loading, domain, packing, particles, seed, method, *, spread=0.3, replicas=1, **knobs):

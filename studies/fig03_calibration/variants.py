@@ -15,7 +15,6 @@ VARIANTS = {
     "7 links": {"wanted": 7.0},
     "6.5 links": {"wanted": 6.5},
     "spread 0.15": {"spread": 0.15},
-    "equal spheres": {"spread": 0.0},
 }
 VARIED = 100_000
 PAPER = printed("fig03_calibration")

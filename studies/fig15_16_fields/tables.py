@@ -12,7 +12,7 @@ ERRORS = {"flux_rms": "flux rms", "flux_max": "max", "flux_rms_band": "band rms"
           "flux_rms_own": "own rms", "flux_max_own": "own max", "temperature_rms": "T rms", "temperature_max": "T max",
           "own_temperature_rms": "T own points", "relative_temperature": "dT/T max", "relative_flux": "dq/q max",
           "relative_within": "within 19.6 %"}  # fmt: skip
-COSTS = {"unknowns": "unknowns", "cpu_s": "cpu_s", "sample_cpu_s": "look", "peak_mib": "peak_mib"}
+COSTS = {"unknowns": "unknowns"}
 
 
 def lines(df, paper, points):

@@ -20,6 +20,7 @@ The paper's network is sampled as there: its flux is that of the particles, aver
 
 from importlib import import_module
 
+from studies.common import paper_network
 from studies.common.paper_network import NAME
 from studies.common.paper_network import cases as network_cases
 from studies.common.paper_variants import parted
@@ -34,11 +35,11 @@ MODULES = {"dispersion": "demheat.packing.dispersion", "network": "studies.fig18
 BOUNDARIES = ("gradient", "walls")
 NUMBERS = (30_000, 100_000, 300_000)
 # Longest edges, in edges of the cube.
-SIZES = {"fem": (0.06, 0.015), "fem-p1": (0.012,)}
+SIZES = {"fem": (0.06, 0.015)}
 VOXELS = (64, 128, 256)
 # Finite elements are compared in the paper's own box only.
-AMONG = {"gradient": [each for each in COMPARED if each != "fem"], "walls": [*COMPARED, "fem-p1"]}
-RESOLUTIONS = {"particles": NUMBERS, "size": SIZES["fem"], "fem-p1": SIZES["fem-p1"], "voxels": VOXELS}
+AMONG = {"gradient": [each for each in COMPARED if each != "fem"], "walls": COMPARED}
+RESOLUTIONS = {"particles": NUMBERS, "size": SIZES["fem"], "voxels": VOXELS}
 # Of the paper's network: under all kinds of walls; and the paper's number in the periodic cell, replicas of one packing
 # of the paper's own kind, so many along an edge.
 NETWORK, MOST, REPLICAS = 150_000, 8_000_000, 4
@@ -74,11 +75,11 @@ def _cases():
     yield {"name": "arrangement", "method": "dispersion"}
     for boundary in BOUNDARIES:
         yield from (methods.case("multipole", boundary=boundary, order=degree) for degree in DEGREES[boundary])
-        for method in methods.compared("fem-p1"):
+        for method in methods.compared():
             if method.name in AMONG[boundary]:
                 knobs = [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
                 yield from (methods.case(method.name, boundary=boundary, **each) for each in knobs)
-    yield from network_cases([NETWORK])
+    yield from paper_network.once(NETWORK)
     yield from network_cases([MOST], held=["periodic"], packings=["lsa"], seeds=[0], replicas=REPLICAS)
 
 
@@ -94,6 +95,11 @@ def QUICK(case):
     method = methods.found()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return coarsest.items() <= case.items() and method.role == "main"
+
+
+def VALUES(case):
+    """All: what such solves cost is in `many_inclusions`."""
+    return True
 
 
 def run(name, boundary=None, *, method, **knobs):

@@ -13,7 +13,7 @@ from studies.harness.pick import pick
 COMPARED = tuple(method.name for method in methods.compared() if method.name != "fft-em")
 SHOWN = {"T off": "worst_T", "q off": "worst_q", "T rms": "temperature_rms", "T max": "temperature_max",
          "flux rms": "flux_rms", "flux max": "flux_max", "band rms": "flux_rms_band", "band max": "flux_max_band",
-         "unknowns": "unknowns", "elements": "elements", "cpu_s": "cpu_s", "peak_mib": "peak_mib"}  # fmt: skip
+         "unknowns": "unknowns", "elements": "elements"}  # fmt: skip
 
 NETWORK = {"worst_T": "T off", "worst_q": "q off", "temperature_rms": "T rms", "flux_rms": "flux rms",
            "flux_rms_band": "band rms"}  # fmt: skip

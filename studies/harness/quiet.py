@@ -22,6 +22,8 @@ SHORTEST = 0.2
 PAUSE = 2.0
 # Looks after a row at most, until one is quiet.
 LOOKS = 3
+# For so long, s, a look is good for rows that have themselves been quiet: it takes as long as many of them.
+LASTS = 10.0
 # Each processor's count may be wrong by so much, s.
 TICK = 1 / os.sysconf("SC_CLK_TCK")
 
@@ -132,7 +134,7 @@ def waiting(seconds, say, *, clock=time.monotonic, sleep=time.sleep):
     return wait
 
 
-def quietly(compute, *, seconds=0.0, say=print):
+def quietly(compute, *, seconds=0.0, say=print, clock=time.monotonic):
     """Rows one after another, each when the machine is quiet, with what was seen of it before and after.
 
     Parameters
@@ -141,6 +143,7 @@ def quietly(compute, *, seconds=0.0, say=print):
     seconds : float, s
         How long to wait for others to end, in all rows together; then rows are made all the same, and marked.
     say : callable (str)
+    clock : callable
 
     Returns
     -------
@@ -148,14 +151,19 @@ def quietly(compute, *, seconds=0.0, say=print):
         With `triad_gbs`, the memory's bandwidth before the row, and `noise`, the largest share of others before,
         during and after it, where the system tells.
     """
-    wait, last = waiting(seconds, say), []
+    wait, last, looked = waiting(seconds, say), None, -math.inf
 
     def computed(name, study, case):
+        nonlocal last, looked
+        if last is None:
+            last, looked = look(), clock()
         # What is seen after a row is what is seen before the next.
-        before = wait(last.pop() if last else look())
+        before = last = wait(last)
         row = compute(name, study, case)
-        last.append(_after())
-        noise = loudest(row.get("noise", math.nan), before[1], last[0][1])
+        own = row.get("noise", math.nan)
+        if not own <= NOISY or clock() - looked > LASTS:
+            last, looked = _after(), clock()
+        noise = loudest(own, before[1], last[1])
         return row | {"triad_gbs": before[0]} | ({"noise": noise} if math.isfinite(noise) else {})
 
     return computed

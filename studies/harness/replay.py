@@ -15,7 +15,7 @@ from queue import SimpleQueue
 from studies.harness import provenance, runner
 from studies.harness.forked import forking
 from studies.harness.sound import held, proved
-from studies.harness.store import add_rows, case_key, check_writable, read_rows
+from studies.harness.store import MADE, add_rows, case_key, check_writable, read_rows
 from studies.harness.tolerance import moved
 
 # Parameters of a case that say which code makes its row, and not how much of it.
@@ -58,7 +58,7 @@ def cheapest(rows, cases):
 
 def _cost(row):
     try:
-        return float(row.get("wall_s") or math.inf)
+        return float(row.get("wall_s") or row.get(MADE) or math.inf)
     except ValueError:
         return math.inf
 

@@ -8,7 +8,8 @@ A study is a module with
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
 - `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
-- optionally `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
+- optionally `VALUES(case)`, true for the cases of which nobody asks what they cost: their rows have none, and are made
+  side by side; `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
   sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
   `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`), and `COMPARED_AS`, of
   columns whose cells hold more than values, text -> what of it is compared;
@@ -44,8 +45,8 @@ from studies.harness.beside import counted
 from studies.harness.cost import measured
 from studies.harness.provenance import ANYWHERE, SAME, guest_case, machine, provenance, threads, versions
 from studies.harness.repeated import RUNS, measured_again
-from studies.harness.sound import faults, held
-from studies.harness.store import TAIL, add_rows, case_key, check_writable, read_rows, replaced
+from studies.harness.sound import checked, cost_columns, held, values_only
+from studies.harness.store import COST, MADE, TAIL, add_rows, case_key, check_writable, read_rows, replaced
 
 TIMEOUT = 1800.0
 KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
@@ -124,7 +125,8 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
         Told of each row as it ends.
     compute : callable (name, study, case) -> dict
         Default `quiet.quietly(spawn_row)`: each row in a fresh process, so that its cost means something, and with what
-        others did meanwhile.
+        others did meanwhile. Its `beside`, callable (tasks) -> iterator of dict, if it has one (`replay.side_by_side`),
+        makes the rows whose values alone count, of tasks (name, study, case), after the others.
     spread : callable (name, study, cases) -> iterator of dict, optional
         Instead: all rows, in the order in which they are done, by other machines perhaps (`cluster.spread_over`). A
         stored row then holds whatever machine it is from.
@@ -147,7 +149,8 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
         return path
     check_writable(path.parent)
     compute = compute or quiet.quietly(spawn_row, say=say)
-    arriving = spread(name, study, todo) if spread else (compute(name, study, case) for case in todo)
+    todo.sort(key=lambda case: values_only(study, case))
+    arriving = spread(name, study, todo) if spread else _made(name, study, todo, compute)
     start = time.perf_counter()
     for number, case in enumerate(todo, start=1):
         what = "" if spread else f", {_short(case_key(case))}"
@@ -158,6 +161,15 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
         add_rows(path, made, keys)
         say(_progress(number, len(todo), row, time.perf_counter() - start))
     return path
+
+
+def _made(name, study, todo, compute):
+    """Rows in order, those that count for their values alone side by side at the end."""
+    beside = getattr(compute, "beside", None)
+    alone = [case for case in todo if beside and values_only(study, case)]
+    yield from (compute(name, study, case) for case in todo[: len(todo) - len(alone)])
+    if alone:
+        yield from beside([(name, study, case) for case in alone])
 
 
 def guests_of(name, method, *, quick=False):
@@ -215,12 +227,14 @@ def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME
     wanted = [case for case in study.CASES if not quick or study.QUICK(case)] if cases is None else cases
     here = {"machine": machine(), "threads": threads(), "versions": versions()}
     here = {name: str(here[name]) for name in same}
-    sound = (lambda row: not faults(row)) if force == "unsound" else (lambda row: not force)
+    wrong = checked(study, path) if force == "unsound" else {}
 
     def holds(case):
         row = rows.get(case_key(case))
-        kept = row is not None and row.get("status") in KEPT and all(row.get(name) == here[name] for name in same)
-        return kept and held(study, row) and sound(row)
+        # Values do not depend on the machine.
+        asked = [name for name in same if name in ANYWHERE or not values_only(study, case)]
+        kept = row is not None and row.get("status") in KEPT and all(row.get(name) == here[name] for name in asked)
+        return kept and held(study, row) and not (wrong.get(row["case"]) if force == "unsound" else force)
 
     return wanted, [case for case in wanted if not holds(case)]
 
@@ -263,7 +277,7 @@ def spawn_row(name, study, case, *, environment=None, start=None, values=False):
     key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
-        answer, log = Path(folder) / "row.json", Path(folder) / "log"
+        answer, log, begin = Path(folder) / "row.json", Path(folder) / "log", time.perf_counter()
         words = ["row", name, key, "--json", str(answer), *(["--values"] if values else [])]
         try:
             code = (start or partial(_started, environment=environment))(words, log, limit)
@@ -271,7 +285,8 @@ def spawn_row(name, study, case, *, environment=None, start=None, values=False):
             note = f"not finished after {limit:g} s"
             return {**base, "status": "timeout", "note": note, **provenance(study)}
         try:
-            return json.loads(answer.read_text(encoding="utf-8"))
+            row = json.loads(answer.read_text(encoding="utf-8"))
+            return row | {MADE: round(time.perf_counter() - begin, 3)}
         except (OSError, ValueError):
             return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study)}
 
@@ -292,7 +307,8 @@ def compute_row(study, case, *, warm=True):
         Call the study's warm-up first, repeat a short run, and say what others did meanwhile; without it costs include
         what is loaded on first use.
     """
-    row = {"case": case_key(case), **case}
+    row, alone = {"case": case_key(case), **case}, values_only(study, case)
+    warm = warm and not alone
     try:
         if warm and hasattr(study, "warm_up"):
             study.warm_up(**case)
@@ -311,6 +327,9 @@ def compute_row(study, case, *, warm=True):
         if clash:
             raise ValueError(f"run() of {study.__name__} returns {clash}, which are parameters of its case")
         result = {"status": "ok", "note": "", **cost, **beside, **metrics}
+        if alone:
+            for name in {*cost_columns(study, result), *COST, "beside"} & set(result):
+                del result[name]
     return {**row, **result, **row, **provenance(study)}
 
 

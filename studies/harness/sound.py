@@ -45,6 +45,27 @@ def _quiet(row):
     return _number(row.get("noise")) <= NOISY and not compiled > NOISY * wall
 
 
+def values_only(study, case):
+    """Whether nobody asks what a row costs: by the study's `VALUES`. Then it may be made beside another.
+
+    Parameters
+    ----------
+    study : module
+    case : mapping
+    """
+    return hasattr(study, "VALUES") and bool(study.VALUES(case))
+
+
+def uncosted(study):
+    """Keys of the cases of a study whose values alone count.
+
+    Parameters
+    ----------
+    study : module
+    """
+    return {case_key(case) for case in study.CASES if values_only(study, case)}
+
+
 def counted(found):
     """How many rows have each fault.
 
@@ -79,9 +100,9 @@ def checked(study, path):
     dict of str to tuple of str
         By the case; the tuple of a good row is empty.
     """
-    cases = {case_key(case) for case in study.CASES}
-    rows = read_rows(path).items()
-    return {key: faults(row) for key, row in rows if key in cases or guest_case(study, key) is not None}
+    cases, spared = {case_key(case) for case in study.CASES}, uncosted(study)
+    rows = {key: row | {"cpu_s": ""} if key in spared else row for key, row in read_rows(path).items()}
+    return {key: faults(row) for key, row in rows.items() if key in cases or guest_case(study, key) is not None}
 
 
 def proved(study, row):
@@ -109,12 +130,12 @@ def held(study, row):
 
 
 def cost_columns(study, df):
-    """Names of a data frame's columns that hold costs.
+    """Names of a data frame's, or of a row's, columns that hold costs.
 
     Parameters
     ----------
     study : module
-    df : data frame
+    df : data frame, or iterable of str
     """
     own = getattr(study, "COSTS", ())
     return [name for name in df if name in own or COSTS.fullmatch(name)]

@@ -12,6 +12,8 @@ from demheat.paths import locked
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
+# Seconds from the start of a row's process to its end: what a record takes, whatever its costs are.
+MADE = "made_s"
 # Where values are from that were made anew without their costs; when they were last made again and found the same; and
 # which code found another row of their group the same.
 VALUES = ("values_commit", "values_when", "replayed_commit", "replayed_when", "borne_commit")
@@ -19,7 +21,7 @@ TAIL = (
     *("unknowns", "iterations", "residual"),
     *COST,
     *("status", "note", "commit", "when", "machine", "host", "threads", "versions"),
-    *("load", "beside", "noise", "compile_s", "triad_gbs"),
+    *("load", "beside", "noise", "compile_s", "triad_gbs", MADE),
     *VALUES,
 )
 # Bytes that must be free before a run begins.

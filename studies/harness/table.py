@@ -11,7 +11,7 @@ from studies.harness import explained
 from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
-from studies.harness.sound import counted, faults, told
+from studies.harness.sound import cost_columns, counted, faults, told, uncosted
 from studies.harness.store import VALUES, case_key, read_rows, replaced
 
 # Columns of words, whatever they look like: a commit may be a number.
@@ -64,7 +64,7 @@ def _plain(study):
 
 
 def read_frame(study, csv_path):
-    """Rows of the study's present cases as a data frame.
+    """Rows of the study's present cases as a data frame, without costs where values alone count.
 
     Parameters
     ----------
@@ -89,6 +89,9 @@ def read_frame(study, csv_path):
     df = pd.read_csv(csv_path, dtype=dict.fromkeys(WORDS, str))
     ours = df["case"].isin([case_key(case) for case in study.CASES])
     guests = df["case"].map(lambda key: guest_case(study, key) is not None)
+    # What nobody asks is not there to be used.
+    costs = cost_columns(study, df)
+    df[costs] = df[costs].mask(df["case"].isin(uncosted(study)))
     return of_one_machine(df[ours | guests].reset_index(drop=True).fillna({"note": ""}))
 
 

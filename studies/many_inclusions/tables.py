@@ -35,10 +35,10 @@ def _line(row):
 
 
 def _resolution(row):
-    words = silica_epoxy.words(row) + (" float32" if row.get("precision") == "float32" else "")
+    words = silica_epoxy.words(row)
     if row.get("elements", math.nan) == row.get("elements", math.nan):
         words += f", {row['elements']:.0f} tetrahedra"
-    return words + (f", least gap {row['gap']:g} D" if row.get("gap", math.nan) == row.get("gap", math.nan) else "")
+    return words
 
 
 def _steady(df):

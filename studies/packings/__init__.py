@@ -11,13 +11,13 @@ import numpy as np
 from studies.harness.cells import numbers
 from studies.harness.pick import pick, present
 
-SEEDS = (0, 1, 2)
+SEEDS = (0, 1)
 MODULES = {"lsa": "demheat.packing.lsa", "relax": "demheat.packing.relax", "spheropack": "studies.packings.rows"}
 LARGE = 100_000
 # Gaps, over the sum of radii, at which numbers of neighbours are compared.
 COMPARED = (1e-4, 1e-2, 1e-1)
 # Standard deviations of one packing of 10 000 spheres jammed, here and by spheropack: of the packing fraction, and the
-# largest of the number of neighbours within those gaps. Two of each are what means of three may differ by.
+# largest of the number of neighbours within those gaps. Two of each are what means of two may differ by.
 SCATTER = {"equal": (2e-4, 0.016), "gaussian": (5e-4, 0.025)}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -52,10 +52,9 @@ def _cases():
     for radii in ("equal", "gaussian", "ten"):
         # At one pressure: at one packing fraction the wide mixture is a thin gas with more lists than collisions.
         yield _case("width", "lsa", 30_000, radii, pressure=100.0, growth=0.02)
-    for growth in (0.005, 0.05):
-        yield _case("growth", "lsa", 10_000, "gaussian", pressure=1e6, growth=growth)
-    for number in (1000, 10_000):
-        for domain in ("walls", "cylinder-y", "sphere"):
+    yield _case("growth", "lsa", 10_000, "gaussian", pressure=1e6, growth=0.05)
+    for number, domains in ((1000, ("walls", "cylinder-y", "sphere")), (10_000, ("cylinder-y",))):
+        for domain in domains:
             yield _case("walls", "lsa", number, "gaussian", domain=domain, pressure=1e6, growth=0.02)
     for maker in ("lsa", "relax"):
         yield _case("large", maker, LARGE, "gaussian", phi=0.64)
@@ -67,6 +66,11 @@ CASES = list(_cases())
 def QUICK(case):
     """A thousand spheres, Gaussian radii; a cylinder."""
     return case["particles"] == 1000 and case["radii"] == "gaussian" and case.get("domain") in (None, "cylinder-y")
+
+
+def VALUES(case):
+    """Of peers a thousand spheres are timed; of walls and growth densities and contacts are compared."""
+    return case["part"] in ("walls", "growth") or (case["part"], case["particles"]) == ("peer", 10_000)
 
 
 def run(part, maker, particles, radii, seed, method, growth=0.02, **knobs):
@@ -104,9 +108,10 @@ def _peer_claims(df):
             if not len(ours) or not len(theirs):
                 continue
             # Three times as fast is asked of Gaussian radii; equal spheres are what spheropack is fastest at.
-            ratio = theirs["cpu_s"].sum() / ours["cpu_s"].sum()
-            least = ">= 3" if radii == "gaussian" else ">= 2"
-            yield f"{what}: CPU time of spheropack over ours, to the same pressure", ratio, least
+            if number == 1000:
+                ratio = theirs["cpu_s"].sum() / ours["cpu_s"].sum()
+                least = ">= 3" if radii == "gaussian" else ">= 2"
+                yield f"{what}: CPU time of spheropack over ours, to the same pressure", ratio, least
             if len(ours) > 1:
                 yield from _agreement(what, ours, theirs, SCATTER[radii])
 

@@ -15,8 +15,8 @@ from studies.harness import methods
 from studies.harness.pick import present
 from studies.harness.table import markdown
 from studies.peers import tables
-from studies.peers.cases import QUICK_SCENES, our_beds, ours, thinned
-from studies.peers.means import AIM, ahead, same_mesh
+from studies.peers.cases import EVERY, QUICK_SCENES, our_beds, ours, thinned
+from studies.peers.means import AIM, COSTED, ahead, same_mesh
 
 HOME = Path(__file__).parent / "programs"
 PROGRAMS = tuple(sorted(path.stem for path in HOME.glob("*.py") if path.stem != "__init__"))
@@ -61,6 +61,11 @@ def QUICK(case):
     """Ours on two bodies, coarsely: what needs no other program."""
     coarse = case.get("n", 0) <= 16 and case.get("voxels", 0) <= 32 and case.get("particles", 0) <= 2000
     return case["name"] not in PROGRAMS and case["scene"] in QUICK_SCENES and coarse and case.get("size", 1.0) > 0.05
+
+
+def VALUES(case):
+    """Bodies on which nobody is compared by costs; an image costs what its voxels do, whatever is in it."""
+    return case["scene"] not in COSTED or (case["given"] == "image" and case["scene"] not in EVERY)
 
 
 def run(name, given, scene, method, **knobs):
@@ -140,7 +145,9 @@ def plot(df):
 
 
 def table(df):
-    """Errors of the conductivity, % of the known value; CPU time and memory of a solve, median over bodies.
+    """Errors of the conductivity, % of the known value; CPU time and memory of a solve, median.
+
+    Costs are of the bodies on which they are compared.
 
     Those of our DEM are without its packing, but for the first row that needs one.
     """

@@ -16,6 +16,8 @@ KEPT = ("dem",)
 ELEMENTS = {1: "fem-p1", 2: "fem-straight"}
 VOLUMES = ("openfoam",)
 COMPARED = ("sphere 10", "sphere 0.01", "half 10", "dispersion 10")
+# And those that are drawn.
+COSTED = (*COMPARED, "pore")
 
 
 def same_mesh(df):

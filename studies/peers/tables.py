@@ -162,8 +162,7 @@ def beds(df):
     for law, group in rows[~mixed].groupby(rows["scene"].map(lambda scene: BEDS[scene].law)):
         said = []
         for name, each in group.groupby("name"):
-            worst, most = each["error_percent"].abs().max(), each["cpu_s"].max()
-            said.append(f"{title(name)} {worst:.1e} % ({len(each)} beds, at most {most:.2g} CPU-s)")
+            said.append(f"{title(name)} {each['error_percent'].abs().max():.1e} % ({len(each)} beds)")
         yield f"Beds of grains, law '{law}', largest error: " + ", ".join(said) + "."
 
 

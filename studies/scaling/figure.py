@@ -1,14 +1,13 @@
-"""The figure of scaling: CPU time against inclusions, stages of the DEM against particles, threads and memory."""
+"""The figure of scaling: CPU time against inclusions, stages of the DEM against particles, and memory."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from studies.harness import methods
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, ORANGE, PINK, RED, SKY, look
 from studies.harness.pick import pick
 from studies.scaling import model
-from studies.scaling.means import STAGES, efficiencies, fitted, of_stages
+from studies.scaling.means import STAGES, fitted, of_stages
 
 COLOUR = dict(zip(STAGES, (GREY, ORANGE, BLUE, PINK, GREEN, RED, SKY, BLACK), strict=True))
 
@@ -24,9 +23,8 @@ def draw(df):
         _many(axes[2, 1], model.plans(ranked))
     _inclusions(axes[0, 0], df)
     _stages(axes[0, 1], pick(df, part="inclusions", name="dem"), "number", "inclusions, 50 particles each")
-    threaded = pick(df, part="elements", name="dem")
-    _stages(axes[1, 0], threaded[threaded["cores"] == threaded["cores"].max()], "unknowns", "unknowns, 83 spheres")
-    _threads(axes[1, 1], df)
+    _stages(axes[1, 0], pick(df, part="elements", name="dem"), "unknowns", "unknowns, 83 spheres")
+    _memory(axes[1, 1], df)
     return figure
 
 
@@ -65,19 +63,13 @@ def _stages(ax, rows, by, label):
     ax.legend(ncols=2)
 
 
-def _threads(ax, df):
-    found = efficiencies(df)
-    if not len(found):
-        ax.set_axis_off()
-        return
-    finest = found[found["resolution"] == found.groupby("name")["resolution"].transform("max")]
-    finest = finest[finest["wall"] >= 0.05]
-    words = [f"{methods.found()[row['name']].title}: {row['stage']}" for _, row in finest.iterrows()]
-    ax.barh(words, finest["efficiency"], color=[LOOK[name][1] for name in finest["name"]])
-    ax.axvline(0.8, color=GREY, linestyle=":")
-    ax.set(xlabel="wall time of one thread over two, halved", title="Two threads, finest cell of both")
-    ax.set_xlim(0, max(1.1, 1.05 * finest["efficiency"].max()))
-    ax.invert_yaxis()
+def _memory(ax, df):
+    """Peak memory against inclusions."""
+    for name, rows in pick(df, part="inclusions").groupby("name", sort=False):
+        rows = rows.sort_values("number")
+        ax.plot(rows["number"], rows["peak_mib"] / 1024, **look(name))
+    ax.set(xscale="log", yscale="log", xlabel="inclusions", ylabel="GiB", title="Peak memory")
+    ax.legend(loc="upper left")
 
 
 def _ranked(ax, rows):

@@ -14,7 +14,7 @@ STAGES = ("packing", "twins", "cells", "phases", "network", "equations", "field"
 # A stage takes part in a fit where it lasts at least this long: shorter ones are clocks and caches.
 LEAST = 0.02
 # Rows of so many inclusions or elements and more are fitted: below, what does not grow weighs.
-FROM = {"number": 1000, "unknowns": 50_000}
+FROM = {"number": 100, "unknowns": 50_000}
 BILLION = 1e9
 
 

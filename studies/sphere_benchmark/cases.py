@@ -10,8 +10,7 @@ LADDERS = {
     "multipole": ("degree", (7,)),
     "maxwell": (None, (None,)),
 }
-# Coarse resolutions are for one group, for what a quick run has, and for the most spheres, where coarse elements are
-# hardest to make; iterations on voxels beside pores are dear.
-TWICE, MOST = "cubic arrays", "dispersion-150"
+# Around the most spheres elements are dearest; iterations on voxels beside pores are dear.
+MOST = ("dispersion-150", "dispersion-83")
 POROUS = ("sc-third-pore", "coated-hollow", "dispersion-20-pores")
 RELATIONS = ("uniform", "scaled", "reversed", "turned", "tenfold")

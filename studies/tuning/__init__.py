@@ -51,6 +51,11 @@ def QUICK(case):
     return case["particles"] <= 1_000 and case["constant"] is None and case["contrast"] == 10.0
 
 
+def VALUES(case):
+    """All: nobody asks what they cost."""
+    return True
+
+
 def run(part, particles=None, group=None, family=None, constant=None, factor=1.0, *, method, **probe):
     """Conductivities of a group of scenes, by a witness or by the DEM with one constant changed; or parts of errors."""
     from studies.tuning import order, rows

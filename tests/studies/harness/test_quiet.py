@@ -1,5 +1,6 @@
 """Who else uses the processors: told from the kernel's count, waited for, and written into rows."""
 
+import itertools
 import math
 import os
 
@@ -89,7 +90,9 @@ def test_a_row_has_the_loudest_moment_around_it(monkeypatch):
     seen = iter([(10.0, 0.01), (11.0, 0.04), (12.0, 0.02), *[(13.0, 0.5)] * quiet.LOOKS])
     monkeypatch.setattr(quiet, "look", lambda: next(seen))
     during = iter([0.03, 0.06, 0.0])
-    computed = quiet.quietly(lambda *case: {"noise": next(during)})
+    # Looks are old when the next row is done.
+    clock = itertools.count(step=quiet.LASTS + 1).__next__
+    computed = quiet.quietly(lambda *case: {"noise": next(during)}, clock=clock)
     rows = [computed("name", None, {}) for _ in range(3)]
     # What is seen after a row is seen before the next: four looks for three rows.
     assert [row["noise"] for row in rows] == [0.04, 0.06, 0.5]
@@ -99,7 +102,7 @@ def test_a_row_has_the_loudest_moment_around_it(monkeypatch):
 def test_a_blink_after_a_row_is_not_noise(monkeypatch):
     seen = iter([(10.0, 0.01), (11.0, 0.4), (12.0, 0.03)])
     monkeypatch.setattr(quiet, "look", lambda: next(seen))
-    row = quiet.quietly(lambda *case: {"noise": 0.02})("name", None, {})
+    row = quiet.quietly(lambda *case: {"noise": math.nan})("name", None, {})
     assert row["noise"] == 0.03 and next(seen, None) is None
 
 
@@ -116,3 +119,16 @@ def test_a_look_takes_long_enough_to_tell(monkeypatch):
     assert bandwidth == 12.3 and len(slept) == 1 and 0 < slept[0] <= quiet.SHORTEST
     # It did not sleep: too short.
     assert math.isnan(share)
+
+
+def test_a_look_is_good_for_rows_that_are_quiet_themselves(monkeypatch):
+    seen = iter([(10.0, 0.01), (11.0, 0.02), (12.0, 0.03)])
+    monkeypatch.setattr(quiet, "look", lambda: next(seen))
+    during = iter([0.03, 0.04, 0.2, math.nan, 0.0])
+    time = iter([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 100.0, 101.0])
+    computed = quiet.quietly(lambda *case: {"noise": next(during)}, clock=lambda: next(time))
+    first, second, loud = (computed("name", None, {}) for _ in range(3))
+    assert (first["noise"], second["noise"], loud["noise"]) == (0.03, 0.04, 0.2)
+    # Two rows without a look, one that was loud and has one.
+    assert [row["triad_gbs"] for row in (first, second, loud)] == [10.0, 10.0, 10.0]
+    assert next(seen) == (12.0, 0.03)

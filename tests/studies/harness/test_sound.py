@@ -64,6 +64,7 @@ def test_the_command_lists_them_and_only_a_release_fails(stored, capsys, monkeyp
         0,
         [
             f"{stored.name:24}    2 rows: 0 dirty, 0 noisy; 2 of 0123456789; none replayed",
+            "made anew by two processors that nobody else uses: 2 rows in about 1 min",
             f"{here}, 2 of other code and not replayed by this one, 0 dirty, 0 noisy",
         ],
     )
@@ -95,7 +96,7 @@ def test_many_rows_are_named_on_demand(tiny, capsys):
     assert main(words) == 0
     short = capsys.readouterr().out.splitlines()
     assert main([*words, "--rows"]) == 0
-    assert [len(short), len(capsys.readouterr().out.splitlines())] == [2 + 4, 2 + 7]
+    assert [len(short), len(capsys.readouterr().out.splitlines())] == [3 + 4, 3 + 7]
     assert "    noisy: and 4 more" in short
 
 
