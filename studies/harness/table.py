@@ -16,6 +16,8 @@ from studies.harness.store import VALUES, case_key, read_rows, replaced
 
 # Columns of words, whatever they look like: a commit may be a number.
 WORDS = ("case", "note", "commit", *VALUES)
+# Costs that tables may ask for, whatever the rows.
+ALWAYS = ("cpu_s", "wall_s", "peak_mib")
 # What every row has.
 NEEDED = ("case", "status", "note", "commit", "when", "machine", "threads", "versions", "load")
 
@@ -89,7 +91,8 @@ def read_frame(study, csv_path):
     df = pd.read_csv(csv_path, dtype=dict.fromkeys(WORDS, str))
     ours = df["case"].isin([case_key(case) for case in study.CASES])
     guests = df["case"].map(lambda key: guest_case(study, key) is not None)
-    # What nobody asks is not there to be used.
+    # What nobody asks is not there to be used; a study whose rows all count for their values has the columns still.
+    df = df.reindex(columns=[*df.columns, *(name for name in ALWAYS if name not in df)])
     costs = cost_columns(study, df)
     df[costs] = df[costs].mask(df["case"].isin(uncosted(study)))
     return of_one_machine(df[ours | guests].reset_index(drop=True).fillna({"note": ""}))

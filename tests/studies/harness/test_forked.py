@@ -14,6 +14,7 @@ NOTED = '"square": x * x, "process": os.getpid(), "first": os.getppid(), "thread
 NOTED += ', "began": __import__("studies.harness.quiet", fromlist="START").START.time'
 # What a row is not told by its case: when it was made, and what it took.
 OWN = ("when", "load", "wall_s", "cpu_s", "peak_mib", "base_mib", "noise", "beside", "process", "first", "began")
+OWN += ("made_s",)
 
 
 @pytest.fixture
