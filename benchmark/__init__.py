@@ -73,17 +73,7 @@ def names(*, group: str | None = None) -> list[str]:
 
 
 def read(name: str) -> dict:
-    """What the file of a scene holds.
-
-    Parameters
-    ----------
-    name : str
-
-    Raises
-    ------
-    ValueError
-        If there is no such scene.
-    """
+    """What the file of a scene holds."""
     if name not in names():
         raise ValueError(f"name = {name!r}: must be one of {', '.join(names())}")
     return json.loads((FOLDER / f"{name}.json").read_text(encoding="utf-8"))

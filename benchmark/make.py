@@ -28,13 +28,7 @@ BEGIN, END = "<!-- table -->\n", "<!-- end of table -->"
 
 
 def tables(wanted=()):
-    """Tables of all files, or of those that are wanted.
-
-    Parameters
-    ----------
-    wanted : collection of str
-        Names; empty means all.
-    """
+    """Tables of all files, or of those that are wanted."""
     for recipes in (arrays, planes, dispersions, transients):
         for name, made in recipes.entries():
             if not wanted or name in wanted:
@@ -43,12 +37,7 @@ def tables(wanted=()):
 
 
 def table(entry) -> dict:
-    """What the file of an entry holds, with the image of its scene.
-
-    Parameters
-    ----------
-    entry : Entry
-    """
+    """What the file of an entry holds, with the image of its scene."""
     scene = {"scene": table_of(entry.scene)}
     painted = {"image": image(entry.scene)} if entry.scene.inclusions else {}
     words = {"name": entry.name, "group": entry.group, "title": entry.title}
@@ -60,13 +49,7 @@ def _headed(found):
 
 
 def image(scene) -> dict:
-    """Voxels of a scene's image, how many there are of each material, and the checksum of their labels.
-
-    Raises
-    ------
-    ValueError
-        If an interface passes the centre of a voxel: rounding would tell its material.
-    """
+    """Voxels of a scene's image, how many there are of each material, and the checksum of their labels."""
     size = np.array(scene.size)
     shape = tuple(int(n) for n in np.maximum(1, np.rint(size / size.max() * ALONG)))
     found = labels(scene, shape)

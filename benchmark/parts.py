@@ -16,16 +16,10 @@ from demheat.scene.rotations import IDENTITY
 
 @dataclass(frozen=True)
 class Sine:
-    """A temperature that swings: amplitude times sin(2 pi time / period).
+    """A temperature that swings: amplitude times sin(2 pi time / period)."""
 
-    Parameters
-    ----------
-    amplitude : float, K or degrees Celsius
-    period : float, s
-    """
-
-    amplitude: float
-    period: float
+    amplitude: float  # K or degrees Celsius
+    period: float  # s
 
     def __call__(self, time):
         """Temperature at a time."""
@@ -33,20 +27,7 @@ class Sine:
 
 
 def scene_of(table: dict, *, image=None) -> Scene:
-    """The scene of a table.
-
-    Parameters
-    ----------
-    table : dict
-        As the files hold it; see schema.json.
-    image : path, optional
-        Of the labels, for a scene of voxels.
-
-    Raises
-    ------
-    ValueError
-        If the image is missing or another one.
-    """
+    """The scene of a table."""
     given = table["scene"]
     materials = [_material(each) for each in given["materials"]]
     load = {name: given[name] for name in ("gradient", "initial", "domain") if name in given}
@@ -101,13 +82,7 @@ def label_digest(labels) -> str:
 
 
 def table_of(scene: Scene) -> dict:
-    """The table of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of shapes; its functions of time are `Sine`.
-    """
+    """The table of a scene."""
     materials = list(dict.fromkeys(scene.materials))
     table = {"size": scene.size}
     if scene.domain != "box":
@@ -155,12 +130,6 @@ def labels(scene: Scene, shape) -> np.ndarray:
     """Image of a scene: each voxel has the number of the material of its centre, (nx, ny, nz) uint8 array.
 
     Materials are numbered as in the table of the scene, the matrix 0.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of shapes.
-    shape : (3,) sequence of int
     """
     middles = [(np.arange(n) + 0.5) * (length / n) for n, length in zip(shape, scene.size, strict=True)]
     points = np.stack(np.meshgrid(*middles, indexing="ij"), axis=-1).reshape(-1, 3)
@@ -168,26 +137,14 @@ def labels(scene: Scene, shape) -> np.ndarray:
 
 
 def labels_at(scene: Scene, points) -> np.ndarray:
-    """Number of the material at points, (n,) uint8 array.
-
-    Parameters
-    ----------
-    scene : Scene
-    points : (n, 3) float array, m
-    """
+    """Number of the material at points, (n,) uint8 array."""
     materials = list(dict.fromkeys(scene.materials))
     number = np.array([materials.index(each) for each in scene.materials], dtype=np.uint8)
     return number[scene.phase_at(points)]
 
 
 def image_of(scene: Scene, shape) -> Image:
-    """The image of `labels`, as an `Image`.
-
-    Parameters
-    ----------
-    scene : Scene
-    shape : (3,) sequence of int
-    """
+    """The image of `labels`, as an `Image`."""
     materials = dict(enumerate(dict.fromkeys(scene.materials)))
     voxel = tuple(length / n for length, n in zip(scene.size, shape, strict=True))
     return Image(labels(scene, shape), voxel, materials)

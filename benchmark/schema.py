@@ -14,22 +14,7 @@ KNOWN = {
 
 
 def faults(value, schema: dict, root: dict | None = None, place: str = "") -> list[str]:
-    """What is wrong, as sentences; none if the value fits.
-
-    Parameters
-    ----------
-    value : what JSON holds
-    schema : dict
-    root : dict, optional
-        Where "$ref" looks; the schema itself by default.
-    place : str
-        Of the value, for the sentences.
-
-    Raises
-    ------
-    ValueError
-        If the schema uses a word that is not known here.
-    """
+    """What is wrong, as sentences; none if the value fits."""
     root = schema if root is None else root
     strange = set(schema) - KNOWN
     if strange:

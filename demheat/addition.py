@@ -21,30 +21,6 @@ def add_spheres(radii, size, rng, *, periodic: bool, margin=0.0, reuse: bool = F
     """Centres of spheres added at random where they overlap none that came before.
 
     Each trial is held against the spheres in cells around it: the time goes with their number.
-
-    Parameters
-    ----------
-    radii : (n,) float array, m
-        In the order of their turns.
-    size : (3,) float array, m
-        The box is [0, size].
-    rng : numpy.random.Generator
-    periodic : bool
-        Whether spheres on opposite sides are neighbours.
-    margin : float or (n,) float array, m
-        Least distance of each centre from the faces.
-    reuse : bool
-        Give what is left of a batch of trials to the next spheres, which must then be equal: fewer trials, other
-        places.
-
-    Returns
-    -------
-    (n, 3) float array, m
-
-    Raises
-    ------
-    RuntimeError
-        If no room is found for a sphere.
     """
     radii, size = np.asarray(radii, dtype=float), np.asarray(size, dtype=float)
     margins, cells, placed, failed = np.broadcast_to(margin, len(radii)), _Cells(radii, size, periodic), 0, 0

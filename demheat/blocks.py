@@ -12,17 +12,6 @@ def blocks(number, first):
     """Cut a range into blocks that last about as long as they should, the next at most twice as long as the last.
 
     For loops whose entries do not depend on each other: where the cuts are differs from run to run.
-
-    Parameters
-    ----------
-    number : int
-    first : int
-        Length of the first block, and the least of all but the last.
-
-    Yields
-    ------
-    (begin, end) : ints
-        From 0 to the number.
     """
     begin, length = 0, first
     while begin < number:

@@ -94,20 +94,7 @@ def network_of(scene: Scene, packing: Packing, law: Laguerre | Calibrated | Plat
 def networks_of(
     scenes: Sequence[Scene], packing: Packing, law: Laguerre | Calibrated | Platonic, *, seed: int = 0
 ) -> list[Network]:
-    """The networks of one body under several loads: tessellated once, and one network where the loads do not matter.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Alike but for their loads.
-    packing, law, seed
-        As those of `network_of`, which says what is raised and warned of.
-
-    Returns
-    -------
-    list of Network
-        One for each scene. Only the factor of a law that is calibrated along each load parts them.
-    """
+    """The networks of one body under several loads: tessellated once, and one network where the loads do not matter."""
     cut = _tessellated(scenes[0], packing, law, seed)
     if law.factor is not None:
         return [_connected(scenes[0], law, *cut)] * len(scenes)
@@ -177,13 +164,6 @@ def warn_of_twins(packing: Packing, asked: int) -> None:
     """Warn of pairs of twins that do not fit into gaps, and of twins that are many times as many as particles.
 
     Twins stand as close as the gaps are narrow, down to a fifth of a mean radius: 64 times as many as elsewhere.
-
-    Parameters
-    ----------
-    packing : Packing
-        As `demheat.packing.conforming.conform` returns it.
-    asked : int
-        Particles that were asked for.
     """
     count, twins = packing.provenance["pairs_left_out"], packing.provenance["twins"]
     if count:

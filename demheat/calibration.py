@@ -19,28 +19,6 @@ def calibration(network, scene, *, loading="isothermal", solver="auto", toleranc
     """C_t of a contact network: conductivity over that of the homogeneous lattice with C_t = 1, under a like load.
 
     Source: Haddad et al. 2021, eqs. 7-9.
-
-    Parameters
-    ----------
-    network : Network
-        Of a material of conductivity 1 with C_t = 1, as `demheat.build.network_of` makes it for
-        `Calibrated(factor=1.0)`. In any domain; axes without a load may be periodic or not, round walls are insulated.
-    scene : Scene
-        Its box and load; a wall load calibrates between the two walls along its axis.
-    loading : {"isothermal", "flux"}
-        Between walls: two temperatures, or as in the paper a temperature below and a flux that enters above, where the
-        temperature is then read.
-    solver, tolerance
-        As in `demheat.conduction.steady.solve_steady`.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If `loading` is none of these, or no particle conducts between the two walls.
     """
     if loading not in LOADINGS:
         raise ValueError(f"loading = {loading!r}: must be one of {', '.join(LOADINGS)}")
@@ -60,15 +38,6 @@ def cube_like(packing, *, seed=0):
     """A packing with the radii and the packing fraction of another in a cube of the same volume, between walls.
 
     A sphere has no two opposite walls to calibrate between.
-
-    Parameters
-    ----------
-    packing : Packing
-    seed : int
-
-    Returns
-    -------
-    Packing
     """
     check_packing(packing)
     size = (packing.volume ** (1 / 3),) * 3
@@ -83,14 +52,6 @@ def calibration_scene(scene):
 
     The mean gradient of a periodic cell; else temperatures along the first flat wall of the other scene, or its axis,
     or its longest side.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Scene
     """
     if scene.periodic:
         return Scene(size=scene.size, matrix=Material(1.0), gradient=scene.gradient)

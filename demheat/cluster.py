@@ -22,24 +22,7 @@ MISSING = "a cluster needs Dask: pip install 'demheat[distributed]'"
 
 @contextmanager
 def cluster(scheduler: str | None = None, workers: int | None = None):
-    """Client of a running scheduler, or of workers of one thread each that are started here and end here.
-
-    Parameters
-    ----------
-    scheduler : str, optional
-        Its address, as "tcp://10.0.0.1:8786".
-    workers : int, optional
-        To be started on this machine instead.
-
-    Yields
-    ------
-    distributed.Client
-
-    Raises
-    ------
-    ValueError
-        If Dask is not installed, or nobody answers at the address.
-    """
+    """Client of a running scheduler, or of workers of one thread each that are started here and end here."""
     try:
         import distributed
     except ImportError:
@@ -69,26 +52,6 @@ def completed(client, function: Callable, tasks: Sequence[tuple], *, label: str)
     """Call a function on a cluster with each of many arguments; results come home in the order in which they end.
 
     Workers may die or join meanwhile.
-
-    Parameters
-    ----------
-    client : distributed.Client
-    function : callable
-    tasks : sequence of tuple
-        Its arguments, one tuple for each call.
-    label : str
-        The name of the tasks on Dask's dashboard.
-
-    Yields
-    ------
-    number : int
-        Of the task.
-    result : what the function returned, or the exception that it raised
-
-    Raises
-    ------
-    OSError
-        If the scheduler is gone.
     """
     from distributed import KilledWorker, as_completed
 

@@ -54,14 +54,7 @@ def kernel_folder() -> Path:
 
 @functools.cache
 def source_key(path: Path, root: Path = ROOT) -> str:
-    """Digest of a source file, of all of ours that it imports, and of the versions of what compiles it.
-
-    Parameters
-    ----------
-    path : Path
-    root : Path
-        The folder that holds our packages.
-    """
+    """Digest of a source file, of all of ours that it imports, and of the versions of what compiles it."""
     settings = [str(getattr(numba.config, name, None)) for name in SETTINGS]
     digest = hashlib.sha256(repr((FORMAT, VERSIONS, settings)).encode())
     for each in sorted(_sources(path, root, set())):
@@ -95,14 +88,7 @@ def _imported(tree, path, root):
 
 
 class ByContent:
-    """Numba's view of where the machine code of one of our kernels is kept (its "cache locator").
-
-    Parameters
-    ----------
-    function : callable
-    path : Path
-        Its source.
-    """
+    """Numba's view of where the machine code of one of our kernels is kept (its "cache locator")."""
 
     def __init__(self, function, path):
         self.key, self.line = source_key(path), function.__code__.co_firstlineno
@@ -110,13 +96,7 @@ class ByContent:
 
     @classmethod
     def from_function(cls, function, file):
-        """The place of a function of ours; None for any other, which Numba then finds a place for.
-
-        Parameters
-        ----------
-        function : callable
-        file : str
-        """
+        """The place of a function of ours; None for any other, which Numba then finds a place for."""
         path = Path(file).resolve()
         if not path.is_relative_to(ROOT) or path.relative_to(ROOT).parts[0] not in OURS or not path.is_file():
             return None
@@ -146,13 +126,7 @@ def is_kept(path: Path) -> bool:
 
 @functools.cache
 def base_folder() -> Path:
-    """The first of these that can be written: the user's folder, one beside this file, one of this run alone.
-
-    Warns
-    -----
-    UserWarning
-        For the last.
-    """
+    """The first of these that can be written: the user's folder, one beside this file, one of this run alone."""
     beside = Path(__file__).parent / "__pycache__" / "kernels"
     for place in (kernel_folder, lambda: beside):
         try:

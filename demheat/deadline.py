@@ -105,13 +105,7 @@ def timed(function: Callable) -> Callable:
 
 
 def look(doing: str) -> None:
-    """Raise TimeoutError if a budget is over.
-
-    Parameters
-    ----------
-    doing : str
-        What is being done, for the message.
-    """
+    """Raise TimeoutError if a budget is over."""
     deadline = _now.get()
     if deadline is not None and time.monotonic() >= deadline.end:
         raise TimeoutError(f"seconds = {deadline.seconds:g} are over, in {doing}")

@@ -21,11 +21,6 @@ def found() -> dict[str, Method]:
     """All methods by name: those that compute fields, then formulas, then witnesses, each by home and module.
 
     Only modules whose source declares `METHODS` are loaded.
-
-    Raises
-    ------
-    ValueError
-        If two methods have one name.
     """
     methods = []
     for home in HOMES:
@@ -48,13 +43,7 @@ def path_of(method: str) -> str:
 
 
 def load(method: str):
-    """Module of a method by its name, as "fem".
-
-    Raises
-    ------
-    ValueError
-        If there is no such method.
-    """
+    """Module of a method by its name, as "fem"."""
     if not path_of(method):
         raise ValueError(f"method = {method!r}: must be a module of {' or '.join(HOMES)}")
     return import_module(path_of(method))

@@ -124,37 +124,14 @@ NOTHING = Fine()
 
 
 def known(field, relative, how, *, temperature=math.nan) -> Estimate:
-    """The estimate of a method that knows its relative error.
-
-    Parameters
-    ----------
-    field : Field
-    relative : float
-        Of the conductivity.
-    how : str
-    temperature : float, K
-
-    Returns
-    -------
-    Estimate
-    """
+    """The estimate of a method that knows its relative error."""
     k, relative = _conductivity(field), relative + ROUNDING
     flux = relative * _size(field.mean_flux)
     return Estimate(how, max(k - relative * k, 0.0), k + relative * k, flux, temperature, (k,))
 
 
 def beside(field, other, how) -> Estimate:
-    """The estimate of a method by another of the same scene: as far as the other is, and what that may be off.
-
-    Parameters
-    ----------
-    field, other : Field
-    how : str
-
-    Returns
-    -------
-    Estimate
-    """
+    """The estimate of a method by another of the same scene: as far as the other is, and what that may be off."""
     error, runs = other.error, (_conductivity(field), _conductivity(other))
     half = max(abs(runs[0] - error.lower), abs(error.upper - runs[0]))
     points = _points(field.scene)
@@ -173,30 +150,6 @@ def by_refinement(
     bounds of the body's own fractions.
 
     Warnings of the coarser runs, whose elements are too large for what the finest resolves, are kept back.
-
-    Parameters
-    ----------
-    field : Field
-    coarser : callable (level) -> Field
-        The same scene with elements ratio^level times as long, level 1, 2, ...
-    rule : Refinement
-    how : str
-    also : callable (Field) -> Field or None, optional
-        The first of the coarser runs, refined where coarser runs are no coarser; None if there is no such place.
-    residual : float
-        Relative, of the equations: what iterations may have left counts in full.
-    steps : float
-        What steps in time may have left, of the span of temperatures.
-    fine : Fine
-
-    Returns
-    -------
-    Estimate
-
-    Raises
-    ------
-    RuntimeError
-        If not even one coarser run can be made.
     """
     fields = [field, *_coarser_runs(coarser, rule.levels)]
     other = quietly(also, fields[1]) if also else None
@@ -230,10 +183,6 @@ def misplaced(field) -> np.ndarray:
     """How much more of its inclusions a method has than there is, over all that it has of them, (kinds,) float array.
 
     Those that conduct alike, in the same surroundings, are a kind. Empty where it is not known how much there is.
-
-    Parameters
-    ----------
-    field : Field
     """
     scene = field.scene
     try:
@@ -284,19 +233,7 @@ def _with_unseen(estimate, field, k, fine):
 
 
 def missing(changes, ratio, order) -> float:
-    """What a run lacks, by the largest that any change between it and coarser ones asks for.
-
-    Parameters
-    ----------
-    changes : (n,) sequence of float
-        Between runs on elements 1, ratio, ratio^2, ... times as long, one after the other.
-    ratio, order : float
-        That from run i to run i + 1 is (ratio^order - 1) ratio^(i order) times what run 0 lacks.
-
-    Returns
-    -------
-    float
-    """
+    """What a run lacks, by the largest that any change between it and coarser ones asks for."""
     grown = ratio ** (order * np.arange(len(changes))) * (ratio**order - 1)
     return float(np.max(np.asarray(changes) / grown))
 
@@ -319,13 +256,7 @@ def _coarser_runs(coarser, levels):
 
 
 def quietly(run, of):
-    """Call a function of one argument; its warnings are kept back.
-
-    Parameters
-    ----------
-    run : callable (of)
-    of : object
-    """
+    """Call a function of one argument; its warnings are kept back."""
     with _QUIET, warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return run(of)

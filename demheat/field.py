@@ -328,14 +328,7 @@ def _restored(numbers, samples, error):
 
 
 def check_field(field, name="field") -> None:
-    """Raise ValueError unless a value is a Field, or has its scene and its temperature as one does.
-
-    Parameters
-    ----------
-    field : Field
-    name : str
-        Of the argument, for the message.
-    """
+    """Raise ValueError unless a value is a Field, or has its scene and its temperature as one does."""
     if not isinstance(getattr(field, "scene", None), Scene) or not hasattr(field, "temperature_at"):
         raise ValueError(f"{name} = {field!r}: must be a Field, as methods return it")
 

@@ -13,22 +13,7 @@ from pathlib import Path
 def run(
     words: Sequence[str], log: Path, *, limit: float | None = None, environment: Mapping[str, str] | None = None
 ) -> int:
-    """Run a command and return its status, negative if a signal ended it.
-
-    Parameters
-    ----------
-    words : sequence of str
-    log : path
-        File for what it prints.
-    limit : float, s, optional
-    environment : mapping of str to str, optional
-        Default: that of this process.
-
-    Raises
-    ------
-    subprocess.TimeoutExpired
-        If it has not ended within the limit; it has been killed then.
-    """
+    """Run a command and return its status, negative if a signal ended it."""
     with Path(log).open("wb") as stream:
         process = subprocess.Popen(words, stdout=stream, stderr=stream, start_new_session=True, env=environment)
         guard = watch(process.pid)
@@ -40,27 +25,14 @@ def run(
 
 
 def ending(code: int, log: Path) -> str:
-    """How a process ended and what it said last, in one line.
-
-    Parameters
-    ----------
-    code : int
-        As `run` returns it.
-    log : path
-    """
+    """How a process ended and what it said last, in one line."""
     how = f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
     lines = Path(log).read_text(encoding="utf-8", errors="replace").strip().splitlines()
     return f"{how}; {lines[-1][:300] if lines else 'nothing on its output'}"
 
 
 def die_with_parent(parent: int) -> None:
-    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind.
-
-    Parameters
-    ----------
-    parent : int
-        Process number of the parent; if it is gone already, the process ends here.
-    """
+    """Have the kernel kill this process when its parent dies (Linux): a killed run leaves no solve behind."""
     try:
         ctypes.CDLL(None).prctl(1, signal.SIGKILL)  # 1 = PR_SET_PDEATHSIG
     except (OSError, AttributeError):
@@ -74,11 +46,6 @@ def watch(pid: int) -> subprocess.Popen | None:
 
     The kernel ends the process itself then, see `die_with_parent`, but not what that has started. The shell hears of it
     by the end of a pipe of which nobody else holds the other end.
-
-    Parameters
-    ----------
-    pid : int
-        Of a process that leads a session of its own.
     """
     words = ["sh", "-c", 'read word; kill -9 -"$0"', str(pid)]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -89,12 +56,7 @@ def watch(pid: int) -> subprocess.Popen | None:
 
 
 def dismiss(guard: subprocess.Popen | None) -> None:
-    """End what `watch` returned.
-
-    Parameters
-    ----------
-    guard : Popen or None
-    """
+    """End what `watch` returned."""
     if guard is not None:
         guard.kill()
         guard.wait()
@@ -102,12 +64,7 @@ def dismiss(guard: subprocess.Popen | None) -> None:
 
 
 def end_group(pid: int) -> None:
-    """Kill a process that leads a session, and all that it started.
-
-    Parameters
-    ----------
-    pid : int
-    """
+    """Kill a process that leads a session, and all that it started."""
     try:
         os.killpg(pid, signal.SIGKILL)
     except (ProcessLookupError, PermissionError):

@@ -38,13 +38,7 @@ class Bounds(NamedTuple):
 
 
 def check_answer(field) -> None:
-    """Raise RuntimeError if a steady field's conductivity or fractions cannot be right.
-
-    Parameters
-    ----------
-    field : Field
-        One that says nothing of itself yet, in `stats`, is not done.
-    """
+    """Raise RuntimeError if a steady field's conductivity or fractions cannot be right."""
     if field.time is not None or not field.stats:
         return
     try:
@@ -56,19 +50,7 @@ def check_answer(field) -> None:
 
 
 def check_conductivity(scene, k, fractions, stats, slack=(0.0, 0.0)) -> None:
-    """Raise RuntimeError if a conductivity is none that a body with these fractions can have.
-
-    Parameters
-    ----------
-    scene : Scene
-    k : float, W/(m K)
-    fractions : (phases,) float array
-        As the method has them.
-    stats : mapping
-        With `unknowns` and `residual`, if there are any.
-    slack : (2,) tuple of float
-        Relative, below and above.
-    """
+    """Raise RuntimeError if a conductivity is none that a body with these fractions can have."""
     own = ROUNDING + RESIDUAL * stats.get("residual", 0.0)
     more = slack[0] + own, slack[1] + own
     for bounds_of, holds in ((wiener, None), (hashin_shtrikman, isotropic)):
@@ -86,28 +68,13 @@ def check_conductivity(scene, k, fractions, stats, slack=(0.0, 0.0)) -> None:
 
 
 def check_tensor(scene, tensor, own, stats, slack=(0.0, 0.0)) -> None:
-    """Raise RuntimeError if an eigenvalue of a conductivity tensor is none that a body with these fractions can have.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of conductivities that are no tensors: bounds of those differ with direction.
-    tensor : (3, 3) float array, W/(m K)
-    own, stats, slack
-        Fractions and others, as those of `check_conductivity`.
-    """
+    """Raise RuntimeError if an eigenvalue of a conductivity tensor is one that no body of these fractions can have."""
     for k in () if scene.anisotropic else np.linalg.eigvalsh(0.5 * (tensor + tensor.T)):
         check_conductivity(scene, float(k), own, stats, slack)
 
 
 def check_bracket(scene, lower, upper) -> None:
-    """Raise RuntimeError if what should be bounds of a scene's conductivity cannot both be.
-
-    Parameters
-    ----------
-    scene : Scene
-    lower, upper : float, W/(m K)
-    """
+    """Raise RuntimeError if what should be bounds of a scene's conductivity cannot both be."""
     try:
         body = scene.image.fractions if scene.image is not None else fractions(scene)
     except NotImplementedError:
@@ -131,13 +98,6 @@ def wiener(scene, fractions, moved=None) -> Bounds:
 
     They hold in periodic cells and between two opposite walls, held or not: where surroundings exchange heat or a flux
     enters, what the walls' temperatures and fluxes differ from their means is of the sign that makes them so.
-
-    Parameters
-    ----------
-    scene : Scene
-    fractions : (phases,) float array
-    moved : (phases,) float array, optional
-        By how much the fraction of each inclusion may be off, at the cost of what it lies in.
     """
     along, across = conductances(scene)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -153,25 +113,14 @@ def wiener(scene, fractions, moved=None) -> Bounds:
 
 
 def isotropic(scene) -> bool:
-    """Whether a body has few inclusions and conducts alike along x, y and z, between held walls, by its symmetry.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Whether a body has few inclusions and conducts alike along x, y and z, between held walls, by its symmetry."""
     plain = scene.image is None and not (scene.anisotropic or scene.varies or scene.resistances.any())
     plain = plain and 0 < len(scene.inclusions) <= FEW and not any(shape.flat for shape in scene.inclusions)
     return plain and (scene.periodic or len(scene.wall_temperatures) == 2) and alike_axes(scene) == (0, 0, 0)
 
 
 def hashin_shtrikman(scene, fractions, moved=None) -> Bounds:
-    """Hashin and Shtrikman's bounds, of bodies that are `isotropic`.
-
-    Parameters
-    ----------
-    scene, fractions, moved
-        As those of `wiener`.
-    """
+    """Hashin and Shtrikman's bounds, of bodies that are `isotropic`."""
     k = scene.mean_conductivities
     parents = None if moved is None else parents_of(scene)
     if fractions @ k == 0:
@@ -226,14 +175,7 @@ def parents_of(scene) -> np.ndarray:
 
 
 def unseen(scene, stats) -> np.ndarray:
-    """By how much the fraction of each phase may be off: half an element at its surface, (phases,) float array.
-
-    Parameters
-    ----------
-    scene : Scene
-    stats : mapping
-        With `unknowns`, and `voxels` where elements are voxels; without either nothing may be off.
-    """
+    """By how much the fraction of each phase may be off: half an element at its surface, (phases,) float array."""
     if scene.image is not None:
         # Surfaces all over: as much as elements thrown at it at random would miss.
         return np.full(len(scene.materials), 1.0 / math.sqrt(stats.get("unknowns", math.inf)))

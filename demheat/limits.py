@@ -27,25 +27,7 @@ GROUPS = (
 
 
 def check_memory(name: str, value, needed: float, *, power: float = 1.0, remedy: str = "") -> None:
-    """Refuse what would need more memory than is free.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : int, or sequence of int
-    needed : float
-        Bytes, at least.
-    power : float
-        Bytes go with this power of the value.
-    remedy : str
-        For the message: what else would do.
-
-    Raises
-    ------
-    ValueError
-        With what is needed, what is free, and the largest value that fits.
-    """
+    """Refuse what would need more memory than is free."""
     if needed <= SMALL or needed <= (free := free_memory()):
         return
     # By logarithms, which integers of any length have.
@@ -62,22 +44,7 @@ def check_memory(name: str, value, needed: float, *, power: float = 1.0, remedy:
 
 
 def check_room(name: str, folder: Path, needed: float) -> None:
-    """Refuse what would need more room than its disk has.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    folder : Path
-        There or not.
-    needed : float
-        Bytes.
-
-    Raises
-    ------
-    ValueError
-        With what is needed and what is free.
-    """
+    """Refuse what would need more room than its disk has."""
     there = next(each for each in (folder, *folder.absolute().parents) if each.exists())
     if needed > SMALL and needed > (free := shutil.disk_usage(there).free):
         raise ValueError(
@@ -87,25 +54,7 @@ def check_room(name: str, folder: Path, needed: float) -> None:
 
 
 def check_steps(name: str, value, steps: float, seconds: float, *, remedy: str) -> None:
-    """Refuse so many steps that they would last more than a day.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : object
-    steps : float
-        May be infinite.
-    seconds : float
-        That each takes, at least.
-    remedy : str
-        For the message: what must be.
-
-    Raises
-    ------
-    ValueError
-        With the number of steps and the most that are possible.
-    """
+    """Refuse so many steps that they would last more than a day."""
     if not steps * seconds <= LONGEST:
         raise ValueError(
             f"{name} = {_short(value)}: takes {steps:.2g} steps of {seconds:.1g} s or more each, more than a day; at "
@@ -119,15 +68,7 @@ def _short(value):
 
 
 def check_free(path, needed) -> None:
-    """Raise ValueError if what is read takes more memory than is free.
-
-    Parameters
-    ----------
-    path : path
-        For the message.
-    needed : float
-        Bytes.
-    """
+    """Raise ValueError if what is read takes more memory than is free."""
     if needed > ALWAYS and needed > (free := free_memory()):
         raise ValueError(
             f"{path}: takes {needed / GIB:.3g} GiB of memory or more, and {free / GIB:.3g} GiB are free; must be a "
@@ -136,18 +77,7 @@ def check_free(path, needed) -> None:
 
 
 def free_memory(root: Path = Path("/")) -> float:
-    """Bytes that this process may still use: of the machine, and of the groups that limit it (Linux: cgroups).
-
-    Parameters
-    ----------
-    root : Path
-        Where the system tells, for tests.
-
-    Returns
-    -------
-    float
-        Infinite where the system does not tell.
-    """
+    """Bytes that this process may still use: of the machine, and of the groups that limit it (Linux: cgroups)."""
     return min([_of_machine(root), *_of_groups(root)])
 
 

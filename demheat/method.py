@@ -49,30 +49,14 @@ CUT = {"laminate": "links or voxels that cross an interface do not see where"}
 
 
 class Resolution(NamedTuple):
-    """The knob that refines a method.
+    """The knob that refines a method."""
 
-    Attributes
-    ----------
-    knob : str
-        Keyword of its `solve`.
-    size : callable (value) -> float
-        Size of an element, up to a factor, in edges of a cube.
-    words : str
-        Of a value, to be formatted, as "{:.0f} particles".
-    metric : bool
-        The knob is a length in metres: its values are declared in edges of the box.
-    seeded : bool
-        Its elements lie at random: a `seed` goes with it.
-    column : str
-        Of the rows, where the knob's name is also another's; else the knob.
-    """
-
-    knob: str
-    size: Callable[[float], float]
-    words: str
-    metric: bool = False
-    seeded: bool = False
-    column: str = ""
+    knob: str  # Keyword of its `solve`
+    size: Callable[[float], float]  # callable (value) -> float: Size of an element, up to a factor, in edges of a cube
+    words: str  # Of a value, to be formatted, as "{:.0f} particles"
+    metric: bool = False  # The knob is a length in metres: its values are declared in edges of the box
+    seeded: bool = False  # Its elements lie at random: a `seed` goes with it
+    column: str = ""  # Of the rows, where the knob's name is also another's; else the knob
 
 
 PARTICLES = Resolution("particles", lambda number: number ** (-1 / 3), "{:.0f} particles", seeded=True)

@@ -25,11 +25,6 @@ def replaced(path: Path) -> Iterator[Path]:
     """Path of a temporary file that takes the place of `path` at the end, unless an exception comes first.
 
     Errors of the system, such as a full disk, name `path`.
-
-    Parameters
-    ----------
-    path : Path
-        Its folder is there.
     """
     # The suffix stays last: drawing libraries tell the format by it.
     part = path.with_name(f".{path.stem}.{os.getpid()}.{threading.get_ident()}.part{path.suffix}")
@@ -50,12 +45,7 @@ def replaced(path: Path) -> Iterator[Path]:
 
 @contextmanager
 def locked(folder: Path) -> Iterator[None]:
-    """Wait for others that write into a folder, and let them wait; without locks where the system has none.
-
-    Parameters
-    ----------
-    folder : Path
-    """
+    """Wait for others that write into a folder, and let them wait; without locks where the system has none."""
     try:
         import fcntl
 

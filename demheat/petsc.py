@@ -8,21 +8,7 @@ PREFIX = "demheat_"
 
 
 def solver_of(matrix, options: str, petsc, comm):
-    """What solves with a matrix of all ranks, by the norm of the residual itself.
-
-    Parameters
-    ----------
-    matrix : petsc4py.PETSc.Mat
-        Symmetric and positive definite, or but for a constant.
-    options : str
-        Of PETSc, such as "-pc_type hypre".
-    petsc : module
-    comm : mpi4py.MPI.Comm
-
-    Returns
-    -------
-    petsc4py.PETSc.KSP
-    """
+    """What solves with a matrix of all ranks, by the norm of the residual itself."""
     know(options, petsc)
     solver = conjugate_gradients(matrix, petsc, comm)
     solver.setUp()
@@ -30,14 +16,7 @@ def solver_of(matrix, options: str, petsc, comm):
 
 
 def know(options: str, petsc) -> None:
-    """Tell PETSc its options, those of `DEFAULTS` where no others are given, for what has the prefix `PREFIX`.
-
-    Parameters
-    ----------
-    options
-        As `solver_of` takes it.
-    petsc : module
-    """
+    """Tell PETSc its options, those of `DEFAULTS` where no others are given, for what has the prefix `PREFIX`."""
     known = petsc.Options()
     for name, value in DEFAULTS.items():
         known[PREFIX + name] = value
@@ -46,17 +25,7 @@ def know(options: str, petsc) -> None:
 
 
 def conjugate_gradients(matrix, petsc, comm):
-    """Conjugate gradients with the options that PETSc knows, not set up yet.
-
-    Parameters
-    ----------
-    matrix, petsc, comm
-        As `solver_of` takes them.
-
-    Returns
-    -------
-    petsc4py.PETSc.KSP
-    """
+    """Conjugate gradients with the options that PETSc knows, not set up yet."""
     solver = petsc.KSP().create(comm)
     solver.setOptionsPrefix(PREFIX)
     solver.setType("cg")

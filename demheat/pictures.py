@@ -23,18 +23,7 @@ POINT, BARS = "#0072b2", ("#f0f0f0", "#dadada")
 
 
 def of_scene(scene, *, pixels: int = PIXELS):
-    """Three slices through the middle of a scene, across x, y and z, coloured by conductivity.
-
-    Parameters
-    ----------
-    scene : Scene
-    pixels : int
-        Along the longer side.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Three slices through the middle of a scene, across x, y and z, coloured by conductivity."""
     check_scene(scene)
     whole("pixels", pixels, "an integer >= 1", lambda v: v >= 1)
     figure, panels = _figure(3)
@@ -54,22 +43,7 @@ def of_scene(scene, *, pixels: int = PIXELS):
 
 
 def of_field(field, *, axis: int | None = None, at: float | None = None, pixels: int = PIXELS):
-    """Temperature and size of the flux of a field over a plane.
-
-    Parameters
-    ----------
-    field : Field
-    axis : {0, 1, 2}, optional
-        The plane lies across it; by default one along the load.
-    at : float, m, optional
-        Where; by default in the middle.
-    pixels : int
-        Along the longer side.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Temperature and size of the flux of a field over a plane."""
     check_field(field)
     scene = field.scene
     axis = across_of(scene) if axis is None else axis_number(axis)
@@ -90,22 +64,7 @@ def of_field(field, *, axis: int | None = None, at: float | None = None, pixels:
 
 
 def of_comparison(scene, entries, bounds, temperature=None):
-    """Conductivities with their intervals, bounds behind them, and a slice of temperature beside them.
-
-    Parameters
-    ----------
-    scene : Scene
-    entries : sequence of (name, conductivity, lower, upper)
-        W/(m K); NaN where there is no interval.
-    bounds : sequence of (name, lower, upper, ...)
-        The widest first.
-    temperature : (rows, columns) float array, optional
-        Over the plane in the middle across the axis of `across_of`.
-
-    Returns
-    -------
-    matplotlib.figure.Figure
-    """
+    """Conductivities with their intervals, bounds behind them, and a slice of temperature beside them."""
     figure, panels = _figure(1 if temperature is None else 2)
     panel = panels[0]
     for (name, low, high, *_), colour in zip(bounds, BARS, strict=False):

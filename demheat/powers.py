@@ -13,59 +13,23 @@ import numpy as np
 
 
 def power(base, exponent) -> np.ndarray:
-    """Elements of `base` to those of `exponent`; the same bits as NumPy's own without AVX-512.
-
-    Parameters
-    ----------
-    base, exponent : float or array of float
-
-    Returns
-    -------
-    float array
-    """
+    """Elements of `base` to those of `exponent`; the same bits as NumPy's own without AVX-512."""
     # The one power of NumPy that has no other code for some processors: github.com/numpy/numpy/issues/25269.
     return np.float_power(base, exponent)
 
 
 def cubed(values) -> np.ndarray:
-    """The third power of each value.
-
-    Parameters
-    ----------
-    values : float or array of float
-
-    Returns
-    -------
-    float array
-    """
+    """The third power of each value."""
     return power(values, 3.0)
 
 
 def exponential(values) -> np.ndarray:
-    """The exponential of each value.
-
-    Parameters
-    ----------
-    values : (n,) float array
-
-    Returns
-    -------
-    (n,) float array
-    """
+    """The exponential of each value."""
     return np.array([math.exp(value) for value in values.tolist()])
 
 
 def cube_root(value: float) -> float:
-    """Cube root of a number.
-
-    Parameters
-    ----------
-    value : float
-
-    Returns
-    -------
-    float
-    """
+    """Cube root of a number."""
     try:
         return math.cbrt(value)
     except AttributeError:

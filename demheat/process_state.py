@@ -22,13 +22,7 @@ def cpu_seconds() -> float:
 
 
 def count_elsewhere(seconds: float) -> None:
-    """Have `cpu_seconds` count what a process took for this one that has not ended.
-
-    Parameters
-    ----------
-    seconds : float
-        Negative when it has ended, for what was counted.
-    """
+    """Have `cpu_seconds` count what a process took for this one that has not ended."""
     _elsewhere.append(seconds)
 
 
@@ -103,16 +97,7 @@ def _set_all(numbers):
 
 
 def open_after_fork(lock):
-    """Have a lock free in the children of this process: it forks only while no other thread holds the lock.
-
-    Parameters
-    ----------
-    lock : threading.RLock
-
-    Returns
-    -------
-    The same lock.
-    """
+    """Have a lock free in the children of this process: it forks only while no other thread holds the lock."""
     if hasattr(os, "register_at_fork"):
         os.register_at_fork(before=lock.acquire, after_in_parent=lock.release, after_in_child=lock.release)
     return lock

@@ -28,26 +28,13 @@ CLEAR = "\r\x1b[K"
 
 
 class Report(NamedTuple):
-    """What a stage says.
+    """What a stage says."""
 
-    Attributes
-    ----------
-    stage : str
-        Such as "cells" or "equations".
-    share : float
-        Done of it, 0 to 1; NaN if the stage does not know.
-    elapsed : float, s
-    left : float, s
-        Estimated from the share done; NaN while that is 0 or not known.
-    within : tuple of str
-        The stages that this one is a part of, outermost first.
-    """
-
-    stage: str
-    share: float
-    elapsed: float
-    left: float
-    within: tuple[str, ...] = ()
+    stage: str  # Such as "cells" or "equations"
+    share: float  # Done of it, 0 to 1; NaN if the stage does not know
+    elapsed: float  # s
+    left: float  # s: Estimated from the share done; NaN while that is 0 or not known
+    within: tuple[str, ...] = ()  # tuple of str: The stages that this one is a part of, outermost first
 
 
 class _Open:
@@ -100,19 +87,7 @@ def on_progress(hook: Callable[[Report], None] | None):
 
 @contextmanager
 def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]]:
-    """A part of a computation that may be long; stages may lie in stages. Where a budget of time is over it ends.
-
-    Parameters
-    ----------
-    name : str
-    before : float, s
-        What it has already lasted, in parts.
-
-    Yields
-    ------
-    callable
-        To be called with the share done, 0 to 1, as often as one likes, or never.
-    """
+    """A part of a computation that may be long; stages may lie in stages. Where a budget of time is over it ends."""
     look(name)
     thread = threading.get_ident()
     # Within one of its own name it would only say that again: kernels compiled where all are.
@@ -141,29 +116,12 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
 
 
 def announced(name: str, needed: float):
-    """A stage that tells the memory that a large computation will take; of a small one nothing is said.
-
-    Parameters
-    ----------
-    name : str
-    needed : float
-        Bytes.
-
-    Returns
-    -------
-    context manager
-    """
+    """A stage that tells the memory that a large computation will take; of a small one nothing is said."""
     return stage(f"{name}, about {needed / 2**30:.2g} GiB") if needed > LARGE else nullcontext()
 
 
 def in_parts(name: str):
-    """A stage with pauses that do not count, such as those of a generator.
-
-    Returns
-    -------
-    callable () -> context manager
-        Each part, to be used as `stage` is.
-    """
+    """A stage with pauses that do not count, such as those of a generator."""
     spent = [0.0]
 
     @contextmanager

@@ -20,24 +20,7 @@ NEEDED = (
 
 
 def found(*names: str, instead: str):
-    """Modules by their names, MPI before what is built on it.
-
-    Parameters
-    ----------
-    *names : str
-        As "petsc4py.PETSc".
-    instead : str
-        What does without, for the message.
-
-    Returns
-    -------
-    list of modules
-
-    Raises
-    ------
-    ImportError
-        In one line, if one of them is missing.
-    """
+    """Modules by their names, MPI before what is built on it."""
     names = ("mpi4py.MPI", *names)
     try:
         return [import_module(name) for name in names]
@@ -47,12 +30,7 @@ def found(*names: str, instead: str):
 
 
 def here(comm) -> int:
-    """How many ranks share this machine.
-
-    Parameters
-    ----------
-    comm : mpi4py.MPI.Comm
-    """
+    """How many ranks share this machine."""
     return comm.Split_type(sys.modules["mpi4py.MPI"].COMM_TYPE_SHARED).size
 
 
@@ -62,34 +40,14 @@ def cores() -> int:
 
 
 def outlook(needed: float, comm) -> str:
-    """What a solve will take on this machine, in words.
-
-    Parameters
-    ----------
-    needed : float
-        Bytes of all ranks.
-    comm : mpi4py.MPI.Comm
-    """
+    """What a solve will take on this machine, in words."""
     share = here(comm)
     gib = needed * share / comm.size / 2**30
     return f"about {gib:.2g} GiB on this machine for {share} of {comm.size} ranks, {free_memory() / 2**30:.3g} are free"
 
 
 def check_fits(name: str, value, needed: float, comm, *, power: float = 1.0) -> None:
-    """Refuse on all ranks what does not fit where one of them is.
-
-    Parameters
-    ----------
-    name, value, power
-        As those of `demheat.limits.check_memory`.
-    needed : float
-        Bytes of all ranks.
-    comm : mpi4py.MPI.Comm
-
-    Raises
-    ------
-    ValueError
-    """
+    """Refuse on all ranks what does not fit where one of them is."""
     refused = None
     try:
         check_memory(name, value, needed * here(comm) / comm.size, power=power)
@@ -101,12 +59,7 @@ def check_fits(name: str, value, needed: float, comm, *, power: float = 1.0) -> 
 
 
 class Costs:
-    """Seconds of each stage and bytes at the peak, of all ranks.
-
-    Parameters
-    ----------
-    comm : mpi4py.MPI.Comm
-    """
+    """Seconds of each stage and bytes at the peak, of all ranks."""
 
     def __init__(self, comm):
         self.comm, self.stages = comm, {}

@@ -23,43 +23,14 @@ class Slice(NamedTuple):
 
     Rows go along the later one of the plane's two axes and columns along the earlier one (the plane across z has its
     rows along y and its columns along x), from low to high coordinates.
-
-    Attributes
-    ----------
-    temperature : (rows, columns) float array, K or degrees Celsius
-    flux : (rows, columns, 3) float array, W/m2
     """
 
-    temperature: np.ndarray
-    flux: np.ndarray
+    temperature: np.ndarray  # (rows, columns) float array, K or degrees Celsius
+    flux: np.ndarray  # (rows, columns, 3) float array, W/m2
 
 
 def plane(scene, *, axis, at, n=61):
-    """Points of a grid over a plane, the middles of its pixels, where they lie in the body.
-
-    Parameters
-    ----------
-    scene : Scene
-    axis : {0, 1, 2}
-        The plane lies across this axis.
-    at : float, m
-        Where, along the axis.
-    n : int
-        Pixels along the plane's longer side. Along the shorter one there are as many as keep them square, to the
-        nearest whole number.
-
-    Returns
-    -------
-    points : (m, 3) float array, m
-        In the order of `mask[mask]`: row by row.
-    mask : (rows, columns) bool array
-        Pixels whose middles lie in the body, all of them in a box; rows and columns as those of `Slice`.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, the plane misses the box, or no middle of a pixel lies in the body.
-    """
+    """Points of a grid over a plane, the middles of its pixels, where they lie in the body."""
     check_scene(scene)
     axis = axis_number(axis)
     length = scene.size[axis]
@@ -111,23 +82,7 @@ def on_plane(field: Field, *, axis, at, n=61, flux_at: Callable[[np.ndarray], np
 
 
 def filled(mask, values):
-    """Values of a plane's points put in their pixels, not-a-number elsewhere.
-
-    Parameters
-    ----------
-    mask : (rows, columns) bool array
-    values : (m,) or (m, d) float array
-        One per point of the mask.
-
-    Returns
-    -------
-    (rows, columns) or (rows, columns, d) float array
-
-    Raises
-    ------
-    ValueError
-        If they are not as described.
-    """
+    """Values of a plane's points put in their pixels, not-a-number elsewhere."""
     mask = np.asarray(mask)
     if mask.dtype != bool or mask.ndim != 2:
         raise ValueError(f"mask of shape {mask.shape}, {mask.dtype}: must be rows of booleans, as `plane` returns it")

@@ -16,14 +16,7 @@ OURS = ("demheat", "mpi", "studies")
 
 
 def finished(command: Callable[[], int], name: str) -> int:
-    """Exit status of a command, once all that it printed has left; where nobody reads on it ends as Unix tools do.
-
-    Parameters
-    ----------
-    command : callable () -> int
-    name : str
-        Of the command, for a message.
-    """
+    """Exit status of a command, once all that it printed has left; where nobody reads on it ends as Unix tools do."""
     try:
         try:
             return command()
@@ -42,22 +35,12 @@ def finished(command: Callable[[], int], name: str) -> int:
 
 
 def of_output(error: BaseException) -> bool:
-    """Whether an error is of what is printed, which `finished` answers to: files of ours have names.
-
-    Parameters
-    ----------
-    error : exception
-    """
+    """Whether an error is of what is printed, which `finished` answers to: files of ours have names."""
     return isinstance(error, OSError) and error.filename is None and error.errno in (errno.EPIPE, errno.ENOSPC)
 
 
 def told(error: BaseException) -> str:
-    """An error in one line; of a file, its name first.
-
-    Parameters
-    ----------
-    error : exception
-    """
+    """An error in one line; of a file, its name first."""
     if isinstance(error, OSError) and error.strerror:
         # What is written into a file of ours has its name.
         return f"{error.filename or 'standard output, or a temporary file'}: {error.strerror}"

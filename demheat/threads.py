@@ -90,14 +90,6 @@ def shared_out(work, count: int, *, piece: int) -> None:
 
     For compiled functions that let go of Python's lock and do not use a parallel loop: pieces of unlike length even
     out, and one thread takes them in order, without another. After an exception no further piece is begun.
-
-    Parameters
-    ----------
-    work : callable (first, last)
-        Does what has the numbers from first to last, without the latter.
-    count : int
-    piece : int
-        Numbers in a piece.
     """
     pieces = [(first, min(count, first + piece)) for first in range(0, count, piece)]
     threads = min(numba.get_num_threads(), len(pieces))
@@ -115,13 +107,7 @@ def shared_out(work, count: int, *, piece: int) -> None:
 
 @contextmanager
 def limited(threads: int | None):
-    """Let compiled loops use so many threads for a while.
-
-    Parameters
-    ----------
-    threads : int or None
-        At most the number that the process began with are used; None changes nothing.
-    """
+    """Let compiled loops use so many threads for a while."""
     before = numba.get_num_threads()
     numba.set_num_threads(before if threads is None else min(threads, numba.config.NUMBA_NUM_THREADS))
     try:

@@ -19,20 +19,7 @@ class Blocks:
         self.arrays, self.offset = [], 0
 
     def add(self, name, array, tuples=None):
-        """Put an array in.
-
-        Parameters
-        ----------
-        name : str
-        array : (n,) or (n, k) array, or None
-        tuples : int, optional
-            Number of tuples, which field data must say; without it the number of components is said.
-
-        Returns
-        -------
-        str
-            XML that names it; nothing for None.
-        """
+        """Put an array in."""
         if array is None:
             return ""
         kind = "<f8" if array.dtype.kind == "f" else "|u1" if array.dtype.itemsize == 1 else "<i8"
@@ -56,20 +43,7 @@ class Blocks:
 
 
 def put_down(stream, kind: str, parts: str, arrays, *, more: str = "") -> None:
-    """Write the XML, and behind it the bytes of the arrays.
-
-    Parameters
-    ----------
-    stream : binary stream
-    kind : str
-        Such as "PolyData".
-    parts : str
-        Field data and one piece without its end.
-    arrays : list of arrays
-        Of `Blocks`.
-    more : str
-        Attributes of the kind.
-    """
+    """Write the XML, and behind it the bytes of the arrays."""
     head = f'<VTKFile type="{kind}" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
     text = f'<?xml version="1.0"?>\n{head}\n<{kind}{more}>\n{parts}\n</Piece>\n</{kind}>\n'
     stream.write((text + '<AppendedData encoding="raw">\n_').encode())

@@ -45,13 +45,7 @@ POLL = 0.05
 
 
 class Helper:
-    """A second process that compiles, if one is of use.
-
-    Parameters
-    ----------
-    parts : sequence of callable ()
-        Of `PARTS`, in their order; none if nothing is to be compiled.
-    """
+    """A second process that compiles, if one is of use."""
 
     def __init__(self, parts):
         self.process, self.folder, self.parts = None, None, tuple(parts)
@@ -72,13 +66,7 @@ class Helper:
         return self
 
     def join(self, *parts):
-        """Compile what nobody has begun, then wait for what the other process has.
-
-        Parameters
-        ----------
-        *parts : callable ()
-            To wait for; default all.
-        """
+        """Compile what nobody has begun, then wait for what the other process has."""
         if self.process is None:
             return
         with stage("compiling, once"):
@@ -111,14 +99,7 @@ def _useful():
 
 
 def work_off(folder, parts):
-    """Do the parts that nobody has begun; what fails is left to who needs it.
-
-    Parameters
-    ----------
-    folder : path
-        Where files say which parts have been begun, and done.
-    parts : sequence of callable ()
-    """
+    """Do the parts that nobody has begun; what fails is left to who needs it."""
     for part in parts:
         try:
             (Path(folder) / part.__name__).touch(exist_ok=False)
@@ -164,15 +145,7 @@ PARTS = (cells, multigrid, steady)
 
 
 def parts_of(law, particles: int, *, steady_state: bool = True):
-    """What a first solve of so many particles needs: nothing where facets do not bound cells.
-
-    Parameters
-    ----------
-    law : Laguerre, Calibrated or Platonic
-    particles : int
-    steady_state : bool
-        If not, marches in time follow, of which nothing is known here.
-    """
+    """What a first solve of so many particles needs: nothing where facets do not bound cells."""
     if not law.cells:
         return ()
     large = (multigrid,) if particles > AMG_UNKNOWNS else ()

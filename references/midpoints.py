@@ -18,19 +18,7 @@ def check_points_per_axis(points_per_axis) -> None:
 
 
 def midpoints(scene, points_per_axis):
-    """Midpoints of equal cells of a box, the last axis running fastest, and the volumes of the cells.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its domain is a box.
-    points_per_axis : int
-
-    Returns
-    -------
-    points : (n, 3) float array, m
-    volumes : (n,) float array, m3
-    """
+    """Midpoints of equal cells of a box, the last axis running fastest, and the volumes of the cells."""
     axes = [(np.arange(points_per_axis) + 0.5) * length / points_per_axis for length in scene.size]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
     return points, np.full(len(points), scene.volume / len(points))

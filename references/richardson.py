@@ -18,27 +18,7 @@ LOWEST, HIGHEST = 0.1, 8.0
 
 
 def extrapolate(values: Sequence[float], sizes: Sequence[float], order: float | Sequence[float] | None = None) -> float:
-    """Limit L of values = L + sum of c_k size^order_k for elements of no size.
-
-    Parameters
-    ----------
-    values : (n,) sequence of float
-    sizes : (n,) sequence of float
-        Of an element, in any unit, all different; for a grid one over the voxels along a side.
-    order : float or sequence of float, optional
-        Exponents of the size in the error. One fewer than values makes the limit pass through all of them, fewer still
-        is a least-squares fit. By default the one order that three values show themselves.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If values and sizes do not match, are not finite, or too few; or if three values show no order, because they do
-        not approach a limit.
-    """
+    """Limit L of values = L + sum of c_k size^order_k for elements of no size."""
     values, sizes = _checked(values, sizes)
     powers = [observed_order(values, sizes)] if order is None else _powers(order)
     if len(values) <= len(powers):
@@ -50,23 +30,7 @@ def extrapolate(values: Sequence[float], sizes: Sequence[float], order: float | 
 
 
 def observed_order(values: Sequence[float], sizes: Sequence[float]) -> float:
-    """Order p of values = L + c size^p from exactly three values.
-
-    Parameters
-    ----------
-    values : (3,) sequence of float
-    sizes : (3,) sequence of float
-        As for `extrapolate`.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        As for `extrapolate`, and if p is not between 0.1 and 8.
-    """
+    """Order p of values = L + c size^p from exactly three values."""
     values, sizes = _checked(values, sizes)
     if len(values) != 3:
         raise ValueError(f"values: {len(values)} given; an observed order needs exactly 3")

@@ -11,13 +11,7 @@ MOST_THREADS = 1024
 
 
 def thread_count(threads: int | None) -> int:
-    """Number of threads, one per processor for None.
-
-    Raises
-    ------
-    ValueError
-        If it is neither None nor a whole number from 1 to 1024.
-    """
+    """Number of threads, one per processor for None."""
     if threads is None:
         return os.cpu_count() or 1
     if not isinstance(threads, Integral) or isinstance(threads, bool) or not 1 <= threads <= MOST_THREADS:
@@ -27,12 +21,7 @@ def thread_count(threads: int | None) -> int:
 
 
 class Team:
-    """A number of threads that share loops over the planes of a grid.
-
-    Parameters
-    ----------
-    threads : int
-    """
+    """A number of threads that share loops over the planes of a grid."""
 
     def __init__(self, threads):
         self.threads = threads
@@ -46,16 +35,7 @@ class Team:
             self._pool.shutdown()
 
     def run(self, kernel, planes, *arguments):
-        """Call kernel(*arguments, low, high) on chunks that make up range(planes).
-
-        Parameters
-        ----------
-        kernel : callable
-            Releases the interpreter's lock where more than one thread is to gain.
-        planes : int
-        *arguments
-            Handed on.
-        """
+        """Call kernel(*arguments, low, high) on chunks that make up range(planes)."""
         parts = min(self.threads, planes)
         bounds = [planes * part // parts for part in range(parts + 1)]
         waiting = [

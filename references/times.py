@@ -8,13 +8,7 @@ from demheat.scene.inputs import LEAST, MOST, moderate, reals
 
 
 def checked_times(times) -> list[float]:
-    """Times as floats.
-
-    Raises
-    ------
-    ValueError
-        Unless they are increasing numbers, 0 or from 1e-50 to 1e50, one at least.
-    """
+    """Times as floats."""
     valid = f"increasing numbers, 0 or from {LEAST:g} to {MOST:g} s, one at least"
     array = np.atleast_1d(reals("times", times, valid))
     good = array.ndim == 1 and array.size and all(map(moderate, array)) and array[0] >= 0

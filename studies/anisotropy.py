@@ -110,13 +110,7 @@ def tensor_of(row):
 
 
 def apart_percent(row, reference):
-    """How far the tensor of a row is from that of another, Frobenius norms, %.
-
-    Parameters
-    ----------
-    row, reference : mapping
-        Rows.
-    """
+    """How far the tensor of a row is from that of another, Frobenius norms, %."""
     right = tensor_of(reference)
     return 100 * np.linalg.norm(tensor_of(row) - right) / np.linalg.norm(right)
 

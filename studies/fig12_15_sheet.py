@@ -106,13 +106,7 @@ def warm_up(law, method, **case):
 
 
 def curves_of(rows, name):
-    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius.
-
-    Parameters
-    ----------
-    rows : data frame
-    name : {"A", "B", "C"}
-    """
+    """Curves of a checkpoint, one row per packing, (packings, times) float array, degrees Celsius."""
     return np.array([numbers(text) for text in rows[name]])
 
 
@@ -124,21 +118,7 @@ def reference(df):
 
 
 def compared(df, law, particles, name):
-    """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time.
-
-    Parameters
-    ----------
-    df : data frame
-    law : str
-    particles : int
-    name : {"A", "B", "C"}
-
-    Returns
-    -------
-    dict
-        dispersion (%), off (% of the mean of the packings there), at (s), span (the same as off, but % of the highest
-        mean), end (% at the last time).
-    """
+    """Dispersion over packings; largest difference of the bricks from the packings' mean, and its time."""
     curves = curves_of(pick(df, law=law, particles=particles), name)
     off = referee.curve_error(curves_of(reference(df), name)[0], curves.mean(axis=0))
     found = {"off": 100 * off.local, "at": TIMES[off.at], "span": 100 * off.highest, "end": 100 * off.last}

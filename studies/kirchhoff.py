@@ -54,13 +54,7 @@ def VALUES(case):
 
 
 def scene_of(body, factor) -> Scene:
-    """A body whose matrix conducts so many times as well at the hot wall as at the cold one.
-
-    Parameters
-    ----------
-    body : {"layers", "sphere"}
-    factor : float
-    """
+    """A body whose matrix conducts so many times as well at the hot wall as at the cold one."""
     rising, falling = (Dependence([(0.0, one), (SPAN, other)]) for one, other in ((1.0, factor), (factor, 1.0)))
     if body == "layers":
         shape = Layer(1, 0.3, 0.6, Material(0.5, dependence=falling))

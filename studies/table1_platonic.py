@@ -99,17 +99,7 @@ def _homogeneous(law, packing, particles, seed, contacts=None):
 
 
 def packed(packing, particles, seed):
-    """Periodic packing of radii +-7.5 %, kept in the cache.
-
-    Parameters
-    ----------
-    packing : {"lsa", "relaxed"}
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Periodic packing of radii +-7.5 %, kept in the cache."""
     from demheat.packing.cache import grown, relaxed
     from demheat.packing.radii import Uniform
 

@@ -4,15 +4,7 @@ import numpy as np
 
 
 def walk(solid, edges, jump):
-    """Label of each node (-1 outside all) and whether each body climbs, by the ways through it.
-
-    Parameters
-    ----------
-    solid : (n,) bool array
-    edges : list of (node, node, (3,) int array)
-        The boxes from the first node's to the second's, both ways.
-    jump : (3,) float array, K
-    """
+    """Label of each node (-1 outside all) and whether each body climbs, by the ways through it."""
     near = {}
     for a, b, step in edges:
         near.setdefault(a, []).append((b, step))

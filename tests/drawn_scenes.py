@@ -20,17 +20,7 @@ GAP, WALL = 0.06, 0.05
 
 @cache
 def drawn(seed):
-    """A scene: its kind goes round with the seed, and so does its load.
-
-    Parameters
-    ----------
-    seed : int
-        0 to 49 are those of the suites.
-
-    Returns
-    -------
-    Scene
-    """
+    """A scene: its kind goes round with the seed, and so does its load."""
     rng = np.random.default_rng([seed, 20])
     periodic, make = bool(seed // len(KINDS) % 2), KINDS[kind(seed)]
     size = rng.permutation([1.0, *rng.choice(SIDES, 2)])

@@ -15,7 +15,7 @@ from studies.harness import store
 
 ROOT = Path(__file__).parents[1]
 # What two rows of one case may differ in.
-COSTS = {*store.COST, "when", "load", "noise", "triad_gbs", "commit", "beside"}
+COSTS = {*store.COST, "when", "load", "noise", "triad_gbs", "commit", "beside", store.MADE}
 STUDY = '''"""A study to be killed.
 
 Four rows, each of which starts a process of its own, as solvers do, and takes a while.
@@ -57,14 +57,7 @@ def plot(df):
 
 
 class Toy:
-    """The small study in a folder of its own.
-
-    Parameters
-    ----------
-    folder : Path
-    text : str
-        Its source.
-    """
+    """The small study in a folder of its own."""
 
     name = "killed_study"
 
@@ -135,21 +128,7 @@ class Toy:
 
 
 def killed(toy, moment, group):
-    """Start a run, kill it after some seconds, and say what is wrong then.
-
-    Parameters
-    ----------
-    toy : Toy
-    moment : float, s
-    group : bool
-        Its process group, which rows are no part of; or the process alone.
-
-    Returns
-    -------
-    wrong : list of str
-    status : int
-        0 if it had ended before.
-    """
+    """Start a run, kill it after some seconds, and say what is wrong then."""
     process = toy.start()
     try:
         process.wait(moment)

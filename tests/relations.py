@@ -58,20 +58,7 @@ def exact(method, relation):
 
 
 def limit(method, relation, part):
-    """Largest spread that a method may have.
-
-    Parameters
-    ----------
-    method : Method
-    relation : str
-        Of `RELATIONS`.
-    part : str
-        Of `Spread`.
-
-    Returns
-    -------
-    float
-    """
+    """Largest spread that a method may have."""
     if relation == "time":
         return ACCURACY
     if method.resolution is None:
@@ -172,21 +159,7 @@ def _mean_flux(field, image):
 
 
 def spread(name, relation, seed):
-    """How far two solutions by a method are from what a relation says.
-
-    Parameters
-    ----------
-    name : str
-        Of a method.
-    relation : str
-        Of `RELATIONS`.
-    seed : int
-        Of a drawn scene of which `applies` is true.
-
-    Returns
-    -------
-    Spread
-    """
+    """How far two solutions by a method are from what a relation says."""
     image = image_of(relation, seed)
     one, two = first(name, seed), second(name, relation, seed)
     if isinstance(one, Estimated):

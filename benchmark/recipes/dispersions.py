@@ -59,14 +59,7 @@ def _dispersed(name, title, draw, load, accuracy):
 
 
 def by_multipoles(name, title, scene, accuracy=ACCURACY):
-    """A scene of spheres, solved.
-
-    Parameters
-    ----------
-    name, title : str
-    scene : Scene
-    accuracy : float
-    """
+    """A scene of spheres, solved."""
     field = multipole.solve(scene, accuracy=accuracy, tolerance=accuracy / 100)
     stats = field.stats
     known = {"by": "multipoles", "how": HOW.format(accuracy) + f"; degree {stats['order']}", "source": SOURCE}

@@ -30,50 +30,22 @@ ROUNDING = 1e-12
 
 
 class Entry(NamedTuple):
-    """A scene to be written.
-
-    Attributes
-    ----------
-    name, group, title : str
-    scene : Scene
-    known : dict
-        As the file has it.
-    """
+    """A scene to be written."""
 
     name: str
     group: str
     title: str
     scene: Scene
-    known: dict
+    known: dict  # As the file has it
 
 
 def number(value, relative, error_is, *, least=ROUNDING) -> dict:
-    """A conductivity and its error, as the file has it.
-
-    Parameters
-    ----------
-    value : float, W/(m K)
-    relative : float
-        Error.
-    error_is : {"certain", "rounding", "estimate"}
-    least : float
-        Of the relative error.
-    """
+    """A conductivity and its error, as the file has it."""
     return {"value": value, "error": _rounded(max(relative, least) * abs(value)), "error_is": error_is}
 
 
 def fields(field, relative, *, points=None) -> dict:
-    """What a witness's field says at points, as the file has it.
-
-    Parameters
-    ----------
-    field : Field
-        Steady.
-    relative : float
-        Error of flux over mean flux, and of temperature over what the load imposes.
-    points : (n, 3) float array, m, optional
-        By default those of `POINTS` that lie off the interfaces and outside of pores.
-    """
+    """What a witness's field says at points, as the file has it."""
     scene = field.scene
     points = told(scene) if points is None else points
     warm, flows = field.temperature_at(points), field.flux_at(points)

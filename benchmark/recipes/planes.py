@@ -108,12 +108,7 @@ def _square(x, y, conductivity):
 
 
 def four_squares(a, b, c, d) -> float:
-    """Conductivity along the rows of squares a b above d c repeated (Craster and Obnosov 2001).
-
-    Parameters
-    ----------
-    a, b, c, d : float, W/(m K)
-    """
+    """Conductivity along the rows of squares a b above d c repeated (Craster and Obnosov 2001)."""
     triples = a * b * c + a * b * d + a * c * d + b * c * d
     return math.sqrt(triples / (a + b + c + d) * (a + d) * (b + c) / ((a + b) * (d + c)))
 

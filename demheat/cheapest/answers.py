@@ -25,17 +25,7 @@ class Answer(NamedTuple):
 
 
 def answer(way: Way, loads: Loads) -> Answer:
-    """Tensor and half intervals by one method.
-
-    Parameters
-    ----------
-    way : Way
-    loads : Loads
-
-    Returns
-    -------
-    Answer
-    """
+    """Tensor and half intervals by one method."""
     module, cut = module_of(way.method), way.method in KNOBS
     scenes = loads.parts if cut else loads.wholes
     if loads.together if cut else len(scenes) == 3:
@@ -53,14 +43,7 @@ def answer(way: Way, loads: Loads) -> Answer:
 
 
 def excess(found: Answer, accuracy: float) -> float:
-    """Largest half of an interval over what is allowed.
-
-    Parameters
-    ----------
-    found : Answer
-    accuracy : float
-        Relative: of each entry on the diagonal, of the diagonal's mean beside it.
-    """
+    """Largest half of an interval over what is allowed."""
     diagonal = np.diag(found.tensor)
     allowed = accuracy * np.where(np.eye(3) > 0, diagonal, diagonal.mean())
     pairs = zip(found.half.flat, allowed.flat, strict=True)
@@ -68,18 +51,7 @@ def excess(found: Answer, accuracy: float) -> float:
 
 
 def certain(loads: Loads, accuracy: float) -> tuple[Answer, dict]:
-    """Certain bounds, their middle and half of what is between them, and with which knobs.
-
-    Parameters
-    ----------
-    loads : Loads
-    accuracy : float
-
-    Raises
-    ------
-    RuntimeError
-        If they stay too far apart.
-    """
+    """Certain bounds, their middle and half of what is between them, and with which knobs."""
     bracket = module_of("bracket")
     if loads.diagonal:
         found = {axis: bracket.solve(part, width=2 * accuracy) for axis, part in loads.parts.items()}

@@ -38,52 +38,30 @@ LEAST = 1e-3
 
 
 class Law(NamedTuple):
-    """Law of one method.
+    """Law of one method."""
 
-    Attributes
-    ----------
-    method, knob : str
-        The method's name, and the keyword that refines it.
-    coarsest, finest : float
-        Values of it that were fitted; lengths in edges of the box.
-    error, refinement, strength, contrast, fraction, gap : float
-        A, p, a, b, c and d.
-    error_within : float
-        Factor within which nine of ten fitted errors are.
-    bulk, surface, each : float
-        u, v and w.
-    cost, unknowns, stiffness : float
-        B in seconds, q and r.
-    cost_within : float
-    bytes : float
-        For each unknown, at the peak.
-    bytes_within : float
-    rows, scenes : int
-        Rows and scenes that the law was fitted to.
-    """
-
-    method: str
-    knob: str
-    coarsest: float
-    finest: float
-    error: float
-    refinement: float
-    strength: float
-    contrast: float
-    fraction: float
-    gap: float
-    error_within: float
-    bulk: float
-    surface: float
-    each: float
-    cost: float
-    unknowns: float
-    stiffness: float
+    method: str  # The method's name, and the keyword that refines it
+    knob: str  # The method's name, and the keyword that refines it
+    coarsest: float  # Values of it that were fitted; lengths in edges of the box
+    finest: float  # Values of it that were fitted; lengths in edges of the box
+    error: float  # A, p, a, b, c and d
+    refinement: float  # A, p, a, b, c and d
+    strength: float  # A, p, a, b, c and d
+    contrast: float  # A, p, a, b, c and d
+    fraction: float  # A, p, a, b, c and d
+    gap: float  # A, p, a, b, c and d
+    error_within: float  # Factor within which nine of ten fitted errors are
+    bulk: float  # u, v and w
+    surface: float  # u, v and w
+    each: float  # u, v and w
+    cost: float  # B in seconds, q and r
+    unknowns: float  # B in seconds, q and r
+    stiffness: float  # B in seconds, q and r
     cost_within: float
-    bytes: float
+    bytes: float  # For each unknown, at the peak
     bytes_within: float
-    rows: int
-    scenes: int
+    rows: int  # Rows and scenes that the law was fitted to
+    scenes: int  # Rows and scenes that the law was fitted to
 
 
 class Predicted(NamedTuple):
@@ -96,16 +74,7 @@ class Predicted(NamedTuple):
 
 @cache
 def laws(file: Path = FILE) -> MappingProxyType:
-    """All laws by their method's name.
-
-    Parameters
-    ----------
-    file : path
-
-    Returns
-    -------
-    mapping of str to Law
-    """
+    """All laws by their method's name."""
     with Path(file).open(newline="", encoding="utf-8") as stream:
         rows = list(csv.DictReader(stream))
     found = [Law(*(KINDS.get(name, float)(row[name]) for name in Law._fields)) for row in rows]
@@ -113,54 +82,14 @@ def laws(file: Path = FILE) -> MappingProxyType:
 
 
 def predicted(method: str, scene: Scene | Measures, value: float) -> Predicted:
-    """Error and cost of a method that are to be expected.
-
-    Parameters
-    ----------
-    method : str
-        Its name, as "fem".
-    scene : Scene or Measures
-        Steady.
-    value : float
-        Of the keyword that refines it, as its `solve` takes it.
-
-    Returns
-    -------
-    Predicted
-
-    Raises
-    ------
-    ValueError
-        If there is no law of the method, or the value is not positive.
-    """
+    """Error and cost of a method that are to be expected."""
     law, m = law_of(method), _measured(scene)
     finite("value", value, f"a finite number > 0, of {law.knob!r}", lambda v: v > 0)
     return predicted_by(law, m, value)
 
 
 def needed(method: str, scene: Scene | Measures, accuracy: float, *, sure: bool = True) -> float | int:
-    """Coarsest value of a method's resolution with which the conductivity will be as accurate as asked.
-
-    Parameters
-    ----------
-    method : str
-    scene : Scene or Measures
-    accuracy : float
-        Relative error.
-    sure : bool
-        Nine times in ten; else as often as not.
-
-    Returns
-    -------
-    float or int
-        Of the keyword that refines it, as its `solve` takes it; never coarser than the coarsest value that was fitted.
-        It may be far beyond the finest: `predicted` says what it would cost.
-
-    Raises
-    ------
-    ValueError
-        If there is no law of the method, the accuracy is not between 0 and 1, or the law does not fall.
-    """
+    """Coarsest value of a method's resolution with which the conductivity will be as accurate as asked."""
     law, m = law_of(method), _measured(scene)
     finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
     if law.refinement <= 0:
@@ -189,15 +118,7 @@ def _value(law, m, refined):
 
 
 def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
-    """What a law predicts.
-
-    Parameters
-    ----------
-    law : Law
-    m : Measures
-    value : float
-        Of its knob.
-    """
+    """What a law predicts."""
     number = unknowns(law, m, value)
     return Predicted(
         error=float(math.exp(error_terms(law.knob, m, value) @ _error_powers(law))),
@@ -213,15 +134,7 @@ def law_of(method: str) -> Law:
 
 
 def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
-    """Logarithms that the law of the error weighs, (6,) float array: 1, h/s, strength, 1 + contrast, fraction, gap.
-
-    Parameters
-    ----------
-    knob : str
-        Keyword that refines the method.
-    m : Measures
-    value : float
-    """
+    """Logarithms that the law of the error weighs, (6,) float array: 1, h/s, strength, 1 + contrast, fraction, gap."""
     if knob == DEGREE.knob:
         refined = -_decay(m) * value
     else:
@@ -233,25 +146,12 @@ def error_terms(knob: str, m: Measures, value: float) -> np.ndarray:
 
 
 def cost_terms(m: Measures, number: float) -> np.ndarray:
-    """Logarithms that the law of the cost weighs, (3,) float array: 1, unknowns, 1 + contrast.
-
-    Parameters
-    ----------
-    m : Measures
-    number : float
-        Of unknowns.
-    """
+    """Logarithms that the law of the cost weighs, (3,) float array: 1, unknowns, 1 + contrast."""
     return np.array([1.0, math.log(number), math.log1p(m.contrast)])
 
 
 def size_terms(knob: str, m: Measures, value: float) -> np.ndarray:
-    """Numbers that the unknowns are made of, (3,) float array: V/h^3, S/h^2, n; of multipoles the waves alone.
-
-    Parameters
-    ----------
-    knob, m, value
-        As those of `error_terms`.
-    """
+    """Numbers that the unknowns are made of, (3,) float array: V/h^3, S/h^2, n; of multipoles the waves alone."""
     if knob == DEGREE.knob:
         return np.array([m.count * ((value + 1) ** 2 - 1), 0.0, 0.0])
     h = element(knob, m, value)
@@ -259,26 +159,12 @@ def size_terms(knob: str, m: Measures, value: float) -> np.ndarray:
 
 
 def unknowns(law: Law, m: Measures, value: float) -> float:
-    """Number of unknowns by a law.
-
-    Parameters
-    ----------
-    law : Law
-    m : Measures
-    value : float
-        Of its knob.
-    """
+    """Number of unknowns by a law."""
     return float(max(size_terms(law.knob, m, value) @ (law.bulk, law.surface, law.each), 1.0))
 
 
 def element(knob: str, m: Measures, value: float) -> float:
-    """Size of an element, m.
-
-    Parameters
-    ----------
-    knob, m, value
-        As those of `error_terms`.
-    """
+    """Size of an element, m."""
     resolution = KNOBS[knob]
     return m.edge * resolution.size(value / m.edge if resolution.metric else value)
 

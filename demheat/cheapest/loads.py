@@ -42,22 +42,7 @@ class Loads(NamedTuple):
 
 
 def loads_of(scene: Scene) -> Loads:
-    """Loads that show the tensor of a scene's body.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or a box between two isothermal walls with four insulated faces.
-
-    Returns
-    -------
-    Loads
-
-    Raises
-    ------
-    ValueError, NotImplementedError
-        As `demheat.tensor.axis_loads`.
-    """
+    """Loads that show the tensor of a scene's body."""
     wholes = dict(enumerate(axis_loads(scene)))
     if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
         raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")

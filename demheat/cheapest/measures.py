@@ -56,12 +56,7 @@ class Measures(NamedTuple):
 
 
 def measures(scene: Scene) -> Measures:
-    """Measure a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Measure a scene."""
     edge, shapes = scene.volume ** (1 / 3), scene.inclusions
     if not shapes:
         return Measures(edge, edge, edge, 0.0, 0.0, 0.0, 0.0, 0, WIDEST)

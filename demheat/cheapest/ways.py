@@ -40,35 +40,16 @@ BESIDES = 1.5
 
 
 class Way(NamedTuple):
-    """One way to an accuracy.
-
-    Attributes
-    ----------
-    method : str
-    knobs : mapping
-        To begin with.
-    error : float
-        Relative, that is to be expected.
-    cpu_s : float, s
-        All loads and the coarser runs for the interval; NaN if unknown.
-    bytes : float
-        At the peak; NaN if unknown.
-    refused : str
-        Why it is none; empty if it is one.
-    doubt : str
-        Why it may be none: what the laws expect it to need; empty if there is no doubt.
-    rounds : int
-        Times that it was refined.
-    """
+    """One way to an accuracy."""
 
     method: str
-    knobs: Mapping
-    error: float = math.nan
-    cpu_s: float = math.nan
-    bytes: float = math.nan
-    refused: str = ""
-    doubt: str = ""
-    rounds: int = 0
+    knobs: Mapping  # mapping: To begin with
+    error: float = math.nan  # Relative, that is to be expected
+    cpu_s: float = math.nan  # s: All loads and the coarser runs for the interval; NaN if unknown
+    bytes: float = math.nan  # At the peak; NaN if unknown
+    refused: str = ""  # Why it is none; empty if it is one
+    doubt: str = ""  # Why it may be none: what the laws expect it to need; empty if there is no doubt
+    rounds: int = 0  # Times that it was refined
 
     @property
     def rank(self):
@@ -77,43 +58,14 @@ class Way(NamedTuple):
 
 
 def ways(loads: Loads, accuracy: float, memory: float) -> list[Way]:
-    """All ways, the cheapest first, then those in doubt, and those that are none last.
-
-    Parameters
-    ----------
-    loads : Loads
-    accuracy : float
-        Relative.
-    memory : float
-        Bytes.
-
-    Returns
-    -------
-    list of Way
-    """
+    """All ways, the cheapest first, then those in doubt, and those that are none last."""
     found = [_exact(loads, accuracy), _multipole(loads, accuracy, memory)]
     found += [_refined(name, loads, accuracy, memory) for name in KNOBS]
     return sorted(found, key=lambda way: way.rank)
 
 
 def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
-    """The same way on smaller elements, as far as its interval says, and what that is now expected to cost.
-
-    Parameters
-    ----------
-    way : Way
-        That did not get there.
-    loads : Loads
-    missing : float
-        Largest half of an interval over what is allowed.
-    memory : float
-        Bytes.
-
-    Returns
-    -------
-    Way
-        Refused if it cannot get there.
-    """
+    """The same way on smaller elements, as far as its interval says, and what that is now expected to cost."""
     told = f"half of its interval is {missing:.2g} times what is allowed with {knobs_of(way) or 'nothing to refine'}"
     if way.method not in KNOBS or way.rounds >= ROUNDS:
         return way._replace(refused=told)
@@ -131,13 +83,7 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
 
 
 def module_of(method: str):
-    """Module of a method, loaded when it is needed.
-
-    Parameters
-    ----------
-    method : str
-        One of `HOMES`.
-    """
+    """Module of a method, loaded when it is needed."""
     return import_module(HOMES[method])
 
 
@@ -206,12 +152,7 @@ def _all(cost, loads):
 
 
 def knobs_of(way) -> str:
-    """Knobs of a way, or of what was found by one, in words; empty without one.
-
-    Parameters
-    ----------
-    way : Way or Effective
-    """
+    """Knobs of a way, or of what was found by one, in words; empty without one."""
     told = {name: value if isinstance(value, int) else f"{value:.3g}" for name, value in way.knobs.items()}
     return ", ".join(f"{name} = {value}" for name, value in told.items())
 

@@ -48,15 +48,7 @@ class Answer(NamedTuple):
 
 
 def answered(scene, asked: Asked, *, interval: bool = True) -> Answer:
-    """Run one method on a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    asked : Asked
-    interval : bool
-        Whether to ask for the interval too, which takes runs of its own.
-    """
+    """Run one method on a scene."""
     method = asked.method
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")

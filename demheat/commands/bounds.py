@@ -33,10 +33,6 @@ def bounds_of(scene) -> list[Bound]:
 
     A resistance takes the conductivity below all of them: Reuss's sum of resistances does not know it. Nor are they
     known here of tensors and of what depends on temperature.
-
-    Parameters
-    ----------
-    scene : Scene
     """
     if scene.resistances.any() or scene.anisotropic or scene.varies:
         return []

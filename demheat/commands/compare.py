@@ -35,14 +35,7 @@ LARGEST = 2**27
 
 
 def run(file, options) -> int:
-    """Compare, print and store; the exit status.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-        Of `demheat.commands.options`.
-    """
+    """Compare, print and store; the exit status."""
     chosen = names(options.methods) or (usual(everything=True) if options.all else None)
     wanted = asked(file, chosen, options.knob, default=usual())
     folder = Path(options.out or OUT)
@@ -59,13 +52,7 @@ def run(file, options) -> int:
 
 
 def usual(*, everything: bool = False) -> list[str]:
-    """Names of the methods that are compared where none is named: the main ones, formulas and witnesses.
-
-    Parameters
-    ----------
-    everything : bool
-        Those that are seldom compared, too.
-    """
+    """Names of the methods that are compared where none is named: the main ones, formulas and witnesses."""
     steady = [method for method in found().values() if method.call != "evolve"]
     return [m.name for m in steady if everything or m.role != "beside" or m.call == "estimate"]
 
@@ -76,16 +63,6 @@ def compared(
     """Rows of methods on a scene, those that are stored and hold as they are; each new one is stored at once.
 
     What the time did not suffice for is not stored: the same command goes on with it.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : list of Asked
-    path : Path
-        Of the rows; those of another scene, or by other code, are dropped.
-    interval, force : bool
-    seconds : float, s, optional
-        That all may take.
     """
     text, known = text_of_scene(scene), rows.read(path)
     how = {"interval": interval, "limit": partial(budget, seconds, begun=time.monotonic())}
@@ -109,13 +86,7 @@ def _made(scene, each, key, path, *, interval, limit):
 
 
 def table(made, bounds) -> str:
-    """Rows and bounds as text.
-
-    Parameters
-    ----------
-    made : list of dict
-    bounds : list of Bound
-    """
+    """Rows and bounds as text."""
     lines = [("method", "W/(m K)", "expected from", "to", "wall s", "CPU s", "interval", "unknowns")]
     for row in made:
         if row["status"] == "ok":
@@ -142,16 +113,7 @@ def _outside(value, bounds):
 
 
 def picture(scene, made, bounds, path: Path) -> Path:
-    """Draw the rows and a slice beside them; where it is.
-
-    Parameters
-    ----------
-    scene : Scene
-    made : list of dict
-    bounds : list of Bound
-    path : Path
-        Of the rows.
-    """
+    """Draw the rows and a slice beside them; where it is."""
     from demheat import pictures
 
     good = [row for row in made if row["status"] == "ok" and row["conductivity"]]

@@ -12,14 +12,7 @@ from demheat.scene.inputs import one_line
 
 
 def run(file, options) -> int:
-    """Solve and print; the exit status.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-        Of `demheat.commands.options`.
-    """
+    """Solve and print; the exit status."""
     accuracy = wanted_accuracy(file, options)
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -40,11 +33,5 @@ def run(file, options) -> int:
 
 
 def wanted_accuracy(file, options) -> float:
-    """Accuracy of the command line, else of the file, else a thousandth.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-    """
+    """Accuracy of the command line, else of the file, else a thousandth."""
     return next(each for each in (options.accuracy, file.accuracy, 1e-3) if each is not None)

@@ -30,27 +30,7 @@ class Asked(NamedTuple):
 
 
 def asked(file, names, words, *, default) -> list[Asked]:
-    """Methods with their knobs.
-
-    Parameters
-    ----------
-    file : SceneFile
-    names : sequence of str or None
-        Of methods; None for those of the file.
-    words : sequence of str
-        As "voxels=64", for all methods that have this knob, or "fft.voxels=64", for one.
-    default : sequence of str
-        Where neither names any.
-
-    Returns
-    -------
-    list of Asked
-
-    Raises
-    ------
-    ValueError
-        If a method or a knob is not known.
-    """
+    """Methods with their knobs."""
     chosen = list(names or file.methods or default)
     for name in chosen:
         if name not in found():
@@ -66,12 +46,7 @@ def asked(file, names, words, *, default) -> list[Asked]:
 
 
 def known(method: Method) -> set[str]:
-    """Keywords of a method that are free: what it fixes is not.
-
-    Parameters
-    ----------
-    method : Method
-    """
+    """Keywords of a method that are free: what it fixes is not."""
     parameters = inspect.signature(getattr(load(method.module), method.call)).parameters.values()
     names = {each.name for each in parameters if each.kind is each.KEYWORD_ONLY}
     if any(each.kind is each.VAR_KEYWORD for each in parameters):

@@ -31,12 +31,7 @@ class Parser(argparse.ArgumentParser):
 
 
 def parser(version: str) -> argparse.ArgumentParser:
-    """The parser of all commands.
-
-    Parameters
-    ----------
-    version : str
-    """
+    """The parser of all commands."""
     top = Parser(
         prog="demheat", description="Heat conduction in a scene that a TOML file describes.", allow_abbrev=False
     )

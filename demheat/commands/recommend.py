@@ -8,14 +8,7 @@ from demheat.commands.words import scene_line
 
 
 def run(file, options) -> int:
-    """Print what is recommended; the exit status: 1 if nothing gets there.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-        Of `demheat.commands.options`.
-    """
+    """Print what is recommended; the exit status: 1 if nothing gets there."""
     accuracy = wanted_accuracy(file, options)
     found = recommend(file.scene, accuracy)
     print(f"{file.path}: {scene_line(file.scene)}\n")

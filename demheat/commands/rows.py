@@ -23,48 +23,21 @@ NUMBERS = ("conductivity", "lower", "upper", "wall_s", "cpu_s", "interval_cpu_s"
 
 
 def key_of(each: Asked, scene_text: str, *, interval: bool) -> tuple[str, ...]:
-    """What the row of a method depends on, `KEY`.
-
-    Parameters
-    ----------
-    each : Asked
-    scene_text : str
-        The scene as a file.
-    interval : bool
-        Whether it is asked for.
-    """
+    """What the row of a method depends on, `KEY`."""
     knobs = " ".join(f"{name}={value}" for name, value in sorted(each.knobs.items()))
     scene = hashlib.sha256(scene_text.encode()).hexdigest()[:12]
     return each.method.name, knobs, str(interval), scene, code()
 
 
 def row_of(each: Asked, found: Answer, key: tuple[str, ...]) -> dict[str, str]:
-    """A row, all of it text, floats to the last bit.
-
-    Parameters
-    ----------
-    each : Asked
-    found : Answer
-    key : tuple of str
-        See `key_of`.
-    """
+    """A row, all of it text, floats to the last bit."""
     values = {**found._asdict(), **found.cost, "title": each.method.label, "note": "; ".join(found.notes)}
     values |= dict(zip(KEY, key, strict=True))
     return {name: _text(values.get(name)) for name in COLUMNS}
 
 
 def read(path: Path) -> dict[tuple, dict[str, str]]:
-    """Rows of a file by their keys; empty if there is none.
-
-    Parameters
-    ----------
-    path : Path
-
-    Raises
-    ------
-    ValueError
-        If it holds anything else.
-    """
+    """Rows of a file by their keys; empty if there is none."""
     if not path.exists():
         return {}
     try:
@@ -85,12 +58,6 @@ def add(path: Path, key: tuple[str, ...], row: dict[str, str]) -> None:
     """Put a row into a file as it is now, whole or not at all; rows of another scene or other code are dropped.
 
     Others may do so at the same time: one waits for the other.
-
-    Parameters
-    ----------
-    path : Path
-    key : tuple of str
-    row : dict
     """
     with locked(path.parent):
         rows = {other: old for other, old in read(path).items() if other[-2:] == key[-2:]} | {key: row}

@@ -16,14 +16,7 @@ from demheat.paths import replaced
 
 
 def run(file, options) -> int:
-    """Solve and print; the exit status.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-        Of `demheat.commands.options`.
-    """
+    """Solve and print; the exit status."""
     wanted = asked(file, names(options.methods), options.knob, default=("dem",))
     if options.write and len(wanted) > 1:
         raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")

@@ -13,14 +13,7 @@ from demheat.paths import replaced
 
 
 def run(file, options) -> int:
-    """Draw; the exit status.
-
-    Parameters
-    ----------
-    file : SceneFile
-    options : Namespace
-        Of `demheat.commands.options`.
-    """
+    """Draw; the exit status."""
     folder = Path(options.out or OUT)
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.
     wanted = asked(file, names(options.methods), options.knob, default=()) if options.methods else []

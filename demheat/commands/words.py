@@ -53,12 +53,7 @@ def costs(found) -> str:
 
 
 def spread(conductivity: float, lower: float, upper: float) -> tuple[str, str, str]:
-    """A conductivity and the ends of its interval with as many digits as that tells; empty where there is none.
-
-    Parameters
-    ----------
-    conductivity, lower, upper : float
-    """
+    """A conductivity and the ends of its interval with as many digits as that tells; empty where there is none."""
     if math.isnan(conductivity):
         return "", "", ""
     if not upper >= lower:

@@ -12,49 +12,20 @@ from demheat.network.links_kernels import links_of, places_of
 
 
 class System(NamedTuple):
-    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty.
-
-    Attributes
-    ----------
-    network : Network
-    diagonal : (n,) float array, W/K
-    heat : (n,) float array, W
-    gradient : (3,) float array, K/m
-    ties : (w,) float array, W/K
-        Conductance to held walls and surroundings.
-    held : (w,) float array, K
-        Their temperature above the level.
-    level : float, K
-        Temperatures are solved for relative to it, which spares digits.
-    films : Films, optional
-    """
+    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty."""
 
     network: Network
-    diagonal: np.ndarray
-    heat: np.ndarray
-    gradient: np.ndarray
-    ties: np.ndarray
-    held: np.ndarray
-    level: float
-    films: Films | None = None
+    diagonal: np.ndarray  # (n,) float array, W/K
+    heat: np.ndarray  # (n,) float array, W
+    gradient: np.ndarray  # (3,) float array, K/m
+    ties: np.ndarray  # (w,) float array, W/K: Conductance to held walls and surroundings
+    held: np.ndarray  # (w,) float array, K: Their temperature above the level
+    level: float  # K: Temperatures are solved for relative to it, which spares digits
+    films: Films | None = None  # Films
 
 
 def system_of(network, scene, reached, films=None):
-    """The equations of a network under a steady load.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    reached : (n,) bool array
-        Particles that have an equation.
-    films : Films, optional
-        By default those of the scene's loads.
-
-    Returns
-    -------
-    System
-    """
+    """The equations of a network under a steady load."""
     n = len(network.volumes)
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
     diagonal = conducted(network)
@@ -79,25 +50,12 @@ def system_of(network, scene, reached, films=None):
 
 
 def level_of(scene):
-    """What temperatures are counted from between walls: their mean.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """What temperatures are counted from between walls: their mean."""
     return float(np.mean(list(scene.imposed_temperatures.values())))
 
 
 def linear_start(network, scene, reached):
-    """Linear field between two opposite temperatures, else zero, relative to the level, (n,) float array, K.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    reached : (n,) bool array
-        As in `system_of`.
-    """
+    """Linear field between two opposite temperatures, else zero, relative to the level, (n,) float array, K."""
     temperatures = {} if scene.periodic else scene.imposed_temperatures
     start = np.zeros(len(reached))
     for axis, letter in enumerate("xyz"):
@@ -121,14 +79,7 @@ def _imposed(network, scene):
 
 
 def residual(system, x):
-    """Heat that each particle receives in excess, (n,) float array, W; none on islands, which have no equation.
-
-    Parameters
-    ----------
-    system : System
-    x : (n,) float array, K
-        Temperatures above the level.
-    """
+    """Heat that each particle receives in excess, (n,) float array, W; none on islands, which have no equation."""
     r = np.empty_like(x)
     kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
     r[system.diagonal == 0.0] = 0.0
@@ -136,14 +87,7 @@ def residual(system, x):
 
 
 def throughput(system, x):
-    """Heat that passes through each particle, (n,) float array, W.
-
-    Parameters
-    ----------
-    system : System
-    x : (n,) float array, K
-        Temperatures above the level.
-    """
+    """Heat that passes through each particle, (n,) float array, W."""
     network, received, through = system.network, np.empty_like(x), np.empty_like(x)
     kernels.flows(links_of(network), places_of(network), system.gradient, x, received, through)
     if len(system.ties):
@@ -153,15 +97,7 @@ def throughput(system, x):
 
 
 def at_walls(system, scene, x):
-    """Temperature and entering heat of each wall facet, two (w,) float arrays, K and W.
-
-    Parameters
-    ----------
-    system : System
-    scene : Scene
-    x : (n,) float array, K
-        Temperatures of the particles.
-    """
+    """Temperature and entering heat of each wall facet, two (w,) float arrays, K and W."""
     if scene.periodic:
         return np.empty(0), np.empty(0)
     network, inside = system.network, x[system.network.wall_particle]

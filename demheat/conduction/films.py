@@ -39,20 +39,7 @@ class Films(NamedTuple):
         return in_series(self.conductance, own)
 
     def surface(self, own, inside):
-        """Temperature of surfaces.
-
-        Parameters
-        ----------
-        own : (w,) float array, W/K
-            Conductance of each facet.
-        inside : (w,) float array, K
-            Temperature of its particle.
-
-        Returns
-        -------
-        (w,) float array, K
-            The particle's where neither film nor facet conducts.
-        """
+        """Temperature of surfaces."""
         film = np.where(np.isinf(self.conductance), 0.0, self.conductance)
         whole = own + film
         mixed = (own * inside + film * np.nan_to_num(self.outside)) / np.where(whole > 0, whole, 1.0)
@@ -61,35 +48,14 @@ class Films(NamedTuple):
 
 
 def in_series(one, other):
-    """Conductance of two in series; either may be 0, the first infinite.
-
-    Parameters
-    ----------
-    one, other : (w,) float arrays, W/K
-
-    Returns
-    -------
-    (w,) float array, W/K
-    """
+    """Conductance of two in series; either may be 0, the first infinite."""
     whole = one + other
     part = np.divide(one, whole, out=np.zeros(len(whole)), where=np.isfinite(whole) & (whole > 0))
     return np.where(np.isinf(one), other, part * other)
 
 
 def films_of(network, scene, surface=None) -> Films:
-    """Films of all wall facets at loads that do not depend on time.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    surface : (w,) float array, K, optional
-        Temperatures about which radiation is linearised.
-
-    Returns
-    -------
-    Films
-    """
+    """Films of all wall facets at loads that do not depend on time."""
     film, outside = np.zeros(len(network.wall_side)), np.full(len(network.wall_side), np.nan)
     for name, value in scene.imposed_temperatures.items():
         here, load = network.wall_side == SIDES.index(name), scene.walls[name]
@@ -104,14 +70,7 @@ def films_of(network, scene, surface=None) -> Films:
 
 
 def radiated(network, scene, surface):
-    """Heat that radiation brings in through each wall facet at its surface's temperature, (w,) float array, W.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    surface : (w,) float array, K
-    """
+    """Heat that radiation brings in through each wall facet at its surface's temperature, (w,) float array, W."""
     heat = np.zeros(len(network.wall_side))
     for name, load in scene.wall_exchanges.items():
         if isinstance(load, Radiation):
@@ -122,13 +81,7 @@ def radiated(network, scene, surface):
 
 
 def hottest(network, scene) -> float:
-    """A temperature that no radiating surface of a steady state exceeds, K: all fluxes left by radiation alone.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    """
+    """A temperature that no radiating surface of a steady state exceeds, K: all fluxes left by radiation alone."""
     entering, leaving, around = 0.0, 0.0, 0.0
     for name, value in scene.wall_fluxes.items():
         entering += max(value, 0.0) * float(loaded_areas(network, scene, name).sum())
@@ -141,23 +94,7 @@ def hottest(network, scene) -> float:
 
 
 def radiating_surface(own, black, inside, around):
-    """Surface temperature at which what a facet conducts is what it radiates: b T^4 + g T = b T_a^4 + g T_p.
-
-    Parameters
-    ----------
-    own : (w,) float array, W/K
-        Conductance g of each facet.
-    black : (w,) float array, W/K4
-        b, emissivity times Stefan and Boltzmann's constant times area.
-    inside : (w,) float array, K
-        Of its particle, T_p; below 0, where steps overshoot, 0 counts.
-    around : float, K
-        Of the surroundings, T_a.
-
-    Returns
-    -------
-    (w,) float array, K
-    """
+    """Surface temperature at which what a facet conducts is what it radiates: b T^4 + g T = b T_a^4 + g T_p."""
     inside = np.maximum(inside, 0.0)
     known = black * around**4 + own * inside
     surface = np.maximum(inside, around)
@@ -175,17 +112,6 @@ def loaded_areas(network, scene, name):
 
     Planes that stand for a round wall enclose the exact volume with a few parts in 10^4 more of area: a flux density
     would bring in so much more heat.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    name : str
-        Of the wall.
-
-    Returns
-    -------
-    (facets of the wall,) float array, m2
     """
     areas = network.wall_area[network.wall_side == SIDES.index(name)]
     if name != "round":
@@ -196,53 +122,25 @@ def loaded_areas(network, scene, name):
 
 
 class Radiating(NamedTuple):
-    """A wall that radiates, in time.
-
-    Attributes
-    ----------
-    name : str
-    load : Radiation
-    side : int
-    facet, particle : (v,) int arrays
-        Those facets that conduct, among all, and their particles.
-    own, black : (v,) float arrays, W/K and W/K4
-        As in `radiating_surface`.
-    """
+    """A wall that radiates, in time."""
 
     name: str
     load: Radiation
     side: int
-    facet: np.ndarray
-    particle: np.ndarray
-    own: np.ndarray
-    black: np.ndarray
+    facet: np.ndarray  # (v,) int arrays: Those facets that conduct, among all, and their particles
+    particle: np.ndarray  # (v,) int arrays: Those facets that conduct, among all, and their particles
+    own: np.ndarray  # (v,) float arrays, W/K and W/K4: As in `radiating_surface`
+    black: np.ndarray  # (v,) float arrays, W/K and W/K4: As in `radiating_surface`
 
     def heat(self, temperature, time):
-        """Heat that enters through each facet.
-
-        Parameters
-        ----------
-        temperature : (n,) float array, K
-            Of the particles.
-        time : float, s
-
-        Returns
-        -------
-        (v,) float array, W
-        """
+        """Heat that enters through each facet."""
         around = load_at(self.name, self.load, time)
         surface = radiating_surface(self.own, self.black, temperature[self.particle], around)
         return self.black * (around**4 - surface**4)
 
 
 def radiating_walls(network, scene) -> list[Radiating]:
-    """Walls of a scene that radiate, on a network.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    """
+    """Walls of a scene that radiate, on a network."""
     found = []
     for name, load in scene.wall_exchanges.items():
         if isinstance(load, Radiation):
@@ -257,17 +155,7 @@ def radiating_walls(network, scene) -> list[Radiating]:
 
 
 def with_convection(network, scene):
-    """The network with the films of convection in the conductances of its wall facets.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-
-    Returns
-    -------
-    Network
-    """
+    """The network with the films of convection in the conductances of its wall facets."""
     conductance = network.wall_conductance.copy()
     for name, load in scene.wall_exchanges.items():
         if isinstance(load, Convection):

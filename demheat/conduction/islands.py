@@ -38,18 +38,7 @@ class Bodies(NamedTuple):
 
 
 def bodies(network, scene):
-    """Bodies of a network; None if all phases and links conduct.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-        Its conductivities and its load, a steady one.
-
-    Returns
-    -------
-    Bodies or None
-    """
+    """Bodies of a network; None if all phases and links conduct."""
     conductivity = scene.conductivities
     if conductivity.min() > 0 and network.whole:
         return None
@@ -72,15 +61,7 @@ def bodies(network, scene):
 
 
 def level_off(temperature, label, volumes):
-    """Take off each body its mean, in place.
-
-    Parameters
-    ----------
-    temperature : (n,) float array, K
-    label : (n,) int array
-        Body of each particle; negative in none.
-    volumes : (n,) float array, m3
-    """
+    """Take off each body its mean, in place."""
     count = label.max(initial=-1) + 1
     kernels.level_off(temperature, label, volumes, np.zeros(count), np.zeros(count))
 

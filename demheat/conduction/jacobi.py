@@ -11,26 +11,7 @@ FIRST = 4
 
 
 def jacobi(links, diagonal, r, x, limit, most):
-    """Solve A dx = r, adding dx to x in place.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-        Rows with zero have no equation: r must be zero there.
-    r : (n,) float array, W
-        Overwritten.
-    x : (n,) float array, K, in and out
-    limit : float, W
-        Stop when |r| is at most this.
-    most : int
-        Iterations at most.
-
-    Returns
-    -------
-    int
-        Iterations done.
-    """
+    """Solve A dx = r, adding dx to x in place."""
     direction, product, total = np.empty_like(x), np.zeros(1), 0
     for begin, end in blocks(most, FIRST):
         done = kernels.conjugate_gradients(links, diagonal, r, x, limit, end - begin, direction, product)

@@ -26,22 +26,7 @@ CYCLE = {
 
 
 def preconditioner(links, diagonal, coarse=np.float64):
-    """One symmetric cycle for A = diag(diagonal) - conductance.
-
-    Parameters
-    ----------
-    links : Links
-        Symmetric, conductances >= 0.
-    diagonal : (n,) float array, W/K
-        At least the sum of each row; rows with zero have no equation.
-    coarse : {numpy.float64, numpy.float32}
-        Precision of the levels below the finest.
-
-    Returns
-    -------
-    callable (r, norm, z)
-        Writes the correction for the residual r, of this norm, to z.
-    """
+    """One symmetric cycle for A = diag(diagonal) - conductance."""
     scale = 1.0 / diagonal.max()
     aggregates = aggregated(links, len(diagonal))
     below = _below(kernels.galerkin(links, diagonal, scale, aggregates), coarse)
@@ -49,28 +34,7 @@ def preconditioner(links, diagonal, coarse=np.float64):
 
 
 def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None):
-    """One symmetric cycle on the finest level, by what solves on the aggregates.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-    scale : float, K/W
-        Of order one over the diagonal: what is in single precision has no units.
-    aggregates : Aggregates
-        Of the n rows.
-    coarse : callable (r) -> (aggregates,) float array
-        Solves the aggregates' equations, those of scale (diag(diagonal) - conductance), about.
-    seen : int, optional
-        Particles that links lead to, the rows' own being the first. Default: no others.
-    beside : callable (x), optional
-        Puts the others' values where x, (seen,) float32 array, has them.
-
-    Returns
-    -------
-    callable (r, norm, z)
-        As that of `preconditioner`.
-    """
+    """One symmetric cycle on the finest level, by what solves on the aggregates."""
     level, n, single = level_of(links, diagonal, scale), len(diagonal), np.float32
     load, y, x = np.empty(n, single), np.empty(n, single), np.zeros(n if seen is None else seen, single)
     received = np.empty(len(aggregates.start) - 1)
@@ -92,35 +56,14 @@ def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None)
 
 
 def aggregated(links, n):
-    """Join the particles of n rows to aggregates.
-
-    Parameters
-    ----------
-    links : Links
-    n : int
-
-    Returns
-    -------
-    Aggregates
-    """
+    """Join the particles of n rows to aggregates."""
     top, owner = np.empty(n), np.empty(n, np.int32)
     kernels.strongest(links, top)
     return kernels.members(owner, kernels.aggregate(links, top, MOST, owner))
 
 
 def level_of(links, diagonal, scale):
-    """The matrix times a scale, arranged for sweeps.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-    scale : float, K/W
-
-    Returns
-    -------
-    Level
-    """
+    """The matrix times a scale, arranged for sweeps."""
     n, inverse = len(diagonal), np.zeros(len(diagonal), np.float32)
     inverse[diagonal > 0] = 1.0 / (scale * diagonal[diagonal > 0])
     small, m = np.min_scalar_type(int(np.diff(links.indptr).max(initial=0))), len(links.indices)

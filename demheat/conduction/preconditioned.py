@@ -10,25 +10,6 @@ def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
 
     Directions are made orthogonal by what the residual changed (Polak and Ribiere), since the preconditioner, in single
     precision, is symmetric to its rounding only.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-        Rows with zero have no equation.
-    precondition : callable (r, norm, z)
-        Puts into z what is to be added for r.
-    r, x : (n,) float arrays, W and K
-        Residual and solution, changed in place.
-    limit : float, W
-    most : int
-        Iterations at most.
-    done : callable (share)
-        Called with the share of the way that is done.
-
-    Returns
-    -------
-    int
     """
     z, q = np.empty_like(r), np.empty_like(r)
     norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0

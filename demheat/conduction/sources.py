@@ -20,30 +20,7 @@ LATITUDES, SLICES = np.polynomial.legendre.leggauss(8)
 
 
 def source_power(scene, centers, volumes):
-    """The power of a scene's sources in each cell, as a function of time.
-
-    Parameters
-    ----------
-    scene : Scene
-    centers : (n, 3) float array, m
-    volumes : (n,) float array, m3
-        Of the cells; the capacity of a cell belongs to the same volume.
-
-    Returns
-    -------
-    callable (time, s) -> (n,) float array, W, or None without sources
-        All together give `total_power` at every time to rounding, wherever the cells are. Continuous in time,
-        with its slope: cells gain and lose over the time in which the rim crosses them. An integrator sees it at the
-        times of its stages: the heat that it brings in is the steps' own quadrature of `total_power`, which is exact
-        for a power that stays the same and else as good as the steps are short; see `transits`. Steps longer than the
-        time of crossing displace heat. The function raises ValueError at a time when a source that is not to be clipped
-        has left the body.
-
-    Raises
-    ------
-    NotImplementedError
-        For a moving cylinder in a sphere, or across the axis of a round cylinder.
-    """
+    """The power of a scene's sources in each cell, as a function of time."""
     centers, volumes = np.asarray(centers, dtype=float), np.asarray(volumes, dtype=float)
     steady, moving = np.zeros(len(volumes)), []
     for number, source in enumerate(scene.sources):
@@ -68,17 +45,7 @@ def source_power(scene, centers, volumes):
 
 
 def total_power(scene, time):
-    """Power that all sources of a scene give to the body.
-
-    Parameters
-    ----------
-    scene : Scene
-    time : float, s
-
-    Returns
-    -------
-    float, W
-    """
+    """Power that all sources of a scene give to the body."""
     total = 0.0
     for number, source in enumerate(scene.sources):
         if isinstance(source, UniformSource):
@@ -90,17 +57,7 @@ def total_power(scene, time):
 
 
 def lost_power(scene, time):
-    """Power of clipped sources that falls outside of the body.
-
-    Parameters
-    ----------
-    scene : Scene
-    time : float, s
-
-    Returns
-    -------
-    float, W
-    """
+    """Power of clipped sources that falls outside of the body."""
     lost = 0.0
     for number, source in enumerate(scene.sources):
         if not isinstance(source, UniformSource):
@@ -110,14 +67,7 @@ def lost_power(scene, time):
 
 
 def check_sources(scene, stop):
-    """Raise ValueError if a source that is not to be clipped leaves the body before a time in seconds.
-
-    Parameters
-    ----------
-    scene : Scene
-    stop : float, s
-        From time 0 on.
-    """
+    """Raise ValueError if a source that is not to be clipped leaves the body before a time in seconds."""
     for number, source in enumerate(scene.sources):
         if isinstance(source, UniformSource):
             continue
@@ -130,18 +80,7 @@ def check_sources(scene, stop):
 
 
 def transits(scene):
-    """When the moving cylinders of a scene meet and leave its body, and how fast they are.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    list of (start, s, stop, s, crossing, s)
-        The rim touches the body between start and stop, which may be infinite, and crossing is the time in which the
-        source moves by its own diameter. Sources that never meet the body are left out.
-    """
+    """When the moving cylinders of a scene meet and leave its body, and how fast they are."""
     found = []
     for source in scene.sources:
         if isinstance(source, MovingCylinder):

@@ -70,53 +70,14 @@ class Solution(NamedTuple):
 
 
 def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
-    """Temperatures at which every particle receives as much heat as it gives.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-        Its load only.
-    solver : {"auto", "cg", "amg", "amg-single"}
-        Conjugate gradients preconditioned by the diagonal, or by multigrid (see `demheat.conduction.multigrid`), whose
-        coarse levels may be in single precision, too; "auto" picks one of the first two by size.
-    tolerance : float
-        On the norm of the particles' residual heat relative to that of the heat passing through them.
-    max_iterations : int
-        Until the tolerance is met, at most.
-
-    Returns
-    -------
-    Solution
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described or the load fixes no steady state.
-    Unsolved
-        If the residual, recomputed after the solve, misses the tolerance.
-    """
+    """Temperatures at which every particle receives as much heat as it gives."""
     check_solver(solver, tolerance)
     scene.require(steady=True, takes=("resistance", "exchange", "image"))
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 
 def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None, start=None):
-    """The same as `solve_steady` of arguments that were checked before.
-
-    Parameters
-    ----------
-    network, scene, solver, tolerance, max_iterations
-        As in `solve_steady`.
-    kept : dict, optional
-        Where multigrid keeps what it sets up, for the next load on the same network.
-    start : (n,) float array, K, optional
-        Temperatures to begin with, between walls.
-
-    Returns
-    -------
-    Solution
-    """
+    """The same as `solve_steady` of arguments that were checked before."""
     bodies = islands.bodies(network, scene)
     network = network if bodies is None else without_links(network, bodies.still)
     reached = _reached(network, scene)
@@ -161,15 +122,7 @@ def _first(network, scene, reached, start):
 
 
 def imbalance(network, scene, solution) -> float:
-    """Residual heat of the particles at given temperatures, over the heat that passes through them, as norms.
-
-    Parameters
-    ----------
-    network : Network
-        Between walls; not that of the solution, or nothing is new.
-    scene : Scene
-    solution : Solution
-    """
+    """Residual heat of the particles at given temperatures, over the heat that passes through them, as norms."""
     network = network if solution.still is None else without_links(network, solution.still)
     reached = _reached(network, scene)
     x = np.where(reached, np.nan_to_num(solution.temperature) - level_of(scene), 0.0)
@@ -236,14 +189,7 @@ def _advice(scene, tolerance):
 
 
 def check_solver(solver, tolerance):
-    """Raise ValueError unless the solver is known and its tolerance sensible.
-
-    Parameters
-    ----------
-    solver : {"auto", "cg", "amg", "amg-single"}
-    tolerance : float
-        Relative residual, between 1e-15 and 1e-2.
-    """
+    """Raise ValueError unless the solver is known and its tolerance sensible."""
     if solver not in SOLVERS:
         raise ValueError(f"solver = {solver!r}: must be one of {', '.join(SOLVERS)}")
     if not (isinstance(tolerance, int | float) and 1e-15 < tolerance < 1e-2):
@@ -291,18 +237,7 @@ def _jacobi(system):
 
 
 def matrix(network, diagonal):
-    """The network's heat balance as a SciPy matrix: diagonal minus conductances.
-
-    Parameters
-    ----------
-    network : Network
-    diagonal : (n,) float array, W/K
-        Rows with zero have no equation; they get a one.
-
-    Returns
-    -------
-    (n, n) csr_matrix, W/K
-    """
+    """The network's heat balance as a SciPy matrix: diagonal minus conductances."""
     n = len(diagonal)
     off = sparse.csr_matrix(
         (-network.conductance, network.indices.astype(np.int32), network.indptr.astype(np.int32)), shape=(n, n)

@@ -16,57 +16,13 @@ from demheat.scene.parts import driver
 
 
 def capacities(network, scene):
-    """Heat capacity of each particle: density times specific heat times volume.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-        Its materials only.
-
-    Returns
-    -------
-    (n,) float array, J/K
-    """
+    """Heat capacity of each particle: density times specific heat times volume."""
     per_volume = np.array([material.density * material.heat_capacity for material in scene.materials])
     return per_volume[network.phase] * network.volumes
 
 
 def evolve(network, scene, times, *, power=None, transits=(), held_centers=None, accuracy=1e-3, **knobs):
-    """Temperatures, wall temperatures and wall heat of a network at the asked times.
-
-    Parameters
-    ----------
-    network : Network
-        Of any law.
-    scene : Scene
-        Its walls and initial temperature.
-    times : (k,) float array, s
-        As `demheat.conduction.integrators.march.check_request` gives them, with what else is asked.
-    power : callable (time, s) -> (n,) float array, W, optional
-        Heat sources.
-    transits : sequence of (start, s, stop, s, crossing, s)
-        Of moving sources, see `demheat.conduction.sources.transits`; steps heed them.
-    held_centers : (n,) bool array, optional
-        Particles held at the temperature of the wall they touch.
-    accuracy : float
-        Of the temperature span.
-    integrator, step : optional
-        As in `demheat.conduction.integrators.march.integrate`.
-
-    Yields
-    ------
-    time : float, s
-    Solution
-        Its stats are those of `integrate`.
-
-    Raises
-    ------
-    ValueError
-        If a function of the scene gives anything but finite numbers, or a step is not stable.
-    RuntimeError
-        If steps or linear solves do not converge.
-    """
+    """Temperatures, wall temperatures and wall heat of a network at the asked times."""
     start, capacity = initial_at(scene, network.centers), capacities(network, scene)
     system = semi_discrete(network, scene, capacity, power=power, held_centers=held_centers, level=float(start.mean()))
     pace = pace_of(changing_loads(scene), transits, float(times[-1]), accuracy)

@@ -19,14 +19,7 @@ ROUNDING = 1e-9
 
 
 class Conductances:
-    """Those of a network at given temperatures.
-
-    Parameters
-    ----------
-    network : Network
-        At the conductivities of the materials, with areas of facets.
-    scene : Scene
-    """
+    """Those of a network at given temperatures."""
 
     def __init__(self, network, scene):
         self.network, self.depends = network, scene.dependences
@@ -49,19 +42,7 @@ class Conductances:
         self.factors = np.ones(len(link)), np.ones(len(link))
 
     def at(self, temperature, walls):
-        """The network at temperatures.
-
-        Parameters
-        ----------
-        temperature : (n,) float array, K
-            Of the particles; any number where none is known.
-        walls : (w,) float array, K
-            Of the wall facets.
-
-        Returns
-        -------
-        Network
-        """
+        """The network at temperatures."""
         network, phase = self.network, self.network.phase
         self._meet(temperature)
         conductance = np.zeros(len(network.conductance))
@@ -86,31 +67,7 @@ class Conductances:
 
 
 def solve_varying(network, scene, *, tolerance, **how):
-    """Temperatures at which every particle receives as much heat as it gives, with conductivities at these.
-
-    Parameters
-    ----------
-    network : Network
-        At the conductivities of the materials.
-    scene : Scene
-        With walls.
-    tolerance : float
-        As that of `demheat.conduction.steady.solve_steady`, of the conductivities at the solution itself.
-    **how
-        Of `demheat.conduction.steady.solve_checked`.
-
-    Returns
-    -------
-    Network
-        At the conductivities of the solution.
-    Solution
-        Its `iterations` are those of all rounds, its `residual` that with its own conductivities.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """Temperatures at which every particle receives as much heat as it gives, with conductivities at these."""
     conducting, start, total, aim, level = Conductances(network, scene), None, 0, FURTHER, level_of(scene)
     for rounds in range(1, ROUNDS + 1):
         solution = solve_checked(network, scene, tolerance=aim, start=start, **how)

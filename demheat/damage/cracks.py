@@ -190,18 +190,7 @@ def check_cracks(cracks: Sequence[Disc | Rectangle]) -> tuple:
 
 
 def warn_of_small(packing: Packing, cracks) -> None:
-    """Say which cracks are small for the particles of a packing.
-
-    Parameters
-    ----------
-    packing : Packing
-    cracks : sequence of Disc and Rectangle
-
-    Warns
-    -----
-    UserWarning
-        If a crack is so small that what it takes away is off by half or more.
-    """
+    """Say which cracks are small for the particles of a packing."""
     radius = float(packing.radii.mean())
     small = [number for number, crack in enumerate(cracks) if crack.width < SMALL * radius]
     if small:
@@ -218,11 +207,6 @@ def seamed(packing: Packing, cracks) -> Packing:
 
     As at interfaces (`demheat.packing.conforming`): pairs half a mean radius from the plane, and no other particle so
     near or so heavy that a facet of it reaches it. The outermost pairs lie outside of the rim.
-
-    Parameters
-    ----------
-    packing : Packing
-    cracks : sequence of Disc and Rectangle
     """
     radius = float(packing.radii.mean())
     pitch, found, near = PITCH * radius, [np.empty((0, 2, 3))], np.full(packing.number, np.inf)

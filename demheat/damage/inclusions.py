@@ -12,27 +12,7 @@ from demheat.scene.material import WITHIN
 
 
 def drawn(count: int, share: float, seed: int, name: str = "share") -> np.ndarray:
-    """A share of so many things, drawn at random; what a larger share draws holds what a smaller one does.
-
-    Parameters
-    ----------
-    count : int
-    share : float
-        From 0 to 1; the nearest whole number of things is taken.
-    seed : int
-        Of NumPy's default generator.
-    name : str
-        Of the share, for messages.
-
-    Returns
-    -------
-    (count,) bool array
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described.
-    """
+    """A share of so many things, drawn at random; what a larger share draws holds what a smaller one does."""
     share = finite(name, share, "a number from 0 to 1", lambda v: 0 <= v <= 1)
     order = np.random.default_rng(whole("seed", seed, "an integer >= 0", lambda v: v >= 0)).permutation(count)
     found = np.zeros(count, bool)

@@ -49,12 +49,7 @@ def without_links(network: Network, share: float, *, seed: int) -> Network:
 
 
 def pairs(network) -> tuple[np.ndarray, np.ndarray]:
-    """Places of both ends of each link, two (m / 2,) int arrays.
-
-    Parameters
-    ----------
-    network : Network
-    """
+    """Places of both ends of each link, two (m / 2,) int arrays."""
     here, there = row_numbers(network.indptr), network.indices.astype(np.int64)
     n, code = len(network.volumes), network.image.astype(np.int64)
     # Seen from its other end a link leads to the opposite image.
@@ -66,19 +61,7 @@ def pairs(network) -> tuple[np.ndarray, np.ndarray]:
 
 
 def cut(network, both, gone) -> Network:
-    """A network without the conductances of some links.
-
-    Parameters
-    ----------
-    network : Network
-    both : two (k,) int arrays
-        Places of both ends.
-    gone : (k,) bool array
-
-    Returns
-    -------
-    Network
-    """
+    """A network without the conductances of some links."""
     if not np.any(gone):
         return network
     conductance = network.conductance.copy()

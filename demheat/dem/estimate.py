@@ -29,21 +29,7 @@ PLAIN = Refinement(RATIO, 2, 1.0, 1.3, 1.0, 1.0, chance=True)
 
 
 def estimator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, answer: Callable, *, steps: float = 0.0):
-    """What tells a field of the DEM its error.
-
-    Parameters
-    ----------
-    law : Laguerre, Calibrated or Platonic
-    wanted : Particles
-    answer : callable (law, Particles) -> Field
-        Solves the scene again.
-    steps : float
-        What steps in time may have left, of the span of temperatures.
-
-    Returns
-    -------
-    callable (Field) -> Estimate
-    """
+    """What tells a field of the DEM its error."""
     if law.cells and law.interface == "harmonic":
         return partial(_by_fewer, law=law, wanted=wanted, answer=answer, steps=steps)
     return partial(_by_cells, wanted=wanted, answer=answer)

@@ -20,14 +20,7 @@ PHI = 0.64
 
 
 def unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Particles) -> float:
-    """How many unknowns a packing is expected to have with its twins; those in narrow gaps are not foreseen.
-
-    Parameters
-    ----------
-    scene : Scene
-    law : Laguerre, Calibrated or Platonic
-    wanted : Particles
-    """
+    """How many unknowns a packing is expected to have with its twins; those in narrow gaps are not foreseen."""
     number = float(wanted.particles if wanted.packing is None else wanted.packing.number)
     if not (law.conforming and scene.inclusions):
         return number
@@ -36,11 +29,5 @@ def unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Partic
 
 
 def expected(number: float) -> float:
-    """Bytes that a steady solve is expected to take at its peak, besides Python and libraries.
-
-    Parameters
-    ----------
-    number : float
-        Of unknowns.
-    """
+    """Bytes that a steady solve is expected to take at its peak, besides Python and libraries."""
     return EACH * number + ROW * min(number, ROWS)

@@ -33,27 +33,12 @@ STREAMED = ", or demheat.streamed.solve, which keeps slabs of the body on disk, 
 
 @dataclass(frozen=True, kw_only=True)
 class Particles:
-    """The packing that is asked for: given, or so many particles to be relaxed in the scene's body.
-
-    Parameters
-    ----------
-    particles : int
-    seed : int
-    packing : Packing, optional
-    replicas : int, optional
-        Along the shortest side of the box.
-    allow_few : bool
-
-    Raises
-    ------
-    ValueError
-        If an argument makes no sense, whatever the scene.
-    """
+    """The packing that is asked for: given, or so many particles to be relaxed in the scene's body."""
 
     particles: int
     seed: int
-    packing: Packing | None = None
-    replicas: int | None = None
+    packing: Packing | None = None  # Packing
+    replicas: int | None = None  # Along the shortest side of the box
     allow_few: bool = False
 
     def __post_init__(self):
@@ -68,21 +53,7 @@ class Particles:
             raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 
     def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
-        """How many replicas the packing has along each axis, (3,) int array.
-
-        Parameters
-        ----------
-        scene : Scene
-        law : Laguerre, Calibrated or Platonic
-
-        Raises
-        ------
-        ValueError
-            If the packing that is given is not of the scene's body, or there are too few particles for the replicas.
-        NotImplementedError
-            For replicas in round bodies, and between walls where facets do not bound cells; for inclusions that have no
-            conforming packing.
-        """
+        """How many replicas the packing has along each axis, (3,) int array."""
         if law.conforming:
             surfaces_of(scene)  # refuses shapes that twins do not know
         if self.packing is not None:
@@ -97,14 +68,7 @@ class Particles:
         return np.ones(3, dtype=int)
 
     def packed(self, scene: Scene, counts) -> Packing:
-        """The packing that was given, or a relaxed one in the scene's body, or replicas of one.
-
-        Parameters
-        ----------
-        scene : Scene
-        counts : (3,) int array
-            Replicas along each axis.
-        """
+        """The packing that was given, or a relaxed one in the scene's body, or replicas of one."""
         if self.packing is not None:
             return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
@@ -115,22 +79,7 @@ class Particles:
 
 
 def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic, Particles]:
-    """The law and the packing that are asked for.
-
-    Parameters
-    ----------
-    law : Laguerre, Calibrated, Platonic or the name of one
-    particles, seed : int
-    knobs : dict
-        Those of `Particles`; the others belong to a law that is given by its name.
-
-    Raises
-    ------
-    ValueError
-        If an argument makes no sense, whatever the scene.
-    TypeError
-        If nobody knows a knob.
-    """
+    """The law and the packing that are asked for."""
     for old in RENAMED.keys() & knobs.keys():
         if RENAMED[old] in knobs:
             raise ValueError(f"{old} = {knobs[old]!r} beside {RENAMED[old]}, its new name: must be given once")

@@ -26,20 +26,6 @@ def check_contrast(scene: Scene, wanted: Particles, tolerance: float, answer: Ca
     Rounding of the temperatures in what conducts well leaves heat there of about 1e-16 of the contrast, of that which
     passes. That is nothing where heat passes through what conducts well from end to end, or where its temperature is
     that of the middle: a limit of the contrast alone would refuse such scenes.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : Particles
-    tolerance : float
-        Of the equations.
-    answer : callable (Particles, tolerance, max_iterations)
-        Solves the scene, or raises Unsolved.
-
-    Raises
-    ------
-    NotImplementedError
-        If the trial does not converge.
     """
     number = wanted.particles if wanted.packing is None else len(wanted.packing.radii)
     if contrast_of(scene) < HIGH_CONTRAST or number <= FEW:

@@ -34,23 +34,7 @@ BYTES = 120
 
 
 def write(field: Field, path, *, cells: int = 64) -> None:
-    """Write a field into a file; an interrupted write leaves no file, and an old one as it was.
-
-    Parameters
-    ----------
-    field : Field
-    path : path
-        Its suffix tells the format.
-    cells : int
-        Of a .vti, along the longest side, where the field has no voxels of its own.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described.
-    NotImplementedError
-        If the field has no mesh for a .vtu.
-    """
+    """Write a field into a file; an interrupted write leaves no file, and an old one as it was."""
     check_field(field)
     path = check_target(path, mesh=getattr(field, "elements", None) is not None)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
@@ -60,21 +44,7 @@ def write(field: Field, path, *, cells: int = 64) -> None:
 
 
 def check_target(path, *, mesh: bool) -> Path:
-    """The path of a file that a field can be written to, before anything is solved.
-
-    Parameters
-    ----------
-    path : path
-    mesh : bool
-        Whether the field will have one.
-
-    Raises
-    ------
-    ValueError
-        If no field can be written there.
-    NotImplementedError
-        If a mesh is to be written that the field will not have.
-    """
+    """The path of a file that a field can be written to, before anything is solved."""
     path = checked_path(path)
     if path.suffix.lower() not in WRITERS:
         raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")

@@ -26,19 +26,7 @@ ESCAPE = re.compile(r"\\(?:u([0-9a-fA-F]{4})|U([0-9a-fA-F]{8})|(.))")
 
 
 def lines_of(text: str) -> dict[tuple, int]:
-    """Lines of all keys and members of arrays.
-
-    Parameters
-    ----------
-    text : str
-        Valid TOML.
-
-    Returns
-    -------
-    dict
-        From paths such as ("inclusions", 2, "radius") to numbers of lines, from 1; of a key that stands several times,
-        as a table and its parts do, the first.
-    """
+    """Lines of all keys and members of arrays."""
     return _Walk(text).found
 
 

@@ -20,19 +20,7 @@ MATERIAL = {
 
 
 def made_material(table: Table) -> Material:
-    """The material of a table.
-
-    Parameters
-    ----------
-    table : Table
-        `conductivity` is a number, three along x, y and z, or along these turned by `rotation_deg`, a rotation vector;
-        or a tensor, three arrays of three. `dependence` is an array of pairs of a temperature and a factor.
-
-    Raises
-    ------
-    ValueError
-        With file, line and key.
-    """
+    """The material of a table."""
     table.only(MATERIAL)
     conductivity = _conductivity(table)
     numbers = {name: table.number(name, MATERIAL[name]) for name in ("density", "heat_capacity")}

@@ -15,24 +15,13 @@ from demheat.scene import Scene
 
 
 class SceneFile(NamedTuple):
-    """What a file holds.
-
-    Attributes
-    ----------
-    path : Path
-    scene : Scene
-    methods : mapping of str to dict
-        Knobs of the methods of [solve], by their names.
-    accuracy : float or None
-    source : Source
-        For messages: `source.error(("solve", "fft", "voxels"), ": ...")`.
-    """
+    """What a file holds."""
 
     path: Path
     scene: Scene
-    methods: Mapping[str, dict]
-    accuracy: float | None
-    source: Source
+    methods: Mapping[str, dict]  # mapping of str to dict: Knobs of the methods of [solve], by their names
+    accuracy: float | None  # float or None
+    source: Source  # For messages: `source.error(("solve", "fft", "voxels"), ": ...")`
 
 
 def read(path) -> Scene:

@@ -118,23 +118,7 @@ class Placed(NamedTuple):
 
 
 def scene_of(source: Source, table: Table) -> Scene:
-    """The scene of a file.
-
-    Parameters
-    ----------
-    source : Source
-    table : Table
-        The whole file.
-
-    Returns
-    -------
-    Scene
-
-    Raises
-    ------
-    ValueError
-        With file, line and key.
-    """
+    """The scene of a file."""
     table.only(KEYS)
     materials = _materials(table)
     if "image" in table.values:

@@ -30,22 +30,12 @@ UNQUOTED = re.compile(r"\s*\w+\+")
 
 
 class Source(NamedTuple):
-    """A TOML file.
-
-    Attributes
-    ----------
-    path : Path
-    values : dict
-    lines : dict
-        See `demheat.files.lines.lines_of`.
-    scales : dict
-        Scales of temperatures found so far, and the first path that has each.
-    """
+    """A TOML file."""
 
     path: Path
     values: dict
-    lines: dict
-    scales: dict
+    lines: dict  # See `demheat.files.lines.lines_of`
+    scales: dict  # Scales of temperatures found so far, and the first path that has each
 
     def line(self, path: tuple) -> int:
         """Number of the line of a key, or of what holds it."""
@@ -54,29 +44,12 @@ class Source(NamedTuple):
         return self.lines.get(path, 1)
 
     def error(self, path: tuple, what: str) -> ValueError:
-        """The error to raise about a key.
-
-        Parameters
-        ----------
-        path : tuple of str and int
-        what : str
-            What is wrong with it, and what would be valid.
-        """
+        """The error to raise about a key."""
         return ValueError(f"{self.path}:{self.line(path)}: {spelled(path)}{what}")
 
 
 def read_source(path) -> Source:
-    """Read a TOML file.
-
-    Parameters
-    ----------
-    path : path
-
-    Raises
-    ------
-    ValueError
-        If there is none, or it is no TOML; with the line where that is known.
-    """
+    """Read a TOML file."""
     path = checked_path(path)
     text = text_of(path, LONGEST)
     try:
@@ -94,19 +67,7 @@ def read_source(path) -> Source:
 
 
 def text_of(path: Path, longest: int) -> str:
-    """Text of a regular file in UTF-8, a byte order mark taken off.
-
-    Parameters
-    ----------
-    path : Path
-    longest : int
-        Bytes.
-
-    Raises
-    ------
-    ValueError
-        If it is anything else, or longer.
-    """
+    """Text of a regular file in UTF-8, a byte order mark taken off."""
     try:
         status = path.stat()
         if not stat.S_ISREG(status.st_mode):
@@ -131,35 +92,19 @@ def text_of(path: Path, longest: int) -> str:
 
 
 def spelled(path: tuple) -> str:
-    """A path as people write it: inclusions[2].radius.
-
-    Parameters
-    ----------
-    path : tuple of str and int
-    """
+    """A path as people write it: inclusions[2].radius."""
     words = "".join(f"[{part}]" if isinstance(part, int) else f".{part}" for part in path)
     return words.removeprefix(".")
 
 
 def shown(value) -> str:
-    """A value for a message, cut if it is long; flags as TOML has them.
-
-    Parameters
-    ----------
-    value : object
-    """
+    """A value for a message, cut if it is long; flags as TOML has them."""
     text = str(value).lower() if isinstance(value, bool) else repr(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."
 
 
 def nearest(word: str, words) -> str:
-    """A suggestion for a word that is not known; empty if none is near.
-
-    Parameters
-    ----------
-    word : str
-    words : iterable of str
-    """
+    """A suggestion for a word that is not known; empty if none is near."""
     lower = {each.lower(): each for each in words}
     word = word.lower()
     found = difflib.get_close_matches(word, lower, n=1)
@@ -169,12 +114,7 @@ def nearest(word: str, words) -> str:
 
 
 def nearest_file(path: Path) -> str:
-    """A suggestion for a file that is not there: one beside it whose name before the dot is like its; or empty.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """A suggestion for a file that is not there: one beside it whose name before the dot is like its; or empty."""
     try:
         names = [each.name for each in path.parent.iterdir()]
     except OSError:

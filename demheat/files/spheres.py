@@ -28,17 +28,6 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
 
     Coordinates of a packing count from the corner of its own box, which must be that of the scene unless an `offset`
     says where it lies; those of a file without a box count from the corner of the scene.
-
-    Parameters
-    ----------
-    table : Table
-        With `file`, relative to the TOML file, and, if wanted, `unit`, `offset`, `radius_factor`, `step`, and the
-        `resistance` of all surfaces.
-    materials : mapping of str to Material
-    default : Material or None
-        Of spheres without a name of their own.
-    size : tuple of float, m
-        Of the scene.
     """
     table.only(KEYS)
     path = checked_path(table.source.path.parent / table.text("file", ...))

@@ -13,15 +13,7 @@ SAID = re.compile(r"\w+\.(?P<field>\w+)(?P<part>\[[^\]]*\])?(?: = (?:\{.*?\}|.*?
 
 
 class Table:
-    """A table of a file.
-
-    Parameters
-    ----------
-    source : Source
-    path : tuple of str and int
-        Where it stands.
-    values : dict
-    """
+    """A table of a file."""
 
     def __init__(self, source: Source, path: tuple, values: dict):
         self.source, self.path, self.values = source, path, values
@@ -29,18 +21,7 @@ class Table:
         self.keys: dict[str, str | None] = {}
 
     def key(self, name: str, quantity: Quantity = PLAIN) -> str | None:
-        """Key of the file for a name, which may end in a unit; None if there is none.
-
-        Parameters
-        ----------
-        name : str
-        quantity : Quantity
-
-        Raises
-        ------
-        ValueError
-            If there are several.
-        """
+        """Key of the file for a name, which may end in a unit; None if there is none."""
         found = [name + end for end in ("", *_ends(quantity)) if name + end in self.values]
         if len(found) > 1:
             first, *_, last = sorted(found, key=lambda each: self.source.line((*self.path, each)))
@@ -49,41 +30,19 @@ class Table:
         return self.keys[name]
 
     def needed(self, name: str, quantity: Quantity = PLAIN) -> str:
-        """Key of the file for a name that must be there.
-
-        Parameters
-        ----------
-        name : str
-        quantity : Quantity
-        """
+        """Key of the file for a name that must be there."""
         key = self.key(name, quantity)
         if key is None:
             raise self.error(None, f": {name} is missing" if self.path else f"{name} is missing")
         return key
 
     def number(self, name: str, quantity: Quantity, default=None) -> float | None:
-        """A number in SI.
-
-        Parameters
-        ----------
-        name : str
-        quantity : Quantity
-        default : float, optional
-            Ellipsis if it must be there.
-        """
+        """A number in SI."""
         key = self.needed(name, quantity) if default is ... else self.key(name, quantity)
         return default if key is None else self._converted((key,), self.values[key], name, quantity)
 
     def vector(self, name: str, quantity: Quantity, default=None) -> tuple | None:
-        """Numbers in SI as a tuple.
-
-        Parameters
-        ----------
-        name : str
-        quantity : Quantity
-        default : tuple, optional
-            Ellipsis if it must be there.
-        """
+        """Numbers in SI as a tuple."""
         key = self.needed(name, quantity) if default is ... else self.key(name, quantity)
         if key is None:
             return default
@@ -93,16 +52,7 @@ class Table:
         return tuple(self._converted((key, k), part, name, quantity) for k, part in enumerate(value))
 
     def rows(self, name: str, quantities: tuple, what: str) -> tuple | None:
-        """Rows of numbers in SI as a tuple of tuples, None if there are none.
-
-        Parameters
-        ----------
-        name : str
-        quantities : tuple of Quantity
-            Of the columns; units at the end of the key are those of the first.
-        what : str
-            For the message: what the rows must be.
-        """
+        """Rows of numbers in SI as a tuple of tuples, None if there are none."""
         key = self.key(name, quantities[0])
         if key is None:
             return None
@@ -118,16 +68,7 @@ class Table:
         return tuple(found)
 
     def text(self, name: str, default=None, *, among=None) -> str | None:
-        """A text.
-
-        Parameters
-        ----------
-        name : str
-        default : str, optional
-            Ellipsis if it must be there.
-        among : sequence of str, optional
-            What it may be.
-        """
+        """A text."""
         key = self.needed(name) if default is ... else self.key(name)
         if key is None:
             return default
@@ -140,17 +81,7 @@ class Table:
         return value
 
     def value(self, name: str, kind: type, words: str, default=None):
-        """A value of a type, such as a table or an array of them.
-
-        Parameters
-        ----------
-        name : str
-        kind : type
-        words : str
-            For the message: what it must be.
-        default : object, optional
-            Ellipsis if it must be there.
-        """
+        """A value of a type, such as a table or an array of them."""
         key = self.needed(name) if default is ... else self.key(name)
         if key is None:
             return default
@@ -160,24 +91,12 @@ class Table:
         return value
 
     def table(self, name: str, default=None) -> Table | None:
-        """A table within.
-
-        Parameters
-        ----------
-        name : str
-        default : dict, optional
-            Ellipsis if it must be there.
-        """
+        """A table within."""
         values = self.value(name, dict, f"a table, [{name}]", default)
         return None if values is None else Table(self.source, (*self.path, name), values)
 
     def tables(self, name: str) -> list[Table]:
-        """An array of tables; empty if there is none.
-
-        Parameters
-        ----------
-        name : str
-        """
+        """An array of tables; empty if there is none."""
         rows = self.value(name, list, f"an array of tables, [[{name}]]", [])
         for k, row in enumerate(rows):
             if not isinstance(row, dict):
@@ -185,12 +104,7 @@ class Table:
         return [Table(self.source, (*self.path, name, k), row) for k, row in enumerate(rows)]
 
     def only(self, names: Mapping[str, Quantity]) -> None:
-        """Raise ValueError if the table has other keys than these, with units or without.
-
-        Parameters
-        ----------
-        names : mapping of str to Quantity
-        """
+        """Raise ValueError if the table has other keys than these, with units or without."""
         known = [f"{name}{end}" for name, quantity in names.items() for end in ("", *_ends(quantity))]
         for key in self.values:
             if key not in known:
@@ -198,37 +112,19 @@ class Table:
                 raise self.error(key, f": no such key here{near}")
 
     def error(self, key, what: str) -> ValueError:
-        """The error to raise about a key, a path below the table, or (None) the table.
-
-        Parameters
-        ----------
-        key : str, tuple or None
-        what : str
-        """
+        """The error to raise about a key, a path below the table, or (None) the table."""
         below = () if key is None else key if isinstance(key, tuple) else (key,)
         return self.source.error((*self.path, *below), what)
 
     def made(self, kind, **arguments):
-        """Make an object of what was read; what it refuses is said of the key that it comes from.
-
-        Parameters
-        ----------
-        kind : callable
-        **arguments
-            None is left out.
-        """
+        """Make an object of what was read; what it refuses is said of the key that it comes from."""
         try:
             return kind(**{name: value for name, value in arguments.items() if value is not None})
         except ValueError as error:
             raise self.blamed(error) from None
 
     def blamed(self, error: ValueError) -> ValueError:
-        """An error of an object as one of the key that it comes from.
-
-        Parameters
-        ----------
-        error : ValueError
-        """
+        """An error of an object as one of the key that it comes from."""
         found = SAID.fullmatch(str(error))
         key = self.keys.get(found["field"]) if found else None
         if key is None:

@@ -32,18 +32,10 @@ NUMBER = re.compile(r"\s*([+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)"
 
 
 class Quantity(NamedTuple):
-    """What a number is of.
+    """What a number is of."""
 
-    Attributes
-    ----------
-    unit : str
-        SI unit, empty for a plain number.
-    suffixes : mapping of str to str
-        Ends of keys, and the unit each stands for.
-    """
-
-    unit: str
-    suffixes: dict[str, str]
+    unit: str  # SI unit, empty for a plain number
+    suffixes: dict[str, str]  # mapping of str to str: Ends of keys, and the unit each stands for
 
 
 PLAIN = Quantity("", {})
@@ -61,26 +53,7 @@ VELOCITY = Quantity("m/s", {"m_s": "m/s", "mm_s": "mm/s"})
 
 
 def read_quantity(text: str, quantity: Quantity) -> tuple[float, str]:
-    """A number with its unit, in SI, and the scale of a temperature.
-
-    Parameters
-    ----------
-    text : str
-        As "3 mm".
-    quantity : Quantity
-
-    Returns
-    -------
-    value : float
-        Temperatures stay in the unit they are given in.
-    scale : str
-        "K" or "degC" of a temperature, else empty.
-
-    Raises
-    ------
-    ValueError
-        With what is wrong, without the name of the key.
-    """
+    """A number with its unit, in SI, and the scale of a temperature."""
     found = NUMBER.fullmatch(text)
     if not found or not found[2].strip():
         raise ValueError(f"must be a number, or text of a number and a unit such as '3 {quantity.unit}'")
@@ -89,13 +62,7 @@ def read_quantity(text: str, quantity: Quantity) -> tuple[float, str]:
 
 
 def scaled(value: float, factor: Fraction) -> float:
-    """A number times a factor, as the decimal that it is written as: 33.3 mm are 0.0333 m to the last bit.
-
-    Parameters
-    ----------
-    value : float
-    factor : Fraction
-    """
+    """A number times a factor, as the decimal that it is written as: 33.3 mm are 0.0333 m to the last bit."""
     try:
         return float(Fraction(repr(float(value))) * factor)
     except (OverflowError, ValueError):
@@ -104,18 +71,7 @@ def scaled(value: float, factor: Fraction) -> float:
 
 
 def factor_of(unit: str, quantity: Quantity) -> tuple[Fraction, str]:
-    """How many SI units one of a unit is, and the scale of a temperature.
-
-    Parameters
-    ----------
-    unit : str
-    quantity : Quantity
-
-    Raises
-    ------
-    ValueError
-        If it is no unit of the quantity.
-    """
+    """How many SI units one of a unit is, and the scale of a temperature."""
     if quantity == TEMPERATURE:
         # Zero of one scale is not that of the other: numbers keep theirs.
         if unit in CELSIUS:

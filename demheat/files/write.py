@@ -54,19 +54,7 @@ def write(scene: Scene, path) -> None:
 
 
 def text_of_scene(scene: Scene, *, image_file: str | None = None) -> str:
-    """Text of the file of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    image_file : str, optional
-        Where the labels of its image are; without it the text has what tells them from others'.
-
-    Raises
-    ------
-    ValueError
-        As `write`.
-    """
+    """Text of the file of a scene."""
     check_scene(scene)
     names = _names(scene)
     blocks = [_head(scene, names)]

@@ -226,60 +226,22 @@ class Fixed:
 
 
 def reduced(first, second):
-    """Radius R of 1/R = 1/R_1 + 1/R_2, m; infinite radii are walls.
-
-    Parameters
-    ----------
-    first, second : (m,) float arrays, m
-    """
+    """Radius R of 1/R = 1/R_1 + 1/R_2, m; infinite radii are walls."""
     return 1.0 / (1.0 / np.asarray(first) + 1.0 / np.asarray(second))
 
 
 def resistivity(first, second):
-    """1/k_1 + 1/k_2, m K/W; infinite conductivities are walls.
-
-    Parameters
-    ----------
-    first, second : (m,) float arrays, W/(m K)
-    """
+    """1/k_1 + 1/k_2, m K/W; infinite conductivities are walls."""
     return 1.0 / np.asarray(first) + 1.0 / np.asarray(second)
 
 
 def contact_conductance(radius, resistivity):
-    """Conductance of contacts, 4 a / (1/k_1 + 1/k_2).
-
-    Parameters
-    ----------
-    radius : (m,) float array, m
-    resistivity : (m,) float array, m K/W
-        Sum of those of the two grains.
-
-    Returns
-    -------
-    (m,) float array, W/K
-    """
+    """Conductance of contacts, 4 a / (1/k_1 + 1/k_2)."""
     return 4.0 * radius / resistivity
 
 
 def gap_conductance(width, contact, disc, curvature, resistivity, medium):
-    """Conductance of the ring of medium around a contact, or between two near grains; see the module.
-
-    Parameters
-    ----------
-    width : (m,) float array, m
-        Least gap; of no matter where there is a contact.
-    contact, disc : (m,) float arrays, m
-        Inner and outer radius of the ring; none is left where the contact is as large as the disc.
-    curvature : (m,) float array, m
-        Radius R of the gap, see `reduced`.
-    resistivity : (m,) float array, m K/W
-        Sum of those of the two grains.
-    medium : float, W/(m K)
-
-    Returns
-    -------
-    (m,) float array, W/K
-    """
+    """Conductance of the ring of medium around a contact, or between two near grains; see the module."""
     inner, outer, s = np.asarray(contact, dtype=float), np.maximum(disc, contact), 0.5 / (curvature * medium)
     p = np.where(inner > 0, 0.0, np.maximum(width, 0.0)) / medium
     q = POINT * resistivity + s * RIM * inner
@@ -295,13 +257,6 @@ def gap_conductance(width, contact, disc, curvature, resistivity, medium):
 
 
 def check_conductivity(name, value) -> float:
-    """A conductivity > 0 as a float, or a ValueError.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : float, W/(m K)
-    """
+    """A conductivity > 0 as a float, or a ValueError."""
     valid = f"a finite number > 0 W/(m K), from {LEAST:g} to {MOST:g}"
     return finite(name, value, valid, lambda v: LEAST <= v <= MOST)

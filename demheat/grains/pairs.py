@@ -77,29 +77,15 @@ class Contacts(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Pairs of grains that exchange heat.
+    """Pairs of grains that exchange heat."""
 
-    Attributes
-    ----------
-    first, second : (m,) int arrays
-        Numbers of the grains.
-    image : (m,) uint8 array
-        Which periodic image of the second one, see `demheat.network.base.Facets`.
-    gap : (m,) float array, m
-        Between the surfaces; negative where spheres overlap.
-    radius : (m,) float array, m
-        Of the contact; 0 where there is a gap.
-    contact, medium : (m,) float arrays, W/K
-        Conductances of the contact, and of the medium beside it.
-    """
-
-    first: np.ndarray
-    second: np.ndarray
-    image: np.ndarray
-    gap: np.ndarray
-    radius: np.ndarray
-    contact: np.ndarray
-    medium: np.ndarray
+    first: np.ndarray  # (m,) int arrays: Numbers of the grains
+    second: np.ndarray  # (m,) int arrays: Numbers of the grains
+    image: np.ndarray  # (m,) uint8 array: Which periodic image of the second one, see `demheat.network.base.Facets`
+    gap: np.ndarray  # (m,) float array, m: Between the surfaces; negative where spheres overlap
+    radius: np.ndarray  # (m,) float array, m: Of the contact; 0 where there is a gap
+    contact: np.ndarray  # (m,) float arrays, W/K: Conductances of the contact, and of the medium beside it
+    medium: np.ndarray  # (m,) float arrays, W/K: Conductances of the contact, and of the medium beside it
 
     @property
     def conductance(self) -> np.ndarray:
@@ -136,22 +122,7 @@ class AtWalls(NamedTuple):
 
 
 def pairs_of(packing, solid, contact, gap) -> Pairs:
-    """All pairs that touch or, where there is a medium, are near each other.
-
-    Parameters
-    ----------
-    packing : Packing
-    solid : (n,) float array, W/(m K)
-    contact : Overlap, Hertz, Fixed or Contacts
-    gap : Gap or None
-
-    Raises
-    ------
-    ValueError
-        If a sphere lies in another.
-    NotImplementedError
-        If a periodic box is so small that grains meet each other twice.
-    """
+    """All pairs that touch or, where there is a medium, are near each other."""
     first, second = _candidates(packing, contact, gap)
     _, distance, image = branches_of(packing, first, second)
     radii = packing.radii[first], packing.radii[second]
@@ -173,17 +144,7 @@ def pairs_of(packing, solid, contact, gap) -> Pairs:
 
 
 def at_walls(packing, solid, contact, gap, sides) -> AtWalls:
-    """Grains that touch some walls or are near them; of contacts out of a file, by their overlap with the wall.
-
-    Parameters
-    ----------
-    packing : Packing
-    solid : (n,) float array, W/(m K)
-    contact : Overlap, Hertz, Fixed or Contacts
-    gap : Gap or None
-    sides : sequence of str
-        Names of the walls.
-    """
+    """Grains that touch some walls or are near them; of contacts out of a file, by their overlap with the wall."""
     law, found = Overlap() if isinstance(contact, Contacts) else contact, []
     for name in sides:
         distance = wall_distance(packing, name)
@@ -200,16 +161,7 @@ def at_walls(packing, solid, contact, gap, sides) -> AtWalls:
 
 
 def in_layers(packing, pairs, depth, sides) -> AtWalls:
-    """Grains whose centres lie within a depth of some walls, held at the temperature of the wall.
-
-    Parameters
-    ----------
-    packing : Packing
-    pairs : Pairs
-    depth : float, m
-    sides : sequence of str
-        Names of the walls.
-    """
+    """Grains whose centres lie within a depth of some walls, held at the temperature of the wall."""
     both = np.concatenate((pairs.first, pairs.second))
     links = np.bincount(both, np.tile(pairs.conductance, 2), minlength=packing.number)
     found = []
@@ -225,20 +177,7 @@ def in_layers(packing, pairs, depth, sides) -> AtWalls:
 
 
 def branches_of(packing, first, second):
-    """Way from the first to the nearest image of the second grain of each pair.
-
-    Parameters
-    ----------
-    packing : Packing
-    first, second : (m,) int arrays
-
-    Returns
-    -------
-    branch : (m, 3) float array, m
-    distance : (m,) float array, m
-    image : (m,) uint8 array
-        Code of the image.
-    """
+    """Way from the first to the nearest image of the second grain of each pair."""
     straight = packing.centers[second] - packing.centers[first]
     shift = np.where(packing.periodic, -np.round(straight / packing.size), 0.0)
     image = image_codes(shift)
@@ -299,13 +238,7 @@ def _check_box(packing, longest, reach):
 
 
 def checked_contacts(packing, contacts) -> Contacts:
-    """A list of contacts as arrays, or a ValueError.
-
-    Parameters
-    ----------
-    packing : Packing
-    contacts : Contacts
-    """
+    """A list of contacts as arrays, or a ValueError."""
     pair = [np.asarray(each) for each in contacts[:2]]
     for name, each in zip(("first", "second"), pair, strict=True):
         if each.dtype.kind not in "iu" or each.ndim != 1 or len(each) != len(pair[0]):
@@ -328,13 +261,7 @@ LAWS = (Overlap, Hertz, Fixed)
 
 
 def check_laws(contact, gap) -> None:
-    """Raise ValueError unless these are laws of contact and gap.
-
-    Parameters
-    ----------
-    contact : Overlap, Hertz, Fixed or Contacts
-    gap : Gap or None
-    """
+    """Raise ValueError unless these are laws of contact and gap."""
     if not isinstance(contact, (*LAWS, Contacts)):
         raise ValueError(f"contact = {contact!r}: must be Overlap(), Hertz(), Fixed(ratio=...) or a Contacts")
     if gap is not None and not isinstance(gap, Gap):

@@ -31,13 +31,7 @@ KNOBS = {name: name for name in ("particles", "seed", "replicas", "voxels", "siz
 
 
 def main(words=None) -> int:
-    """Solve what a command line says, on every rank alike; the exit status.
-
-    Parameters
-    ----------
-    words : sequence of str, optional
-        Default: those of the process.
-    """
+    """Solve what a command line says, on every rank alike; the exit status."""
     comm = None
     try:
         options = _parser().parse_args(words)

@@ -13,16 +13,7 @@ from demheat.tiles.slabs import Slabs
 
 
 def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) -> Packing:
-    """The particles and twins that lie in a slab or near it, in the box.
-
-    Parameters
-    ----------
-    scene : Scene
-    law : Laguerre
-    wanted : Particles
-    slabs : Slabs
-    comm : mpi4py.MPI.Comm
-    """
+    """The particles and twins that lie in a slab or near it, in the box."""
     counts = wanted.counts(scene, law)
     # One makes what all read.
     for turn in (0, 1):
@@ -36,22 +27,7 @@ def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) 
 
 
 def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) -> Cells:
-    """Cells of a rank's part of a packing, and their conductances.
-
-    Parameters
-    ----------
-    scene : Scene
-    law : Laguerre
-    packing : Packing
-        As `part_of` makes it.
-    slabs : Slabs
-    comm : mpi4py.MPI.Comm
-
-    Raises
-    ------
-    RuntimeError
-        If what is seen of the neighbours is too thin for a cell.
-    """
+    """Cells of a rank's part of a packing, and their conductances."""
     # Handed over and not kept.
     given = [packing]
     del packing
@@ -61,13 +37,7 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs, comm) 
 
 
 def check_unknowns(comm, own: int) -> int:
-    """The number of unknowns of all ranks, which PETSc counts in 32 bits.
-
-    Parameters
-    ----------
-    comm : mpi4py.MPI.Comm
-    own : int
-    """
+    """The number of unknowns of all ranks, which PETSc counts in 32 bits."""
     total = comm.allreduce(own)
     if total >= 2**31:
         raise ValueError(f"particles: {total} unknowns, and this PETSc counts to {2**31 - 1}; must be fewer")

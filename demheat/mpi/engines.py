@@ -6,28 +6,12 @@ from demheat import ranks
 
 
 def world():
-    """The communicator of all ranks.
-
-    Returns
-    -------
-    mpi4py.MPI.Comm
-
-    Raises
-    ------
-    ImportError
-        In one line, if MPI or PETSc is missing.
-    """
+    """The communicator of all ranks."""
     return _both()[0].COMM_WORLD
 
 
 def petsc():
-    """The module `petsc4py.PETSc`, begun.
-
-    Raises
-    ------
-    ImportError
-        In one line, if it is missing.
-    """
+    """The module `petsc4py.PETSc`, begun."""
     return _both()[1]
 
 

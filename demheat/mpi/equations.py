@@ -23,18 +23,7 @@ ROUNDS, MOST = 10, 20_000
 
 
 class Equations:
-    """The rows of a rank's own particles and what solves those of all; `free` gives its memory back.
-
-    Parameters
-    ----------
-    system : System
-        Of what the rank sees, its own particles first.
-    halo : Halo
-    options : str
-        Of PETSc, such as "-pc_type hypre".
-    petsc : module
-    comm : mpi4py.MPI.Comm
-    """
+    """The rows of a rank's own particles and what solves those of all; `free` gives its memory back."""
 
     def __init__(self, system: System, halo: Halo, options, petsc, comm):
         self.petsc, self.comm, self.own = petsc, comm, halo.own
@@ -51,16 +40,7 @@ class Equations:
         self.r, self.x = self.matrix.createVecs()
 
     def correction(self, r: np.ndarray, limit: float, most: int) -> tuple[np.ndarray, int]:
-        """What takes a residual below a limit, and the iterations that took.
-
-        Parameters
-        ----------
-        r : (own,) float array, W
-        limit : float, W
-            On its norm over all ranks.
-        most : int
-            Iterations.
-        """
+        """What takes a residual below a limit, and the iterations that took."""
         self.r.array[:] = r
         # In single precision numbers are of order one.
         self.cycle.norm = self.r.norm()
@@ -78,43 +58,14 @@ class Equations:
 
 
 def own_rows(system: System, own: int):
-    """Links and diagonal of a rank's own rows, without copies.
-
-    Parameters
-    ----------
-    system : System
-        Of what the rank sees.
-    own : int
-
-    Returns
-    -------
-    links : Links
-        Their indices lead to all that the rank sees.
-    diagonal : (own,) float array, W/K
-    """
+    """Links and diagonal of a rank's own rows, without copies."""
     network = system.network
     end = network.indptr[own]
     return Links(network.indptr[: own + 1], network.indices[:end], network.conductance[:end]), system.diagonal[:own]
 
 
 def preconditioner(links: Links, diagonal: np.ndarray, halo, below, comm):
-    """One symmetric cycle for the equations of all ranks: that of one process, whose aggregates end at the slab's ends.
-
-    Parameters
-    ----------
-    links, diagonal
-        As `own_rows` gives them.
-    halo : Halo
-    below : object
-        Its `takes(pointers, columns, values)` is given a rank's rows of the matrix of all ranks' aggregates, with the
-        columns' numbers among all; its `solve(r)` returns about what solves them, (aggregates,) float array.
-    comm : mpi4py.MPI.Comm
-
-    Returns
-    -------
-    callable (r, norm, z)
-        As `demheat.conduction.multigrid.preconditioner` has it, of a rank's own parts.
-    """
+    """One symmetric cycle for the equations of all ranks: as in one process, aggregates end at slabs' ends."""
     own, scale = len(diagonal), 1.0 / max(comm.allgather(float(diagonal.max())))
     aggregates = aggregated(links, own)
     count = len(aggregates.start) - 1
@@ -132,31 +83,7 @@ def preconditioner(links: Links, diagonal: np.ndarray, halo, below, comm):
 
 
 def solved(equations: Equations, system: System, halo: Halo, x: np.ndarray, tolerance: float):
-    """Temperatures above the level that leave no more than a part of the heat that passes.
-
-    Parameters
-    ----------
-    equations : Equations
-    system : System
-        Of what the rank sees.
-    halo : Halo
-    x : (own,) float array, K
-        To begin with.
-    tolerance : float
-        As of `demheat.conduction.steady.solve_steady`.
-
-    Returns
-    -------
-    x : (own,) float array, K
-    iterations : int
-    residual : float
-        Relative, recomputed.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual misses the tolerance.
-    """
+    """Temperatures above the level that leave no more than a part of the heat that passes."""
     total = 0
     for _ in range(ROUNDS):
         size, r, unit = _left(system, halo, x, equations)

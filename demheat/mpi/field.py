@@ -17,25 +17,7 @@ from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
 def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, **more) -> Field:
-    """The Field of a distributed solution: every rank must ask for the same at the same time.
-
-    Parameters
-    ----------
-    scene : Scene
-    cells : Cells
-    solution : Solution
-        Of all particles that the rank sees.
-    slabs : Slabs
-    comm : mpi4py.MPI.Comm
-    **more
-        Of the Field: stats, estimator.
-
-    Returns
-    -------
-    Field
-        Its `samples` gather all particles on every rank; temperatures and fluxes at points are those of the ranks in
-        whose slabs the points lie.
-    """
+    """The Field of a distributed solution: every rank must ask for the same at the same time."""
     network, own = own_of(cells, solution)
     sums = Sums(*(_sum(comm, each) for each in sums_of(scene, network, own)))
     at = cache(lambda: samplers(scene, cells.network, solution)[1:])

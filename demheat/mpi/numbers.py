@@ -10,26 +10,7 @@ from demheat.tiles.slabs import Slabs
 
 
 def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:
-    """Global numbers of the particles that a rank sees: its own in one run, of others those that their owners tell.
-
-    Parameters
-    ----------
-    network : Network
-    own : int
-        Its first particles are the rank's own.
-    slabs : Slabs
-    comm : mpi4py.MPI.Comm
-
-    Returns
-    -------
-    (n,) int32 array
-        NOBODY at particles without a cell of their own, near the edge of what is seen.
-
-    Raises
-    ------
-    RuntimeError
-        If a cell of the rank touches such a particle.
-    """
+    """Global numbers of the particles that a rank sees: its own in one run, of others those that their owners tell."""
     first = comm.scan(own) - own
     numbers = np.full(len(network.volumes), NOBODY, dtype=np.int32)
     numbers[:own] = first + np.arange(own)
@@ -47,28 +28,14 @@ def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:
 
 
 def linked(network, own: int) -> np.ndarray:
-    """Particles that a rank's own rows link to, and its own, (n,) bool array.
-
-    Parameters
-    ----------
-    network : Network
-    own : int
-    """
+    """Particles that a rank's own rows link to, and its own, (n,) bool array."""
     found = np.arange(len(network.volumes)) < own
     found[network.indices[: network.indptr[own]]] = True
     return found
 
 
 class Halo:
-    """What a rank sees of a quantity of which each rank has its own part.
-
-    Parameters
-    ----------
-    numbers : (n,) int32 array
-    own : int
-    petsc : module
-    comm : mpi4py.MPI.Comm
-    """
+    """What a rank sees of a quantity of which each rank has its own part."""
 
     def __init__(self, numbers, own, petsc, comm):
         self.own, self.known = own, np.flatnonzero(numbers[own:] != NOBODY) + own

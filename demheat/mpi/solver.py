@@ -47,35 +47,6 @@ def solve(
 
     To be called by every rank with the same arguments; what it returns, too, is to be asked by all of them at the same
     time.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box without pores; conductivities are numbers, walls do not radiate.
-    law : Laguerre, optional
-    particles, seed, tolerance, replicas, allow_few
-        As those of `demheat.solve`.
-    options : str
-        Of PETSc, such as "-pc_type hypre".
-
-    Returns
-    -------
-    Field
-        With `stats` of `demheat.solve` besides: ranks, bytes (at the peak, of all ranks), bytes_before (of Python and
-        libraries alone), and of each stage seconds of the slowest rank, CPU-seconds of all ranks and bytes at the peak
-        so far.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described; if there are more ranks than slabs; or for more particles than fit into the
-        free memory, before any heavy work.
-    NotImplementedError
-        If the scene is another.
-    ImportError
-        If MPI or PETSc is missing.
-    RuntimeError
-        If the solver does not converge.
     """
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas, allow_few=allow_few)
@@ -88,14 +59,7 @@ def solve(
 
 
 def outlook(scene: Scene, *, particles: int = 1_000_000, **_) -> str:
-    """What a solve will take on this machine, in words.
-
-    Parameters
-    ----------
-    scene : Scene
-    particles : int
-        As `solve` takes it; the scene and other knobs change nothing.
-    """
+    """What a solve will take on this machine, in words."""
     return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
 
 

@@ -115,51 +115,18 @@ def wall_normals(walls):
 
 
 def image_codes(steps):
-    """Codes of periodic images, which `image_shifts` takes back.
-
-    Parameters
-    ----------
-    steps : (m, 3) float or int array
-        Boxes along each axis, -1, 0 or 1.
-
-    Returns
-    -------
-    (m,) uint8 array
-    """
+    """Codes of periodic images, which `image_shifts` takes back."""
     return ((np.asarray(steps) + 1) @ np.array([9, 3, 1])).astype(np.uint8)
 
 
 def image_shifts(image, size):
-    """Offsets of periodic images.
-
-    Parameters
-    ----------
-    image : (m,) uint8 array
-        Codes, see `Facets`.
-    size : (3,) float array, m
-
-    Returns
-    -------
-    (m, 3) float array, m
-    """
+    """Offsets of periodic images."""
     code = np.asarray(image, dtype=np.int16)
     return np.stack([code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1], axis=1) * np.asarray(size)
 
 
 def radical_distances(square, weight, other):
-    """Distance from a site to the radical plane that parts it from another.
-
-    Parameters
-    ----------
-    square : (m,) float array, m2
-        Squared distance of the two sites.
-    weight, other : (m,) float arrays, m2
-        Weights of the two.
-
-    Returns
-    -------
-    (m,) float array, m
-    """
+    """Distance from a site to the radical plane that parts it from another."""
     return (square + weight - other) / (2.0 * np.sqrt(square))
 
 
@@ -179,34 +146,12 @@ def row_numbers(indptr):
 
 
 def branches(centers, size, indptr, indices, image):
-    """Vectors from each row's centre to the centre (image) of its neighbour.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
-    indptr, indices, image
-        Of the links, see `Facets`.
-
-    Returns
-    -------
-    (m, 3) float array, m
-    """
+    """Vectors from each row's centre to the centre (image) of its neighbour."""
     return centers[indices] + image_shifts(image, size) - np.repeat(centers, np.diff(indptr), axis=0)
 
 
 def without_links(network, still):
-    """A Network without the links of some particles, which exchange no heat.
-
-    Parameters
-    ----------
-    network : Network
-    still : (n,) bool array
-
-    Returns
-    -------
-    Network
-    """
+    """A Network without the links of some particles, which exchange no heat."""
     cut = np.repeat(still, np.diff(network.indptr))
     walls = np.where(still[network.wall_particle], 0.0, network.wall_conductance)
     # Links are symmetric: mostly those of pores conduct nothing anyway, and nothing is copied.

@@ -35,29 +35,7 @@ _NO_BULK = (
 
 
 def contact_facets(packing, law: Calibrated) -> Facets:
-    """Contact network of a packing with S = pi R_m^2, R_m the mean of two radii (C_t = 1).
-
-    Parameters
-    ----------
-    packing : Packing
-    law : Calibrated
-        Its contacts, mean of the radii, and what happens to particles with few links and at walls; hard spheres touch
-        six others on average at most, so that contacts need a gap. A wall is met within the same gap.
-
-    Returns
-    -------
-    Facets
-        Volumes are V_p over the packing fraction, so that they fill the domain. Facets divide a link by the radii. Wall
-        areas fill the wall, shared out as the squares of the radii. The rule of `wall = "surface"` is for flat walls
-        and that of a sphere; links to that of a cylinder then are as long as centres are away from it. What `sparse =
-        "drop"` takes out has neither links nor volume (see `demheat.network.laguerre.drop_empty_cells`).
-
-    Raises
-    ------
-    ValueError
-        With `wall = "surface"` for a packing without bulk or without wall contacts; as
-        `demheat.packing.neighbours.contacts`.
-    """
+    """Contact network of a packing with S = pi R_m^2, R_m the mean of two radii (C_t = 1)."""
     links = contacts(packing, coordination=law.coordination, gap=law.gap, additive=law.additive)
     facets = joined_facets(packing, links, sparse=law.sparse)
     here, there = np.repeat(packing.radii, np.diff(facets.indptr)), packing.radii[facets.indices]
@@ -66,21 +44,7 @@ def contact_facets(packing, law: Calibrated) -> Facets:
 
 
 def joined_facets(packing, links, *, sparse) -> Facets:
-    """Links and wall links of particles in contact, before their law gives them surfaces.
-
-    Parameters
-    ----------
-    packing : Packing
-    links : (indptr, indices, gap)
-        As `demheat.packing.neighbours.contacts` returns them.
-    sparse : {"nearest", "keep", "drop"}
-        As in `demheat.laws.Calibrated`.
-
-    Returns
-    -------
-    Facets
-        With areas still to be set, None, and wall links that hold the centres at the temperature of the wall.
-    """
+    """Links and wall links of particles in contact, before their law gives them surfaces."""
     indptr, indices, gap = links
     walls = _wall_contacts(packing, max(gap, LEAST_GAP))
     alive = np.ones(packing.number, dtype=bool)
@@ -104,15 +68,7 @@ def joined_facets(packing, links, *, sparse) -> Facets:
 
 
 def at_walls(packing, facets, wall) -> Facets:
-    """Facets whose wall links act in the centres of their particles, "center", or at the wall, "surface".
-
-    Parameters
-    ----------
-    packing : Packing
-    facets : Facets
-        Whose wall links hold the centres.
-    wall : {"center", "surface"}
-    """
+    """Facets whose wall links act in the centres of their particles, "center", or at the wall, "surface"."""
     return facets._replace(wall_distance=surface_distances(facets, packing)) if wall == "surface" else facets
 
 
@@ -125,21 +81,6 @@ def surface_distances(facets, packing):
     and b the branch vector, equals its value in the bulk, `LAYER` mean radii away from the walls. What links lack in
     the layer at the wall, where there are fewer of them, the wall links thus make up for. All links scale with C_t. In
     a sphere the field is T = r, the distance from its centre, and the flux the mean radial one.
-
-    Parameters
-    ----------
-    facets : Facets
-    packing : Packing
-
-    Returns
-    -------
-    (w,) float array, m
-        h / a.
-
-    Raises
-    ------
-    ValueError
-        If no bulk is left between the walls, no particle touches a wall, or the layer there lacks nothing.
     """
     distance = np.empty(len(facets.wall_side))
     for side in np.unique(facets.wall_side):
@@ -154,18 +95,7 @@ def surface_distances(facets, packing):
 
 
 def heights(packing, side):
-    """Distance of every centre from a wall.
-
-    Parameters
-    ----------
-    packing : Packing
-    side : int
-        Number of the wall in `SIDES`.
-
-    Returns
-    -------
-    (n,) float array, m
-    """
+    """Distance of every centre from a wall."""
     return wall_distance(packing, SIDES[side])
 
 

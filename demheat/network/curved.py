@@ -26,63 +26,23 @@ FEWEST_SIDES, FEWEST_FACES = 8, 20
 
 
 class RoundWall(NamedTuple):
-    """Tangent planes normal.(x - middle) = radius of a round wall.
+    """Tangent planes normal.(x - middle) = radius of a round wall."""
 
-    Attributes
-    ----------
-    normals : (m, 3) float array
-        Outward unit vectors.
-    radius : float, m
-        Distance of every plane from the middle or the axis; a little less than the radius of the body.
-    middle : (3,) float array, m
-    across : (3,) float array
-        1 on the axes across which the wall is round, else 0.
-    """
-
-    normals: np.ndarray
-    radius: float
-    middle: np.ndarray
-    across: np.ndarray
+    normals: np.ndarray  # (m, 3) float array: Outward unit vectors
+    radius: float  # m: Distance of every plane from the middle or the axis; a little less than the radius of the body
+    middle: np.ndarray  # (3,) float array, m
+    across: np.ndarray  # (3,) float array: 1 on the axes across which the wall is round, else 0
 
 
 class Tangents(NamedTuple):
-    """Planes of a round wall that lie near each of some points, as compressed rows.
+    """Planes of a round wall that lie near each of some points, as compressed rows."""
 
-    Attributes
-    ----------
-    pointers : (n + 1,) int64 array
-        Where the planes of each point begin.
-    planes : (m,) int64 array
-        Numbers of planes.
-    """
-
-    pointers: np.ndarray
-    planes: np.ndarray
+    pointers: np.ndarray  # (n + 1,) int64 array: Where the planes of each point begin
+    planes: np.ndarray  # (m,) int64 array: Numbers of planes
 
 
 def round_wall(domain, size, spacing, *, width=WIDTH):
-    """Tangent planes of a domain that enclose exactly its volume.
-
-    Parameters
-    ----------
-    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
-    size : (3,) float array, m
-        Box in which it is inscribed.
-    spacing : float, m
-        Mean spacing of the particles.
-    width : float
-        Of a facet, in spacings.
-
-    Returns
-    -------
-    RoundWall
-        Without planes for a box.
-
-    Raises
-    ------
-    ValueError
-        If the domain is not one of these.
-    """
+    """Tangent planes of a domain that enclose exactly its volume."""
     if domain not in ROUND_AXES:
         raise ValueError(f"domain = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
     axes = list(ROUND_AXES[domain])
@@ -117,15 +77,6 @@ def circumscribed_volume(normals):
 
     Its vertices are the poles of the triangles of the convex hull of the normals. Each triangle and each of its edges
     make two signed tetrahedra with corners in the middle, a tangent point, the edge's nearest point and the vertex.
-
-    Parameters
-    ----------
-    normals : (m, 3) float array
-        Unit vectors that leave no half space empty.
-
-    Returns
-    -------
-    float
     """
     a, b, c = (normals[corner] for corner in ConvexHull(normals).simplices.T)
     pole = np.cross(b - a, c - a)
@@ -140,17 +91,7 @@ def circumscribed_volume(normals):
 
 
 def round_distances(wall, points, normals):
-    """Distance from points inside a round body to its wall along outward normals of planes.
-
-    Parameters
-    ----------
-    wall : RoundWall
-    points, normals : (n, 3) float arrays, m and unit vectors
-
-    Returns
-    -------
-    (n,) float array, m
-    """
+    """Distance from points inside a round body to its wall along outward normals of planes."""
     radius = (wall.middle * wall.across).max()
     offsets = (points - wall.middle) * wall.across
     along = np.einsum("ij,ij->i", offsets, normals)
@@ -159,18 +100,7 @@ def round_distances(wall, points, normals):
 
 
 def tangents_within(wall, points, reach):
-    """The planes that touch the body within reach of each point (across the axis, for a cylinder).
-
-    Parameters
-    ----------
-    wall : RoundWall
-    points : (n, 3) float array, m
-    reach : float, m
-
-    Returns
-    -------
-    Tangents
-    """
+    """The planes that touch the body within reach of each point (across the axis, for a cylinder)."""
     counts, planes = np.zeros(len(points), dtype=np.int64), np.empty(0, dtype=np.int64)
     if len(wall.normals):
         axes = np.flatnonzero(wall.across)

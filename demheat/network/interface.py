@@ -10,27 +10,7 @@ BLOCK = 16384
 
 
 def link_conductivity(k_here, k_there, share, *, rule="harmonic"):
-    """Conductivity of links between two materials.
-
-    Parameters
-    ----------
-    k_here, k_there : (m,) float arrays, W/(m K)
-        At the two ends.
-    share : (m,) float array
-        Part of the link that lies on this side of the facet, 0 to 1; one half gives the papers' harmonic mean
-        (Haddad et al. 2021, eq. 24).
-    rule : {"harmonic", "arithmetic"}
-        Harmonic: the two parts in series, exact where the interface is the facet.
-
-    Returns
-    -------
-    (m,) float array, W/(m K)
-
-    Raises
-    ------
-    ValueError
-        If `rule` is none of these.
-    """
+    """Conductivity of links between two materials."""
     if rule not in RULES:
         raise ValueError(f"interface = {rule!r}: must be one of {', '.join(RULES)}")
     share = np.clip(share, 0.0, 1.0)
@@ -46,24 +26,6 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
     """Conductances H = k S / d of facets between particles of given phases.
 
     Where the interface has a resistance R it is in series, 1/H = d/(k S) + R/S: exact where the facet lies on it.
-
-    Parameters
-    ----------
-    packing : Packing
-    facets : Facets
-        Of its particles.
-    phase : (n,) int array
-    conductivities : (number of phases,) float array, W/(m K)
-    rule : {"harmonic", "arithmetic"}
-    cells : bool
-        Facets bound cells that fill the body.
-    resistance : callable (here, there) -> (k,) float array, m2 K/W, optional
-        Of the interfaces between phases, see `demheat.scene.resistances.between`.
-
-    Returns
-    -------
-    Network
-        Wall facets conduct k S / h with h the distance from the centre to the wall, exact for linear fields.
     """
     conductivity = conductivities[phase]
     wall = conductivity[facets.wall_particle] * facets.wall_area / facets.wall_distance

@@ -39,46 +39,12 @@ def laguerre(centers, weights, size, *, periodic=True, domain="box"):
     The facet between p and q lies at (d^2 + w_p - w_q)/(2 d) from p; with w = R^2 it is the radical plane of two
     spheres. The facet vectors of every cell sum to zero and the cells fill the body. Cells at a round wall end at
     tangent planes that enclose its exact volume (see `demheat.network.curved`); a cell may meet several of them.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-        Inside the box.
-    weights : (n,) float array, m2
-    size : (3,) float array, m
-    periodic : bool or (3,) bool array
-        Per axis; walls where not. Axes across which the domain is round are not periodic.
-    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
-
-    Returns
-    -------
-    Facets
-        Its rows are the given points; a hidden point has an empty row and no volume. A round wall is side 6.
-
-    Raises
-    ------
-    ValueError
-        If a point is not finite or outside the domain.
-    RuntimeError
-        If a cell cannot be secured (too few points in a periodic box) or the cells do not fill the domain.
     """
     return tessellated(centers, weights, size, periodic=periodic, domain=domain)[0]
 
 
 def tessellated(centers, weights, size, *, periodic=True, domain="box"):
-    """The same as `laguerre` with what the search for neighbours cost.
-
-    Parameters
-    ----------
-    centers, weights, size, periodic, domain
-        As in `laguerre`.
-
-    Returns
-    -------
-    facets : Facets
-    again : float
-        Share of the cells that were begun more than once, since the start was too narrow or the room too small.
-    """
+    """The same as `laguerre` with what the search for neighbours cost."""
     centers, weights, size, periodic = _checked(centers, weights, size, periodic)
     check_domain(domain, size, periodic)
     spacing = (domain_volume(domain, size) / len(centers)) ** (1.0 / 3.0)
@@ -96,19 +62,7 @@ def tessellated(centers, weights, size, *, periodic=True, domain="box"):
 
 
 def drop_empty_cells(packing, facets):
-    """Leave out the points that have no cell.
-
-    Parameters
-    ----------
-    packing : Packing
-    facets : Facets
-        Of this packing.
-
-    Returns
-    -------
-    packing : Packing
-    facets : Facets
-    """
+    """Leave out the points that have no cell."""
     seen = facets.volumes > 0
     if seen.all():
         return packing, facets
@@ -154,21 +108,7 @@ def _check_round(centers, wall, domain):
 
 
 def filed(centers, weights, size, periodic, spacing):
-    """The sites in grids, one for each level of weight.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-    weights : (n,) float array, m2
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    spacing : float, m
-        Mean spacing of the sites.
-
-    Returns
-    -------
-    Sites
-    """
+    """The sites in grids, one for each level of weight."""
     large = np.sqrt(weights - weights.min()) / (FIRST * spacing)
     level = np.ceil(np.log(np.maximum(large, 1.0)) / np.log(FACTOR)).astype(np.int8)
     np.minimum(level, MAX_LEVELS - 1, out=level)

@@ -30,17 +30,6 @@ def solid_face(edges, meeting):
 
     Half the dihedral angle t has sin t = cos(pi/meeting) / sin(pi/edges); a face that touches the sphere has the
     inscribed circle of radius cot t.
-
-    Parameters
-    ----------
-    edges, meeting : int
-        Edges of a face; faces that meet at a vertex.
-
-    Returns
-    -------
-    faces : int
-    area : float
-        In units of the squared radius of the inscribed sphere.
     """
     faces = 4 * meeting // (4 - (edges - 2) * (meeting - 2))
     half = math.asin(math.cos(math.pi / meeting) / math.sin(math.pi / edges))
@@ -48,18 +37,7 @@ def solid_face(edges, meeting):
 
 
 def crystal_packing(sites):
-    """Contacts of each sphere of a crystal whose spheres touch, and its packing fraction.
-
-    Parameters
-    ----------
-    sites : sequence of (3,) sequences of float
-        In the cubic cell, in units of its edge; all alike.
-
-    Returns
-    -------
-    neighbours : int
-    fraction : float
-    """
+    """Contacts of each sphere of a crystal whose spheres touch, and its packing fraction."""
     cells = np.array(list(product((-1, 0, 1), repeat=3)))
     apart = np.linalg.norm((np.array(sites)[None] + cells[:, None]).reshape(-1, 3) - sites[0], axis=1)
     nearest = apart[apart > 0].min()
@@ -78,19 +56,6 @@ def surface_factors(neighbours):
     The face of the regular polyhedron with n faces around the unit sphere; linear between those that there are, and
     along the first and the last of these lines beyond 4 and 20 (Terreros et al. 2013, table 1). The last line reaches
     zero between 29 and 30, where the packing fraction passes one: more neighbours are refused.
-
-    Parameters
-    ----------
-    neighbours : (n,) int array
-
-    Returns
-    -------
-    (n,) float array
-
-    Raises
-    ------
-    ValueError
-        If a number is negative or the surface would be.
     """
     neighbours = _checked(neighbours)
     return _lines(neighbours, *SURFACES)
@@ -101,19 +66,6 @@ def fraction_factors(neighbours):
 
     That of the crystal with n contacts, 0 without any; linear between, and along the last line beyond 12 (Terreros et
     al. 2013, table 1).
-
-    Parameters
-    ----------
-    neighbours : (n,) int array
-
-    Returns
-    -------
-    (n,) float array
-
-    Raises
-    ------
-    ValueError
-        As `surface_factors`.
     """
     return _lines(_checked(neighbours), *FRACTIONS)
 
@@ -139,25 +91,7 @@ def _lines(x, knots, values):
 
 
 def platonic_facets(packing, law: Platonic) -> Facets:
-    """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p neighbours of a particle.
-
-    Parameters
-    ----------
-    packing : Packing
-    law : Platonic
-        Its contacts, and what happens to particles with few links and at walls.
-
-    Returns
-    -------
-    Facets
-        Volumes carry the heat capacity: V_p / f(n_p), see `carrying_volumes`. They fill the box only by chance, so that
-        mass is not conserved. A particle without any neighbour has neither links nor volume.
-
-    Raises
-    ------
-    ValueError
-        If a particle has more than 29 neighbours; as `demheat.packing.neighbours.contacts`.
-    """
+    """Contact network of a packing with S_pq = sqrt(S_p S_q), S_p = s(n_p) R_p^2, for n_p neighbours of a particle."""
     links = contacts(packing, coordination=law.coordination, gap=law.gap)
     facets = joined_facets(packing, links, sparse=law.sparse)
     # What is taken out has no volume there.
@@ -173,34 +107,12 @@ def count_neighbours(packing, indptr, gap=0.0):
 
     The paper does not say whether a wall is one. With it the simple cubic crystal of the paper's section 3 is the
     finite-difference stencil up to its faces; without it particles there would get larger surfaces and volumes.
-
-    Parameters
-    ----------
-    packing : Packing
-    indptr : (n + 1,) int array
-        Row pointers of the links.
-    gap : float
-        As a part of the radius; at least 0.001.
-
-    Returns
-    -------
-    (n,) int array
     """
     reach = packing.radii * (1.0 + max(gap, LEAST_GAP))
     return np.diff(indptr) + sum(heights(packing, side) <= reach for side in walls_of(packing))
 
 
 def carrying_volumes(radii, neighbours):
-    """Volume whose heat a particle carries, V_p / f(n_p); none without neighbours.
-
-    Parameters
-    ----------
-    radii : (n,) float array, m
-    neighbours : (n,) int array
-
-    Returns
-    -------
-    (n,) float array, m3
-    """
+    """Volume whose heat a particle carries, V_p / f(n_p); none without neighbours."""
     spheres = 4 / 3 * np.pi * radii**3
     return np.divide(spheres, fraction_factors(neighbours), out=np.zeros(len(radii)), where=neighbours > 0)

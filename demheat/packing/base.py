@@ -66,24 +66,7 @@ class Packing(NamedTuple):
 
 
 def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: str = "box") -> Packing:
-    """Check, cast and sort the arrays of a packing.
-
-    Parameters
-    ----------
-    centers : (n, 3) array_like, m
-        Wrapped into the box on periodic axes; must lie inside it on walled ones.
-    radii : (n,) array_like, m
-    size : (3,) array_like, m
-    periodic : bool or (3,) array_like of bool
-    provenance : dict
-    domain : str
-        As in `Packing`; centres must lie inside it.
-
-    Raises
-    ------
-    ValueError
-        If a shape, a sign or a value is not as described.
-    """
+    """Check, cast and sort the arrays of a packing."""
     size, periodic = check_box(size, periodic)
     check_domain(domain, size, periodic)
     centers = np.array(reals("centers", centers, "(n, 3) finite numbers, n > 0"))
@@ -110,23 +93,7 @@ def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: st
 
 
 def check_box(size, periodic):
-    """Cast the sides and the periodicity of a box to arrays.
-
-    Parameters
-    ----------
-    size : (3,) sequence of float, m
-    periodic : bool or (3,) sequence of bool
-
-    Returns
-    -------
-    size : (3,) float array, m
-    periodic : (3,) bool array
-
-    Raises
-    ------
-    ValueError
-        If they are not as described, or a side is not > 0.
-    """
+    """Cast the sides and the periodicity of a box to arrays."""
     valid = f"three finite lengths > 0, {MODERATE}"
     sides = np.array(reals("size", size, valid))
     odd = sides.shape != (3,) or not np.all(np.isfinite(sides)) or np.any(sides <= 0) or not all(map(moderate, sides))
@@ -139,14 +106,7 @@ def check_box(size, periodic):
 
 
 def check_domain(domain, size, periodic):
-    """Raise ValueError unless the domain is known, and its box square and without periods across the round axes.
-
-    Parameters
-    ----------
-    domain : str
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    """
+    """Raise ValueError unless the domain is known, and its box square and without periods across the round axes."""
     check_name("domain", domain)
     axes = list(ROUND_AXES[domain])
     if axes and (np.ptp(size[axes]) > 0 or np.any(periodic[axes])):
@@ -157,27 +117,14 @@ def check_domain(domain, size, periodic):
 
 
 def wrap(centers, size, periodic):
-    """Centres moved into 0 <= x < size on the periodic axes, (n, 3) float array, m.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    """
+    """Centres moved into 0 <= x < size on the periodic axes, (n, 3) float array, m."""
     wrapped = centers - np.where(periodic, np.floor(centers / size) * size, 0.0)
     # A tiny negative x wraps to exactly `size` by rounding: that is 0.
     return np.where(periodic & (wrapped >= size), 0.0, wrapped)
 
 
 def morton_order(centers, size):
-    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
-    """
+    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps."""
     steps = np.clip(centers / np.max(size), 0.0, 1.0) * ((1 << MORTON_BITS) - 1)
     x, y, z = (_spread_bits(column) for column in steps.astype(np.uint64).T)
     return np.argsort(x | (y << np.uint64(1)) | (z << np.uint64(2)), kind="stable")

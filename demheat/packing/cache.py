@@ -30,15 +30,7 @@ def relaxed(
     folder: str | os.PathLike | None = None,
     **knobs,
 ) -> Packing:
-    """`relax` with a memory: boxes of one shape share one packing, scaled.
-
-    Parameters
-    ----------
-    number, size, phi, radii, periodic, seed, knobs
-        As in `demheat.packing.relax.relax`.
-    folder : path, optional
-        Default `cache_folder()`.
-    """
+    """`relax` with a memory: boxes of one shape share one packing, scaled."""
     request = {"number": number, "phi": phi, "seed": seed} | knobs
     return _of_shape(relax, RELAX, request, size, radii, periodic, folder)
 
@@ -53,15 +45,7 @@ def grown(
     folder: str | os.PathLike | None = None,
     **knobs,
 ) -> Packing:
-    """`lsa` with a memory: boxes of one shape share one packing, scaled.
-
-    Parameters
-    ----------
-    number, size, radii, periodic, seed, knobs
-        As in `demheat.packing.lsa.lsa`, without `start`.
-    folder : path, optional
-        Default `cache_folder()`.
-    """
+    """`lsa` with a memory: boxes of one shape share one packing, scaled."""
     if "start" in knobs:
         raise ValueError("start: must not be given here; `lsa` takes it, and `cached` keeps what it makes")
     request = {"number": number, "seed": seed} | knobs
@@ -78,21 +62,7 @@ def replicated(
     folder: str | os.PathLike | None = None,
     keep: Callable | None = None,
 ) -> Packing:
-    """Replicas of one relaxed packing, which is made once; between walls for tessellations only.
-
-    Parameters
-    ----------
-    number : int
-        Rounded so that every replica has as many.
-    counts : (3,) sequence of int
-        Replicas along each axis, see `demheat.packing.domain.replica_counts`.
-    size, seed, folder
-        As in `relaxed`.
-    periodic : bool
-        If not, the replicas' outer particles are drawn off the walls, see `demheat.packing.domain.walled`.
-    keep : callable (n, 3) float array, m -> (n,) bool array, optional
-        Which centres are kept, before those at walls are drawn in: a part of the packing, without memory for the rest.
-    """
+    """Replicas of one relaxed packing, which is made once; between walls for tessellations only."""
     sides, counts = np.array(size, dtype=float), np.array(counts)
     one = replica(number, counts, size=sides, seed=seed, folder=folder)
     packing = replicate(one, counts, keep=keep)
@@ -103,13 +73,7 @@ def replicated(
 
 
 def replica(number, counts, *, size, seed=0, folder=None) -> Packing:
-    """The packing that `replicated` repeats.
-
-    Parameters
-    ----------
-    number, counts, size, seed, folder
-        As in `replicated`.
-    """
+    """The packing that `replicated` repeats."""
     counts = np.array(counts)
     sides = np.array(size, dtype=float) / counts
     return relaxed(round(number / int(counts.prod())), size=sides, seed=seed, folder=folder)

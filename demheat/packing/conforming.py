@@ -64,35 +64,7 @@ class Part(NamedTuple):
 def conform(
     packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float = GAP_SPACING, part: Part | None = None
 ) -> Packing:
-    """Replace the particles near every interface of a scene by mirrored twins.
-
-    Parameters
-    ----------
-    packing : Packing
-        Of the scene's box.
-    scene : Scene
-    seed : int
-        Turns the point pattern of each sphere.
-    gap_spacing : float
-        See `demheat.Laguerre`.
-    part : Part, optional
-        The packing is but a part, and gets the twins there that the whole one would have.
-
-    Returns
-    -------
-    Packing
-        Radii are square roots of the radical weights (up to a constant added to all). Twins stand closer in narrow
-        gaps. Where two interfaces are nearer to each other than a fifth of a mean radius, or an interface to a wall
-        than a tenth, twins do not fit and facets there cross the interface; provenance["pairs_left_out"] counts them,
-        "twins" those that do, "even_twins" those that wide gaps would have asked for.
-
-    Raises
-    ------
-    ValueError
-        If the packing is so loose, or its radii so unequal, that there would be over 300 twins for each particle.
-    NotImplementedError
-        If there is an inclusion of a shape whose surface is not known; see `demheat.packing.interfaces.surfaces`.
-    """
+    """Replace the particles near every interface of a scene by mirrored twins."""
     check_packing(packing)
     check_scene(scene)
     if not scene.inclusions:
@@ -171,11 +143,6 @@ def margin(radius: float) -> float:
     at least D^2 - w; t is at most COVER spacings. So t^2 less EXCESS R^2 is enough; with EXCESS R^2 more instead cells
     of twins are better centred: on seven dispersions not used to find that (a fraction of .15 to .5, contrasts .05 to
     100, radii in a ratio of 1 and 4, 200 particles a sphere) errors of .31 to 1.53 % became .04 to .81 %, all smaller.
-
-    Parameters
-    ----------
-    radius : float, m
-        Mean one of the packing.
     """
     return ((COVER * SPACING) ** 2 + EXCESS) * radius**2
 

@@ -46,23 +46,10 @@ class Placing:
     """How the spheres of a dispersion find their places.
 
     D below is the diameter of the sphere of mean volume.
-
-    Parameters
-    ----------
-    gap : float
-        Least distance of two surfaces, and of a surface and a wall, in units of D.
-    method : {"lsa", "rsa"}
-        Lubachevsky-Stillinger, or random sequential addition (largest spheres first).
-    seed : int
-
-    Raises
-    ------
-    ValueError
-        If one is not as described.
     """
 
-    gap: float = 0.02
-    method: str = "lsa"
+    gap: float = 0.02  # Least distance of two surfaces, and of a surface and a wall, in units of D
+    method: str = "lsa"  # {"lsa", "rsa"}: Lubachevsky-Stillinger, or random sequential addition (largest spheres first)
     seed: int = 0
 
     def __post_init__(self):

@@ -178,21 +178,7 @@ def _kept(packing, cells, keep):
 
 
 def replica_counts(number: int, size: Sequence[float], replicas: int | None = None) -> np.ndarray:
-    """How often a packing of so many particles repeats a smaller one along each axis, (3,) int array.
-
-    Parameters
-    ----------
-    number : int
-    size : (3,) sequence of float, m
-    replicas : int, optional
-        Along the shortest side, and along the others what makes them nearest to cubes. By default 1 up to `UNREPEATED`
-        particles, and beyond as many as leave replicas of `REPLICA` particles or fewer.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, or `replicas` leaves less than `LEAST_REPLICA` particles to a replica.
-    """
+    """How often a packing of so many particles repeats a smaller one along each axis, (3,) int array."""
     if not isinstance(number, int | np.integer) or isinstance(number, bool) or number < 1:
         raise ValueError(f"number = {number!r}: must be an integer >= 1")
     sides, _ = check_box(size, True)
@@ -218,12 +204,6 @@ def walled(packing: Packing, mean: float | None = None) -> Packing:
     Coordinates within `DRAWN[1]` mean radii of a face are squeezed towards the inside so that no centre is nearer to it
     than `DRAWN[0]`: cells at the wall are no slivers. Particles there overlap, and some reach beyond the walls: this
     serves tessellations, not laws of contacts.
-
-    Parameters
-    ----------
-    packing : Packing
-    mean : float, m, optional
-        Mean radius; default the packing's own.
     """
     check_packing(packing)
     centers, mean = packing.centers.copy(), packing.radii.mean() if mean is None else mean

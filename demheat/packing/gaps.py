@@ -7,19 +7,7 @@ from demheat.packing.spheres import Spheres
 
 
 class Interfaces:
-    """All surfaces of a scene, numbered: the spheres, asked all at once, before the others, asked one by one.
-
-    Parameters
-    ----------
-    scene : Scene
-    reach : float, m
-        Gaps between spheres, or to a wall, that are wider than this may count as infinite.
-
-    Raises
-    ------
-    NotImplementedError
-        If there is an inclusion of a shape whose surface is not known; see `demheat.packing.interfaces.surfaces`.
-    """
+    """All surfaces of a scene, numbered: the spheres, asked all at once, before the others, asked one by one."""
 
     def __init__(self, scene, reach):
         found = surfaces_of(scene)
@@ -33,14 +21,7 @@ class Interfaces:
         return len(self.spheres) + len(self.others)
 
     def gap(self, points, own=None):
-        """Distance of points to the nearest surface, periodic images included, (n,) float array, m.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        own : (n,) int array, optional
-            Number of the surface that a point belongs to, of which only the images count.
-        """
+        """Distance of points to the nearest surface, periodic images included, (n,) float array, m."""
         own = np.full(len(points), -1) if own is None else own
         gap = self.spheres.gap(points, own)
         for number, other in enumerate(self.others, start=len(self.spheres)):
@@ -53,71 +34,29 @@ class Interfaces:
         return gap
 
     def depth(self, own):
-        """How far inwards of surfaces nothing is in the way, (n,) float array, m.
-
-        Parameters
-        ----------
-        own : (n,) int array
-        """
+        """How far inwards of surfaces nothing is in the way, (n,) float array, m."""
         depths = np.append(self.spheres.radii, [other.depth for other in self.others])
         return depths[own]
 
     def widest_spacing(self, own):
-        """Spacing at which an even pattern on each surface has the fewest points that it may have, (n,) float array, m.
-
-        Parameters
-        ----------
-        own : (n,) int array
-        """
+        """Spacing at which an even pattern on each surface has the fewest points that it may have, (n,), m."""
         area = 4 * np.pi * self.spheres.radii**2
         widest = np.append(np.sqrt(area / (np.sqrt(0.75) * FEWEST)), np.full(len(self.others), np.inf))
         return widest[own]
 
     def touched(self, points, normals, own):
-        """The points moved onto the facets of the cells of twins, see `SphereSurface.touched`.
-
-        Parameters
-        ----------
-        points, normals : (n, 3) float arrays, m and 1
-        own : (n,) int array
-            Ascending; of spheres, or of one other surface.
-
-        Returns
-        -------
-        (n, 3) float array, m
-        """
+        """The points moved onto the facets of the cells of twins, see `SphereSurface.touched`."""
         if len(own) and own[0] >= len(self.spheres):
             return self.others[own[0] - len(self.spheres)].touched(points, normals)
         return self.spheres.touched(points, normals, own)
 
     def width(self, points, normals, own):
-        """Width of the gap to the nearest other surface, or to the mirror image in a wall that faces this one.
-
-        Parameters
-        ----------
-        points, normals : (n, 3) float arrays, m and 1
-        own : (n,) int array
-
-        Returns
-        -------
-        (n,) float array, m
-        """
+        """Width of the gap to the nearest other surface, or to the mirror image in a wall that faces this one."""
         # A wall that cuts the interface, rather than faces it, leaves no gap.
         return np.minimum(self.gap(points, own), 2.0 * self.way_to_wall(points, normals, facing=0.9))
 
     def way_to_wall(self, points, normals, *, facing=0.0):
-        """Distance along the normal, either way, to the nearest wall whose own normal is that close to it (cosine).
-
-        Parameters
-        ----------
-        points, normals : (n, 3) float arrays, m and 1
-        facing : float
-
-        Returns
-        -------
-        (n,) float array, m
-            Infinite beyond the reach.
-        """
+        """Distance along the normal, either way, to the nearest wall whose own normal is that close to it (cosine)."""
         way = np.full(len(points), np.inf)
         if self.scene.periodic:
             return way

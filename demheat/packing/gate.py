@@ -19,18 +19,6 @@ def check_packing(packing, name="packing") -> None:
 
     Of `demheat.packing`, every function that takes a packing asks this first. Linear in the number of particles: some
     10 ns for each.
-
-    Parameters
-    ----------
-    packing : Packing
-    name : str
-        Of the argument, for the message.
-
-    Raises
-    ------
-    ValueError
-        If it is no Packing, an array has another shape or type, a number is not finite, a radius is not > 0, or a
-        centre lies outside.
     """
     if not isinstance(packing, Packing):
         raise ValueError(f"{name} = {packing!r}: must be a Packing")

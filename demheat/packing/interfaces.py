@@ -122,13 +122,7 @@ class PlaneSurface(NamedTuple):
         return np.zeros(3), np.inf
 
     def pattern(self, spacing, rng):
-        """Touch points on a jittered triangular pattern that fits the box, and normals, both (k, 3) float arrays.
-
-        Parameters
-        ----------
-        spacing : float, m
-        rng : numpy Generator
-        """
+        """Touch points on a jittered triangular pattern that fits the box, and normals, both (k, 3) float arrays."""
         size = self.scene.size
         u, v = (k for k in range(3) if k != self.axis)
         columns = max(4, round(size[u] / spacing))
@@ -146,23 +140,11 @@ class PlaneSurface(NamedTuple):
         return points, normals
 
     def touched(self, points, normals):
-        """The points themselves: a plane is its own tangent.
-
-        Parameters
-        ----------
-        points, normals : (k, 3) float arrays, m and 1
-        """
+        """The points themselves: a plane is its own tangent."""
         return points
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the plane, its periodic images included, (n,) float array, m.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        skip_self : bool
-            The points are the plane's own: only its images count.
-        """
+        """Distance of points to the plane, its periodic images included, (n,) float array, m."""
         if skip_self:
             return np.full(len(points), np.inf)
         offset = points[:, self.axis] - self.position
@@ -241,13 +223,7 @@ def _(shape: HalfSpace, scene):
 
 
 def surfaces_of(scene: Scene) -> list:
-    """Every surface of a scene's inclusions, and after them every plane between its layers, once each.
-
-    Raises
-    ------
-    NotImplementedError
-        If there is an inclusion of unknown shape.
-    """
+    """Every surface of a scene's inclusions, and after them every plane between its layers, once each."""
     found = [surface for shape in scene.inclusions if not shape.flat for surface in surfaces(shape, scene)]
     planes = [plane for shape in scene.inclusions if shape.flat for plane in surfaces(shape, scene)]
     return found + _once(sorted(planes, key=lambda plane: (plane.axis, plane.position)), scene)
@@ -267,13 +243,7 @@ def _once(planes, scene):
 
 
 def pattern_count(radius, spacing):
-    """Number of points of an even pattern on spheres, (m,) int array.
-
-    Parameters
-    ----------
-    radius : (m,) float array or float, m
-    spacing : float, m
-    """
+    """Number of points of an even pattern on spheres, (m,) int array."""
     return np.maximum(FEWEST, np.ceil(4 * np.pi * np.square(radius) / (np.sqrt(0.75) * spacing**2))).astype(np.int64)
 
 
@@ -291,12 +261,6 @@ def inscribed_radius(normals, *, counted=None):
 
     The polyhedron {x : n.x <= 1 for all n} has the volume of the mean of 1/cos^3 of the angle from a direction to
     the nearest normal; the mean is taken over 40 directions per normal, or those of them that are counted.
-
-    Parameters
-    ----------
-    normals : (k, 3) float array
-    counted : callable (n, 3) float array -> (n,) bool array, optional
-        Which directions count.
     """
     directions = fibonacci_sphere(40 * len(normals) + 7)
     if counted is not None:

@@ -42,22 +42,7 @@ def code_hash(*modules: str) -> str:
 
 
 def cached(make: Callable[[], Packing], key: dict, *, folder=None) -> Packing:
-    """Return the packing stored under `key`, or make and store it.
-
-    Parameters
-    ----------
-    make : callable () -> Packing
-        Its provenance must survive JSON.
-    key : dict
-        Everything the packing depends on, code included (see `code_hash`); only what JSON can hold.
-    folder : path, optional
-        Default `cache_folder()`. If it cannot be written, a warning says so and the packing is returned all the same.
-
-    Returns
-    -------
-    Packing
-        provenance["cached"] says whether it came from the folder.
-    """
+    """Return the packing stored under `key`, or make and store it."""
     text = json.dumps({"format": FORMAT} | dict(key), sort_keys=True, default=_plain)
     try:
         folder = Path(folder or cache_folder())

@@ -100,14 +100,7 @@ class Growth:
         return max((stage for stage in self.growth if stage[0] <= reached), default=self.growth[0])[1]
 
     def check_length(self, number: int, begun: float) -> None:
-        """Raise ValueError if spheres are estimated to collide more often than `most`.
-
-        Parameters
-        ----------
-        number : int
-        begun : float
-            Their packing fraction before they grow.
-        """
+        """Raise ValueError if spheres are estimated to collide more often than `most`."""
         reach = JAMMED if self.pressure is None else self.pressure
         if self.phi is not None:  # Carnahan and Starling, J. Chem. Phys. 51 (1969) 635
             reach = min(reach, (1 + self.phi + self.phi**2 - cubed(self.phi)) / cubed(1 - self.phi))

@@ -89,25 +89,7 @@ class Motion:
         return 4 / 3 * math.pi * float(np.sum(cubed(self.radii))) / domain_volume(self.domain, self.box)
 
     def run(self, rate, phi) -> bool:
-        """Move on with one list of neighbours.
-
-        Parameters
-        ----------
-        rate : float
-            Growth rate of the mean diameter over the thermal velocity.
-        phi : float or None
-            Packing fraction at which to stop.
-
-        Returns
-        -------
-        bool
-            Whether the window has ended.
-
-        Raises
-        ------
-        RuntimeError
-            If events go on without collisions.
-        """
+        """Move on with one list of neighbours."""
         n = len(self.spheres)
         indptr, indices = near_rows(
             self.points, self.box, self.periodic, scale=1.0 + self.room, skin=self.skin, guess=self.row
@@ -135,15 +117,7 @@ class Motion:
         return why == kernels.COUNTED
 
     def bounds(self, grow, last) -> kernels.Bounds:
-        """What holds for a run.
-
-        Parameters
-        ----------
-        grow : float
-            Growth rate of the radii over the radii now.
-        last : float
-            Time from now at which to stop.
-        """
+        """What holds for a run."""
         across = np.zeros(3)
         across[list(ROUND_AXES[self.domain])] = 1.0
         period = np.where(self.periodic, self.box, 0.0)
@@ -193,20 +167,7 @@ class Motion:
 
 
 def tightest(points, size, periodic, domain):
-    """Smallest distance over contact distance of any pair, or sphere and wall, that overlaps; inf if none does.
-
-    Parameters
-    ----------
-    points : (n, 4) float array
-        Centres, inside the box where it is not periodic, and radii.
-    size : (3,) float array
-    periodic : (3,) bool array
-    domain : str
-
-    Returns
-    -------
-    float
-    """
+    """Smallest distance over contact distance of any pair, or sphere and wall, that overlaps; inf if none does."""
     indptr, indices = near_rows(points, size, periodic)
     rows = np.repeat(np.arange(len(points)), np.diff(indptr))
     offsets = points[indices, :3] - points[rows, :3]

@@ -26,25 +26,7 @@ FIRST_GAP = 0.12
 
 
 def neighbours(packing: Packing, *, scale: float = 1.0, skin: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
-    """List all pairs closer than scale (r_i + r_j) + skin, nearest periodic image.
-
-    Parameters
-    ----------
-    packing : Packing
-    scale : float
-    skin : float, m
-
-    Returns
-    -------
-    indptr : (n + 1,) int64 array
-    indices : (nnz,) uint32 array
-        Each pair twice (i in the row of j and j in the row of i), rows ascending.
-
-    Raises
-    ------
-    ValueError
-        If the packing is not what it should be, or scale or skin is negative or not finite.
-    """
+    """List all pairs closer than scale (r_i + r_j) + skin, nearest periodic image."""
     check_packing(packing)
     for name, value in (("scale", scale), ("skin", skin)):
         finite(name, value, "a finite number >= 0", lambda v: v >= 0)
@@ -126,17 +108,7 @@ def contacts(
 
 
 def as_graph(indptr, indices):
-    """The network as a SciPy matrix of ones, for its graph routines.
-
-    Parameters
-    ----------
-    indptr : (n + 1,) int array
-    indices : (nnz,) int array
-
-    Returns
-    -------
-    (n, n) scipy.sparse.csr_matrix of int8
-    """
+    """The network as a SciPy matrix of ones, for its graph routines."""
     n = len(indptr) - 1
     return sparse.csr_matrix((np.ones(len(indices), np.int8), indices.astype(np.int32), indptr), shape=(n, n))
 
@@ -164,24 +136,7 @@ def _ratios(packing, indptr, indices):
 
 
 def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
-    """Unsorted rows of near neighbours; the engine of `neighbours` and of the relaxation.
-
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Centre (anywhere on periodic axes) and radius; rows near each other in memory should be near in space.
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    scale : float
-    skin : float, m
-    guess : float
-        Expected mean length of a row; a wrong guess costs a second search, never a wrong list.
-
-    Returns
-    -------
-    indptr : (n + 1,) int64 array
-    indices : (nnz,) uint32 array
-    """
+    """Unsorted rows of near neighbours; the engine of `neighbours` and of the relaxation."""
     points = wrapped(points, size, periodic)
     reach = kernels.Reach(float(scale), float(skin))
     grid = build_grid(points, size, periodic, reach)
@@ -205,34 +160,13 @@ def near_rows(points, size, periodic, *, scale=1.0, skin=0.0, guess=16.0):
 
 
 def wrapped(points, size, periodic):
-    """The same centres and radii with the centres in 0 <= x < size on periodic axes, rows whole in memory.
-
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-    size : (3,) float array, m
-    periodic : (3,) bool array
-
-    Returns
-    -------
-    (n, 4) float array, m
-    """
+    """The same centres and radii with the centres in 0 <= x < size on periodic axes, rows whole in memory."""
     # Columns of a slice come back column by column: kernels would be compiled a second time for such.
     return np.ascontiguousarray(np.column_stack((wrap(points[:, :3], size, periodic), points[:, kernels.RADIUS])))
 
 
 def build_grid(points, size, periodic, reach) -> kernels.Grid:
-    """File points under the cells of one grid per size level.
-
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Wrapped centre and radius.
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    reach : kernels.Reach
-        What will be looked for: cells need not be much smaller.
-    """
+    """File points under the cells of one grid per size level."""
     radii = points[:, kernels.RADIUS]
     # Exact, by the exponent of 2: logarithms that processors round otherwise would file spheres otherwise.
     raw = np.minimum((np.frexp(radii.max() / radii)[1].astype(np.int64) - 1) // DOUBLINGS, MAX_LEVELS - 1)

@@ -29,32 +29,7 @@ MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
 
 def patterns(interfaces, radius, seed, tally, gap_spacing):
-    """Touch points on all surfaces of a scene, chunk by chunk.
-
-    Parameters
-    ----------
-    interfaces : Interfaces
-    radius : float, m
-        Mean radius of the packing.
-    seed : int
-        Turns the pattern of each sphere.
-    tally : Tally
-        Of this radius.
-    gap_spacing : float
-        See `demheat.Laguerre`.
-
-    Yields
-    ------
-    points, normals : (k, 3) float arrays, m and 1
-        In the box, where it has walls.
-    own : (k,) int array
-        Numbers of their surfaces, ascending.
-
-    Raises
-    ------
-    ValueError
-        If more twins are to be expected than fit into memory, before they are made.
-    """
+    """Touch points on all surfaces of a scene, chunk by chunk."""
     turns = _Turns(seed)
     wanted = partial(_spacing, interfaces, radius, gap_spacing)
     for numbers in _chunks(interfaces.spheres, radius):
@@ -65,13 +40,7 @@ def patterns(interfaces, radius, seed, tally, gap_spacing):
 
 
 class Tally:
-    """How many twins are to be expected, `twins`, and how many there would be without narrow gaps, `even`.
-
-    Parameters
-    ----------
-    radius : float, m
-        Mean radius of the packing.
-    """
+    """How many twins are to be expected, `twins`, and how many there would be without narrow gaps, `even`."""
 
     def __init__(self, radius):
         self.radius, self.twins, self.even = radius, 0.0, 0
@@ -81,11 +50,6 @@ class Tally:
 
         Points thinned to THINNING of their spacing are as many as those of an even pattern with it, or a quarter
         more.
-
-        Parameters
-        ----------
-        spacing : (n,) float array, m
-            Wanted at each point of the even pattern.
         """
         self.even += 2 * len(spacing)
         self.twins += 2 * float(np.sum((SPACING * self.radius / spacing) ** 2))

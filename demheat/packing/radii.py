@@ -34,17 +34,7 @@ class Gaussian:
         finite("Gaussian.spread", self.spread, valid, lambda v: 0 <= v * self.cut < 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Draw radii of mean 1 (expectation).
-
-        Parameters
-        ----------
-        number : int
-        rng : numpy.random.Generator
-
-        Returns
-        -------
-        (number,) float array
-        """
+        """Draw radii of mean 1 (expectation)."""
         return 1.0 + self.spread * _cut_normal(number, self.cut, rng)
 
 
@@ -58,51 +48,23 @@ class Uniform:
         finite("Uniform.half_width", self.half_width, ">= 0 and < 1", lambda v: 0 <= v < 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Draw radii of mean 1 (expectation).
-
-        Parameters
-        ----------
-        number : int
-        rng : numpy.random.Generator
-
-        Returns
-        -------
-        (number,) float array
-        """
+        """Draw radii of mean 1 (expectation)."""
         return rng.uniform(1.0 - self.half_width, 1.0 + self.half_width, number)
 
 
 @dataclass(frozen=True)
 class Lognormal:
-    """Lognormal radii, cut on both sides.
+    """Lognormal radii, cut on both sides."""
 
-    Parameters
-    ----------
-    spread : float
-        Standard deviation of the logarithm of the radius, before the cut.
-    cut : float
-        Kept range of the logarithm in standard deviations.
-    """
-
-    spread: float = 0.3
-    cut: float = 2.5
+    spread: float = 0.3  # Standard deviation of the logarithm of the radius, before the cut
+    cut: float = 2.5  # Kept range of the logarithm in standard deviations
 
     def __post_init__(self):
         finite("Lognormal.spread", self.spread, "a finite number >= 0", lambda v: v >= 0)
         finite("Lognormal.cut", self.cut, "a finite number > 0", lambda v: v > 0)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Draw radii of mean 1 (expectation).
-
-        Parameters
-        ----------
-        number : int
-        rng : numpy.random.Generator
-
-        Returns
-        -------
-        (number,) float array
-        """
+        """Draw radii of mean 1 (expectation)."""
         s, c = self.spread, self.cut
         # E[exp(s z)] over |z| < c is exp(s^2/2) [ndtr(c - s) - ndtr(-c - s)] / [ndtr(c) - ndtr(-c)].
         mean = math.exp(s * s / 2) * (ndtr(c - s) - ndtr(-c - s)) / (ndtr(c) - ndtr(-c))
@@ -129,17 +91,7 @@ class Bidisperse:
         finite("Bidisperse.fraction", self.fraction, "a number between 0 and 1", lambda v: 0 <= v <= 1)
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Draw radii of mean 1 (within the rounding of the fraction).
-
-        Parameters
-        ----------
-        number : int
-        rng : numpy.random.Generator
-
-        Returns
-        -------
-        (number,) float array
-        """
+        """Draw radii of mean 1 (within the rounding of the fraction)."""
         radii = np.ones(number)
         radii[: round(self.fraction * number)] = self.ratio
         return rng.permutation(radii) / (1.0 + self.fraction * (self.ratio - 1.0))
@@ -163,23 +115,7 @@ class Listed:
         return f"Listed({len(self.values)} values, sha256={digest})"
 
     def draw(self, number: int, rng: np.random.Generator) -> np.ndarray:
-        """Put the listed radii, divided by their mean, in random order.
-
-        Parameters
-        ----------
-        number : int
-            Theirs.
-        rng : numpy.random.Generator
-
-        Returns
-        -------
-        (number,) float array
-
-        Raises
-        ------
-        ValueError
-            If it is another number.
-        """
+        """Put the listed radii, divided by their mean, in random order."""
         if number != len(self.values):
             raise ValueError(f"Listed.values: {len(self.values)} radii for {number} particles; must be one each")
         return rng.permutation(np.array(self.values) / np.mean(self.values))

@@ -148,28 +148,7 @@ def settle(
     overlap: float = 0.0,
     progress: Callable[[int, float], None] | None = None,
 ) -> Packing:
-    """Push overlapping particles of a given packing apart, some of them held fixed.
-
-    Parameters
-    ----------
-    packing : Packing
-    fixed : (n,) bool array, optional
-        Particles that do not move (they still push the others).
-    steps : int
-    overlap : float
-        Stop earlier when the mean overlap is below this part of the mean diameter.
-    progress : callable (step, mean overlap), optional
-
-    Returns
-    -------
-    Packing
-        The particles in the order given (not sorted again): `fixed` stays valid for it.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, or a sphere is too large for the box.
-    """
+    """Push overlapping particles of a given packing apart, some of them held fixed."""
     check_packing(packing)
     n = packing.number
     fixed = np.zeros(n, dtype=bool) if fixed is None else np.asarray(fixed)
@@ -189,12 +168,6 @@ def check_fit(radii, size, periodic) -> None:
 
     Along a periodic axis only the nearest image of a neighbour is seen, so the two largest spheres must not be able to
     touch both ways round; between walls the largest sphere must fit.
-
-    Parameters
-    ----------
-    radii : (n,) float array, m
-    size : (3,) float array, m
-    periodic : (3,) bool array
     """
     largest = float(np.max(radii))
     for axis in range(3):

@@ -58,33 +58,15 @@ class SolidSurface:
         return self.shape.ball()
 
     def pattern(self, spacing, rng):
-        """Evenly spread points and outward normals, both (k, 3) float arrays.
-
-        Parameters
-        ----------
-        spacing : float, m
-        rng : numpy Generator
-        """
+        """Evenly spread points and outward normals, both (k, 3) float arrays."""
         return self.spread(self.shape, self.scene, spacing, rng)
 
     def touched(self, points, normals):
-        """The points moved onto planes that keep the volume, (k, 3) float array, m.
-
-        Parameters
-        ----------
-        points, normals : (k, 3) float arrays, m and 1
-        """
+        """The points moved onto planes that keep the volume, (k, 3) float array, m."""
         return self.moved(self.shape, self.scene, points, normals) if len(points) else points
 
     def gap(self, points, *, skip_self=False):
-        """Distance of points to the surface, its periodic images included, (n,) float array, m.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        skip_self : bool
-            The points are its own: their distance to its images only.
-        """
+        """Distance of points to the surface, its periodic images included, (n,) float array, m."""
         if not skip_self:
             return np.abs(self.shape.distance(points, period=self.scene.period))
         nearest = np.full(len(points), np.inf)
@@ -94,15 +76,7 @@ class SolidSurface:
 
 
 def on_cylinder(shape, scene, spacing, rng):
-    """Rows of points along a cylinder, which share their angles, and rings on its ends; normals besides.
-
-    Parameters
-    ----------
-    shape : Cylinder
-    scene : Scene
-    spacing : float, m
-    rng : numpy Generator
-    """
+    """Rows of points along a cylinder, which share their angles, and rings on its ends; normals besides."""
     frame, side = _frame(shape.axis, rng), SQUARE * spacing
     low, high = _along(shape, scene)
     rows = max(1, round((high - low) / side))
@@ -127,12 +101,6 @@ def on_prism(shape, scene, points, normals):
     """Points of a cylinder moved inwards, onto the prism of its volume with their tangent planes as sides.
 
     The volume of what tangent planes enclose is that of the mean of 1/cos^2 of the angle to the nearest touch point.
-
-    Parameters
-    ----------
-    shape : Cylinder
-    scene : Scene
-    points, normals : (k, 3) float arrays, m and 1
     """
     axis = np.array(shape.axis)
     around = np.abs(normals @ axis) < 0.5
@@ -155,16 +123,7 @@ def on_prism(shape, scene, points, normals):
 
 
 def on_faces(shape, scene, spacing, rng):
-    """Square patterns on the faces of a box, half a side from its edges, and normals.
-
-    Parameters
-    ----------
-    shape : Box
-    scene : Scene
-    spacing : float, m
-    rng : numpy Generator
-        Not used: the pattern fits the faces.
-    """
+    """Square patterns on the faces of a box, half a side from its edges, and normals."""
     turn, middle = np.array(shape.rotation).T, 0.5 * np.array(scene.size)
     counts = np.maximum(1, np.rint(np.array(shape.sides) / (SQUARE * spacing)).astype(int))
     ticks = [((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(counts, shape.sides, strict=True)]
@@ -184,16 +143,7 @@ def on_faces(shape, scene, spacing, rng):
 
 
 def on_plane(shape, scene, spacing, rng):
-    """A triangular pattern on the plane of a half-space, beyond the box too, and normals.
-
-    Parameters
-    ----------
-    shape : HalfSpace
-    scene : Scene
-    spacing : float, m
-    rng : numpy Generator
-        Turns and moves the pattern.
-    """
+    """A triangular pattern on the plane of a half-space, beyond the box too, and normals."""
     frame, middle = _frame(shape.outward, rng), 0.5 * np.array(scene.size)
     middle = middle - shape.distance(middle[None])[0] * frame[2]
     count = int(np.ceil(0.5 * np.linalg.norm(scene.size) / (np.sqrt(0.75) * spacing))) + 1
@@ -204,28 +154,12 @@ def on_plane(shape, scene, spacing, rng):
 
 
 def where_they_are(shape, scene, points, normals):
-    """The points themselves: planes are their own tangents.
-
-    Parameters
-    ----------
-    shape : Shape
-    scene : Scene
-    points, normals : (k, 3) float arrays, m and 1
-    """
+    """The points themselves: planes are their own tangents."""
     return points
 
 
 def on_smooth(shape, scene, spacing, rng):
-    """Points in the middles of their own parts of any closed smooth surface (Lloyd's algorithm), and normals.
-
-    Parameters
-    ----------
-    shape : Shape
-    scene : Scene
-    spacing : float, m
-    rng : numpy Generator
-        Where it begins.
-    """
+    """Points in the middles of their own parts of any closed smooth surface (Lloyd's algorithm), and normals."""
     samples, areas = _sampled(shape, scene, spacing / SPREAD)
     count = max(FEWEST, int(np.ceil(areas.sum() / (np.sqrt(0.75) * spacing**2))))
     return _spread(shape, samples, areas, count, rng)
@@ -247,16 +181,7 @@ def _spread(shape, samples, areas, count, rng):
 
 
 def on_union(shape, scene, spacing, rng):
-    """Points in the middles of their own parts of each face of a union, so that half a spacing is left to its edges.
-
-    Parameters
-    ----------
-    shape : Union
-    scene : Scene
-    spacing : float, m
-    rng : numpy Generator
-        Where it begins.
-    """
+    """Points in the middles of their own parts of each face of a union, so that half a spacing is left to its edges."""
     samples, areas = _sampled(shape, scene, spacing / SPREAD)
     own, found = _faced(shape, samples), [(np.empty((0, 3)), np.empty((0, 3)))]
     for number in np.unique(own):
@@ -269,14 +194,7 @@ def on_union(shape, scene, spacing, rng):
 
 
 def by_faces(shape, scene, points, normals):
-    """Points moved inwards as by `by_volume`, each face of a union for itself: across a crease planes are others.
-
-    Parameters
-    ----------
-    shape : Union
-    scene : Scene
-    points, normals : (k, 3) float arrays, m and 1
-    """
+    """Points moved inwards as by `by_volume`, each face of a union for itself: across a crease planes are others."""
     samples, areas = _sampled_in(shape, scene, points)
     own, sampled, moved = _faced(shape, points), _faced(shape, samples), points.copy()
     for number in np.unique(own):
@@ -292,14 +210,7 @@ def _faced(shape, points):
 
 
 def by_volume(shape, scene, points, normals):
-    """Points moved inwards so that over its own part of the surface each plane holds as much as the shape.
-
-    Parameters
-    ----------
-    shape : Shape
-    scene : Scene
-    points, normals : (k, 3) float arrays, m and 1
-    """
+    """Points moved inwards so that over its own part of the surface each plane holds as much as the shape."""
     return _lifted(shape, points, normals, *_sampled_in(shape, scene, points))
 
 

@@ -9,15 +9,7 @@ from demheat.scene.shapes.bins import ball_bins
 
 
 class Spheres:
-    """Spherical surfaces, numbered; the cost of what is asked of them grows with the points, not with their number.
-
-    Parameters
-    ----------
-    surfaces : list of SphereSurface
-    scene : Scene
-    reach : float, m
-        Gaps wider than this count as infinite.
-    """
+    """Spherical surfaces, numbered; the cost of what is asked of them grows with the points, not with their number."""
 
     def __init__(self, surfaces, scene, reach):
         self.surfaces, self.scene, self.reach = surfaces, scene, reach
@@ -35,39 +27,14 @@ class Spheres:
         return len(self.surfaces)
 
     def pattern(self, numbers, spacing, turns):
-        """Evenly spread points on some of the spheres.
-
-        Parameters
-        ----------
-        numbers : (m,) int array
-        spacing : float, m
-        turns : (m, 3, 3) float array
-            Rotation matrices of the patterns.
-
-        Returns
-        -------
-        points, normals : (k, 3) float arrays, m and outward unit vectors
-        own : (k,) int array
-            Numbers of their spheres.
-        """
+        """Evenly spread points on some of the spheres."""
         start = np.concatenate([[0], np.cumsum(pattern_count(self.radii[numbers], spacing))])
         points, normals = np.empty((start[-1], 3)), np.empty((start[-1], 3))
         kernels.turned_patterns(start, turns, self.balls[numbers], points, normals)
         return points, normals, np.repeat(numbers, np.diff(start))
 
     def touched(self, points, normals, own):
-        """The points moved inwards, onto the polyhedra of the spheres' volumes with their tangent planes as facets.
-
-        Parameters
-        ----------
-        points, normals : (k, 3) float arrays, m and 1
-        own : (k,) int array
-            Numbers of their spheres, ascending.
-
-        Returns
-        -------
-        (k, 3) float array, m
-        """
+        """The points moved inwards, onto the polyhedra of the spheres' volumes with their tangent planes as facets."""
         if not len(own):
             return points
         numbers, first = np.unique(own, return_index=True)
@@ -80,14 +47,7 @@ class Spheres:
         return self.centers[own] + np.repeat(inner, count)[:, None] * self.radii[own][:, None] * normals
 
     def gap(self, points, own):
-        """Distance of points to the nearest of the surfaces, periodic images included, (n,) float array, m.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        own : (n,) int array
-            Number of the sphere that a point belongs to, of which only the images count; any other number for none.
-        """
+        """Distance of points to the nearest of the surfaces, periodic images included, (n,) float array, m."""
         gaps = np.full(len(points), np.inf)
         if len(self):
             kernels.nearest_gaps(points, own, self.balls, self.bins, self.reach, gaps)
@@ -106,20 +66,7 @@ class Spheres:
 
 
 def inscribed_radii(normals, count):
-    """Radii of spheres inscribed in polyhedra with these facet normals and the volume of the unit sphere.
-
-    Parameters
-    ----------
-    normals : (k, 3) float array
-        Unit vectors, polyhedron by polyhedron.
-    count : (m,) int array
-        Normals of each polyhedron.
-
-    Returns
-    -------
-    (m,) float array
-        Exact; NaN where the normals do not enclose the sphere well.
-    """
+    """Radii of spheres inscribed in polyhedra with these facet normals and the volume of the unit sphere."""
     own = np.repeat(np.arange(len(count)), count)
     order = np.lexsort((normals[:, 2], own))
     areas = np.empty(len(normals))

@@ -17,14 +17,7 @@ def walls(packing: Packing) -> tuple[str, ...]:
 
 
 def wall_distance(packing: Packing, wall) -> np.ndarray:
-    """Distance of each centre from one wall, (n,) float array, m.
-
-    Parameters
-    ----------
-    packing : Packing
-    wall : str
-        One of `walls`.
-    """
+    """Distance of each centre from one wall, (n,) float array, m."""
     check_packing(packing)
     _check_wall(packing, wall)
     return bodies.wall_distance(packing.centers, wall, packing.domain, packing.size)
@@ -37,39 +30,14 @@ def wall_distances(packing: Packing) -> np.ndarray:
 
 
 def outward(packing: Packing, wall) -> np.ndarray:
-    """Unit vector from each centre towards one wall, (n, 3) float array; NaN in the middle of a round body.
-
-    Parameters
-    ----------
-    packing : Packing
-    wall : str
-        One of `walls`.
-    """
+    """Unit vector from each centre towards one wall, (n, 3) float array; NaN in the middle of a round body."""
     check_packing(packing)
     _check_wall(packing, wall)
     return bodies.outward(packing.centers, wall, packing.domain, packing.size)
 
 
 def check_margin(packing: Packing, margin, name="margin") -> float:
-    """Depth of the core in metres for a margin in mean radii.
-
-    Parameters
-    ----------
-    packing : Packing
-    margin : float
-        In mean radii.
-    name : str
-        Of the argument, for the message.
-
-    Returns
-    -------
-    float, m
-
-    Raises
-    ------
-    ValueError
-        If the margin is not a number >= 0, or leaves no core; the message says the largest valid one.
-    """
+    """Depth of the core in metres for a margin in mean radii."""
     check_packing(packing)
     margin = finite(name, margin, "a finite number of mean radii >= 0", lambda v: v >= 0)
     mean = float(np.mean(packing.radii))
@@ -80,19 +48,7 @@ def check_margin(packing: Packing, margin, name="margin") -> float:
 
 
 def bulk(packing: Packing, margin) -> np.ndarray:
-    """Which particles lie at least so far away from every wall, flat or round, (n,) bool array.
-
-    Parameters
-    ----------
-    packing : Packing
-    margin : float
-        In mean radii; 0 counts all particles.
-
-    Raises
-    ------
-    ValueError
-        As `check_margin`, or if no particle is that deep.
-    """
+    """Which particles lie at least so far away from every wall, flat or round, (n,) bool array."""
     depth = check_margin(packing, margin)
     deep = wall_distances(packing) >= depth
     if depth == 0:

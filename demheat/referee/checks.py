@@ -37,25 +37,7 @@ def heat_balance(field: Field) -> float:
 
 
 def bound_violation(field: Field | float, lower: float, upper: float) -> float:
-    """How far the effective conductivity lies outside bounds, relative to the bound passed; 0 between them.
-
-    Parameters
-    ----------
-    field : Field or float
-        A Field, or a conductivity, W/(m K).
-    lower, upper : float, W/(m K)
-        Worked out with `field.fractions`, the method's own: with others a correct method may look wrong.
-
-    Returns
-    -------
-    float
-        Negative below the lower bound, positive above the upper one, not-a-number if the conductivity is.
-
-    Raises
-    ------
-    ValueError
-        Unless 0 <= lower <= upper.
-    """
+    """How far the effective conductivity lies outside bounds, relative to the bound passed; 0 between them."""
     for name, value in (("lower", lower), ("upper", upper)):
         if isinstance(value, bool) or not isinstance(value, Real):
             raise ValueError(f"{name} = {value!r}: must be a number, W/(m K)")

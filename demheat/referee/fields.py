@@ -20,20 +20,11 @@ Mask = np.ndarray | Callable[[np.ndarray], np.ndarray]
 
 
 class Error(NamedTuple):
-    """A field error over many points.
+    """A field error over many points."""
 
-    Attributes
-    ----------
-    values : (n,) float array
-        Signed, or sizes of vectors.
-    points : (n, 3) float array, m
-    weights : (n,) float array, m3, or None
-        Volumes; None if all points weigh the same.
-    """
-
-    values: np.ndarray
-    points: np.ndarray
-    weights: np.ndarray | None
+    values: np.ndarray  # (n,) float array: Signed, or sizes of vectors
+    points: np.ndarray  # (n, 3) float array, m
+    weights: np.ndarray | None  # (n,) float array, m3, or None: Volumes; None if all points weigh the same
 
     @property
     def rms(self) -> float:
@@ -92,18 +83,6 @@ def span(scene: Scene, reference: Field | None = None) -> float:
 
     The largest difference between walls, or the surroundings that they exchange heat with, in time between them and
     the initial temperature; in a periodic cell that of the mean gradient over the box, sum |g_i| L_i.
-
-    Parameters
-    ----------
-    scene : Scene
-    reference : Field, optional
-        One with a time says that the comparison is one in time. Where the scene has fewer than two temperatures, the
-        walls' mean temperatures of the reference count too.
-
-    Raises
-    ------
-    ValueError
-        If there is no difference: relative errors of temperature do not follow.
     """
     check_scene(scene)
     if reference is not None:

@@ -17,46 +17,16 @@ Values = float | np.ndarray  # or a column of a data frame
 
 
 class CurveError(NamedTuple):
-    """How far a curve is off another one.
+    """How far a curve is off another one."""
 
-    Attributes
-    ----------
-    at : int
-        Index at which the two differ most.
-    local : float
-        Signed difference there over the reference there.
-    highest : float
-        Size of that difference over the reference's highest value.
-    last : float
-        Signed relative difference at the end.
-    """
-
-    at: int
-    local: float
-    highest: float
-    last: float
+    at: int  # Index at which the two differ most
+    local: float  # Signed difference there over the reference there
+    highest: float  # Size of that difference over the reference's highest value
+    last: float  # Signed relative difference at the end
 
 
 def value_error(found: Values, exact: Values, *, scale: Values | None = None) -> Values:
-    """Signed error of values: found / exact - 1, or (found - exact) / scale.
-
-    Parameters
-    ----------
-    found, exact : float or array, any unit
-        Of one shape, or one of them a single number.
-    scale : float or array, same unit, optional
-        What errors are measured in, by default the exact values themselves: the span of the temperatures, say. 1 leaves
-        them in the values' own unit.
-
-    Returns
-    -------
-    float or array
-
-    Raises
-    ------
-    ValueError
-        If they are no numbers, their shapes do not match, or a single number that errors are over is 0.
-    """
+    """Signed error of values: found / exact - 1, or (found - exact) / scale."""
     found, exact = _as_they_are("found", found), _as_they_are("exact", exact)
     below = _as_they_are("scale", scale) if scale is not None else exact
     if np.ndim(below) == 0 and below == 0:
@@ -66,18 +36,7 @@ def value_error(found: Values, exact: Values, *, scale: Values | None = None) ->
 
 
 def vector_error(found: ArrayLike, exact: ArrayLike, *, scale: float = 1.0) -> np.ndarray:
-    """Size of the difference of vectors, over a scale.
-
-    Parameters
-    ----------
-    found, exact : (..., d) float array, any unit
-    scale : float, same unit
-        Of a flux the magnitude of the mean flux.
-
-    Returns
-    -------
-    (...) float array
-    """
+    """Size of the difference of vectors, over a scale."""
     found, exact = (reals(name, value, NUMBERS) for name, value in (("found", found), ("exact", exact)))
     finite("scale", scale, "a finite number > 0", lambda v: v > 0)
     if found.ndim == 0 or exact.ndim == 0 or found.shape[-1] != exact.shape[-1] or not found.shape[-1]:
@@ -87,19 +46,7 @@ def vector_error(found: ArrayLike, exact: ArrayLike, *, scale: float = 1.0) -> n
 
 
 def rms(errors: ArrayLike, weights: np.ndarray | None = None) -> float:
-    """Root of the mean square.
-
-    Parameters
-    ----------
-    errors : float array, any unit
-    weights : (n,) float array, optional
-        Volumes of `errors` in one dimension; by default all weigh the same.
-
-    Returns
-    -------
-    float, unit of the errors
-        Not finite if one of the errors is not.
-    """
+    """Root of the mean square."""
     squares = _some("errors", errors) ** 2
     if weights is not None:
         weights = _weights(weights, squares)
@@ -116,22 +63,7 @@ def worst(errors: ArrayLike) -> tuple[int, float]:
 
 
 def curve_error(curve: ArrayLike, reference: ArrayLike) -> CurveError:
-    """Largest difference of two curves in time or along the load.
-
-    Parameters
-    ----------
-    curve, reference : (n,) float array, any unit
-        At the same times or places. Temperatures count from the zero of their scale.
-
-    Returns
-    -------
-    CurveError
-
-    Raises
-    ------
-    ValueError
-        If they are not as described, or the reference is 0 where errors are over it.
-    """
+    """Largest difference of two curves in time or along the load."""
     curve, reference = _some("curve", curve), _some("reference", reference)
     if curve.ndim != 1 or curve.shape != reference.shape:
         raise ValueError(f"curve of shape {curve.shape}, reference of shape {reference.shape}: must be (n,) both")
@@ -148,10 +80,6 @@ def dispersion(curves: ArrayLike) -> float:
     """Mean over time of (max - min) / max over realisations.
 
     The measure of Terreros, Iordanoff, Charles, Comput. Mater. Sci. 69 (2013) 46.
-
-    Parameters
-    ----------
-    curves : (realisations, times) float array, degrees Celsius
     """
     curves = _some("curves", curves)
     if curves.ndim != 2:
@@ -163,14 +91,7 @@ def dispersion(curves: ArrayLike) -> float:
 
 
 def variation(values: np.ndarray, weights: np.ndarray | None = None) -> float:
-    """Coefficient of variation: standard deviation over mean of values that should all be the same.
-
-    Parameters
-    ----------
-    values : (n,) float array, any unit
-    weights : (n,) float array, optional
-        Volumes; by default all weigh the same.
-    """
+    """Coefficient of variation: standard deviation over mean of values that should all be the same."""
     values = _some("values", values)
     if weights is not None:
         weights = _weights(weights, values)

@@ -47,17 +47,6 @@ def edges_of(scene, network, solution):
 
     A facet that lies on an interface has the temperature that the heat through it makes on the way from either centre:
     the same for both. In packings that do not conform facets between phases lie elsewhere, and are left out.
-
-    Parameters
-    ----------
-    scene : Scene
-    network : Network
-        With cells.
-    solution : Solution
-
-    Returns
-    -------
-    Edges
     """
     parts = _interfaces(scene, network, solution), _walls(scene, network, solution)
     columns = [np.concatenate(column) for column in zip(*parts, strict=True)]
@@ -69,18 +58,7 @@ def edges_of(scene, network, solution):
 
 
 def transformed(scene, phase, temperature):
-    """Kirchhoff's transform of temperatures in phases, or themselves where no conductivity depends on them.
-
-    Parameters
-    ----------
-    scene : Scene
-    phase : (n,) int array
-    temperature : (n,) float array, K
-
-    Returns
-    -------
-    (n,) float array, K
-    """
+    """Kirchhoff's transform of temperatures in phases, or themselves where no conductivity depends on them."""
     return scene.dependences.integral(phase, temperature) if scene.varies else temperature
 
 

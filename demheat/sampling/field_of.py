@@ -17,26 +17,7 @@ CONTACTS = 0.5
 
 
 def field_of(scene, network, solution, *, stats, time=None, estimator=None, slack=(0.0, 0.0)) -> Field:
-    """The Field of a solved network.
-
-    Parameters
-    ----------
-    scene : Scene
-    network : Network
-        With all that evaluation needs.
-    solution : Solution
-    stats : dict
-        To be said of the field besides what the network and the solution say.
-    time : float, s, optional
-        Of a transient.
-    estimator : callable (Field) -> Estimate, optional
-    slack : (2,) tuple of float
-        Of the field, where particles have cells.
-
-    Returns
-    -------
-    Field
-    """
+    """The Field of a solved network."""
     if solution.still is not None:
         network = without_links(network, solution.still)
     temperature, heat = {}, {}
@@ -82,12 +63,6 @@ def between_walls(network, scene, solution):
     Between two walls the component along the load is the mean of the heat that enters at one and leaves at the other,
     over their area: the volume average by the divergence theorem, and right also where centres are held at wall
     temperature. Other components average the cells' fluxes.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    solution : Solution
     """
     # Not by BLAS here and below: the order of its sums is that of its threads.
     flux = np.einsum("i,ij->j", network.volumes, cell_fluxes(network, solution)) / scene.volume
@@ -123,14 +98,7 @@ class _Locator:
 
 
 def samplers(scene, network, solution):
-    """The three lazy parts of a Field: its samples, temperature_at and flux_at.
-
-    Parameters
-    ----------
-    scene : Scene
-    network : Network
-    solution : Solution
-    """
+    """The three lazy parts of a Field: its samples, temperature_at and flux_at."""
     fluxes = cache(lambda: cell_fluxes(network, solution))
     slopes = cache(lambda: _slopes(scene, network, fluxes()))
 
@@ -178,13 +146,6 @@ def heat_through(network, solution, axis, position):
 
     Cells are on the side of their centres; walls across the axis count as neighbours at their place. Between them every
     plane carries the same heat where none is stored, to the residual of the solver.
-
-    Parameters
-    ----------
-    network : Network
-    solution : Solution
-    axis : {0, 1, 2}
-    position : float, m
     """
     length, x, row = network.size[axis], network.centers[:, axis], row_numbers(network.indptr)
     step = x[network.indices] + image_shifts(network.image, network.size)[:, axis]

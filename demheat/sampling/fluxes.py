@@ -16,17 +16,6 @@ def mean_flux(network, scene, solution):
 
     In a periodic cell the first moment of the heat flows. Exact for linear temperatures on a Laguerre network. Between
     walls, unlike the mean of the heat that enters and leaves, it holds while heat is stored.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-        Its volume only.
-    solution : Solution
-
-    Returns
-    -------
-    (3,) float array, W/m2
     """
     first = np.empty((len(network.volumes), 3))
     kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
@@ -41,15 +30,6 @@ def cell_fluxes(network, solution):
     linear fields, one-sided at facets on interfaces, of least norm for a cell with too few facets. With contacts the
     papers' q = -1/(2 V) sum W b, V the volume that the particle stands for and b the branch vector (Haddad et al. 2021,
     eq. 20, with Fourier's sign).
-
-    Parameters
-    ----------
-    network : Network
-    solution : Solution
-
-    Returns
-    -------
-    (n, 3) float array, W/m2
     """
     if not network.cells:
         return particle_flux(network, solution, split="half")

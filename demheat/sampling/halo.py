@@ -40,33 +40,6 @@ def halo_average(
 
     sum(volumes * values) / sum(volumes) over all samples with |x - x_at| <= radius (Haddad et al. 2021, eqs. 22-23,
     volumes being V_r / phi). Neither lists of neighbours nor anything else that grows with the radius is kept.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, m
-        Centres of the samples; inside the box on axes that are not periodic.
-    values : (n,) or (n, d) float array
-    volumes : (n,) float array, m3
-        >= 0.
-    radius : float, m
-        > 0; twice it at most the side of the box along a periodic axis. Halos end at walls.
-    size : (3,) sequence of float, m
-        The box is 0 to size.
-    periodic : bool or (3,) sequence of bool
-    at : (m, 3) float array, m, optional
-        Where the means are wanted; default at the samples.
-    phases : (n,) int array and (m,) int array, optional
-        Of the samples and of the points where means are wanted: only samples of a point's own phase count.
-
-    Returns
-    -------
-    (m,) or (m, d) float array
-        NaN where no sample, or no volume, lies within the radius. The same to the bit for any number of threads.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described.
     """
     size, periodic = _checked_box(size, periodic)
     radius = _checked_radius(radius, size, periodic)

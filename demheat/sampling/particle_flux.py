@@ -23,26 +23,6 @@ def particle_flux(network, solution, *, split="half"):
     add up to one, so the flux averaged by volume over a periodic cell is the first moment of the heat flows with every
     split. The paper's eq. 20 has one half, which no single particle has unless it is as large as its neighbours, and
     the opposite sign.
-
-    Parameters
-    ----------
-    network : Network
-    solution : Solution
-        Of this network.
-    split : {"half", "radii", "cell"}
-        s = 1/2, as printed; R_p / (R_p + R_q); or what lies between the centre and the facet, over the length of the
-        link. With "cell" wall links count too, by the distance from the centre to the wall; the printed sum is over
-        particles only, so that those at walls lack what comes from there.
-
-    Returns
-    -------
-    (n, 3) float array, W/m2
-        Along Fourier's direction. Zero for islands, which exchange no heat.
-
-    Raises
-    ------
-    ValueError
-        If `split` is none of these or the solution is of another network.
     """
     if split not in SPLITS:
         raise ValueError(f"split = {split!r}: must be one of {', '.join(SPLITS)}")

@@ -27,23 +27,7 @@ CHUNK = 4096
 
 
 class Reconstruction:
-    """Values of a network's temperature and flux density anywhere.
-
-    Parameters
-    ----------
-    network : Network
-    edges : Edges
-    temperature : (n,) float array, K
-        Less the linear field of a periodic cell's mean gradient; NaN in pores and on islands.
-    gradient : (3,) float array, K/m
-        That mean gradient; zero between walls.
-    slope : (n, 3) float array, K/m
-        Gradient of each cell, mean gradient included.
-    periodic : (3,) bool array
-    phase_at : callable (points) -> (m,) int array
-    conductivity : (n,) float array, W/(m K)
-        Of each cell; 0 where no heat passes.
-    """
+    """Values of a network's temperature and flux density anywhere."""
 
     def __init__(self, network, edges, temperature, gradient, slope, *, periodic, phase_at, conductivity):
         self.network, self.edges = network, edges

@@ -18,97 +18,42 @@ SHARES = {0: 1.0, 2: math.pi / 4, 3: math.pi / 6}
 
 
 def check_name(name, domain) -> None:
-    """Raise ValueError unless a domain is known.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    domain : str
-    """
+    """Raise ValueError unless a domain is known."""
     if not isinstance(domain, str) or domain not in ROUND_AXES:
         raise ValueError(f"{name} = {domain!r}: must be one of {', '.join(ROUND_AXES)}")
 
 
 def domain_volume(domain, size) -> float:
-    """Volume of a domain inscribed in a box, m3.
-
-    Parameters
-    ----------
-    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
-    size : (3,) sequence of float, m
-    """
+    """Volume of a domain inscribed in a box, m3."""
     return SHARES[len(ROUND_AXES[domain])] * math.prod(float(side) for side in size)
 
 
 def wall_names(domain, periodic=(False, False, False)) -> tuple[str, ...]:
-    """Names of the walls of a domain, the round one last.
-
-    Parameters
-    ----------
-    domain : str
-    periodic : (3,) sequence of bool
-        Axes along which it goes on without a wall.
-    """
+    """Names of the walls of a domain, the round one last."""
     axes = ROUND_AXES[domain]
     flat = tuple(name for name in WALLS if not ((axis := "xyz".index(name[0])) in axes or periodic[axis]))
     return (*flat, "round") if axes else flat
 
 
 def round_radius(domain, size) -> float:
-    """Radius of the round wall, m; infinite for a box.
-
-    Parameters
-    ----------
-    domain : str
-    size : (3,) sequence of float, m
-    """
+    """Radius of the round wall, m; infinite for a box."""
     axes = ROUND_AXES[domain]
     return float(size[axes[0]]) / 2 if axes else math.inf
 
 
 def across(points, domain, size) -> np.ndarray:
-    """Offsets of points from the axis of a cylinder or the middle of a sphere.
-
-    Parameters
-    ----------
-    points : (..., 3) float array, m
-    domain : str
-    size : (3,) sequence of float, m
-
-    Returns
-    -------
-    (..., k) float array, m
-        Along the k round axes only; none for a box.
-    """
+    """Offsets of points from the axis of a cylinder or the middle of a sphere."""
     axes = list(ROUND_AXES[domain])
     return np.asarray(points)[..., axes] - np.asarray(size, dtype=float)[axes] / 2
 
 
 def from_middle(points, domain, size) -> np.ndarray:
-    """Distance of points from the axis of a cylinder or the middle of a sphere, (...,) float array, m; 0 in a box.
-
-    Parameters
-    ----------
-    points : (..., 3) float array, m
-    domain : str
-    size : (3,) sequence of float, m
-    """
+    """Distance of points from the axis of a cylinder or the middle of a sphere, (...,) float array, m; 0 in a box."""
     return np.linalg.norm(across(points, domain, size), axis=-1)
 
 
 def inside(points, domain, size, *, slack=0.0) -> np.ndarray:
-    """Which points lie in a body or on its walls, (...,) bool array.
-
-    Parameters
-    ----------
-    points : (..., 3) float array, m
-    domain : str
-    size : (3,) sequence of float, m
-    slack : float
-        How far beyond a wall a point may lie, over the side of the box along each axis: for points computed to lie on
-        it.
-    """
+    """Which points lie in a body or on its walls, (...,) bool array."""
     points, size = np.asarray(points), np.asarray(size, dtype=float)
     within = np.all((points >= -slack * size) & (points <= (1 + slack) * size), axis=-1)
     axes = ROUND_AXES[domain]
@@ -118,16 +63,7 @@ def inside(points, domain, size, *, slack=0.0) -> np.ndarray:
 
 
 def wall_distance(points, wall, domain, size) -> np.ndarray:
-    """Distance of points to one wall, (...,) float array, m; negative beyond it.
-
-    Parameters
-    ----------
-    points : (..., 3) float array, m
-    wall : str
-        One of `wall_names`.
-    domain : str
-    size : (3,) sequence of float, m
-    """
+    """Distance of points to one wall, (...,) float array, m; negative beyond it."""
     if wall == "round":
         return round_radius(domain, size) - from_middle(points, domain, size)
     axis = "xyz".index(wall[0])
@@ -136,16 +72,7 @@ def wall_distance(points, wall, domain, size) -> np.ndarray:
 
 
 def nearest_wall(points, walls, domain, size) -> np.ndarray:
-    """Distance of points to the nearest of some walls, (...,) float array, m; infinite where there are none.
-
-    Parameters
-    ----------
-    points : (..., 3) float array, m
-    walls : sequence of str
-        Some of `wall_names`.
-    domain : str
-    size : (3,) sequence of float, m
-    """
+    """Distance of points to the nearest of some walls, (...,) float array, m; infinite where there are none."""
     nearest = np.full(np.shape(points)[:-1], np.inf)
     for wall in walls:
         nearest = np.minimum(nearest, wall_distance(points, wall, domain, size))
@@ -153,21 +80,7 @@ def nearest_wall(points, walls, domain, size) -> np.ndarray:
 
 
 def outward(points, wall, domain, size) -> np.ndarray:
-    """Unit vectors from points straight towards one wall, (n, 3) float array.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, m
-    wall : str
-        One of `wall_names`.
-    domain : str
-    size : (3,) sequence of float, m
-
-    Returns
-    -------
-    (n, 3) float array
-        NaN in the middle of a round body, from where no direction is special.
-    """
+    """Unit vectors from points straight towards one wall, (n, 3) float array."""
     normals = np.zeros(np.shape(points))
     if wall != "round":
         normals[:, "xyz".index(wall[0])] = 1.0 if wall[1] == "+" else -1.0

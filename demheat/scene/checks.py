@@ -116,14 +116,7 @@ def _check_walls(walls, valid, *, or_none):
 
 
 def check_initial(initial, *, kelvin=False) -> None:
-    """Raise ValueError unless an initial temperature is None, a finite number or callable.
-
-    Parameters
-    ----------
-    initial : float, callable or None
-    kelvin : bool
-        Whether it must be an absolute temperature.
-    """
+    """Raise ValueError unless an initial temperature is None, a finite number or callable."""
     if initial is not None and not callable(initial):
         valid = f"a finite temperature of at most {MOST:g}, or a function of points"
         finite("Scene.initial", initial, valid, lambda v: abs(v) <= MOST)

@@ -13,18 +13,6 @@ def touching(source, size, domain):
     """First and last time at which the rim of a moving cylinder touches a body; None if never.
 
     The axis is then in the body's outline grown by the radius, which is convex, and made of rectangles and discs.
-
-    Parameters
-    ----------
-    source : MovingCylinder
-    size : (3,) sequence of float, m
-    domain : str
-        A box, or a round cylinder along the source's axis.
-
-    Returns
-    -------
-    (float, float), s, or None
-        Infinite for a source at rest.
     """
     place, velocity, radius = source.position(0.0), np.array(source.velocity), source.diameter / 2
     sides = np.array(size)[[axis for axis in range(3) if axis != source.axis]]

@@ -116,13 +116,7 @@ class Dependence:
 
 
 class Dependences:
-    """Those of all phases of a scene; a phase without one has factor 1, and its temperature as the integral.
-
-    Parameters
-    ----------
-    each : sequence of Dependence or None
-        Of each phase.
-    """
+    """Those of all phases of a scene; a phase without one has factor 1, and its temperature as the integral."""
 
     def __init__(self, each: Sequence[Dependence | None]):
         self.kinds = sorted({own for own in each if own is not None}, key=lambda own: own.points)
@@ -130,39 +124,19 @@ class Dependences:
         self.kind = np.array([len(self.kinds) if own is None else self.kinds.index(own) for own in each])
 
     def factor(self, phase, temperature) -> np.ndarray:
-        """Factors at temperatures; as all others here of phases, (n, ...) int array, and (n, ...) float arrays, K.
-
-        Parameters
-        ----------
-        phase, temperature : arrays
-        """
+        """Factors at temperatures; as all others here of phases, (n, ...) int array, and (n, ...) float arrays, K."""
         return self._of("factor", phase, temperature, otherwise=np.ones_like)
 
     def integral(self, phase, temperature) -> np.ndarray:
-        """Kirchhoff's transforms, see `Dependence.integral`.
-
-        Parameters
-        ----------
-        phase, temperature : arrays
-        """
+        """Kirchhoff's transforms, see `Dependence.integral`."""
         return self._of("integral", phase, temperature)
 
     def inverse(self, phase, integral) -> np.ndarray:
-        """Temperatures of Kirchhoff's transforms.
-
-        Parameters
-        ----------
-        phase, integral : arrays
-        """
+        """Temperatures of Kirchhoff's transforms."""
         return self._of("inverse", phase, integral)
 
     def mean(self, phase, one, other) -> np.ndarray:
-        """Mean factors between two temperatures.
-
-        Parameters
-        ----------
-        phase, one, other : arrays
-        """
+        """Mean factors between two temperatures."""
         return self._of("mean", phase, one, other, otherwise=np.ones_like)
 
     def _of(self, name, phase, *values, otherwise=np.copy):

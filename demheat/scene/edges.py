@@ -25,13 +25,7 @@ TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 
 
 def edge_order(scene) -> float:
-    """The power of their size with which errors of elements fall beside the worst of the edges of boxes, at most 1.
-
-    Parameters
-    ----------
-    scene : Scene
-        Without tensors: their edges are not looked at.
-    """
+    """The power of their size with which errors of elements fall beside the worst of the edges of boxes, at most 1."""
     boxes = [part for shape in scene.inclusions for part in shape.parts if isinstance(part, Box)]
     if not boxes or scene.anisotropic:
         return 1.0
@@ -46,11 +40,6 @@ def power(conductivities) -> float:
     """Least power of the distance from an edge with which the temperature may go, at most 1.
 
     Around the edge the temperature and the flux across its rays come back to themselves.
-
-    Parameters
-    ----------
-    conductivities : (4,) sequence of float, W/(m K)
-        In the four quadrants around it, in turn.
     """
     k = np.maximum(conductivities, LEAST * max(conductivities)) if max(conductivities) > 0 else np.ones(4)
     cosine, sine = np.cos(0.5 * np.pi * TRIED), np.sin(0.5 * np.pi * TRIED)

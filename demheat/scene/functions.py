@@ -9,23 +9,7 @@ from demheat.scene.parts import HOTTEST, Radiation, driver
 
 
 def load_at(name, load, time, *, kelvin=False) -> float:
-    """Value of a wall's load at a time, K or W/m2; of surroundings their temperature.
-
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    load : float, callable (time, s) -> float, Flux, Convection or Radiation
-        Temperature, K, or flux density, W/m2.
-    time : float, s
-    kelvin : bool
-        Whether the value is an absolute temperature, as that of `Radiation` always is.
-
-    Raises
-    ------
-    ValueError
-        If a function fails, or gives no finite number.
-    """
+    """Value of a wall's load at a time, K or W/m2; of surroundings their temperature."""
     value = driver(load)
     if not callable(value):
         return float(value)
@@ -40,19 +24,7 @@ def load_at(name, load, time, *, kelvin=False) -> float:
 
 
 def initial_at(scene, points) -> np.ndarray:
-    """Temperature of a scene at time 0, (n,) float array, K.
-
-    Parameters
-    ----------
-    scene : Scene
-    points : (n, 3) float array, m
-        A function gets a copy: it may do with it as it likes.
-
-    Raises
-    ------
-    ValueError
-        If a function fails, or gives anything but a finite number for each point.
-    """
+    """Temperature of a scene at time 0, (n,) float array, K."""
     if not callable(scene.initial):
         return np.full(len(points), float(scene.initial))
     try:

@@ -146,12 +146,7 @@ class Image:
 
 
 def slabs(shape: Sequence[int]) -> Iterator[slice]:
-    """Slices along the first axis of an array, of some millions of elements each.
-
-    Parameters
-    ----------
-    shape : (3,) sequence of int
-    """
+    """Slices along the first axis of an array, of some millions of elements each."""
     thick = _thickness(shape)
     return (slice(start, start + thick) for start in range(0, shape[0], thick))
 

@@ -14,20 +14,7 @@ LEAST, MOST = 1e-50, 1e50
 
 
 def vector(name: str, value, *, length: int = 3) -> tuple[float, ...]:
-    """Finite numbers as a tuple of floats.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : (length,) sequence of float
-    length : {2, 3}
-
-    Raises
-    ------
-    ValueError
-        If the value is anything else.
-    """
+    """Finite numbers as a tuple of floats."""
     valid = f"{WORDS[length]} finite numbers"
     array = reals(name, value, valid)
     # Flags among numbers have become numbers there.
@@ -38,22 +25,7 @@ def vector(name: str, value, *, length: int = 3) -> tuple[float, ...]:
 
 
 def reals(name: str, value, valid: str) -> np.ndarray:
-    """Real numbers as a float array of any shape: no text, flags, complex numbers or masks, which NumPy would cast.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : array_like
-        A float array is returned as it is.
-    valid : str
-        What would be valid, for the message.
-
-    Raises
-    ------
-    ValueError
-        If the value is anything else.
-    """
+    """Real numbers as a float array of any shape: no text, flags, complex numbers or masks, which NumPy would cast."""
     try:
         array = np.asarray(value)
         good = array.dtype.kind in "iuf" or (array.dtype.kind == "O" and all(map(_is_real, array.flat)))
@@ -66,12 +38,7 @@ def reals(name: str, value, valid: str) -> np.ndarray:
 
 
 def one_line(error: Exception) -> str:
-    """Message of an error or a warning without its line breaks, or its kind where it says nothing.
-
-    Parameters
-    ----------
-    error : Exception
-    """
+    """Message of an error or a warning without its line breaks, or its kind where it says nothing."""
     return " ".join(str(error).split()) or type(error).__name__
 
 
@@ -81,74 +48,27 @@ def shown(value) -> str:
 
 
 def whole(name: str, value, valid: str, accept: Callable[[int], bool] = lambda v: True) -> int:
-    """A whole number as an int.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : int
-        No flags, and no floats.
-    valid, accept
-        As those of `finite`.
-
-    Raises
-    ------
-    ValueError
-        If the value is anything else.
-    """
+    """A whole number as an int."""
     if isinstance(value, bool) or not isinstance(value, Integral) or not accept(value):
         raise ValueError(f"{name} = {value!r}: must be {valid}")
     return int(value)
 
 
 def chosen(name: str, value, valid: Iterable[str]) -> None:
-    """Raise ValueError unless a value is one of some words.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : str
-    valid : iterable of str
-    """
+    """Raise ValueError unless a value is one of some words."""
     if not isinstance(value, str) or value not in valid:
         raise ValueError(f"{name} = {value!r}: must be one of {', '.join(valid)}")
 
 
 def flag(name: str, value) -> bool:
-    """A flag as a bool, or a ValueError: numbers and text are none.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : bool
-    """
+    """A flag as a bool, or a ValueError: numbers and text are none."""
     if not isinstance(value, bool | np.bool_):
         raise ValueError(f"{name} = {value!r}: must be True or False")
     return bool(value)
 
 
 def finite(name: str, value, valid: str, accept: Callable[[float], bool] = lambda v: True) -> float:
-    """A finite number as a float.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : float
-        No strings, flags, arrays or huge integers.
-    valid : str
-        What would be valid, for the message.
-    accept : callable (value) -> bool
-        Which finite numbers are valid.
-
-    Raises
-    ------
-    ValueError
-        If the value is anything else.
-    """
+    """A finite number as a float."""
     try:
         good = _is_real(value) and math.isfinite(value) and accept(float(value))
     except OverflowError:
@@ -169,16 +89,7 @@ def axis_number(axis) -> int:
 
 
 def number(owner, field: str, valid: str, accept: Callable[[float], bool] = lambda v: True) -> None:
-    """Check and cast a field of a frozen dataclass.
-
-    Parameters
-    ----------
-    owner : dataclass instance
-    field : str
-        Name of the field.
-    valid, accept
-        As those of `finite`.
-    """
+    """Check and cast a field of a frozen dataclass."""
     name = f"{type(owner).__name__}.{field}"
     object.__setattr__(owner, field, finite(name, getattr(owner, field), valid, accept))
 

@@ -81,13 +81,6 @@ class Material:
 
 
 def check_material(name: str, value) -> None:
-    """Raise ValueError unless a value is a Material.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : Material
-    """
+    """Raise ValueError unless a value is a Material."""
     if not isinstance(value, Material):
         raise ValueError(f"{name} = {value!r}: must be a Material")

@@ -19,18 +19,6 @@ def narrows(scene, reach: float, strong: float = STRONG) -> np.ndarray:
 
     It does between two that conduct so many times better than what is around both, or both worse; between a good one
     and a held wall, between a bad one and an insulated one, which mirrors it. Other shapes are none.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box.
-    reach : float, m
-    strong : float
-        From so many times on.
-
-    Returns
-    -------
-    (number of inclusions,) bool array
     """
     found, parents = np.zeros(len(scene.inclusions), bool), scene.parents()[1:]
     k, around = scene.mean_conductivities[1:], scene.mean_conductivities[parents]

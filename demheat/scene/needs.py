@@ -85,14 +85,7 @@ def check_transient(scene) -> None:
 
 
 def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[tuple[str, str]]:
-    """What in a Scene a method cannot do, one after the other, and who can where only few do.
-
-    Parameters
-    ----------
-    scene : Scene
-    walls, domain, shapes, nested, pores, takes
-        As those of `Scene.require`.
-    """
+    """What in a Scene a method cannot do, one after the other, and who can where only few do."""
     if scene.image is not None and "image" not in takes:
         yield "Scene.image", IMAGE
     for name, load in scene.wall_exchanges.items() if "exchange" not in takes else ():

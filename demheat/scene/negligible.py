@@ -34,21 +34,11 @@ BLOCK = 2**20
 
 
 class Negligible(NamedTuple):
-    """Inclusions that may be left out.
+    """Inclusions that may be left out."""
 
-    Attributes
-    ----------
-    inclusions : tuple of int
-        Their places in `Scene.inclusions`.
-    bound : float
-        Relative change of the conductivity, at most, if all of them are left out.
-    scene : Scene
-        Without them; the scene itself if there are none.
-    """
-
-    inclusions: tuple[int, ...]
-    bound: float
-    scene: Scene
+    inclusions: tuple[int, ...]  # tuple of int: Their places in `Scene.inclusions`
+    bound: float  # Relative change of the conductivity, at most, if all of them are left out
+    scene: Scene  # Without them; the scene itself if there are none
 
 
 def negligible(scene: Scene, accuracy: float) -> Negligible:
@@ -99,16 +89,7 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
 
 
 def change_without(scene: Scene, numbers: Sequence[int], least: float = 0.0) -> float:
-    """By how much the conductivity changes, relatively and at most, without some inclusions; infinite if unknown.
-
-    Parameters
-    ----------
-    scene : Scene
-    numbers : sequence of int
-        Places in `Scene.inclusions`.
-    least : float, m
-        Radius that smaller ones have instead of their own.
-    """
+    """By how much the conductivity changes, relatively and at most, without some inclusions; infinite if unknown."""
     if scene.anisotropic or scene.varies or scene.wall_exchanges or scene.wall_fluxes:
         return np.inf
     radii, beta = _spheres(scene)

@@ -112,14 +112,7 @@ def driver(load):
 
 
 def driven(load, value):
-    """A wall's load with another driver.
-
-    Parameters
-    ----------
-    load : float, callable, Flux, Convection or Radiation
-    value : float
-        A temperature, or a flux density.
-    """
+    """A wall's load with another driver."""
     if isinstance(load, Flux):
         return Flux(value)
     return replace(load, temperature=value) if isinstance(load, Convection | Radiation) else value

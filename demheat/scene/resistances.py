@@ -12,17 +12,7 @@ import numpy as np
 
 
 def between(scene) -> Callable[[np.ndarray, np.ndarray], np.ndarray] | None:
-    """Resistance between phases that meet.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    callable (here, there) -> (m,) float array, m2 K/W; or None
-        Of two (m,) int arrays of phases; None where no surface has a resistance.
-    """
+    """Resistance between phases that meet."""
     own = scene.resistances
     if not own.any():
         return None
@@ -42,10 +32,6 @@ def joined(scene) -> np.ndarray:
 
     Each has the number of the innermost such surface around it, 0 outside of all: where two numbers differ, one of the
     surfaces is between.
-
-    Parameters
-    ----------
-    scene : Scene
     """
     own, parents = scene.resistances, scene.parents()
     found = np.arange(len(own))

@@ -16,21 +16,7 @@ VALID = (
 
 
 def rotation(name: str, value) -> tuple[tuple[float, ...], ...]:
-    """A rotation as the rows of its matrix.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : (3,) or (3, 3) array_like, or scipy.spatial.transform.Rotation
-        A rotation vector, along the axis and as long as the angle in radians; or a matrix, whose entries may be rounded
-        to 1e-6: the nearest rotation is then taken.
-
-    Raises
-    ------
-    ValueError
-        If the value is no rotation.
-    """
+    """A rotation as the rows of its matrix."""
     matrix = reals(name, value.as_matrix() if hasattr(value, "as_matrix") else value, VALID)
     if matrix.shape == (3,) and np.all(np.isfinite(matrix)):
         return _rows(_about(matrix))
@@ -45,13 +31,7 @@ def rotation(name: str, value) -> tuple[tuple[float, ...], ...]:
 
 
 def turned_rotation(rows, order) -> tuple[tuple[float, ...], ...]:
-    """A rotation after axes order[0], order[1], order[2] have become axes 0, 1, 2, of a body with three mirrors.
-
-    Parameters
-    ----------
-    rows : (3, 3) tuple of float
-    order : (3,) sequence of int
-    """
+    """A rotation after axes order[0], order[1], order[2] have become axes 0, 1, 2, of a body with three mirrors."""
     matrix = np.array(rows)[list(order)]
     if np.linalg.det(matrix) < 0:
         # What a mirror made left-handed: the body is its own mirror image.

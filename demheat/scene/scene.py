@@ -382,14 +382,7 @@ class Scene:
 
 
 def check_scene(scene, name="scene") -> None:
-    """Raise ValueError unless a value is a Scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    name : str
-        Of the argument, for the message.
-    """
+    """Raise ValueError unless a value is a Scene."""
     if not isinstance(scene, Scene):
         raise ValueError(f"{name} = {scene!r}: must be a Scene")
 

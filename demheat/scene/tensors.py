@@ -17,19 +17,7 @@ VALID = (
 
 
 def checked_conductivity(name: str, value) -> float | tuple[tuple[float, float, float], ...]:
-    """A conductivity as users give it: a float, or a tensor as three tuples; one that is the same all round is a float.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : float or (3, 3) array_like, W/(m K)
-
-    Raises
-    ------
-    ValueError
-        If the value is neither.
-    """
+    """A conductivity as users give it: a float, or a tensor as three tuples; an isotropic one is a float."""
     if not isinstance(value, list | tuple) and not (isinstance(value, np.ndarray) and value.ndim):
         return finite(name, value, VALID, lambda v: v >= 0 and moderate(v))
     tensor = reals(name, value, VALID)

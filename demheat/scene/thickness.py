@@ -14,12 +14,6 @@ def narrower(scene, lengths) -> np.ndarray:
     """Whether each inclusion is narrower along some axis than a length, (number of inclusions,) bool array.
 
     Or in any direction than the least of the lengths, where it is known to be.
-
-    Parameters
-    ----------
-    scene : Scene
-    lengths : (3,) float array, m
-        Along each axis.
     """
     along = np.array([high - low for low, high in (shape.bounds() for shape in scene.inclusions)]).reshape(-1, 3)
     return np.any(along < lengths, axis=1) | (extents(scene) < np.min(lengths))

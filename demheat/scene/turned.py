@@ -9,19 +9,7 @@ from demheat.scene.scene import Scene
 
 
 def turned(scene: Scene, order: Sequence[int]) -> Scene:
-    """The same box of materials and its load with axes order[0], order[1], order[2] as axes 0, 1, 2.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box without sources, and without an initial temperature that is a function.
-    order : (3,) sequence of int
-
-    Returns
-    -------
-    Scene
-        Its tensors are turned with it.
-    """
+    """The same box of materials and its load with axes order[0], order[1], order[2] as axes 0, 1, 2."""
     if tuple(order) == (0, 1, 2):
         return scene
 

@@ -11,17 +11,7 @@ STEPS = 1.2207440846057596 ** -np.arange(1.0, 4.0)
 
 
 def fractions(scene) -> np.ndarray:
-    """Exact volume fraction of each phase, (1 + number of inclusions,) float array.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Raises
-    ------
-    NotImplementedError
-        If a wall cuts an inclusion whose part in the box has no closed form.
-    """
+    """Exact volume fraction of each phase, (1 + number of inclusions,) float array."""
     volumes = np.append(scene.volume, [s.volume_in(scene.size, periodic=scene.periodic) for s in scene.inclusions])
     # The innermost inclusion around each, or the matrix, gives up the place.
     np.subtract.at(volumes, scene.parents()[1:], volumes[1:].copy())
@@ -29,23 +19,13 @@ def fractions(scene) -> np.ndarray:
 
 
 def sampled_fractions(scene) -> np.ndarray:
-    """The same by the phases at even points, right to a hundredth or so.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """The same by the phases at even points, right to a hundredth or so."""
     points = (0.5 + np.outer(np.arange(POINTS), STEPS)) % 1.0 * scene.size
     return np.bincount(scene.phase_at(points), minlength=len(scene.materials)) / POINTS
 
 
 def known_fractions(scene) -> np.ndarray:
-    """The same of an image, exact where that is known, else by sampling.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """The same of an image, exact where that is known, else by sampling."""
     if scene.image is not None:
         return scene.image.fractions
     try:

@@ -16,17 +16,7 @@ WALLS = ("wall_side", "wall_conductance", "wall_area", "wall_distance", "wall_no
 
 
 def number_all(parts: Parts) -> None:
-    """Number the particles that each slab sees: its own in one run, others as their owners do, and at which image.
-
-    Parameters
-    ----------
-    parts : Parts
-
-    Raises
-    ------
-    RuntimeError
-        If a cell of a slab touches a particle that its owner does not know.
-    """
+    """Number the particles that each slab sees: its own in one run, others as their owners do, and at which image."""
     store, size, periodic = parts.store, np.array(parts.scene.size), np.broadcast_to(parts.scene.periodic, 3)
     for slabs, own, first in zip(parts.cuts, parts.own, parts.first, strict=False):
         here, axis = slabs.rank, slabs.axis
@@ -48,18 +38,7 @@ def number_all(parts: Parts) -> None:
 
 
 def joined(parts: Parts) -> Network:
-    """One network of all slabs' own rows: links, images and centres mapped from disk.
-
-    Parameters
-    ----------
-    parts : Parts
-        Numbered.
-
-    Returns
-    -------
-    Network
-        Without what only evaluation needs.
-    """
+    """One network of all slabs' own rows: links, images and centres mapped from disk."""
     store, first = parts.store, parts.first
     ends = [int(store.get(slabs.rank, "indptr")[own]) for slabs, own in zip(parts.cuts, parts.own, strict=True)]
     begin = np.concatenate([[0], np.cumsum(ends)])

@@ -18,21 +18,7 @@ from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
 def field_of(parts: Parts, solution: Solution, **more) -> Field:
-    """The Field of a body in slabs.
-
-    Parameters
-    ----------
-    parts : Parts
-    solution : Solution
-        Of all slabs; its walls are not used.
-    **more
-        Of the Field: stats, estimator.
-
-    Returns
-    -------
-    Field
-        It reads the folder again whenever `samples`, temperatures, fluxes or heat are asked for, a slab at a time.
-    """
+    """The Field of a body in slabs."""
     solved = Solved(parts, solution)
     sums = [sums_of(parts.scene, *own_of(*each)) for each in solved]
     return Field(
@@ -47,14 +33,7 @@ def field_of(parts: Parts, solution: Solution, **more) -> Field:
 
 
 class Solved:
-    """Slabs and their solutions, read one after the other; of the last one that points lay in what it samples by.
-
-    Parameters
-    ----------
-    parts : Parts
-    solution : Solution
-        Of all slabs.
-    """
+    """Slabs and their solutions, read one after the other; of the last one that points lay in what it samples by."""
 
     def __init__(self, parts: Parts, solution: Solution):
         self.parts, self.solution = parts, solution
@@ -81,26 +60,11 @@ class Solved:
         return Samples(*map(np.concatenate, zip(*found, strict=True)))
 
     def heat_through(self, axis: int, position: float) -> float:
-        """Heat that crosses a plane, W.
-
-        Parameters
-        ----------
-        axis : {0, 1, 2}
-        position : float, m
-        """
+        """Heat that crosses a plane, W."""
         return sum(heat_through(*own_of(*each), axis, position) for each in self)
 
     def at(self, points: np.ndarray, which: int, slope: np.ndarray | None = None) -> np.ndarray:
-        """Temperature or flux at points, by the slabs in which they lie.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        which : {0, 1}
-            Temperature, or flux.
-        slope : (3,) float array, K/m, optional
-            Mean gradient by which images of the box differ.
-        """
+        """Temperature or flux at points, by the slabs in which they lie."""
         scene = self.parts.scene
         inside = wrap(points, np.array(scene.size), np.broadcast_to(scene.periodic, 3))
         owner = self.parts.cuts[0].owner(inside)

@@ -17,27 +17,12 @@ def expected(number: float, slabs: Slabs, relaxed: float = 0.0) -> float:
     """Bytes at the peak, besides Python and libraries: of the packing, of the cells of one slab, or of the solve.
 
     Found with four slabs of a cube: 603 an unknown of 212 thousand, 300 of 1.03 million, by cells; with eight 536.
-
-    Parameters
-    ----------
-    number : float
-        Of unknowns.
-    slabs : Slabs
-    relaxed : float
-        Particles that have to be relaxed at once.
     """
     return max(whole.expected(number * _share(slabs, GHOSTS + MARGIN)), SOLVE * number, RELAXED * relaxed)
 
 
 def on_disk(number: float, slabs: Slabs) -> float:
-    """Bytes that the folder holds at most.
-
-    Parameters
-    ----------
-    number : float
-        Of unknowns.
-    slabs : Slabs
-    """
+    """Bytes that the folder holds at most."""
     return (SEEN * slabs.ranks * _share(slabs, GHOSTS) + MATRIX) * number
 
 

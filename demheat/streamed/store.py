@@ -23,18 +23,7 @@ MATRIX = "matrix"
 
 
 class Store:
-    """Arrays by name in a folder.
-
-    Parameters
-    ----------
-    folder : path
-        New, or an empty one.
-
-    Raises
-    ------
-    ValueError
-        If it is neither, or cannot be made.
-    """
+    """Arrays by name in a folder."""
 
     def __init__(self, folder):
         self.folder = checked_folder(folder)
@@ -44,67 +33,28 @@ class Store:
             raise ValueError(f"folder = {str(folder)!r}: cannot be made: {error.strerror}; must be another") from None
 
     def write(self, number: int, cells: Cells) -> None:
-        """Keep what a slab sees.
-
-        Parameters
-        ----------
-        number : int
-            Of the slab.
-        cells : Cells
-        """
+        """Keep what a slab sees."""
         here = self._of(number)
         here.mkdir()
         for name in ARRAYS:
             self.put(number, name, getattr(cells.network, name))
 
     def read(self, number: int, size, periodic) -> Network:
-        """The network that a slab sees.
-
-        Parameters
-        ----------
-        number : int
-            Of the slab.
-        size : (3,) float array, m
-            Of the body.
-        periodic : (3,) bool array
-            Axes along which what the slab sees is periodic.
-        """
+        """The network that a slab sees."""
         arrays = {name: np.load(self._of(number) / f"{name}.npy") for name in ARRAYS}
         return Network(size=size, periodic=periodic, **arrays)
 
     def put(self, number: int, name: str, values: np.ndarray) -> None:
-        """Write one array of a slab, whole or not at all.
-
-        Parameters
-        ----------
-        number : int
-            Of the slab.
-        name : str
-        values : array
-        """
+        """Write one array of a slab, whole or not at all."""
         with replaced(self._of(number) / f"{name}.npy") as part:
             np.save(part, values)
 
     def get(self, number: int, name: str) -> np.ndarray:
-        """One array of a slab, mapped.
-
-        Parameters
-        ----------
-        number : int
-            Of the slab.
-        name : str
-        """
+        """One array of a slab, mapped."""
         return np.load(self._of(number) / f"{name}.npy", mmap_mode="r")
 
     def mapped(self, name: str, shape, kind) -> np.ndarray:
-        """A new array of the matrix, on disk: what is written to it need not stay in memory.
-
-        Parameters
-        ----------
-        name : str
-        shape : tuple of int
-        kind : dtype
-        """
+        """A new array of the matrix, on disk: what is written to it need not stay in memory."""
         here = self.folder / MATRIX
         here.mkdir(exist_ok=True)
         # A plain array of the same bytes: what is compiled for plain ones serves.
@@ -131,22 +81,12 @@ def checked_folder(folder) -> Path:
 
 
 class Parts(NamedTuple):
-    """The slabs of a body, on disk.
-
-    Attributes
-    ----------
-    scene : Scene
-    store : Store
-    cuts : list of Slabs
-        Each slab's view of all of them.
-    own : list of int
-        How many particles each slab owns.
-    """
+    """The slabs of a body, on disk."""
 
     scene: Scene
     store: Store
-    cuts: list[Slabs]
-    own: list[int]
+    cuts: list[Slabs]  # list of Slabs: Each slab's view of all of them
+    own: list[int]  # list of int: How many particles each slab owns
 
     @property
     def first(self) -> np.ndarray:

@@ -16,21 +16,7 @@ from demheat.sweeps.rows import failed, row_of
 
 
 def on_workers(client, function: Callable, cases: Sequence[dict], limit: float | None) -> Iterator[tuple[int, dict]]:
-    """Rows of cases, as they are done.
-
-    Parameters
-    ----------
-    client : distributed.Client
-    function : callable
-    cases : sequence of dict
-    limit : float, s, optional
-
-    Yields
-    ------
-    number : int
-        Of the case.
-    row : dict
-    """
+    """Rows of cases, as they are done."""
     import cloudpickle
 
     tasks = [(cloudpickle.dumps((function, case)), limit) for case in cases]
@@ -45,14 +31,7 @@ def on_workers(client, function: Callable, cases: Sequence[dict], limit: float |
 
 
 def in_fresh_process(sent: bytes, limit: float | None) -> dict:
-    """The row of a case, or {"lost": why there is none}.
-
-    Parameters
-    ----------
-    sent : bytes
-        Function and case, pickled.
-    limit : float, s, optional
-    """
+    """The row of a case, or {"lost": why there is none}."""
     with tempfile.TemporaryDirectory() as folder:
         question, answer, log = (Path(folder) / name for name in ("case", "row.json", "log"))
         question.write_bytes(sent)
@@ -68,15 +47,7 @@ def in_fresh_process(sent: bytes, limit: float | None) -> dict:
 
 
 def main(question: str, answer: str, parent: str) -> None:
-    """Compute the case of one file into another.
-
-    Parameters
-    ----------
-    question, answer : str
-        Names of the files.
-    parent : str
-        Number of the process that waits.
-    """
+    """Compute the case of one file into another."""
     fresh.die_with_parent(int(parent))
     import cloudpickle
 

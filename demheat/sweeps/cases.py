@@ -15,19 +15,7 @@ VALID = "a dict of lists, or a list of dicts with names as keys"
 
 
 def case_list(cases: Mapping | Iterable[Mapping], *, plain: bool) -> list[dict]:
-    """Cases as dicts; of a dict of lists every combination, the last name fastest.
-
-    Parameters
-    ----------
-    cases : dict of lists, or list of dicts
-    plain : bool
-        Whether values must be numbers or text, and cases differ in it.
-
-    Raises
-    ------
-    ValueError
-        If they are anything else, none, or have a name that every row has.
-    """
+    """Cases as dicts; of a dict of lists every combination, the last name fastest."""
     made = _product(cases) if isinstance(cases, Mapping) else _listed(cases)
     if not made:
         raise ValueError(f"cases = {shown(cases)}: must be at least one")

@@ -13,13 +13,7 @@ from demheat.sweeps.rows import CASE, TAIL
 
 
 class Kept:
-    """Rows of a file as text, by their cases.
-
-    Parameters
-    ----------
-    path : Path
-    rows : dict of str to dict
-    """
+    """Rows of a file as text, by their cases."""
 
     def __init__(self, path: Path, rows: dict[str, dict]):
         self.path, self.rows = path, rows
@@ -38,12 +32,7 @@ class Kept:
         return {**case, **others, **ends, "error": found["error"]}
 
     def add(self, case: Mapping, row: Mapping) -> None:
-        """Put a row in the place of an older one of its case, and write all, and what others have written meanwhile.
-
-        Parameters
-        ----------
-        case, row : mapping
-        """
+        """Put a row in the place of an older one of its case, and write all, and what others have written meanwhile."""
         texts = {name: "" if value is None else str(value) for name, value in row.items()}
         with locked(self.path.parent):
             self.rows |= _read(self.path) | {key_of(case): {CASE: key_of(case), **texts}}

@@ -24,13 +24,7 @@ ENTRIES = {"k_xx": (0, 0), "k_yy": (1, 1), "k_zz": (2, 2), "k_yz": (1, 2), "k_xz
 
 
 def row_of(function: Callable, case: Mapping) -> dict:
-    """Call the function in this process; what it raises is the row's error.
-
-    Parameters
-    ----------
-    function : callable
-    case : mapping
-    """
+    """Call the function in this process; what it raises is the row's error."""
     wall, cpu = time.perf_counter(), cpu_seconds()
     values, error = {}, ""
     try:
@@ -42,13 +36,7 @@ def row_of(function: Callable, case: Mapping) -> dict:
 
 
 def failed(case: Mapping, error: str) -> dict:
-    """Row of a case that did not come to an end.
-
-    Parameters
-    ----------
-    case : mapping
-    error : str
-    """
+    """Row of a case that did not come to an end."""
     return {**case, "error": " ".join(error.split()), "wall_s": None, "cpu_s": None, **origin()}
 
 

@@ -49,16 +49,7 @@ class Cells(NamedTuple):
 
 
 def packed(scene: Scene, wanted: Particles, counts, slabs: Slabs) -> tuple[Packing, np.ndarray]:
-    """A slab's part of the packing, and the radii of all of it or of one of its replicas.
-
-    Parameters
-    ----------
-    scene : Scene
-    wanted : Particles
-    counts : (3,) int array
-        Replicas along each axis.
-    slabs : Slabs
-    """
+    """A slab's part of the packing, and the radii of all of it or of one of its replicas."""
     body = {"size": scene.size, "seed": wanted.seed}
     if counts.prod() > 1:
         part = replicated(wanted.particles, counts, periodic=scene.periodic, keep=slabs.near, **body)
@@ -69,17 +60,7 @@ def packed(scene: Scene, wanted: Particles, counts, slabs: Slabs) -> tuple[Packi
 
 
 def conformed(packing: Packing, radii, scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs) -> Packing:
-    """A part of a packing with the twins that lie in a slab or near it, where the law has twins.
-
-    Parameters
-    ----------
-    packing, radii
-        Of `packed`.
-    scene : Scene
-    law : Laguerre
-    wanted : Particles
-    slabs : Slabs
-    """
+    """A part of a packing with the twins that lie in a slab or near it, where the law has twins."""
     if not law.conforming:
         return packing
     part = Part(radii.mean(), radii.max(), slabs.near)
@@ -87,21 +68,7 @@ def conformed(packing: Packing, radii, scene: Scene, law: Laguerre, wanted: Part
 
 
 def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs) -> Cells:
-    """Cells of a slab's part of a packing, and their conductances.
-
-    Parameters
-    ----------
-    scene : Scene
-    law : Laguerre
-    packing : Packing
-        As `conformed` makes it.
-    slabs : Slabs
-
-    Raises
-    ------
-    RuntimeError
-        If what is seen of the neighbours is too thin for a cell.
-    """
+    """Cells of a slab's part of a packing, and their conductances."""
     (seen, own), provenance = _seen(packing, slabs), packing.provenance
     # Memory: what a slab sees of it is a copy.
     del packing
@@ -119,14 +86,7 @@ def cells_of(scene: Scene, law: Laguerre, packing: Packing, slabs: Slabs) -> Cel
 
 
 def check_filled(volume: float, scene: Scene) -> None:
-    """Raise RuntimeError unless the own cells of all slabs fill the body.
-
-    Parameters
-    ----------
-    volume : float, m3
-        Of these cells.
-    scene : Scene
-    """
+    """Raise RuntimeError unless the own cells of all slabs fill the body."""
     filled = volume / scene.volume - 1.0
     if abs(filled) > DEFECT:
         raise RuntimeError(f"the cells of all slabs fill the body with a relative defect of {filled:.2e}")
@@ -162,14 +122,7 @@ def _without_cuts(facets, own, slabs):
 
 
 def own_part(network: Network, own: int) -> Network:
-    """The network with the rows of the slab's own particles only: others have no links, no walls and no volume.
-
-    Parameters
-    ----------
-    network : Network
-    own : int
-        Number of the first particles that are kept.
-    """
+    """The network with the rows of the slab's own particles only: others have no links, no walls and no volume."""
     end, walls = network.indptr[own], network.wall_particle < own
     indptr = network.indptr.copy()
     indptr[own:] = end

@@ -9,24 +9,7 @@ from demheat.scene import Scene, check_scene
 
 
 def check(scene: Scene, law: Laguerre, wanted: Particles, tolerance: float, *, knows: str) -> None:
-    """Raise unless a scene can be solved slab by slab.
-
-    Parameters
-    ----------
-    scene : Scene
-    law : Laguerre
-    wanted : Particles
-    tolerance : float
-    knows : str
-        What the caller solves, in a sentence.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described.
-    NotImplementedError
-        If the scene is not what is known.
-    """
+    """Raise unless a scene can be solved slab by slab."""
     check_scene(scene)
     check_solver("auto", tolerance)
     if not isinstance(law, Laguerre):

@@ -13,16 +13,7 @@ NOBODY = -1
 
 
 def found_at(points: np.ndarray, own: np.ndarray, slabs: Slabs) -> np.ndarray:
-    """Which of a slab's own particles lies at each point, (k,) int array; NOBODY where none does.
-
-    Parameters
-    ----------
-    points : (k, 3) float array, m
-        In the box.
-    own : (own, 3) float array, m
-        Centres of the slab's own particles.
-    slabs : Slabs
-    """
+    """Which of a slab's own particles lies at each point, (k,) int array; NOBODY where none does."""
     if not len(points):
         return np.empty(0, dtype=np.int64)
     x, slack = own[:, slabs.axis], SAME * slabs.unit

@@ -19,26 +19,14 @@ PHI = 0.64
 
 
 class Slabs(NamedTuple):
-    """Slabs of equal thickness across the longest side of a box.
-
-    Attributes
-    ----------
-    axis : int
-    length : float, m
-        Of that side.
-    ranks, rank : int
-        How many slabs, and which is ours; where they are worked on one after the other, whose turn it is.
-    periodic : bool
-    unit : float, m
-        Radius that equal spheres would have.
-    """
+    """Slabs of equal thickness across the longest side of a box."""
 
     axis: int
-    length: float
-    ranks: int
-    rank: int
+    length: float  # m: Of that side
+    ranks: int  # How many slabs, and which is ours; where they are worked on one after the other, whose turn it is
+    rank: int  # How many slabs, and which is ours; where they are worked on one after the other, whose turn it is
     periodic: bool
-    unit: float
+    unit: float  # m: Radius that equal spheres would have
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -82,20 +70,7 @@ def most_slabs(slabs: Slabs) -> int:
 
 
 def slabs_of(scene: Scene, particles: int, ranks: int, rank: int, name: str = "ranks") -> Slabs:
-    """Slabs of a scene's box.
-
-    Parameters
-    ----------
-    scene : Scene
-    particles, ranks, rank : int
-    name : str
-        What the user calls their number.
-
-    Raises
-    ------
-    ValueError
-        If slabs are thinner than the layer that they see of their neighbours.
-    """
+    """Slabs of a scene's box."""
     axis = int(np.argmax(scene.size))
     unit = float(np.cbrt(0.75 / np.pi * PHI * np.prod(scene.size) / particles))
     slabs = Slabs(axis, float(scene.size[axis]), int(ranks), int(rank), scene.periodic, unit)

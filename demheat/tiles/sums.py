@@ -32,29 +32,14 @@ class Sums(NamedTuple):
 
 
 def own_of(cells: Cells, solution: Solution) -> tuple[Network, Solution]:
-    """Network and solution of a slab's own particles only.
-
-    Parameters
-    ----------
-    cells : Cells
-    solution : Solution
-        Of all particles that the slab sees.
-    """
+    """Network and solution of a slab's own particles only."""
     mine = cells.network.wall_particle < cells.own
     walls = {name: getattr(solution, name)[mine] for name in ("wall_temperature", "wall_heat")}
     return own_part(cells.network, cells.own), solution._replace(**walls)
 
 
 def sums_of(scene: Scene, network: Network, solution: Solution) -> Sums:
-    """What a slab adds.
-
-    Parameters
-    ----------
-    scene : Scene
-    network : Network
-    solution : Solution
-        Both as `own_of` makes them.
-    """
+    """What a slab adds."""
     flux = (mean_flux if scene.periodic else between_walls)(network, scene, solution)
     volumes = np.bincount(network.phase, network.volumes, len(scene.materials))
     walls = np.zeros((len(scene.walls or {}), 3))
@@ -67,13 +52,7 @@ def sums_of(scene: Scene, network: Network, solution: Solution) -> Sums:
 
 
 def told(scene: Scene, sums: Sums) -> dict:
-    """Arguments of a Field from the sums over all slabs.
-
-    Parameters
-    ----------
-    scene : Scene
-    sums : Sums
-    """
+    """Arguments of a Field from the sums over all slabs."""
     names = list(scene.walls or {})
     warm, area, heat = sums.walls.T
     mean = np.divide(warm, area, out=np.full(len(names), np.nan), where=area > 0)

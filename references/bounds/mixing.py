@@ -16,17 +16,7 @@ SUM_TOLERANCE = 1e-8
 
 
 def checked_phases(conductivities, fractions):
-    """Conductivities and fractions of any number of phases as arrays, or ValueError.
-
-    Parameters
-    ----------
-    conductivities : (..., phases) array-like, W/(m K)
-    fractions : (..., phases) array-like
-
-    Returns
-    -------
-    tuple of two (..., phases) float arrays
-    """
+    """Conductivities and fractions of any number of phases as arrays, or ValueError."""
     given = {"conductivities": _conductivity("conductivities", conductivities)}
     k, p = _alike(given | {"fractions": checked_fraction("fractions", fractions)})
     if k.ndim == 0 or not np.all(np.abs(p.sum(axis=-1) - 1) <= SUM_TOLERANCE):
@@ -35,19 +25,7 @@ def checked_phases(conductivities, fractions):
 
 
 def checked_pair(k_matrix, k_inclusion, fraction, **more):
-    """Arguments of a two-phase function as arrays, or ValueError.
-
-    Parameters
-    ----------
-    k_matrix, k_inclusion : (...) array-like, W/(m K)
-    fraction : (...) array-like
-    **more : (...) array-like
-        Other parts of 0 to 1, by their names: zeta2.
-
-    Returns
-    -------
-    tuple of three or four (...) float arrays
-    """
+    """Arguments of a two-phase function as arrays, or ValueError."""
     given = {name: _conductivity(name, k) for name, k in (("k_matrix", k_matrix), ("k_inclusion", k_inclusion))}
     given["fraction"] = checked_fraction("fraction", fraction)
     given |= {name: checked_fraction(name, value) for name, value in more.items()}
@@ -71,18 +49,7 @@ def _conductivity(name, value):
 
 
 def checked_fraction(name, value):
-    """A number of 0 to 1, or ValueError.
-
-    Parameters
-    ----------
-    name : str
-        As users know it.
-    value : (...) array-like
-
-    Returns
-    -------
-    (...) float array
-    """
+    """A number of 0 to 1, or ValueError."""
     array = reals(name, value, "numbers from 0 to 1")
     if not np.all((array >= 0) & (array <= 1)):
         raise ValueError(f"{name} = {value!r}: must lie in 0 to 1")
@@ -90,18 +57,7 @@ def checked_fraction(name, value):
 
 
 def checked_positive(name, value):
-    """A finite number above 0, or ValueError.
-
-    Parameters
-    ----------
-    name : str
-        As users know it.
-    value : (...) array-like
-
-    Returns
-    -------
-    (...) float array
-    """
+    """A finite number above 0, or ValueError."""
     array = reals(name, value, "finite numbers > 0")
     if not np.all((array > 0) & np.isfinite(array)):
         raise ValueError(f"{name} = {value!r}: must be a finite number > 0")
@@ -109,35 +65,14 @@ def checked_positive(name, value):
 
 
 def contrast(k1, k2, weight):
-    """(k2 - k1)/(k2 + weight k1) with its limits.
-
-    Parameters
-    ----------
-    k1, k2 : (...) float arrays, W/(m K)
-    weight : float
-
-    Returns
-    -------
-    (...) float array
-    """
+    """(k2 - k1)/(k2 + weight k1) with its limits."""
     with np.errstate(invalid="ignore", divide="ignore"):
         value = np.where(np.isinf(k2), 1.0, (k2 - k1) / (k2 + weight * k1))
     return np.where(k1 == k2, 0.0, np.where(np.isinf(k1), -1 / weight, value))
 
 
 def dispersed(k1, p2, beta, third):
-    """Maxwell's estimate with a term of third order in the contrast, k1 (1 + 2 p2 beta - t)/(1 - p2 beta - t).
-
-    Parameters
-    ----------
-    k1 : (...) float array, W/(m K)
-    p2, beta, third : (...) float arrays
-        Fraction, contrast and t.
-
-    Returns
-    -------
-    (...) float array, W/(m K)
-    """
+    """Maxwell's estimate with a term of third order in the contrast, k1 (1 + 2 p2 beta - t)/(1 - p2 beta - t)."""
     # Rounding must not pass the pole.
     above, below = 1 + 2 * p2 * beta - third, np.maximum(1 - p2 * beta - third, 0.0)
     with np.errstate(invalid="ignore", divide="ignore"):
@@ -145,18 +80,7 @@ def dispersed(k1, p2, beta, third):
 
 
 def mixed(k1, k2, p2, x):
-    """k(X) of the module docstring, with its limits.
-
-    Parameters
-    ----------
-    k1, k2, x : (...) float arrays, W/(m K)
-    p2 : (...) float array
-        Fraction of the second phase.
-
-    Returns
-    -------
-    (...) float array, W/(m K)
-    """
+    """k(X) of the module docstring, with its limits."""
     p1 = 1 - p2
     with np.errstate(invalid="ignore", divide="ignore"):
         mean, exchanged = p1 * k1 + p2 * k2, p2 * k1 + p1 * k2
@@ -168,16 +92,5 @@ def mixed(k1, k2, p2, x):
 
 
 def pure(k, k1, k2, p2):
-    """The value of a mixture, or that of the phase where there is one alone.
-
-    Parameters
-    ----------
-    k, k1, k2 : (...) float arrays, W/(m K)
-    p2 : (...) float array
-        Fraction of the second phase.
-
-    Returns
-    -------
-    (...) float array, W/(m K)
-    """
+    """The value of a mixture, or that of the phase where there is one alone."""
     return np.where(p2 == 0, k1, np.where(p2 == 1, k2, k))[()]

@@ -16,19 +16,7 @@ DEGREES = (5, 6)
 
 
 def temperature_energies(mesh: Mesh, conductivity, temperatures) -> np.ndarray:
-    """Upper bound, as a quadratic form of the loads, of the integrals of k grad T_i . grad T_j.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    conductivity : (m,) float array, W/(m K)
-    temperatures : (l, n) float array, K
-        At the nodes, for each load.
-
-    Returns
-    -------
-    (l, l) float array, W K
-    """
+    """Upper bound, as a quadratic form of the loads, of the integrals of k grad T_i . grad T_j."""
     temperatures = np.asarray(temperatures)
 
     def energies(ids, degree):
@@ -41,19 +29,7 @@ def temperature_energies(mesh: Mesh, conductivity, temperatures) -> np.ndarray:
 
 
 def flux_energies(mesh: Mesh, conductivity, moments) -> np.ndarray:
-    """Upper bound, as a quadratic form of the loads, of the integrals of q_i . q_j / k.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    conductivity : (m,) float array, W/(m K)
-    moments : (l, m, 12) float array, W
-        Of the normal flux out of each element, for each load; 0 where there is no conductivity.
-
-    Returns
-    -------
-    (l, l) float array, W K
-    """
+    """Upper bound, as a quadratic form of the loads, of the integrals of q_i . q_j / k."""
     moments = np.asarray(moments)
 
     def energies(ids, degree):

@@ -41,21 +41,7 @@ class Balanced(NamedTuple):
 
 
 def balanced_flux(scene: Scene, mesh: Mesh, *, tolerance: float) -> Balanced:
-    """The flux of least energy that is balanced on a mesh.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or two opposite walls that are held.
-    mesh : Mesh
-    tolerance : float
-        Largest relative residual of the equations, scaled to a unit diagonal.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """The flux of least energy that is balanced on a mesh."""
     conductivity = scene.conductivities[mesh.phase]
     conductivity = conductivity / conductivity.max()
     faces = number_faces(mesh)
@@ -69,13 +55,7 @@ def balanced_flux(scene: Scene, mesh: Mesh, *, tolerance: float) -> Balanced:
 
 
 def linear_temperature(mesh: Mesh, gradient) -> np.ndarray:
-    """Temperature of a uniform gradient at the corners of each element's faces, (m, 12) float array, K.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    gradient : (3,) sequence of float, K/m
-    """
+    """Temperature of a uniform gradient at the corners of each element's faces, (m, 12) float array, K."""
     return (mesh.points @ np.array(gradient))[mesh.cells[:, CORNERS]].reshape(-1, 12)
 
 

@@ -28,12 +28,7 @@ class Faces(NamedTuple):
 
 
 def number_faces(mesh: Mesh) -> Faces:
-    """Number the faces of a mesh and the unknowns on them.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    """
+    """Number the faces of a mesh and the unknowns on them."""
     twin = twins(len(mesh.points), mesh.pairs)
     corners = twin[mesh.cells[:, CORNERS]].reshape(-1, 3)
     order = np.argsort(corners, axis=1)
@@ -52,28 +47,15 @@ def _unique(sides, count):
 
 
 class Interfaces(NamedTuple):
-    """Faces between two phases.
+    """Faces between two phases."""
 
-    Attributes
-    ----------
-    nodes : (t, 6) int array
-        Corners, then the middles of the edges 01, 12, 02.
-    inner, outer : (t,) int array
-        Phases: that painted later, and the other.
-    """
-
-    nodes: np.ndarray
-    inner: np.ndarray
-    outer: np.ndarray
+    nodes: np.ndarray  # (t, 6) int array: Corners, then the middles of the edges 01, 12, 02
+    inner: np.ndarray  # (t,) int array: Phases: that painted later, and the other
+    outer: np.ndarray  # (t,) int array: Phases: that painted later, and the other
 
 
 def interfaces(mesh: Mesh) -> Interfaces:
-    """Faces of a second-order mesh between elements of two phases, but for those across a periodic boundary.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    """
+    """Faces of a second-order mesh between elements of two phases, but for those across a periodic boundary."""
     sides = np.sort(mesh.cells[:, CORNERS].reshape(-1, 3), axis=1).astype(np.int64)
     _, face = _unique(sides, len(mesh.points))
     order = np.argsort(face, kind="stable")

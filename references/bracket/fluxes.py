@@ -40,36 +40,13 @@ def _basis():
 
 
 def fields(X):
-    """The 12 basis fields of the reference element at local points.
-
-    Parameters
-    ----------
-    X : (3, q) float array
-
-    Returns
-    -------
-    (q, 12, 3) float array
-    """
+    """The 12 basis fields of the reference element at local points."""
     barycentric = np.vstack([1 - X.sum(axis=0), X])
     return np.einsum("ixl,lq->qix", _basis(), barycentric)
 
 
 def mappings(mesh: Mesh, ids, X):
-    """Jacobians of elements at local points, and their determinants.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    ids : (b,) int array
-        Elements, all curved or all straight.
-    X : (3, q) float array
-        One point is enough for straight elements.
-
-    Returns
-    -------
-    (b, q, 3, 3) float array, m
-    (b, q) float array, m3
-    """
+    """Jacobians of elements at local points, and their determinants."""
     curved = mesh.curved[ids[0]]
     _, slopes = shapes(10 if curved else 4, X)
     nodes = mesh.points[mesh.cells[ids][:, : slopes.shape[1]]]
@@ -78,15 +55,7 @@ def mappings(mesh: Mesh, ids, X):
 
 
 def masses(mesh: Mesh, ids, *, degree: int):
-    """Matrices (b, 12, 12) of the integral of flux times flux by elements, all curved or all straight, 1/m.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    ids : (b,) int array
-    degree : int
-        Of the quadrature on curved elements; straight ones are exact.
-    """
+    """Matrices (b, 12, 12) of the integral of flux times flux by elements, all curved or all straight, 1/m."""
     curved = mesh.curved[ids[0]]
     X, weights = rule(degree if curved else 2)
     basis = fields(X)
@@ -102,28 +71,14 @@ def masses(mesh: Mesh, ids, *, degree: int):
 
 
 def blocks(mesh: Mesh, conducting, size: int = BLOCK):
-    """Conducting elements in blocks, straight ones first.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    conducting : (m,) bool array
-    size : int
-        Elements of a block at most.
-    """
+    """Conducting elements in blocks, straight ones first."""
     for curved in (False, True):
         ids = np.flatnonzero(conducting & (mesh.curved == curved))
         yield from (ids[start : start + size] for start in range(0, len(ids), size))
 
 
 def answers(matrices):
-    """Matrices that turn temperatures on faces into minus the moments of the balanced flux of least energy.
-
-    Parameters
-    ----------
-    matrices : (b, 12, 12) float array
-        Energies of the moments.
-    """
+    """Matrices that turn temperatures on faces into minus the moments of the balanced flux of least energy."""
     inverse = np.linalg.inv(matrices)
     flows = inverse.sum(axis=2)
     inverse -= flows[:, :, None] * flows[:, None, :] / flows.sum(axis=1)[:, None, None]
@@ -131,25 +86,7 @@ def answers(matrices):
 
 
 def assemble(mesh: Mesh, conductivity, faces, lift, *, degree: int) -> tuple[csr_matrix, np.ndarray]:
-    """Equations of the temperatures on faces.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    conductivity : (m,) float array
-        Of each element; those with zero are left out.
-    faces : Faces
-    lift : (m, 12) float array, K
-        Known part of the temperature, at the corners of each element's faces.
-    degree : int
-        Of the quadrature on curved elements.
-
-    Returns
-    -------
-    (n, n) CSR matrix
-    (n,) float array
-        Minus the matrix times the known part.
-    """
+    """Equations of the temperatures on faces."""
     count, parts, load, seen = len(faces.node), [], np.zeros(len(faces.node)), 0
     with stage("assembly of fluxes") as done:
         for ids in blocks(mesh, conductivity > 0):

@@ -119,15 +119,7 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
 
 
 def check(scene: Scene, tolerance: float, *, takes: tuple[str, ...] = ()) -> None:
-    """Refuse what has no bounds here; raises what `solve` does.
-
-    Parameters
-    ----------
-    scene, tolerance
-        As those of `solve`.
-    takes : tuple of str
-        See `Scene.require`.
-    """
+    """Refuse what has no bounds here; raises what `solve` does."""
     check_scene(scene)
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     text = "bounds are known on spheres and layers in a box"

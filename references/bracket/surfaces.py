@@ -35,40 +35,17 @@ TRIES = 10
 
 
 class Patches(NamedTuple):
-    """Curved patches of the interfaces.
+    """Curved patches of the interfaces."""
 
-    Attributes
-    ----------
-    nodes : (t, 6) int array
-    center : (t, 3) float array, m
-        Of the sphere that each lies on.
-    radius : (t,) float array, m
-    inner, outer : (t,) int array
-        Phases.
-    """
-
-    nodes: np.ndarray
-    center: np.ndarray
-    radius: np.ndarray
-    inner: np.ndarray
-    outer: np.ndarray
+    nodes: np.ndarray  # (t, 6) int array
+    center: np.ndarray  # (t, 3) float array, m: Of the sphere that each lies on
+    radius: np.ndarray  # (t,) float array, m
+    inner: np.ndarray  # (t,) int array: Phases
+    outer: np.ndarray  # (t,) int array: Phases
 
 
 def patches(scene: Scene, mesh: Mesh) -> Patches:
-    """The curved patches of a mesh, each with its sphere.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of spheres and layers.
-    mesh : Mesh
-        Of second order.
-
-    Raises
-    ------
-    RuntimeError
-        If a patch between two phases lies on no surface of the scene.
-    """
+    """The curved patches of a mesh, each with its sphere."""
     found = interfaces(mesh)
     round_ = np.array([False, *(shape.bounded for shape in scene.inclusions)])
     center, radius = np.full((len(found.nodes), 3), np.nan), np.full(len(found.nodes), np.nan)
@@ -99,17 +76,7 @@ def _products():
 
 
 def distances(nodes, center):
-    """Bounds of the distance of quadratic patches from a point.
-
-    Parameters
-    ----------
-    nodes : (t, 6, 3) float array, m
-    center : (t, 3) float array, m
-
-    Returns
-    -------
-    least, greatest : (t,) float array, m
-    """
+    """Bounds of the distance of quadratic patches from a point."""
     control = nodes - center[:, None]
     for column, (a, b) in zip((3, 4, 5), ((0, 1), (1, 2), (0, 2)), strict=True):
         control[:, column] = 2 * control[:, column] - (control[:, a] + control[:, b]) / 2
@@ -121,26 +88,7 @@ def distances(nodes, center):
 
 
 def pushed(scene: Scene, mesh: Mesh, *, upper: bool) -> Mesh:
-    """The mesh with its curved interfaces on that side of the true ones which an upper or a lower bound needs.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-        Of second order.
-    upper : bool
-        Whether the conductivity is to be nowhere less than the scene's; else nowhere more.
-
-    Returns
-    -------
-    Mesh
-        With other points, volumes and flags of curved elements.
-
-    Raises
-    ------
-    RuntimeError
-        If elements would be inverted: a smaller `size` helps.
-    """
+    """The mesh with its curved interfaces on that side of the true ones which an upper or a lower bound needs."""
     found, twin = patches(scene, mesh), twins(len(mesh.points), mesh.pairs)
     better = np.sign(scene.conductivities[found.inner] - scene.conductivities[found.outer])
     # 1: the patch stays outside of its sphere; -1: inside; 0: anywhere.

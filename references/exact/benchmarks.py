@@ -18,24 +18,7 @@ STEPS = 100
 
 
 def radiating_end(length, conductivity, hot, black, around) -> float:
-    """Temperature of the radiating end of a bar whose other end is held: k (T_h - T) / L = b (T^4 - T_a^4).
-
-    Parameters
-    ----------
-    length : float, m
-    conductivity : float, W/(m K)
-    hot : float, K
-        T_h, of the held end.
-    black : float, W/(m2 K4)
-        b, emissivity times Stefan and Boltzmann's constant.
-    around : float, K
-        T_a, of the surroundings.
-
-    Returns
-    -------
-    float, K
-        To rounding.
-    """
+    """Temperature of the radiating end of a bar whose other end is held: k (T_h - T) / L = b (T^4 - T_a^4)."""
     slope, T = conductivity / length, max(hot, around)
     for _ in range(STEPS):
         change = (slope * (T - hot) + black * (T**4 - around**4)) / (slope + 4.0 * black * T**3)
@@ -46,23 +29,7 @@ def radiating_end(length, conductivity, hot, black, around) -> float:
 
 
 def swinging_end(x, time, *, diffusivity, rate) -> np.ndarray:
-    """Temperature of a slab of unit length, 0 at the start and at x = 0, whose end x = 1 is at sin(rate time).
-
-    Parameters
-    ----------
-    x : (n,) float array
-    time : float, s
-        Above 0.
-    diffusivity : float, 1/s
-        Over the squared length.
-    rate : float, 1/s
-        2 pi over the period.
-
-    Returns
-    -------
-    (n,) float array
-        What swings for ever, and modes that make it 0 at the start; those below 1e-16 are left out.
-    """
+    """Temperature of a slab of unit length, 0 at the start and at x = 0, whose end x = 1 is at sin(rate time)."""
     x = np.asarray(x, dtype=float)
     wave = np.sqrt(1j * rate / diffusivity)
     value = np.imag(np.sinh(wave * x) / np.sinh(wave) * np.exp(1j * rate * time))
@@ -74,21 +41,7 @@ def swinging_end(x, time, *, diffusivity, rate) -> np.ndarray:
 
 
 def convecting_plate(x, y, *, width, height, film) -> np.ndarray:
-    """Temperature of a plate over that of its base, y = 0, insulated at x = 0, with a film to 0 at its other edges.
-
-    Parameters
-    ----------
-    x, y : (n,) float arrays, m
-        y above 0: there the modes die out.
-    width, height : float, m
-    film : float, 1/m
-        Coefficient of exchange over conductivity.
-
-    Returns
-    -------
-    (n,) float array
-        Modes below 1e-16 are left out.
-    """
+    """Temperature of a plate over that of its base, y = 0, insulated at x = 0, with a film to 0 at its other edges."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     count = 3 + math.ceil(REST * width / (math.pi * float(y.min())))
     value = np.zeros(np.broadcast(x, y).shape)

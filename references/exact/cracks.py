@@ -27,18 +27,10 @@ LARGEST = 0.45
 
 
 class SolvedDiscs(NamedTuple):
-    """One array.
+    """One array."""
 
-    Attributes
-    ----------
-    conductivity : float
-        Across the discs, over that of what they lie in.
-    digits : float
-        Decimal digits, from the change with fewer functions and fewer waves.
-    """
-
-    conductivity: float
-    digits: float
+    conductivity: float  # Across the discs, over that of what they lie in
+    digits: float  # Decimal digits, from the change with fewer functions and fewer waves
 
 
 def discs(radius, *, height=1.0) -> SolvedDiscs:

@@ -19,22 +19,7 @@ ANGLES, BESIDE = 23, 1e-12
 
 
 def fibre_array(scene):
-    """Parallel fibres: one in a cell of square section, two in one of 1 by sqrt(3), or one in the middle of a box.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Closed or None
-        None if the scene is not of this kind. A box has isothermal walls across one axis.
-
-    Raises
-    ------
-    NotImplementedError
-        If the fibres come so near to each other that fewer than six digits are reached.
-    """
+    """Parallel fibres: one in a cell of square section, two in one of 1 by sqrt(3), or one in the middle of a box."""
     found = _array(scene)
     load = None if found is None else mean_load(scene, np.full(3, np.nan))
     if load is None:

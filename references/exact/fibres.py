@@ -69,12 +69,7 @@ class SolvedFibres(NamedTuple):
 
 
 def touching(kind) -> float:
-    """Volume fraction at which fibres touch.
-
-    Parameters
-    ----------
-    kind : {"square", "hexagonal"}
-    """
+    """Volume fraction at which fibres touch."""
     _check_kind(kind)
     return math.pi / (4 * AREA[kind])
 
@@ -180,12 +175,6 @@ def lattice_sums(kind, highest) -> np.ndarray:
     The first that is there is a value of the gamma function, the next follow by the equation of Weierstrass's
     function, those of high degree are a few sites. But for S_2, pi over the area, only multiples of 4 (of 6 in the
     hexagonal array) do not vanish.
-
-    Parameters
-    ----------
-    kind : {"square", "hexagonal"}
-    highest : int
-        At least 2.
     """
     _check_kind(kind)
     sums, fold = np.zeros(max(highest, DIRECT) + 1), FOLD[kind]
@@ -206,12 +195,7 @@ def lattice_sums(kind, highest) -> np.ndarray:
 
 
 def sites(kind):
-    """Sites up to `NEAR` from the origin, without it, a complex array.
-
-    Parameters
-    ----------
-    kind : {"square", "hexagonal"}
-    """
+    """Sites up to `NEAR` from the origin, without it, a complex array."""
     steps = np.arange(-2 * NEAR, 2 * NEAR + 1)
     turn = np.exp(2j * math.pi / FOLD[kind])
     w = (steps[:, None] + turn * steps).ravel()

@@ -199,14 +199,7 @@ def coated_spheres(scene):
 
 
 def mean_load(scene, conductivities):
-    """Mean gradient, (3,) float array in K/m, and temperature at the origin, that the load makes; None if no such.
-
-    Parameters
-    ----------
-    scene : Scene
-    conductivities : (3,) float array
-        Effective conductivity along each axis where an imposed uniform flux is solved in closed form, else NaN.
-    """
+    """Mean gradient, (3,) float array in K/m, and temperature at the origin, that the load makes; None if no such."""
     if scene.periodic:
         return np.array(scene.gradient), 0.0
     # A wall without flux is an insulated one.
@@ -262,16 +255,6 @@ def pieces(scene, normal):
     """Ends of the layers along their normal, the phase between them, and the resistance at each end.
 
     That at the face of a periodic cell is at its upper end.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of layers.
-    normal : {0, 1, 2}
-
-    Returns
-    -------
-    (m,) float array, m; (m - 1,) int array; (m,) float array, m2 K/W
     """
     ends = {0.0, scene.size[normal]}
     for layer in scene.inclusions:

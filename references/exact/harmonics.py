@@ -45,22 +45,7 @@ class Sums(NamedTuple):
 
 
 def legendre(z, square, order, m):
-    """Values of R_l^m / (x + i y)^m, degree by degree.
-
-    Parameters
-    ----------
-    z : (n,) float array, length
-    square : (n,) float array, length^2
-        r^2.
-    order : int
-        Highest degree.
-    m : int
-
-    Yields
-    ------
-    (n,) float array, length^(l-m)
-        For l = m, ..., order.
-    """
+    """Values of R_l^m / (x + i y)^m, degree by degree."""
     previous, current = np.zeros_like(z), np.full_like(z, _sectoral(m))
     for degree in range(m, order + 1):
         yield current
@@ -75,18 +60,7 @@ def _sectoral(m):
 
 
 def series(tables, points):
-    """Sum table[l, m] R_l^m(points) for each of several tables.
-
-    Parameters
-    ----------
-    tables : sequence of (n, n) float arrays
-    points : (p, 3) float array
-        In the unit of length of the tables.
-
-    Returns
-    -------
-    list of (p,) complex arrays
-    """
+    """Sum table[l, m] R_l^m(points) for each of several tables."""
     x, y, z = points.T
     square = np.einsum("ij,ij->i", points, points)
     sums = [np.zeros(len(points), dtype=complex) for _ in tables]
@@ -146,16 +120,6 @@ def lattice_sums(kind, order) -> Sums:
     Poisson's formula turns sum_R R_L(R) exp(-t R^2) into a sum over reciprocal vectors K; the part 0 < t < eta of
     R^-(2L+1) = int t^(L-1/2) exp(-t R^2) dt / Gamma(L+1/2) then integrates to exp(-K^2/(4 eta)) / K^2. Degree 2 is the
     conditionally convergent one: a mean gradient imposed on the periodic field fixes it to 2 pi/(3 cell volume).
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    order : int
-        Highest degree.
-
-    Returns
-    -------
-    Sums
     """
     whole = _whole_sums(kind, math.ceil(order / STEP) * STEP)
     wanted = np.s_[: order + 1, : order // 4 + 1]

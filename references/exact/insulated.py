@@ -12,15 +12,6 @@ def sphere_temperature(scene):
 
     In a periodic cell a sphere has the mean temperature at its centre, by the walls that of the one that cuts it, if it
     has one: no heat passes as long as no sphere reaches walls of two temperatures.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    callable (n, 3) float array, m -> (n,) float array, K; or None
-        NaN in spheres that no temperature reaches, and between spheres.
     """
     apart = scene.only(Sphere) and not np.any(scene.parents())
     if not apart or scene.matrix.conductivity > 0:

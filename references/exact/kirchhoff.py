@@ -56,18 +56,7 @@ def linear(scene: Scene) -> tuple[Scene, Dependence] | None:
 
 
 def transformed(scene: Scene, form: Callable[[Scene], Closed | None]) -> Closed | None:
-    """A form of the linear scene, taken back.
-
-    Parameters
-    ----------
-    scene : Scene
-    form : callable (Scene) -> Closed or None
-        Of linear scenes.
-
-    Returns
-    -------
-    Closed, or None
-    """
+    """A form of the linear scene, taken back."""
     found = linear(scene)
     closed = form(found[0]) if found else None
     if closed is None:
@@ -79,16 +68,7 @@ def transformed(scene: Scene, form: Callable[[Scene], Closed | None]) -> Closed 
 
 
 def layers(scene: Scene) -> Closed | None:
-    """Layers, each with its own dependence, between two isothermal walls across which they are stacked.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Closed, or None
-    """
+    """Layers, each with its own dependence, between two isothermal walls across which they are stacked."""
     if scene.anisotropic or not scene.only(Layer) or not scene.conductivities.all():
         return None
     names = sorted(scene.wall_temperatures)

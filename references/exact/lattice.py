@@ -70,89 +70,25 @@ class SolvedArray(NamedTuple):
 
 
 class Unknowns(NamedTuple):
-    """Which harmonics are there.
+    """Which harmonics are there."""
 
-    Attributes
-    ----------
-    degree, m : (n,) int arrays
-    """
-
-    degree: np.ndarray
-    m: np.ndarray
+    degree: np.ndarray  # (n,) int arrays
+    m: np.ndarray  # (n,) int arrays
 
 
 def radius(kind, fraction):
-    """Radius of the spheres of a cubic array.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    fraction : float
-        Their volume fraction.
-
-    Returns
-    -------
-    float, edges
-    """
+    """Radius of the spheres of a cubic array."""
     _check_kind(kind)
     return (3 * fraction / (4 * math.pi * len(SITES[kind]))) ** (1 / 3)
 
 
 def conductivity(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> float:
-    """Effective conductivity of a cubic array over that of its matrix.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    contrast : float
-        Conductivity of the spheres over that of the matrix, 0 (pores) to infinity (inclusive).
-    fraction : float
-        Volume fraction of the spheres.
-    resistance : float
-        Of their surfaces, times the conductivity of the matrix over the radius.
-    order : int, optional
-        Highest degree, odd; by default what convergence takes.
-    digits : float, optional
-        Fewest digits to accept.
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        As for `solve`.
-    """
+    """Effective conductivity of a cubic array over that of its matrix."""
     return solve(kind, contrast, fraction, resistance=resistance, order=order, digits=digits).conductivity
 
 
 def solve(kind, contrast, fraction, *, resistance=0.0, order=None, digits=6) -> SolvedArray:
-    """Solve a cubic array of spheres under a mean unit gradient.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    contrast : float
-        Conductivity of the spheres over that of the matrix, 0 (pores) to infinity (inclusive).
-    fraction : float
-        Volume fraction of the spheres, at most that of touching spheres.
-    resistance : float
-        Of their surfaces, times the conductivity of the matrix over the radius.
-    order : int, optional
-        Highest degree, odd; by default raised until both the conductivity and the flux have converged.
-    digits : float, optional
-        Fewest digits of the conductivity to accept.
-
-    Returns
-    -------
-    SolvedArray
-
-    Raises
-    ------
-    ValueError
-        If an argument is out of range, the spheres overlap, or they come so close that `digits` are not reached.
-    """
+    """Solve a cubic array of spheres under a mean unit gradient."""
     _check(kind, contrast, fraction, order)
     if not 0 <= resistance < math.inf:
         raise ValueError(f"resistance = {resistance!r}: must be a finite number >= 0")
@@ -178,20 +114,6 @@ def zeta2(kind, fraction) -> float:
 
     The third order in s - 1 of Rayleigh's solution against that of Torquato's expansion:
     zeta_2 = 3/(2 phi_1) sum over l >= 3 of l/(2l+1) M_1l^2, M the matrix by which multipoles act on each other.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    fraction : float
-
-    Returns
-    -------
-    float
-
-    Raises
-    ------
-    ValueError
-        If the fraction is out of range or the spheres overlap.
     """
     _check(kind, 1.0, fraction, None)
     dipole, others = _unknowns(1), _unknowns(HIGHEST_ORDER)
@@ -262,20 +184,7 @@ def _far(solution):
 
 
 def polarisability(contrast, degree, resistance=0.0):
-    """alpha_l of the module docstring.
-
-    Parameters
-    ----------
-    contrast : float
-        Conductivity of the sphere over that of the matrix, infinity included.
-    degree : (n,) int array
-    resistance : float
-        Of its surface, times the conductivity of the matrix over the radius.
-
-    Returns
-    -------
-    (n,) float array
-    """
+    """alpha_l of the module docstring."""
     if math.isinf(contrast):
         return (1 - resistance * degree) / (1 + resistance * (degree + 1))
     # What the surface adds to the resistance of the sphere itself, for each degree.

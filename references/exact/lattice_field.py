@@ -19,19 +19,7 @@ CHUNK = 4096
 
 
 def temperature(solution, points, gradient=(0.0, 0.0, 1.0)):
-    """Temperature of the array under a mean gradient, zero at the centre of the sphere at the origin.
-
-    Parameters
-    ----------
-    solution : SolvedArray
-    points : (n, 3) float array, edges
-        Anywhere; the origin is the centre of a sphere.
-    gradient : (3,) sequence of float, K/edge
-
-    Returns
-    -------
-    (n,) float array, K
-    """
+    """Temperature of the array under a mean gradient, zero at the centre of the sphere at the origin."""
     points = np.asarray(points, dtype=float).reshape(-1, 3)
     offsets = points - nearest_site(solution.kind, points)
     total = (points - offsets) @ np.asarray(gradient, dtype=float)
@@ -42,19 +30,7 @@ def temperature(solution, points, gradient=(0.0, 0.0, 1.0)):
 
 
 def flux(solution, points, gradient=(0.0, 0.0, 1.0)):
-    """Heat flux of the array under a mean gradient, over the conductivity of the matrix.
-
-    Parameters
-    ----------
-    solution : SolvedArray
-    points : (n, 3) float array, edges
-    gradient : (3,) sequence of float, K/edge
-
-    Returns
-    -------
-    (n, 3) float array, K/edge
-        Down the gradient; on an interface that of the sphere's side.
-    """
+    """Heat flux of the array under a mean gradient, over the conductivity of the matrix."""
     points = np.asarray(points, dtype=float).reshape(-1, 3)
     offsets = points - nearest_site(solution.kind, points)
     total = np.zeros_like(points)
@@ -65,17 +41,7 @@ def flux(solution, points, gradient=(0.0, 0.0, 1.0)):
 
 
 def nearest_site(kind, points):
-    """The site of the array nearest to each point.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    points : (n, 3) float array, edges
-
-    Returns
-    -------
-    (n, 3) float array, edges
-    """
+    """The site of the array nearest to each point."""
     nearest = np.round(points)
     for site in np.array(SITES[kind][1:]).reshape(-1, 3):
         other = np.round(points - site) + site

@@ -13,16 +13,7 @@ from references.exact.forms import SAME, Closed, mean_load, pieces
 
 
 def tensor_laminate(scene):
-    """A homogeneous box or plane layers of tensors, in a periodic cell; between walls where heat runs straight across.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Returns
-    -------
-    Closed, or None
-    """
+    """A homogeneous box or plane layers of tensors, in a periodic cell; between walls where heat runs straight."""
     load = mean_load(scene, np.full(3, np.nan)) if scene.only(Layer) else None
     if load is None or not scene.mean_conductivities.all():
         return None

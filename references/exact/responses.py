@@ -21,26 +21,7 @@ ORDERS = {"temperature": 0, "flux": 1, "ramp": 2}
 
 
 def response(x, fourier, drive, far, *, method="auto"):
-    """Response of a slab of unit length, diffusivity and conductivity, at rest at 0, to its face at 0.
-
-    Parameters
-    ----------
-    x : (n,) float array
-        Distance from the driven face, 0 to 1.
-    fourier : float
-        Time, > 0.
-    drive : {"temperature", "flux", "ramp"}
-        At x = 0 from time 0 on: temperature 1, flux 1 into the slab, or temperature = time.
-    far : {"held", "insulated"}
-        At x = 1: temperature 0, or no flux.
-    method : {"auto", "images", "modes"}
-        Choose by time, or one series at any time.
-
-    Returns
-    -------
-    value, slope : (n,) float arrays
-        Temperature and its derivative along x; truncated below 1e-16 of the largest value.
-    """
+    """Response of a slab of unit length, diffusivity and conductivity, at rest at 0, to its face at 0."""
     x = np.asarray(x, dtype=float)
     if method == "auto":
         method = "modes" if fourier >= CROSSOVER else "images"
@@ -109,21 +90,6 @@ def sphere_response(r, fourier, drive, *, method="auto"):
     """Response of a sphere of unit radius, diffusivity and conductivity, at rest at 0, to its surface.
 
     r times the temperature obeys the equation of a slab, held at 0 in the centre and driven at the surface.
-
-    Parameters
-    ----------
-    r : (n,) float array
-        Distance from the centre, 0 to 1.
-    fourier : float
-        Time, > 0.
-    drive : {"temperature", "ramp"}
-    method : {"auto", "images", "modes"}
-        As in `response`.
-
-    Returns
-    -------
-    value, slope : (n,) float arrays
-        Temperature and its derivative along r.
     """
     r = np.asarray(r, dtype=float)
     if method == "auto":

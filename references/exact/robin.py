@@ -21,21 +21,11 @@ STEPS = 200
 
 
 class Face(NamedTuple):
-    """A face of a slab of unit length and conductivity.
+    """A face of a slab of unit length and conductivity."""
 
-    Attributes
-    ----------
-    biot : float
-        Coefficient of exchange; infinite where the face is held, 0 where it has a flux.
-    outside : float
-        Temperature of the surroundings, or of the face that is held.
-    flux : float
-        Into the slab, where nothing is exchanged.
-    """
-
-    biot: float
-    outside: float
-    flux: float
+    biot: float  # Coefficient of exchange; infinite where the face is held, 0 where it has a flux
+    outside: float  # Temperature of the surroundings, or of the face that is held
+    flux: float  # Into the slab, where nothing is exchanged
 
     def phase(self, m):
         """Phase of modes at the face, atan(B / m), (k,) float array."""
@@ -48,14 +38,7 @@ class Face(NamedTuple):
 
 
 def roots(near: Face, far: Face, count: int) -> np.ndarray:
-    """Roots of m - atan(B0 / m) - atan(B1 / m) = 0, pi, 2 pi, ..., (count,) float array.
-
-    Parameters
-    ----------
-    near, far : Face
-        Not both without any exchange.
-    count : int
-    """
+    """Roots of m - atan(B0 / m) - atan(B1 / m) = 0, pi, 2 pi, ..., (count,) float array."""
     whole = math.pi * np.arange(count)
     # The left side grows and is concave: from below each step stays below.
     m = np.maximum(whole, 1e-12)
@@ -71,24 +54,7 @@ def roots(near: Face, far: Face, count: int) -> np.ndarray:
 
 
 def slab(x, fourier, near: Face, far: Face, heating: float):
-    """Temperature of a slab of unit length, diffusivity and conductivity, 0 at the start, and its slope.
-
-    Parameters
-    ----------
-    x : (n,) float array
-        From 0 to 1.
-    fourier : float
-        Time, at least `EARLIEST`.
-    near, far : Face
-        At 0 and at 1.
-    heating : float
-        Uniform source.
-
-    Returns
-    -------
-    value, slope : (n,) float arrays
-        Truncated below 1e-16 of the largest value.
-    """
+    """Temperature of a slab of unit length, diffusivity and conductivity, 0 at the start, and its slope."""
     x = np.asarray(x, dtype=float)
     value, slope = settled(x, near, far, heating)
     m = roots(near, far, 2 + math.ceil(math.sqrt(REST / fourier) / math.pi))
@@ -107,13 +73,7 @@ def slab(x, fourier, near: Face, far: Face, heating: float):
 
 
 def settled(x, near: Face, far: Face, heating: float):
-    """The steady temperature of the slab, and its slope.
-
-    Parameters
-    ----------
-    x, near, far, heating
-        As in `slab`.
-    """
+    """The steady temperature of the slab, and its slope."""
     # a + b x - heating x^2 / 2; a face of resistance R = 1/B: T - R times the slope inwards is the surroundings'.
     rows, right = np.zeros((2, 2)), np.zeros(2)
     if near.biot:

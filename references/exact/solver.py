@@ -92,25 +92,7 @@ def _linear(scene):
 
 
 def solve_axes(scene: Scene, *, points_per_axis: int = 24) -> tuple[Field, Field, Field]:
-    """Solve a scene in closed form for loads along x, y and z; the multipoles of an array are found once.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or a box between two isothermal walls with four insulated faces, as `solve` takes it.
-    points_per_axis : int
-        As that of `solve`.
-
-    Returns
-    -------
-    tuple of three Fields
-        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
-
-    Raises
-    ------
-    NotImplementedError
-        If the load is another, or the scene has no closed form here.
-    """
+    """Solve a scene in closed form for loads along x, y and z; the multipoles of an array are found once."""
     return tuple(solve(load, points_per_axis=points_per_axis) for load in axis_loads(scene))
 
 

@@ -35,23 +35,12 @@ GAUSS = 0.5 + np.array([-0.5, 0.5]) / math.sqrt(3)
 
 @dataclass(frozen=True)
 class Bricks:
-    """Nodal temperatures (n,) of a scene on a grid.
-
-    Parameters
-    ----------
-    scene : Scene
-    grid : three float arrays, m
-        Coordinates of the nodes along each axis.
-    phase : (a, b, c) int array
-        Of each brick.
-    temperature : (n,) float array, K
-        The last axis runs fastest.
-    """
+    """Nodal temperatures (n,) of a scene on a grid."""
 
     scene: Scene
-    grid: tuple
-    phase: np.ndarray
-    temperature: np.ndarray
+    grid: tuple  # three float arrays, m: Coordinates of the nodes along each axis
+    phase: np.ndarray  # (a, b, c) int array: Of each brick
+    temperature: np.ndarray  # (n,) float array, K: The last axis runs fastest
 
     def temperature_at(self, points):
         """Temperature at (n, 3) points in metres, (n,) float array."""
@@ -65,27 +54,11 @@ class Bricks:
         return -self.conductivity_of(self._bricks(points))[:, None] * gradient
 
     def conductivity_of(self, bricks):
-        """Conductivity of bricks by their indices along each axis, (p,) float array, W/(m K).
-
-        Parameters
-        ----------
-        bricks : three (p,) int arrays
-        """
+        """Conductivity of bricks by their indices along each axis, (p,) float array, W/(m K)."""
         return self.scene.conductivities[self.phase[bricks]]
 
     def spread(self, points, amounts):
-        """Share amounts at points among the nodes by their shape functions.
-
-        Parameters
-        ----------
-        points : (p, 3) float array, m
-        amounts : (p,) float array
-            In any unit.
-
-        Returns
-        -------
-        (n,) float array
-        """
+        """Share amounts at points among the nodes by their shape functions."""
         nodes, local, _ = self._local(points)
         return np.bincount(nodes.ravel(), (_shares(local) * amounts).ravel(), len(self.temperature))
 
@@ -133,26 +106,7 @@ def _slopes(local, widths):
 
 
 def hexahedra(scene, size=None) -> Space:
-    """`Space` of bricks.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box, with layers at most: grid planes lie on their surfaces; or an image, to whose voxels the bricks belong.
-    size : float, m, optional
-        Longest edge. Default: the cube root of the volume over 32, or the voxel.
-
-    Returns
-    -------
-    Space
-
-    Raises
-    ------
-    ValueError
-        If the size is not as described or asks for more than 2e6 bricks.
-    NotImplementedError
-        If the body is not a box of layers, nor an image.
-    """
+    """`Space` of bricks."""
     what = "hexahedra follow boxes of layers only; use tetrahedra"
     scene.require(what, domain="box", shapes=(Layer,), takes=("exchange", "image"))
     grid, phase = bricks(scene, size)
@@ -180,20 +134,7 @@ def hexahedra(scene, size=None) -> Space:
 
 
 def bricks(scene, size=None):
-    """Nodes along each axis of the bricks of a scene, and their phases.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box of layers, or an image.
-    size : float, m, optional
-        Longest edge, see `hexahedra`.
-
-    Returns
-    -------
-    grid : three float arrays, m
-    phase : (a, b, c) int array
-    """
+    """Nodes along each axis of the bricks of a scene, and their phases."""
     size = checked_size(scene, size)
     if scene.image is not None:
         return _of_image(scene.image, size)
@@ -214,57 +155,22 @@ def _of_image(image, size):
 
 
 def nodes_of(grid) -> np.ndarray:
-    """Nodes of a grid, (n, 3) float array, m; the last axis runs fastest.
-
-    Parameters
-    ----------
-    grid : three float arrays, m
-    """
+    """Nodes of a grid, (n, 3) float array, m; the last axis runs fastest."""
     return np.stack(np.meshgrid(*grid, indexing="ij"), axis=-1).reshape(-1, 3)
 
 
 def lumps(grid) -> list:
-    """Integrals of the shape functions along each axis of a grid, three float arrays, m.
-
-    Parameters
-    ----------
-    grid : three float arrays, m
-    """
+    """Integrals of the shape functions along each axis of a grid, three float arrays, m."""
     return [(np.append(w, 0) + np.append(0, w)) / 2 for w in map(np.diff, grid)]
 
 
 def outer(a, b, c):
-    """Products a_i b_j c_k.
-
-    Parameters
-    ----------
-    a, b, c : (l,), (m,) and (n,) float arrays
-
-    Returns
-    -------
-    (l, m, n) float array
-    """
+    """Products a_i b_j c_k."""
     return a[:, None, None] * b[:, None] * c
 
 
 def checked_size(scene, size) -> float:
-    """Longest edge of the bricks of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m, or None
-        As asked for.
-
-    Returns
-    -------
-    float, m
-
-    Raises
-    ------
-    ValueError
-        If it is not a length or asks for more than 2e6 bricks.
-    """
+    """Longest edge of the bricks of a scene."""
     if size is None:
         return scene.volume ** (1 / 3) / EDGES if scene.image is None else max(scene.image.voxel)
     finite("size", size, "a finite number > 0 m", lambda v: v > 0)
@@ -289,14 +195,7 @@ def _grid(scene, axis, size):
 
 
 def stiffness(widths, conductivity) -> csr_matrix:
-    """Stiffness of the nodes of a grid, W/K.
-
-    Parameters
-    ----------
-    widths : three float arrays, m
-        Of the bricks along each axis.
-    conductivity : (a, b, c) float array, W/(m K)
-    """
+    """Stiffness of the nodes of a grid, W/K."""
     volume, unit = outer(*widths), [np.ones(len(w)) for w in widths]
     lengths = [outer(*(widths[i] if i == a else unit[i] for i in range(3))) for a in range(3)]
 
@@ -337,14 +236,7 @@ def _assembled(counts, between):
 
 
 def wall_nodes(name, grid) -> WallNodes:
-    """A face of the box on the nodes.
-
-    Parameters
-    ----------
-    name : str
-        Of the wall.
-    grid : three float arrays, m
-    """
+    """A face of the box on the nodes."""
     axis, ends = "xyz".index(name[0]), lumps(grid)
     ends[axis] = np.zeros(len(grid[axis]))
     ends[axis][0 if name[1] == "-" else -1] = 1.0

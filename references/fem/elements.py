@@ -17,21 +17,7 @@ BLOCK = 20_000
 
 
 def shapes(nodes, X):
-    """Shape functions of the element with so many nodes.
-
-    Parameters
-    ----------
-    nodes : {3, 4, 6, 10}
-    X : (d, ...) float array
-        Local coordinates.
-
-    Returns
-    -------
-    (..., nodes) float array
-        Values.
-    (..., nodes, d) float array
-        Gradients along the local coordinates.
-    """
+    """Shape functions of the element with so many nodes."""
     values, gradients = zip(*(ELEMENTS[nodes].lbasis(X, i) for i in range(nodes)), strict=True)
     values = np.stack([np.broadcast_to(v, X.shape[1:]) for v in values], axis=-1)
     # scikit-fem gives the constant gradients of linear elements either once or once per point.
@@ -53,21 +39,6 @@ def blocks(mesh, degree=5, straight=None):
 
     It is exact for straight elements. Curved ones get the degree asked for: 5 (14 points, some on edges) or 7 (24, all
     inside); the Jacobian and the flux, both cubics, are integrated exactly either way, all weights are positive.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    degree : {5, 7}
-        Of the quadrature on curved elements.
-    straight : tuple of (3, q) and (q,) float arrays, optional
-        Local points and weights on straight ones, instead.
-
-    Yields
-    ------
-    (b,) int array
-        Elements.
-    tuple of (3, q) and (q,) float arrays
-        Local points and weights.
     """
     rules = straight or get_quadrature(RefTet, 0 if mesh.cells.shape[1] == 4 else 2), get_quadrature(RefTet, degree)
     for ids, rule in zip((np.flatnonzero(~mesh.curved), np.flatnonzero(mesh.curved)), rules, strict=True):
@@ -76,22 +47,7 @@ def blocks(mesh, degree=5, straight=None):
 
 
 def gradients(mesh, ids, rule):
-    """Gradients of the shape functions of one block at its quadrature points.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    ids : (b,) int array
-        Elements.
-    rule : tuple of (3, q) and (q,) float arrays
-        Local points and weights.
-
-    Returns
-    -------
-    (b, q, nodes, 3) float array, 1/m
-    (b, q) float array, m3
-        Weights, which sum to the volumes.
-    """
+    """Gradients of the shape functions of one block at its quadrature points."""
     X, weights = rule
     cells = mesh.cells[ids]
     _, local = shapes(cells.shape[1], X)
@@ -105,44 +61,13 @@ def gradients(mesh, ids, rule):
 
 
 def assemble(mesh, conductivity, dof, lift):
-    """Stiffness matrix, and the load that a known part of the temperature makes.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    conductivity : (m,) float array, W/(m K)
-        Of each element; those with zero are left out.
-    dof : (n,) int array
-        Row and column of each node.
-    lift : (n,) float array, K
-        Known part.
-
-    Returns
-    -------
-    (n, n) CSR matrix, W/K
-    (n,) float array, W
-        Minus the matrix times the known part, the latter taken before nodes are merged.
-    """
+    """Stiffness matrix, and the load that a known part of the temperature makes."""
     matrix, (load,) = assemble_loads(mesh, conductivity, dof, [lift])
     return matrix, load
 
 
 def assemble_loads(mesh, conductivity, dof, lifts, medium=None):
-    """The same for several known parts, with one matrix.
-
-    Parameters
-    ----------
-    mesh, conductivity, dof
-        As those of `assemble`.
-    lifts : sequence of (n,) float arrays, K
-    medium : references.fem.medium.Medium, optional
-        Of what conducts otherwise along its axes, or at other temperatures.
-
-    Returns
-    -------
-    (n, n) CSR matrix, W/K
-    list of (n,) float arrays, W
-    """
+    """The same for several known parts, with one matrix."""
     count, parts, loads, seen = len(mesh.points), [], np.zeros((len(lifts), len(mesh.points))), 0
     with stage("assembly") as done:
         for ids, rule in blocks(mesh, straight=medium and medium.straight):
@@ -174,18 +99,7 @@ def _matrices(mesh, ids, rule, conductivity, medium):
 
 
 def wall_weights(mesh, triangles):
-    """Integral of each node's shape function over triangles.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    triangles : (t, 3) or (t, 6) int array
-        Nodes.
-
-    Returns
-    -------
-    (n,) float array, m2
-    """
+    """Integral of each node's shape function over triangles."""
     X, weights = get_quadrature(RefTri, 5)
     values, slopes = shapes(triangles.shape[1], X)
     tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
@@ -194,21 +108,7 @@ def wall_weights(mesh, triangles):
 
 
 def at_quadrature(mesh, temperature, degree=5, straight=None):
-    """Solution at the quadrature points of one block after the other.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    temperature : (n,) float array, K
-        At the nodes.
-    degree, straight
-        As those of `blocks`.
-
-    Yields
-    ------
-    ids, points, weights, temperature, gradient
-        (b,) int; (b, q, 3) m; (b, q) m3; (b, q) K; (b, q, 3) K/m.
-    """
+    """Solution at the quadrature points of one block after the other."""
     for ids, (X, weights) in blocks(mesh, degree, straight):
         slopes, weights = gradients(mesh, ids, (X, weights))
         values, _ = shapes(mesh.cells.shape[1], X)

@@ -13,21 +13,6 @@ RULES = {
 
 
 def estimated(field, coarser, kind, *, steps=0.0):
-    """Estimate of a field.
-
-    Parameters
-    ----------
-    field : Field
-    coarser : callable (factor) -> Field
-        On a mesh with edges so many times as long.
-    kind : str
-        Of the elements, of `RULES`.
-    steps : float
-        What steps in time may have left, of the span of temperatures.
-
-    Returns
-    -------
-    Estimate
-    """
+    """Estimate of a field."""
     left = {"residual": field.stats["residual"], "steps": steps}
     return by_refinement(field, lambda level: coarser(RATIO**level), RULES[kind], how="coarser meshes", **left)

@@ -21,44 +21,23 @@ DEGREE = 8
 
 
 class Surface(NamedTuple):
-    """A wall's elements and their points of quadrature.
+    """A wall's elements and their points of quadrature."""
 
-    Attributes
-    ----------
-    nodes : (t, k) int array
-    values : (q, k) float array
-        Shape functions at the points.
-    areas : (t, q) float array, m2
-        Weights, which sum to the wall's area.
-    count : int
-        Nodes of the whole mesh.
-    """
-
-    nodes: np.ndarray
-    values: np.ndarray
-    areas: np.ndarray
-    count: int
+    nodes: np.ndarray  # (t, k) int array
+    values: np.ndarray  # (q, k) float array: Shape functions at the points
+    areas: np.ndarray  # (t, q) float array, m2: Weights, which sum to the wall's area
+    count: int  # Nodes of the whole mesh
 
     def at(self, temperature):
         """Nodal values (n,) at the points, (t, q) float array."""
         return temperature[self.nodes] @ self.values.T
 
     def load(self, density):
-        """Integrals of a density times each shape function, (n,) float array.
-
-        Parameters
-        ----------
-        density : (t, q) float array, or float
-        """
+        """Integrals of a density times each shape function, (n,) float array."""
         return np.bincount(self.nodes.ravel(), ((self.areas * density) @ self.values).ravel(), self.count)
 
     def matrix(self, coefficient):
-        """Integrals of a coefficient times products of two shape functions, (n, n) CSR matrix.
-
-        Parameters
-        ----------
-        coefficient : (t, q) float array, or float
-        """
+        """Integrals of a coefficient times products of two shape functions, (n, n) CSR matrix."""
         products = (self.values[:, :, None] * self.values[:, None, :]).reshape(len(self.values), -1)
         blocks = ((self.areas * coefficient) @ products).reshape(-1, *(self.nodes.shape[1],) * 2)
         i, j = (np.broadcast_to(x, blocks.shape).ravel() for x in (self.nodes[:, :, None], self.nodes[:, None, :]))
@@ -66,14 +45,7 @@ class Surface(NamedTuple):
 
 
 def on_triangles(mesh, triangles) -> Surface:
-    """`Surface` of triangles of a mesh.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    triangles : (t, 3) or (t, 6) int array
-        Nodes.
-    """
+    """`Surface` of triangles of a mesh."""
     X, weights = get_quadrature(RefTri, DEGREE)
     values, slopes = shapes(triangles.shape[1], X)
     tangents = np.einsum("tnx,qnk->tqkx", mesh.points[triangles], slopes, optimize=True)
@@ -82,15 +54,7 @@ def on_triangles(mesh, triangles) -> Surface:
 
 
 class Films:
-    """All walls of a scene that exchange heat.
-
-    Parameters
-    ----------
-    walls : mapping of str to pair of Convection or Radiation and Surface
-        Loads that do not depend on time; what changes is told to `entering`.
-    count : int
-        Nodes of the mesh.
-    """
+    """All walls of a scene that exchange heat."""
 
     def __init__(self, walls, count):
         self.walls, self.count = walls, count
@@ -105,14 +69,7 @@ class Films:
         return total
 
     def constant(self, outside, level):
-        """What fluids bring in where the temperature is a level, (n,) float array, W.
-
-        Parameters
-        ----------
-        outside : mapping of str to float, K
-            Temperature of the surroundings of each wall.
-        level : float, K
-        """
+        """What fluids bring in where the temperature is a level, (n,) float array, W."""
         total = np.zeros(self.count)
         for name, (load, surface) in self.walls.items():
             if isinstance(load, Convection):
@@ -120,13 +77,7 @@ class Films:
         return total
 
     def radiated(self, outside, temperature):
-        """What radiation brings in, (n,) float array, W.
-
-        Parameters
-        ----------
-        outside : mapping of str to float, K
-        temperature : (n,) float array, K
-        """
+        """What radiation brings in, (n,) float array, W."""
         total = np.zeros(self.count)
         for name, (load, surface) in self.walls.items():
             if isinstance(load, Radiation):
@@ -134,12 +85,7 @@ class Films:
         return total
 
     def tangent(self, temperature) -> csr_matrix:
-        """Minus the derivative of what radiation brings in, (n, n) CSR matrix, W/K.
-
-        Parameters
-        ----------
-        temperature : (n,) float array, K
-        """
+        """Minus the derivative of what radiation brings in, (n, n) CSR matrix, W/K."""
         total = csr_matrix((self.count, self.count))
         for load, surface in self.walls.values():
             if isinstance(load, Radiation):
@@ -149,13 +95,7 @@ class Films:
         return total
 
     def entering(self, outside, temperature) -> dict[str, float]:
-        """Heat that comes in through each wall, W.
-
-        Parameters
-        ----------
-        outside : mapping of str to float, K
-        temperature : (n,) float array, K
-        """
+        """Heat that comes in through each wall, W."""
         heat = {}
         for name, (load, surface) in self.walls.items():
             here = surface.at(temperature)

@@ -29,41 +29,21 @@ BALANCED = 1e-8
 
 
 class Wall(NamedTuple):
-    """Rectangles of a wall, as `islands` asks for them.
+    """Rectangles of a wall, as `islands` asks for them."""
 
-    Attributes
-    ----------
-    triangles : (m, 4) int array
-        Their nodes.
-    owners : (m,) int array
-        Bricks behind them.
-    """
-
-    triangles: np.ndarray
-    owners: np.ndarray
+    triangles: np.ndarray  # (m, 4) int array: Their nodes
+    owners: np.ndarray  # (m,) int array: Bricks behind them
 
 
 class Grid(NamedTuple):
-    """Bricks of an image as a mesh.
+    """Bricks of an image as a mesh."""
 
-    Attributes
-    ----------
-    axes : three float arrays, m
-        Coordinates of the nodes.
-    points : (n, 3) float array, m
-    cells : (m, 8) int array
-    phase : (m,) int array
-    pairs : (p, 2) int array
-        A node on an upper face of a periodic cell, and the one for which it stands.
-    walls : dict of str to Wall
-    """
-
-    axes: tuple
-    points: np.ndarray
-    cells: np.ndarray
-    phase: np.ndarray
-    pairs: np.ndarray
-    walls: dict
+    axes: tuple  # three float arrays, m: Coordinates of the nodes
+    points: np.ndarray  # (n, 3) float array, m
+    cells: np.ndarray  # (m, 8) int array
+    phase: np.ndarray  # (m,) int array
+    pairs: np.ndarray  # (p, 2) int array: A node on an upper face of a periodic cell, and the one for which it stands
+    walls: dict  # dict of str to Wall
 
     @property
     def shape(self):
@@ -73,20 +53,10 @@ class Grid(NamedTuple):
 
 @dataclass(frozen=True)
 class Voxels(Bricks):
-    """Nodal temperatures of an image.
+    """Nodal temperatures of an image."""
 
-    Parameters
-    ----------
-    scene, grid, phase, temperature
-        As those of `Bricks`.
-    conductivity : (a, b, c) float array, W/(m K)
-        Of each brick; 0 where no heat passes.
-    lost : (a, b, c) bool array or None
-        Bricks of bodies that reach no temperature.
-    """
-
-    conductivity: np.ndarray = None
-    lost: np.ndarray | None = None
+    conductivity: np.ndarray = None  # (a, b, c) float array, W/(m K): Of each brick; 0 where no heat passes
+    lost: np.ndarray | None = None  # (a, b, c) bool array or None: Bricks of bodies that reach no temperature
 
     def conductivity_of(self, bricks):
         """Conductivity of bricks by their indices along each axis, (p,) float array, W/(m K)."""
@@ -120,24 +90,7 @@ class Voxels(Bricks):
 
 
 def solved_image(scenes, size, tolerance) -> list[Field]:
-    """The Field of an image under each of some loads, with one multigrid where all hold the same nodes.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Alike but for their loads.
-    size : float, m, or None
-        Longest edge of a brick; a voxel by default.
-    tolerance : float
-        Largest relative residual of the equations, scaled to a unit diagonal.
-
-    Raises
-    ------
-    ValueError
-        If it does not fit into memory, or heat is forced where nothing takes it.
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """The Field of an image under each of some loads, with one multigrid where all hold the same nodes."""
     for scene in scenes:
         scene.require("elements of an image know held temperatures and fluxes", takes=("image",))
     grid, kept = _grid(scenes[0], size), {}

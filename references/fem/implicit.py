@@ -19,19 +19,7 @@ ROUNDING = 1e-14
 
 
 class Shifted:
-    """The matrix M / tau + K at the free nodes.
-
-    Parameters
-    ----------
-    mass : (n, n) CSR matrix, J/K
-    stiffness : (n, n) CSR matrix, W/K
-    quadratic : (n, k) CSR matrix or None
-        From the corners to all nodes of quadratic elements.
-    tolerance : float
-        Largest relative residual, the equations scaled to a unit diagonal.
-    inverse : callable (tau, load) -> (n,) float array, optional
-        A fast inverse; the residual is checked all the same.
-    """
+    """The matrix M / tau + K at the free nodes."""
 
     def __init__(self, mass, stiffness, quadratic, tolerance, inverse=None):
         self.inverse, self.plain = inverse, stiffness
@@ -44,28 +32,7 @@ class Shifted:
         self.stiffness, self.tau = (self.plain + more).tocsr(), None
 
     def solve(self, tau, load, *, scale=None, level=None, tolerance=None):
-        """Solution for one load.
-
-        Parameters
-        ----------
-        tau : float, s
-        load : (n,) float array, W
-        scale : (n,) float array, W, optional
-            A typical load: the residual is relative to the larger of both.
-        level : (n,) float array, K, optional
-            Temperatures whose rounding no residual can go below.
-        tolerance : float, optional
-            Instead of that of the object.
-
-        Returns
-        -------
-        (n,) float array, K
-
-        Raises
-        ------
-        RuntimeError
-            If the residual stays above the tolerance.
-        """
+        """Solution for one load."""
         if not len(load):
             return np.zeros(0)
         self._set(tau)

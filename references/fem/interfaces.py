@@ -18,15 +18,7 @@ DEGREE = 6
 
 
 def exchange(mesh, dof) -> csr_matrix:
-    """Matrix of the heat that passes from side to side, (n, n) CSR, W/K.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        With `faces`.
-    dof : (n,) int array
-        Row and column of each node.
-    """
+    """Matrix of the heat that passes from side to side, (n, n) CSR, W/K."""
     values, parts = _parts(mesh)
     products = (values[:, :, None] * values[:, None, :]).reshape(len(values), -1)
     one = (parts @ products).reshape(len(parts), values.shape[1], -1)
@@ -37,17 +29,7 @@ def exchange(mesh, dof) -> csr_matrix:
 
 
 def power(mesh, temperature, gradient) -> float:
-    """Integral of [T]^2 / R, W K.
-
-    Parameters
-    ----------
-    mesh : Mesh
-        With `faces`.
-    temperature : (n,) float array, K
-        At the nodes.
-    gradient : (3,) float array, K/m
-        Mean one of a periodic cell, across whose faces the temperature rises by it.
-    """
+    """Integral of [T]^2 / R, W K."""
     values, parts = _parts(mesh)
     rest = temperature - mesh.points @ np.asarray(gradient)
     here, there = np.swapaxes(rest[mesh.faces.nodes], 0, 1)

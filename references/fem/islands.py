@@ -43,18 +43,7 @@ class Bodies(NamedTuple):
 
 
 def find(scene, mesh) -> Bodies:
-    """Bodies of a scene on a mesh.
-
-    Parameters
-    ----------
-    scene : Scene
-        With a steady load.
-    mesh : Mesh
-
-    Returns
-    -------
-    Bodies
-    """
+    """Bodies of a scene on a mesh."""
     solid = scene.mean_conductivities[mesh.phase] > 0
     piece, count = _pieces(mesh, solid)
     jump = np.array(scene.gradient) * scene.size if scene.periodic else np.zeros(3)
@@ -69,16 +58,7 @@ def find(scene, mesh) -> Bodies:
 
 
 def settle(found: Bodies, scene, mesh, temperature) -> None:
-    """Give bodies that no heat passes their temperature, in a periodic cell all bodies their level, in place.
-
-    Parameters
-    ----------
-    found : Bodies
-    scene : Scene
-    mesh : Mesh
-    temperature : (n,) float array, K or degrees Celsius
-        Bodies without any keep what they have.
-    """
+    """Give bodies that no heat passes their temperature, in a periodic cell all bodies their level, in place."""
     still = np.append(~found.passing, False)[found.node]
     if not scene.periodic:
         level = np.append(found.level, np.nan)[found.node]
@@ -98,14 +78,7 @@ def settle(found: Bodies, scene, mesh, temperature) -> None:
 
 
 def extend(found: Bodies, mesh, temperature) -> None:
-    """Give nodes in pores the temperature of the nearest body, in place: elements there may reach past an interface.
-
-    Parameters
-    ----------
-    found : Bodies
-    mesh : Mesh
-    temperature : (n,) float array, K or degrees Celsius
-    """
+    """Give nodes in pores the temperature of the nearest body, in place: elements there may reach past an interface."""
     inside = np.flatnonzero(found.node >= 0)
     if len(inside):
         outside = np.flatnonzero(found.node < 0)
@@ -113,18 +86,7 @@ def extend(found: Bodies, mesh, temperature) -> None:
 
 
 def reached(found: Bodies, scene, temperature):
-    """The temperature of nodes, NaN in bodies that no wall's temperature reaches.
-
-    Parameters
-    ----------
-    found : Bodies
-    scene : Scene
-    temperature : (n,) float array, K or degrees Celsius
-
-    Returns
-    -------
-    (n,) float array, K or degrees Celsius
-    """
+    """The temperature of nodes, NaN in bodies that no wall's temperature reaches."""
     lost = np.append(~found.passing & np.isnan(found.level) & (not scene.periodic), False)
     return np.where(lost[found.node], np.nan, temperature)
 

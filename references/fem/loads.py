@@ -12,49 +12,17 @@ from references.fem.sources import deposit
 
 
 class Loading(NamedTuple):
-    """The loads at one time.
+    """The loads at one time."""
 
-    Attributes
-    ----------
-    temperature : (k,) float array, K
-        Of the held nodes, from the level of the run.
-    heat : (n,) float array, W
-        Into each node.
-    powers : (m,) float array, W
-        Of each of `Loads.names`; 0 for held walls.
-    wall_temperature : dict of str to float, K
-        Of held walls.
-    outside : dict of str to float, K
-        Of the surroundings of walls that exchange heat.
-    """
-
-    temperature: np.ndarray
-    heat: np.ndarray
-    powers: np.ndarray
-    wall_temperature: dict[str, float]
-    outside: dict[str, float]
+    temperature: np.ndarray  # (k,) float array, K: Of the held nodes, from the level of the run
+    heat: np.ndarray  # (n,) float array, W: Into each node
+    powers: np.ndarray  # (m,) float array, W: Of each of `Loads.names`; 0 for held walls
+    wall_temperature: dict[str, float]  # dict of str to float, K: Of held walls
+    outside: dict[str, float]  # dict of str to float, K: Of the surroundings of walls that exchange heat
 
 
 class Loads:
-    """Loads of a scene on the nodes of a space.
-
-    Parameters
-    ----------
-    scene : Scene
-    space : Space
-    level : float, K
-        Temperatures are counted from it: a large common offset then costs no digits.
-
-    Attributes
-    ----------
-    names : tuple of str
-        The loaded walls, then "sources" and "lost".
-    held : (k,) int array
-        Nodes of walls held at a temperature.
-    stiffness : (n, n) CSR matrix, W/K
-        Of the space, and of the films of walls with convection.
-    films : Films
-    """
+    """Loads of a scene on the nodes of a space."""
 
     def __init__(self, scene, space, *, level):
         self.scene, self.space, self.level = scene, space, level
@@ -103,49 +71,18 @@ class Loads:
         return Loading(temperature[self.held], heat, np.array(list(powers.values())), now.wall_temperatures, outside)
 
     def radiated(self, y, loading):
-        """What walls radiate into each node, (n,) float array, W, or 0.
-
-        Parameters
-        ----------
-        y : (n,) float array, K
-            Temperatures, from the level.
-        loading : Loading
-        """
+        """What walls radiate into each node, (n,) float array, W, or 0."""
         return self.films.radiated(loading.outside, y + self.level) if self.films.radiates else 0.0
 
     def rates(self, entering, y, loading):
-        """Heat of each of the names, as `shares` has it, and what is exchanged with surroundings.
-
-        Parameters
-        ----------
-        entering, loading
-            As in `shares`.
-        y : (n,) float array, K
-            Temperatures, from the level.
-
-        Returns
-        -------
-        (m,) float array, W
-        """
+        """Heat of each of the names, as `shares` has it, and what is exchanged with surroundings."""
         powers = self.shares(entering, loading)
         for name, heat in self.films.entering(loading.outside, y + self.level).items():
             powers[self.names.index(name)] = heat
         return powers
 
     def shares(self, entering, loading):
-        """Heat of each of the names: held walls by what their nodes draw in, the rest as loaded.
-
-        Parameters
-        ----------
-        entering : (n,) float array, W
-            What nodes draw in.
-        loading : Loading
-            At that time.
-
-        Returns
-        -------
-        (m,) float array, W
-        """
+        """Heat of each of the names: held walls by what their nodes draw in, the rest as loaded."""
         powers = loading.powers.copy()
         for place, name in enumerate(self.names):
             if name in self.walls:

@@ -114,18 +114,7 @@ class NodalField:
         return at_quadrature(self.mesh, self.temperature, straight=self.medium.straight)
 
     def spread(self, points, amounts):
-        """Share amounts at points among the nodes by their shape functions.
-
-        Parameters
-        ----------
-        points : (p, 3) float array, m
-        amounts : (p,) float array
-            In any unit.
-
-        Returns
-        -------
-        (n,) float array
-        """
+        """Share amounts at points among the nodes by their shape functions."""
         total = np.zeros(len(self.mesh.points))
         for part, ids, X in self._located(self._inside(np.asarray(points, dtype=float))):
             values, _ = shapes(self.mesh.cells.shape[1], X.T)

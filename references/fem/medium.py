@@ -17,15 +17,7 @@ DEGREES = {4: 2, 10: 4}
 
 
 class Medium:
-    """Tensors and factors of the elements of a mesh.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    temperature : (n,) float array, optional
-        At the nodes: factors are those there; without it they are 1.
-    """
+    """Tensors and factors of the elements of a mesh."""
 
     def __init__(self, scene, mesh, temperature=None):
         self.mesh, self.temperature = mesh, temperature
@@ -43,20 +35,7 @@ class Medium:
         return None if self.factors is None else rule(DEGREES[self.mesh.cells.shape[1]])
 
     def bent(self, ids, X, slopes):
-        """Slopes of shape functions whose products are those of a stiffness, over its conductivity k.
-
-        Parameters
-        ----------
-        ids : (b,) int array
-            Elements.
-        X : (3, q) float array
-            Local points.
-        slopes : (b, q, nodes, 3) float array, 1/m
-
-        Returns
-        -------
-        (b, q, nodes, 3) float array, 1/m
-        """
+        """Slopes of shape functions whose products are those of a stiffness, over its conductivity k."""
         if self.roots is not None:
             slopes = slopes @ self.roots[self.mesh.phase[ids], None]
         if self.factors is not None:
@@ -66,15 +45,7 @@ class Medium:
         return slopes
 
     def conducted(self, ids, temperature, gradient):
-        """Gradients times S and f: minus the flux over the conductivity k.
-
-        Parameters
-        ----------
-        ids : (b,) int array
-            Elements.
-        temperature : (b,) or (b, q) float array
-        gradient : (b, 3) or (b, q, 3) float array, K/m
-        """
+        """Gradients times S and f: minus the flux over the conductivity k."""
         if self.tensors is not None:
             gradient = np.einsum("bxy,b...y->b...x", self.tensors[self.mesh.phase[ids]], gradient)
         if self.factors is not None:

@@ -22,33 +22,7 @@ COARSEST = {"max_coarse": 100, "coarse_solver": "splu", "presmoother": SMOOTHER,
 
 
 def solve_free(mesh, matrix, load, fixed, dof, tolerance, *, kept=None):
-    """Solve for the free nodes, those that are not fixed and have a row.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    matrix : (n, n) CSR matrix, W/K
-    load : (n,) float array, W
-    fixed : (n,) bool array
-        Where the solution is zero.
-    dof : (n,) int array
-        Row of each node.
-    tolerance : float
-        Largest relative residual, the equations scaled to a unit diagonal so that contrast does not hide it.
-    kept : dict, optional
-        Where the scaled equations and their multigrid are kept for the next load on this matrix, by its free nodes.
-
-    Returns
-    -------
-    (n,) float array, K
-    dict
-        `unknowns`, `iterations`, `residual` (recomputed).
-
-    Raises
-    ------
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """Solve for the free nodes, those that are not fixed and have a row."""
     diagonal, solution = matrix.diagonal(), np.zeros(len(load))
     free = np.flatnonzero(~fixed & (diagonal > 0))
     stats = {"unknowns": len(free), "iterations": 0, "residual": 0.0}
@@ -71,14 +45,7 @@ def solve_free(mesh, matrix, load, fixed, dof, tolerance, *, kept=None):
 
 
 def renewed(kept, matrix):
-    """What `solve_free` keeps, with the equations of another matrix: scale and multigrid still serve.
-
-    Parameters
-    ----------
-    kept : dict
-        Changed in place, and returned.
-    matrix : (n, n) CSR matrix, W/K
-    """
+    """What `solve_free` keeps, with the equations of another matrix: scale and multigrid still serve."""
     if kept:
         _, scale, precondition = kept["equations"]
         kept["equations"] = (scale @ matrix[kept["free"]][:, kept["free"]] @ scale).tocsr(), scale, precondition
@@ -94,27 +61,7 @@ def _equations(mesh, matrix, free, dof):
 
 
 def conjugate_gradients(A, b, precondition, tolerance, done=None):
-    """Solve A x = b from x = 0.
-
-    Parameters
-    ----------
-    A : (n, n) CSR matrix
-    b : (n,) float array
-        Not zero.
-    precondition : callable (n,) -> (n,)
-    tolerance : float
-        Largest relative residual.
-    done : callable (share), optional
-        Called with the share of the way to the tolerance.
-
-    Returns
-    -------
-    (n,) float array
-    int
-        Iterations.
-    float
-        The true relative residual; above the tolerance if the iterations did not suffice.
-    """
+    """Solve A x = b from x = 0."""
     x, scale, iterations = np.zeros_like(b), math.sqrt(_dot(b, b)), 0
     # Rounding can part the recursive residual from the true one: start again from there, twice at most.
     for _ in range(3):
@@ -161,20 +108,7 @@ def _cycle(levels, b, number=0):
 
 
 def prolongation(mesh, free, dof):
-    """From corners to all free nodes: a middle is the mean of its edge's ends.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    free : (m,) int array
-        Rows of the free nodes.
-    dof : (n,) int array
-        Row of each node.
-
-    Returns
-    -------
-    (m, k) CSR matrix, or None for linear elements
-    """
+    """From corners to all free nodes: a middle is the mean of its edge's ends."""
     if mesh.cells.shape[1] == 4:
         return None
     count = len(dof)
@@ -192,21 +126,7 @@ def prolongation(mesh, free, dof):
 
 
 def multigrid(A, constant, quadratic=None):
-    """One V-cycle as a preconditioner.
-
-    Parameters
-    ----------
-    A : (n, n) CSR matrix
-        Scaled to a unit diagonal.
-    constant : (n,) float array
-        What a constant temperature is in that scale.
-    quadratic : (n, k) CSR matrix, optional
-        `prolongation` of quadratic elements.
-
-    Returns
-    -------
-    callable (n,) -> (n,)
-    """
+    """One V-cycle as a preconditioner."""
     return partial(_cycle, _hierarchy(A, constant, quadratic))
 
 

@@ -18,11 +18,6 @@ def rule(degree: int):
     """Local points (3, q) and positive weights (q,) of a quadrature on the reference element.
 
     scikit-fem's up to degree 6; beyond, products of Gauss's on the cube, which is mapped onto the element.
-
-    Parameters
-    ----------
-    degree : int
-        Of the polynomials that it integrates exactly.
     """
     if degree in KNOWN:
         return get_quadrature(RefTet, KNOWN[degree])

@@ -12,13 +12,7 @@ ROUNDS, FURTHER = 40, 1e-3
 
 
 def hottest(scene, films) -> float:
-    """A temperature that no radiating wall exceeds, K: all imposed fluxes left by radiation alone.
-
-    Parameters
-    ----------
-    scene : Scene
-    films : Films
-    """
+    """A temperature that no radiating wall exceeds, K: all imposed fluxes left by radiation alone."""
     size = np.array(scene.size)
     across = {name: float(np.prod(np.delete(size, "xyz".index(name[0])))) for name in scene.walls}
     entering = sum(max(value, 0.0) * across[name] for name, value in scene.wall_fluxes.items())
@@ -30,28 +24,7 @@ def hottest(scene, films) -> float:
 
 
 def radiating(mesh, matrix, load, fixed, dof, tolerance, *, known, body):
-    """Correction to a known temperature at which conduction and radiation balance, at the free nodes.
-
-    Parameters
-    ----------
-    mesh, matrix, load, fixed, dof, tolerance
-        As those of `references.fem.multigrid.solve_free`, without radiation.
-    known : (n,) float array, K
-        The temperature that is corrected.
-    body : (Scene, Films, float)
-        The scene, its films and the unit of conductivity that matrix and load are over, W/(m K).
-
-    Returns
-    -------
-    (n,) float array, K
-    dict
-        `unknowns`, `iterations`, `residual` of the equations with the fourth powers themselves, and `rounds`.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """Correction to a known temperature at which conduction and radiation balance, at the free nodes."""
     scene, films, unit = body
     outside, free = scene.imposed_temperatures, ~fixed & (matrix.diagonal() > 0)
     correction = np.where(free, hottest(scene, films) - known, 0.0)

@@ -47,32 +47,6 @@ def solve(
     """Solve a scene by finite elements, with equations in parts on all ranks of an MPI run.
 
     To be called by every rank with the same arguments. Each has the whole mesh, and of what is returned all of it.
-
-    Parameters
-    ----------
-    scene : Scene
-        Without pores, resistances of surfaces, conductivities that follow the temperature, surroundings, images.
-    order, size, curved, tolerance
-        As those of `fem.solve`.
-    options : str
-        Of PETSc, such as "-pc_type hypre".
-
-    Returns
-    -------
-    Field
-        With `stats` of `fem.solve` besides: ranks, and costs as `demheat.ranks.Costs` tells them, of the stages mesh,
-        assembly, solve and field.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described.
-    NotImplementedError
-        If the scene is another.
-    ImportError
-        If MPI, PETSc or gmsh is missing.
-    RuntimeError
-        If meshing fails, or the residual stays above the tolerance.
     """
     _check(scene, order, size, tolerance)
     ranks.check_fits(
@@ -82,38 +56,18 @@ def solve(
 
 
 def world():
-    """The communicator of all ranks.
-
-    Raises
-    ------
-    ImportError
-        In one line, if MPI or PETSc is missing.
-    """
+    """The communicator of all ranks."""
     return _both()[0].COMM_WORLD
 
 
 def outlook(scene: Scene, *, order: int = 2, size: float | None = None, **_) -> str:
-    """What a solve will take on this machine, in words.
-
-    Parameters
-    ----------
-    scene : Scene
-    order, size
-        As `solve` takes them; other knobs change nothing.
-    """
+    """What a solve will take on this machine, in words."""
     tetrahedra, bytes_needed = _tetrahedra(scene, size, order), needed(scene, order=order, size=size)
     return f"{tetrahedra:.2g} tetrahedra or more, {ranks.outlook(bytes_needed, world())}"
 
 
 def needed(scene: Scene, *, order: int = 2, size: float | None = None) -> float:
-    """Bytes that a solve takes at its peak, of all ranks.
-
-    Parameters
-    ----------
-    scene : Scene
-    order, size
-        As those of `solve`.
-    """
+    """Bytes that a solve takes at its peak, of all ranks."""
     return _tetrahedra(scene, size, order) * (HELD[order] * world().size + SOLVED[order])
 
 

@@ -15,20 +15,7 @@ STIFFNESS = np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 
 def separable(grid, conductivity, capacity, free):
-    """Exact inverse of M / tau + K of a homogeneous grid, as a function of tau.
-
-    Parameters
-    ----------
-    grid : three float arrays, m
-    conductivity : float, W/(m K)
-    capacity : float, J/(m3 K)
-    free : (m,) int array
-        Free nodes: all but those on whole faces.
-
-    Returns
-    -------
-    callable (tau, load) -> (m,) float array
-    """
+    """Exact inverse of M / tau + K of a homogeneous grid, as a function of tau."""
     shape = tuple(len(x) for x in grid)
     chosen = np.zeros(shape, bool)
     chosen.flat[free] = True

@@ -13,26 +13,13 @@ from references.mesh import twins
 
 
 class Share(NamedTuple):
-    """A rank's part of the equations on a mesh that all ranks have.
+    """A rank's part of the equations on a mesh that all ranks have."""
 
-    Attributes
-    ----------
-    dof : (n,) int array
-        Row of each node.
-    rows : (k,) int array
-        All rows, those of the first rank first.
-    own : (m,) int array
-        The rank's own.
-    numbers : (n,) int32 array
-        Of the unknowns in that order; -1 where a temperature is known.
-    comm : mpi4py.MPI.Comm
-    """
-
-    dof: np.ndarray
-    rows: np.ndarray
-    own: np.ndarray
-    numbers: np.ndarray
-    comm: object
+    dof: np.ndarray  # (n,) int array: Row of each node
+    rows: np.ndarray  # (k,) int array: All rows, those of the first rank first
+    own: np.ndarray  # (m,) int array: The rank's own
+    numbers: np.ndarray  # (n,) int32 array: Of the unknowns in that order; -1 where a temperature is known
+    comm: object  # mpi4py.MPI.Comm
 
     @property
     def free(self) -> np.ndarray:
@@ -40,33 +27,14 @@ class Share(NamedTuple):
         return self.numbers[self.own] >= 0
 
     def whole(self, values: np.ndarray) -> np.ndarray:
-        """Values of all ranks' rows on each of them, 0 elsewhere, (n,) float array.
-
-        Parameters
-        ----------
-        values : (m,) float array
-            Of its own.
-        """
+        """Values of all ranks' rows on each of them, 0 elsewhere, (n,) float array."""
         found = np.zeros(len(self.dof))
         found[self.rows] = np.concatenate(self.comm.allgather(values))
         return found
 
 
 def shares_of(mesh, held, comm) -> Share:
-    """Rows shared out evenly across the longest side of a mesh.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    held : (n,) bool array
-        Nodes whose temperature is known; if there is none, one row is held that the level be some.
-    comm : mpi4py.MPI.Comm
-
-    Raises
-    ------
-    ValueError
-        If there are more ranks than rows.
-    """
+    """Rows shared out evenly across the longest side of a mesh."""
     dof = twins(len(mesh.points), mesh.pairs)
     rows, axis = np.unique(dof), np.argmax(np.ptp(mesh.points, axis=0))
     fixed = held.copy()
@@ -82,24 +50,7 @@ def shares_of(mesh, held, comm) -> Share:
 
 
 def assembled(scene, mesh, share: Share, lift, unit) -> tuple[csr_matrix, np.ndarray]:
-    """A rank's own rows, whole: of all elements that touch one of its nodes.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    share : Share
-    lift : (n,) float array, K
-        Known part of the temperature.
-    unit : float, W/(m K)
-        Of conductivities.
-
-    Returns
-    -------
-    (m, n) CSR matrix, m
-    (m,) float array, m K
-        As of `references.fem.elements.assemble`.
-    """
+    """A rank's own rows, whole: of all elements that touch one of its nodes."""
     mine = np.zeros(len(share.dof), dtype=bool)
     mine[share.own] = True
     cells = np.flatnonzero(mine[share.dof[mesh.cells]].any(axis=1))
@@ -111,20 +62,7 @@ def assembled(scene, mesh, share: Share, lift, unit) -> tuple[csr_matrix, np.nda
 
 
 def unknown_rows(matrix: csr_matrix, share: Share) -> tuple[csr_matrix, np.ndarray]:
-    """The equations of a rank's own unknowns, scaled to a unit diagonal.
-
-    Parameters
-    ----------
-    matrix : (m, n) CSR matrix
-        Own rows.
-    share : Share
-
-    Returns
-    -------
-    (k, number of all unknowns) CSR matrix
-    (n,) float array
-        Roots of all rows' diagonals.
-    """
+    """The equations of a rank's own unknowns, scaled to a unit diagonal."""
     root = np.sqrt(share.whole(np.asarray(matrix[np.arange(len(share.own)), share.own]).ravel()))
     ours = matrix[share.free]
     kept = share.numbers[ours.indices] >= 0

@@ -97,24 +97,6 @@ def solve_axes(
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`; multigrid is set up once in
     a periodic cell, and between walls for each load, which holds other nodes.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or a box between two isothermal walls with four insulated faces.
-    order, size, curved, tolerance
-        As those of `solve`, which also says what is raised.
-
-    Returns
-    -------
-    tuple of three Fields
-        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them. Seconds in their `stats` but
-        `solve_s` are those of what they share.
-
-    Raises
-    ------
-    NotImplementedError
-        If the load is another, or surfaces of the scene touch.
     """
     return tuple(_solved(axis_loads(scene), order, size, curved, tolerance))
 
@@ -139,14 +121,7 @@ def _solved(scenes, order, size, curved, tolerance):
 
 
 def warn_of_gaps(scene, size) -> None:
-    """Linear elements are stiff, a straight drop of temperature each: a gap needs some across.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    """
+    """Linear elements are stiff, a straight drop of temperature each: a gap needs some across."""
     k, parents = scene.mean_conductivities, scene.parents()[1:]
     near = narrows(scene, GAP * size, STRONG) & (k[1:] > k[0]) & (k[0] > 0) & (parents == 0)
     # Layers have no end; larger spheres have elements of their own size all round.
@@ -178,23 +153,7 @@ def _again(scene, tolerance, elements, factor):
 
 
 def field_of(scene, mesh, solved, tolerance, estimator) -> Field:
-    """The Field of nodal temperatures.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    solved : Solved
-        See `references.fem.system`.
-    tolerance : float
-        Relative, of the equations.
-    estimator : callable (Field) -> Estimate
-
-    Raises
-    ------
-    RuntimeError
-        If rounding drowns the flux.
-    """
+    """The Field of nodal temperatures."""
     alone = one_blas_thread()
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()

@@ -21,36 +21,15 @@ LEAST_RINGS, MOST_RINGS = 8, 128
 
 
 class Deposit(NamedTuple):
-    """What a source gives.
+    """What a source gives."""
 
-    Attributes
-    ----------
-    heat : (n,) float array, W
-        Into each node.
-    power, lost : float, W
-        Inside of the body and outside.
-    """
-
-    heat: np.ndarray
-    power: float
-    lost: float
+    heat: np.ndarray  # (n,) float array, W: Into each node
+    power: float  # W: Inside of the body and outside
+    lost: float  # W: Inside of the body and outside
 
 
 def check_sources(scene, last):
-    """Refuse sources that leave the body before a time, unless they are clipped.
-
-    Parameters
-    ----------
-    scene : Scene
-    last : float, s
-
-    Raises
-    ------
-    ValueError
-        If the cylinder is not all inside from time 0 on; the message says when and where it leaves.
-    NotImplementedError
-        If the body is round.
-    """
+    """Refuse sources that leave the body before a time, unless they are clipped."""
     for number, source in enumerate(scene.sources):
         if not isinstance(source, MovingCylinder):
             continue
@@ -88,19 +67,7 @@ def _leaves(source, low, high, last):
 
 
 def deposit(scene, space, source, time) -> Deposit:
-    """Heat of a source in each node.
-
-    Parameters
-    ----------
-    scene : Scene
-    space : Space
-    source : MovingCylinder
-    time : float, s
-
-    Returns
-    -------
-    Deposit
-    """
+    """Heat of a source in each node."""
     radius, across = source.diameter / 2, [axis for axis in range(3) if axis != source.axis]
     sides = np.array(scene.size)[across]
     center = source.position(time)
@@ -139,20 +106,7 @@ def disc_points(rings):
 
 
 def overlap(center, radius, sides):
-    """Area that a disc shares with a rectangle that begins at the origin.
-
-    Parameters
-    ----------
-    center : (2,) float array, m
-        Of the disc.
-    radius : float, m
-    sides : (2,) float array, m
-        Of the rectangle.
-
-    Returns
-    -------
-    float, m2
-    """
+    """Area that a disc shares with a rectangle that begins at the origin."""
     (x0, y0), (x1, y1) = -np.asarray(center) / radius, (np.asarray(sides) - center) / radius
     return radius**2 * (_quadrant(x1, y1) - _quadrant(x0, y1) - _quadrant(x1, y0) + _quadrant(x0, y0))
 

@@ -27,21 +27,11 @@ RESOLVE = 3
 
 
 class WallNodes(NamedTuple):
-    """A wall on the nodes.
+    """A wall on the nodes."""
 
-    Attributes
-    ----------
-    nodes : (k,) int array
-        Those on it.
-    weights : (n,) float array, m2
-        Integrals of all shape functions over it.
-    surface : callable () -> Surface
-        Its elements and their quadrature.
-    """
-
-    nodes: np.ndarray
-    weights: np.ndarray
-    surface: Callable
+    nodes: np.ndarray  # (k,) int array: Those on it
+    weights: np.ndarray  # (n,) float array, m2: Integrals of all shape functions over it
+    surface: Callable  # callable () -> Surface: Its elements and their quadrature
 
 
 class Space(NamedTuple):
@@ -88,17 +78,7 @@ class Space(NamedTuple):
 
 
 def tetrahedra(scene, mesh) -> Space:
-    """`Space` of tetrahedra.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-
-    Returns
-    -------
-    Space
-    """
+    """`Space` of tetrahedra."""
     count, dof = len(mesh.points), np.arange(len(mesh.points))
     stiffness, _ = assemble(mesh, scene.conductivities[mesh.phase], dof, np.zeros(count))
     if mesh.faces is not None:

@@ -80,26 +80,7 @@ class _Bodies(NamedTuple):
 
 
 def solve_nodes(scene, mesh, tolerance) -> Solved:
-    """Nodal temperatures of a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    tolerance : float
-        Largest relative residual of the equations, scaled to a unit diagonal.
-
-    Returns
-    -------
-    Solved
-
-    Raises
-    ------
-    ValueError
-        If heat is forced into a pore or into a part that pores cut off from all temperatures.
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """Nodal temperatures of a scene."""
     return solve_loads([scene], mesh, tolerance)[0]
 
 
@@ -117,18 +98,6 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
     """Nodal temperatures of one body under several loads: one matrix, and one multigrid where all hold the same nodes.
 
     Pores cut off other bodies for each load: their matrices are their own.
-
-    Parameters
-    ----------
-    scenes : sequence of Scene
-        Alike but for their loads.
-    mesh, tolerance
-        As those of `solve_nodes`, which says what is raised.
-
-    Returns
-    -------
-    list of Solved
-        Seconds of the assembly are those of all loads.
     """
     if scenes[0].varies:
         return [_solve_varying(scene, mesh, tolerance) for scene in scenes]
@@ -236,23 +205,7 @@ def _at_rest(scene, mesh, given, found):
 
 
 def known_part(scene, mesh) -> tuple[np.ndarray, float, dict[str, np.ndarray], np.ndarray]:
-    """What is known of the temperature: the mean gradient, or that of held walls.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh, or a grid with its `points` and `walls`
-
-    Returns
-    -------
-    lift : (n,) float array, K
-    level : float, K
-        To be added.
-    nodes : mapping of str to (k,) int array
-        Of each held wall.
-    shares : (n,) float array
-        Held walls at each node.
-    """
+    """What is known of the temperature: the mean gradient, or that of held walls."""
     lift, shares = np.zeros(len(mesh.points)), np.zeros(len(mesh.points))
     if scene.periodic:
         return mesh.points @ np.array(scene.gradient), 0.0, {}, shares
@@ -268,15 +221,7 @@ def known_part(scene, mesh) -> tuple[np.ndarray, float, dict[str, np.ndarray], n
 
 
 def given_part(scene, mesh, solid) -> Given:
-    """Read the load of the scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    solid : (m,) bool array
-        Which elements conduct: only those take a wall's flux.
-    """
+    """Read the load of the scene."""
     lift, level, nodes, shares = known_part(scene, mesh)
     weights = {}
     for name in (*scene.wall_fluxes, *scene.wall_exchanges):
@@ -318,17 +263,7 @@ def _pore_shift(mesh, pores, temperature, dof, given, found):
 
 
 def at_walls(scene, given, temperature, heat, exchanged) -> tuple[dict, dict]:
-    """Mean temperature of each loaded wall, and the heat that enters there.
-
-    Parameters
-    ----------
-    scene : Scene
-    given : Given
-    temperature, heat : (n,) float arrays, K and W
-        At the nodes.
-    exchanged : mapping of str to float, W
-        Through walls with surroundings.
-    """
+    """Mean temperature of each loaded wall, and the heat that enters there."""
     mean, entering = scene.wall_temperatures, dict(exchanged)
     for name, nodes in given.nodes.items():
         entering[name] = float(np.sum(heat[nodes] / given.shares[nodes]))

@@ -33,68 +33,28 @@ SHORTEST, SHORTEST_OF_FIRST = 1e-12, 1e-6
 
 
 class State(NamedTuple):
-    """All at one time.
+    """All at one time."""
 
-    Attributes
-    ----------
-    time : float, s
-    temperature : (n,) float array, K
-    rate : (n,) float array, K/s
-    entering : (n,) float array, W
-        Heat that nodes of held walls draw in; elsewhere the residual.
-    rates : (m,) float array, W
-        Heat through each wall, from the sources, and lost by clipped sources.
-    heats : (m,) float array, J
-        The same since the start, integrated with the weights of the stages.
-    turnover : float, J
-        Sum of the absolute values of what enters.
-    span : (2,) float array, K
-        Lowest and highest temperature so far.
-    """
-
-    time: float
-    temperature: np.ndarray
-    rate: np.ndarray
-    entering: np.ndarray
-    rates: np.ndarray
-    heats: np.ndarray
-    turnover: float
-    span: np.ndarray
+    time: float  # s
+    temperature: np.ndarray  # (n,) float array, K
+    rate: np.ndarray  # (n,) float array, K/s
+    entering: np.ndarray  # (n,) float array, W: Heat that nodes of held walls draw in; elsewhere the residual
+    rates: np.ndarray  # (m,) float array, W: Heat through each wall, from the sources, and lost by clipped sources
+    heats: np.ndarray  # (m,) float array, J: The same since the start, integrated with the weights of the stages
+    turnover: float  # J: Sum of the absolute values of what enters
+    span: np.ndarray  # (2,) float array, K: Lowest and highest temperature so far
 
 
 class Problem(NamedTuple):
-    """Equations, loads and solver.
-
-    Attributes
-    ----------
-    loads : Loads
-    solver : Shifted
-    free : (m,) int array
-        Nodes that no wall holds.
-    """
+    """Equations, loads and solver."""
 
     loads: Loads
-    solver: object
-    free: np.ndarray
+    solver: object  # Shifted
+    free: np.ndarray  # (m,) int array: Nodes that no wall holds
 
 
 def begin(problem, temperature, time, hint) -> State:
-    """State at the start, walls at their temperatures.
-
-    Parameters
-    ----------
-    problem : Problem
-    temperature : (n,) float array, K
-        The initial one, from the level of the loads.
-    time : float, s
-        Of the start.
-    hint : float, s
-        A short time.
-
-    Returns
-    -------
-    State
-    """
+    """State at the start, walls at their temperatures."""
     loads, free, held = problem.loads, problem.free, problem.loads.held
     loading = loads.at(time)
     y, rate = temperature.copy(), np.zeros_like(temperature)
@@ -115,22 +75,7 @@ def begin(problem, temperature, time, hint) -> State:
 
 
 def advance(problem, state, step, *, estimate):
-    """One step.
-
-    Parameters
-    ----------
-    problem : Problem
-    state : State
-    step : float, s
-    estimate : bool
-        Whether the error is wanted: one more solve.
-
-    Returns
-    -------
-    State
-    float, K
-        Estimated error of this step, root mean square over the heat capacity; 0 if not wanted.
-    """
+    """One step."""
     y, tau = state.temperature, DIAGONAL * step
     if problem.loads.films.radiates:
         problem.solver.stiffen(_tangent(problem, y))
@@ -191,38 +136,14 @@ def _error(problem, stages, step):
 
 
 class Clock:
-    """Steps from asked time to asked time: given ones, or as long as the wanted accuracy allows.
-
-    Parameters
-    ----------
-    problem : Problem
-    accuracy : float
-        Largest estimated error of one step, root mean square, as a part of the temperature span so far.
-    step : float, s, optional
-        Longest step; no error is then estimated.
-    """
+    """Steps from asked time to asked time: given ones, or as long as the wanted accuracy allows."""
 
     def __init__(self, problem, accuracy, step=None):
         self.problem, self.accuracy, self.given, self.wanted = problem, accuracy, step, None
         self.steps, self.rejected, self.last, self.first = 0, 0, 0.0, 0.0
 
     def run(self, state, time):
-        """State at a later time.
-
-        Parameters
-        ----------
-        state : State
-        time : float, s
-
-        Returns
-        -------
-        State
-
-        Raises
-        ------
-        RuntimeError
-            If the step shrinks to nothing.
-        """
+        """State at a later time."""
         if self.given is not None:
             return self._equal(state, time)
         if self.wanted is None:
@@ -268,18 +189,7 @@ class Clock:
 
 
 def first_step(state, time):
-    """A short first step: a hundredth of the way, or what the fastest node takes for a twentieth of the span.
-
-    Parameters
-    ----------
-    state : State
-    time : float, s
-        Where to.
-
-    Returns
-    -------
-    float, s
-    """
+    """A short first step: a hundredth of the way, or what the fastest node takes for a twentieth of the span."""
     step, fastest = (time - state.time) / 100, np.abs(state.rate).max()
     span = state.span[1] - state.span[0]
     return min(step, 0.05 * span / fastest) if span > 0 and fastest > 0 else step

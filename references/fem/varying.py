@@ -15,25 +15,7 @@ ROUNDS, FURTHER = 60, 1e-2
 
 
 def converged(solve, tolerance):
-    """Repeat a solve at its own temperatures until these meet the equations that they make.
-
-    Parameters
-    ----------
-    solve : callable (temperature or None, tolerance) -> Solved
-        Equations at given temperatures, and a better temperature; in its stats `before` is the residual of the given
-        one. None: equations at factor 1.
-    tolerance : float
-
-    Returns
-    -------
-    Solved
-        With the `iterations` of all rounds, and their number.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual stays above the tolerance.
-    """
+    """Repeat a solve at its own temperatures until these meet the equations that they make."""
     solved = solve(None, FURTHER)
     total = solved.stats["iterations"]
     for rounds in range(1, ROUNDS + 1):
@@ -51,24 +33,7 @@ def converged(solve, tolerance):
 
 
 def improved(mesh, matrix, load, fixed, dof, tolerance, *, start, kept):
-    """A solution improved, unless it meets the equations.
-
-    Parameters
-    ----------
-    mesh, matrix, load, fixed, dof, tolerance
-        As those of `references.fem.multigrid.solve_free`.
-    start : (n,) float array, K
-        Zero where fixed.
-    kept : dict
-        Where multigrid is kept for other rounds.
-
-    Returns
-    -------
-    (n,) float array, K
-        The same where its residual is below the tolerance.
-    dict
-        `unknowns`, `iterations`, and as `residual` and `before` that of the start.
-    """
+    """A solution improved, unless it meets the equations."""
     free = ~fixed & (matrix.diagonal() > 0)
     start = np.where(free, start, 0.0)
     left, root = load - matrix @ start, np.sqrt(matrix.diagonal()[free])

@@ -61,26 +61,13 @@ class System(NamedTuple):
         return self.vectors.theta.size
 
     def conduct(self, theta: np.ndarray, gradient: np.ndarray) -> Sums:
-        """work = -div(K grad(theta + gradient.x)); returns the sums of every plane.
-
-        Parameters
-        ----------
-        theta : float array
-            One of the vectors.
-        gradient : (3,) float array
-        """
+        """work = -div(K grad(theta + gradient.x)); returns the sums of every plane."""
         arguments = (theta, self.vectors.work, self.body, gradient.astype(self.problem.dtype), self.sums)
         self.problem.team.run(self.kernel, len(theta), *arguments)
         return self.sums
 
     def precondition(self, kernel: Callable, *arguments) -> float:
-        """work = inverse homogeneous operator on what a kernel leaves in work; returns residual.work.
-
-        Parameters
-        ----------
-        kernel : callable (vectors, *arguments, low, high)
-        *arguments
-        """
+        """work = inverse homogeneous operator on what a kernel leaves in work; returns residual.work."""
         transform, vectors = self.transform, self.vectors
         transform.planes(kernel, vectors, *arguments, forward=True)
         transform.columns(kernels.divide, self.symbol, self.problem.dtype(transform.scale))
@@ -127,33 +114,14 @@ class _State(NamedTuple):
 
 
 def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
-    """Temperatures by preconditioned conjugate gradients.
-
-    Parameters
-    ----------
-    problem : Problem
-    kept : dict, optional
-        Where the discrete problem and its transform are kept, for another gradient in the same periodic cell.
-
-    Raises
-    ------
-    RuntimeError
-        If the energy still decreases after the allowed iterations, or rounding keeps the recomputed residual up.
-    """
+    """Temperatures by preconditioned conjugate gradients."""
     kept = {} if kept is None else kept
     system = kept["system"] = _again(kept["system"], problem) if kept else _system(problem)
     return solved(problem, system)
 
 
 def solved(problem: Problem, system: System) -> SolvedGrid:
-    """The solution of a discrete problem, see `solve`.
-
-    Parameters
-    ----------
-    problem : Problem
-    system : System
-        Its temperatures are changed.
-    """
+    """The solution of a discrete problem, see `solve`."""
     iterations, before, clock = 0, math.inf, Clock(system.transform)
     while True:
         state = _restart(problem, system)
@@ -204,13 +172,7 @@ def body_of(problem: Problem) -> tuple[Callable, Body]:
 
 
 def nodes_of(problem: Problem, shape: tuple) -> tuple:
-    """Nodes along each axis of so many voxels.
-
-    Parameters
-    ----------
-    problem : Problem
-    shape : (3,) tuple of int
-    """
+    """Nodes along each axis of so many voxels."""
     nx, ny, nz = shape
     return (nx - 1, ny + 1, nz + 1) if problem.walls and not problem.links else (nx, ny, nz)
 
@@ -230,14 +192,7 @@ def _transform(problem, nodes):
 
 
 def vectors_of(problem: Problem, nodes: tuple, work: np.ndarray) -> Vectors:
-    """The vectors of the iteration, zeros.
-
-    Parameters
-    ----------
-    problem : Problem
-    nodes : (3,) tuple of int
-    work : (nx, ny, nz or more) float array
-    """
+    """The vectors of the iteration, zeros."""
     theta, residual, direction = (np.zeros(nodes, problem.dtype) for _ in range(3))
     weights = [np.ones(n, problem.dtype) for n in nodes[1:]]
     if problem.walls and not problem.links:
@@ -258,14 +213,7 @@ def _symbol(problem, transform):
 
 
 def symbol(modes: tuple, shape: tuple, problem: Problem) -> Symbol:
-    """Per axis (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1.
-
-    Parameters
-    ----------
-    modes, shape : (3,) tuples of int
-        Modes and voxels along each axis.
-    problem : Problem
-    """
+    """Per axis (2 sin(k/2) / h)^2, and cos(k/2)^2 or 1."""
     if problem.walls:
         numbers = [np.pi * (np.arange(m) + (axis == 0)) / shape[axis] for axis, m in enumerate(modes)]
     else:

@@ -30,17 +30,7 @@ class Knobs(NamedTuple):
 
 
 def checked(scheme, rule, precision, tolerance, max_iterations, threads) -> Knobs:
-    """Knobs of `solver.solve`, which describes them.
-
-    Parameters
-    ----------
-    scheme, rule, precision, tolerance, max_iterations, threads
-
-    Raises
-    ------
-    ValueError
-        If one is not as described.
-    """
+    """Knobs of `solver.solve`, which describes them."""
     chosen("scheme", scheme, RULES)
     if not isinstance(rule, str) or rule not in RULES[scheme]:
         raise ValueError(f"rule = {rule!r}: must be one of {', '.join(RULES[scheme])} for scheme {scheme!r}")
@@ -68,20 +58,7 @@ def check_load(scene: Scene) -> None:
 
 
 def rule_of(scene: Scene, grid, knobs: Knobs) -> Knobs:
-    """Knobs with a rule that suits the scene's voxels.
-
-    Parameters
-    ----------
-    scene : Scene
-    grid : (3,) tuple of int
-        Voxels along each side.
-    knobs : Knobs
-
-    Raises
-    ------
-    NotImplementedError
-        If a scheme or a rule does not know the scene's conductivities.
-    """
+    """Knobs with a rule that suits the scene's voxels."""
     if knobs.rule == "auto":
         knobs = knobs._replace(rule=automatic(knobs.scheme, scene, grid))
     if scene.image is not None:
@@ -107,15 +84,7 @@ def _check_tensors(box, scheme, rule):
 
 
 def check_grid(box: Scene, rule: str, shape) -> None:
-    """Raise ValueError if a grid has too few voxels.
-
-    Parameters
-    ----------
-    box : Scene
-        The load's axis first if it has walls.
-    rule : str
-    shape : (3,) tuple of int
-    """
+    """Raise ValueError if a grid has too few voxels."""
     if rule != "links" and not box.periodic and shape[0] < 2:
         raise ValueError(f"voxels: {shape[0]} along the load leaves no node between the walls; must be >= 2")
     linked = rule == "links" and box.mean_conductivities.min() > 0
@@ -127,13 +96,7 @@ def check_grid(box: Scene, rule: str, shape) -> None:
 
 
 def check_scheme(box: Scene, scheme: str, rule: str) -> None:
-    """Raise NotImplementedError for pores that leave heat a way, unless they are for the scalar scheme on voxels.
-
-    Parameters
-    ----------
-    box : Scene
-    scheme, rule : str
-    """
+    """Raise NotImplementedError for pores that leave heat a way, unless they are for the scalar scheme on voxels."""
     if scheme == "eyre-milton":
         box.require(
             "Eyre and Milton's scheme converges like the square root of the contrast, which is infinite; use scheme "

@@ -14,18 +14,7 @@ RULES = {
 
 
 def estimated(field, solve):
-    """Estimate of a field.
-
-    Parameters
-    ----------
-    field : Field
-    solve : callable (scene, voxels) -> Field
-        With the same scheme, rule, precision and tolerance.
-
-    Returns
-    -------
-    Estimate
-    """
+    """Estimate of a field."""
     rule, shape = RULES[field.stats["rule"]], field.stats["voxels"]
 
     def coarser(level):

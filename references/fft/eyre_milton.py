@@ -44,20 +44,7 @@ class _Scheme(NamedTuple):
 
 
 def solve(problem: Problem, *, kept: dict | None = None) -> SolvedGrid:
-    """Fluxes by Eyre and Milton's iteration.
-
-    Parameters
-    ----------
-    problem : Problem
-    kept : dict, optional
-        Where the scheme and its transform are kept, for another gradient in the same periodic cell.
-
-    Raises
-    ------
-    RuntimeError
-        If the error is above the tolerance after the allowed iterations, or the recomputed one is above what that
-        implies.
-    """
+    """Fluxes by Eyre and Milton's iteration."""
     low, high = _extremes(problem.voxels)
     kept = {} if kept is None else kept
     if not kept:

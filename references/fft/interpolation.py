@@ -60,16 +60,6 @@ def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
     Each voxel tells its temperature T and slope g.  With weights w, offsets d from the voxels to the point and means
     under w, the sum of w (T + g.d / 2) + mean(g).mean(d) / 2 is linear-exact for any weights, and the cubic Hermite
     polynomial along each axis where all eight voxels count.
-
-    Parameters
-    ----------
-    grid : Grid
-    points : (n, 3) float array, m
-        In the user's axes; inside the box, which `demheat.field.Field` has seen to.
-
-    Returns
-    -------
-    (n,) float array, K
     """
     points = points[:, grid.order]
     phase = grid.scene.phase_at(points)
@@ -97,17 +87,7 @@ def temperature_at(grid: Grid, points: np.ndarray) -> np.ndarray:
 
 
 def flux_at(grid: Grid, points: np.ndarray) -> np.ndarray:
-    """Trilinear interpolation between the whole voxels of the point's own phase.
-
-    Parameters
-    ----------
-    grid, points : see `temperature_at`
-
-    Returns
-    -------
-    (n, 3) float array, W/m2
-        Along Fourier's direction, in the user's axes.
-    """
+    """Trilinear interpolation between the whole voxels of the point's own phase."""
     points = points[:, grid.order]
     phase = grid.scene.phase_at(points)
     total, weights = np.zeros((len(points), 3)), np.zeros(len(points))

@@ -16,19 +16,7 @@ LINKS = 3 * 8
 
 
 def expected(scheme: str, rule: str, itemsize: int, *, loads: int = 1, anisotropic: bool = False) -> float:
-    """Bytes for each voxel at the peak, besides Python and libraries, and what surfaces of inclusions take.
-
-    Parameters
-    ----------
-    scheme, rule : str
-        As in `references.fft.solve`.
-    itemsize : {4, 8}
-        Bytes of a number.
-    loads : int
-        Solved on one set-up.
-    anisotropic : bool
-        Voxels have tensors of their own.
-    """
+    """Bytes for each voxel at the peak, besides Python and libraries, and what surfaces of inclusions take."""
     fields = FIELDS[scheme, rule] + KEPT[scheme] * (loads - 1)
     links = LINKS if rule == "links" and itemsize < 8 else 0
     return fields * itemsize + links + PHASE + (OWN * itemsize / 8 if anisotropic else 0)

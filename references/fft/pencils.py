@@ -20,32 +20,7 @@ EFFORT = "FFTW_ESTIMATE"
 
 
 class Pencils:
-    """A rank's part of a field and of its modes, and what transforms all parts; neither way is normalised.
-
-    Parameters
-    ----------
-    shape : (3,) tuple of int
-        Values along each axis.
-    walls : bool
-        Sines along the first axis and cosines across, of values on the walls, those that are zero left out; else a
-        periodic field.
-    comm : mpi4py.MPI.Comm
-
-    Attributes
-    ----------
-    real : (planes, ny, nz) float array
-        Values of the rank's own planes.
-    modes : (mx, rows, mz) complex or float array
-        Coefficients; the columns of the rank's own rows.
-    counts : (3,) tuple of int
-        Modes along each axis, of all ranks.
-    rows : slice
-        Of the second axis, the rank's own.
-    scale : float
-        1 / scale is what a round trip multiplies values by.
-    seconds : float
-        Spent so far, messages included.
-    """
+    """A rank's part of a field and of its modes, and what transforms all parts; neither way is normalised."""
 
     def __init__(self, shape, walls, comm):
         from mpi4py_fft import PFFT, fftw
@@ -83,39 +58,19 @@ class Pencils:
 
 
 def share(number: int, ranks: int, rank: int) -> tuple[int, int]:
-    """First and end of a rank's own of so many planes: as equal as they can be, larger ones first.
-
-    Parameters
-    ----------
-    number, ranks, rank : int
-    """
+    """First and end of a rank's own of so many planes: as equal as they can be, larger ones first."""
     each, more = divmod(number, ranks)
     first = rank * each + min(rank, more)
     return first, first + each + (rank < more)
 
 
 def most_ranks(shape: tuple, walls: bool) -> int:
-    """So many ranks have planes of values and rows of modes each.
-
-    Parameters
-    ----------
-    shape : (3,) tuple of int
-        Values along each axis.
-    walls : bool
-    """
+    """So many ranks have planes of values and rows of modes each."""
     return min(shape[0], shape[1] if walls else shape[1] // 2 + 1)
 
 
 def divide(modes: np.ndarray, symbol, scale: float) -> None:
-    """Divide modes by the symbol of minus the Laplacian, in place; empty modes become 0.
-
-    Parameters
-    ----------
-    modes : (mx, my, mz) array
-    symbol : Symbol
-        Of these modes; see `cg_kernels.divide`.
-    scale : float
-    """
+    """Divide modes by the symbol of minus the Laplacian, in place; empty modes become 0."""
     (along, y, z), (across, wide_y, wide_z) = symbol
     both = wide_y[:, None] * wide_z
     cross = y[:, None] * wide_z + wide_y[:, None] * z

@@ -15,29 +15,13 @@ from references.voxels.paint import Voxels
 
 
 class Problem(NamedTuple):
-    """One load on one grid, in units that make the largest conductivity, length and gradient about 1.
+    """One load on one grid, in units that make the largest conductivity, length and gradient about 1."""
 
-    Attributes
-    ----------
-    voxels : Voxels
-        In units of the largest conductivity and of the longest side.
-    links : Links, or None
-        Conductivities of the links, for the scalar scheme's rule "links".
-    gradient : (3,) float array
-        Of length 1; along the first axis if there are walls.
-    walls : bool
-        Two isothermal walls across the first axis and four insulated ones; else a periodic cell.
-    dtype : numpy float type
-    team : Team
-    tolerance : float
-    max_iterations : int
-    """
-
-    voxels: Voxels
-    links: Links | None
-    gradient: np.ndarray
-    walls: bool
-    dtype: type
+    voxels: Voxels  # In units of the largest conductivity and of the longest side
+    links: Links | None  # Links, or None: Conductivities of the links, for the scalar scheme's rule "links"
+    gradient: np.ndarray  # (3,) float array: Of length 1; along the first axis if there are walls
+    walls: bool  # Two isothermal walls across the first axis and four insulated ones; else a periodic cell
+    dtype: type  # numpy float type
     team: Team
     tolerance: float
     max_iterations: int
@@ -79,13 +63,7 @@ def total(sums: np.ndarray) -> float:
 
 
 def converged(first: float, error: float, tolerance: float) -> float:
-    """Share of the way from a first error to the tolerance, 0 to 1, by logarithms.
-
-    Parameters
-    ----------
-    first, error, tolerance : float
-        Not a number where an error is not known.
-    """
+    """Share of the way from a first error to the tolerance, 0 to 1, by logarithms."""
     if error <= tolerance:
         return 1.0
     if not tolerance < error < first < math.inf:

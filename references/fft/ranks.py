@@ -49,34 +49,6 @@ def solve(
 
     To be called by every rank with the same arguments; what it returns, too, is to be asked by all of them at the same
     time.
-
-    Parameters
-    ----------
-    scene : Scene
-        Without pores.
-    voxels, tolerance, max_iterations
-        As those of `fft.solve`.
-    scheme : {"cg"}
-    rule : {"laminate", "plain", "auto"}
-        "auto" where it comes to one of the others.
-
-    Returns
-    -------
-    Field
-        With `stats` of `fft.solve` besides: ranks, and costs as `demheat.ranks.Costs` tells them, of the stages voxels
-        and solve. Its `samples` gather all voxels on every rank.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described; if there are more ranks than planes; or for more voxels than fit into the
-        free memory, before any heavy work.
-    NotImplementedError
-        If the scene, the scheme or the rule is another.
-    ImportError
-        If MPI or mpi4py-fft is missing.
-    RuntimeError
-        If the iteration does not converge.
     """
     knobs = checked(scheme, rule, "float64", tolerance, max_iterations, 1)
     grid, knobs = _planned(scene, voxels, knobs)
@@ -102,38 +74,18 @@ def solve(
 
 
 def world():
-    """The communicator of all ranks.
-
-    Raises
-    ------
-    ImportError
-        In one line, if MPI or mpi4py-fft is missing.
-    """
+    """The communicator of all ranks."""
     return ranks.found("mpi4py_fft", instead="fft.solve")[0].COMM_WORLD
 
 
 def outlook(scene: Scene, *, voxels=None, **_) -> str:
-    """What a solve will take on this machine, in words.
-
-    Parameters
-    ----------
-    scene : Scene
-    voxels
-        As `solve` takes it; other knobs change nothing.
-    """
+    """What a solve will take on this machine, in words."""
     grid = grid_shape(scene, voxels, USUAL)
     return f"{' x '.join(map(str, grid))} voxels, {ranks.outlook(needed(scene, grid), world())}"
 
 
 def needed(scene: Scene, grid) -> float:
-    """Bytes that a solve takes at its peak, of all ranks.
-
-    Parameters
-    ----------
-    scene : Scene
-    grid : (3,) tuple of int
-        Voxels along each side.
-    """
+    """Bytes that a solve takes at its peak, of all ranks."""
     return float(math.prod(grid)) * (BYTES[not scene.periodic] + (OWN if scene.anisotropic else 0))
 
 

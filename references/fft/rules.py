@@ -50,13 +50,6 @@ def automatic(scheme, scene, shape) -> str:
     voxels in a way not known here, or has no surface that is found, has the phase of their centres only, and an image
     cuts none. A side of fewer than
     `LEAST_LINKED` voxels has no links.
-
-    Parameters
-    ----------
-    scheme : {"cg", "eyre-milton"}
-    scene : Scene
-    shape : (3,) tuple of int
-        Voxels along each axis.
     """
     traceable = all(shape.traceable for shape in scene.inclusions)
     if scene.image is not None or not (traceable and _registered(paint, scene) and _registered(cut, scene)):
@@ -87,15 +80,7 @@ def _registered(function, scene):
 
 
 def warn_of_thin(scene, rule, shape) -> None:
-    """Warn of what a rule does not see: a voxel that both faces of a coat cross holds three materials, rules know two.
-
-    Parameters
-    ----------
-    scene : Scene
-    rule : {"plain", "laminate", "links"}
-    shape : (3,) tuple of int
-        Voxels along each axis.
-    """
+    """Warn of what a rule does not see: a voxel that holds both faces of a coat has three materials, rules know two."""
     voxel, left = float(np.max(np.array(scene.size) / shape)), coats(scene)
     thin = np.flatnonzero(left < voxel)
     if len(thin):
@@ -118,16 +103,7 @@ def warn_of_thin(scene, rule, shape) -> None:
 
 
 def smaller(scene, rule, shape, voxels=1.0) -> np.ndarray:
-    """Inclusions that are narrower than a voxel, or so many, and stand out: an int array.
-
-    Parameters
-    ----------
-    scene : Scene
-    rule : {"plain", "laminate", "links"}
-    shape : (3,) tuple of int
-        Voxels along each axis.
-    voxels : float
-    """
+    """Inclusions that are narrower than a voxel, or so many, and stand out: an int array."""
     spacing = voxels * np.array(scene.size) / shape
     # Laminates are exact for layers of any thickness that they see.
     small = narrower(scene, spacing) & [rule != "laminate" or not each.flat for each in scene.inclusions]
@@ -137,15 +113,7 @@ def smaller(scene, rule, shape, voxels=1.0) -> np.ndarray:
 
 
 def unsure(scene, rule, shape) -> np.ndarray:
-    """Inclusions of which refinement tells too little: coats thinner than a voxel, and what is little wider than that.
-
-    Parameters
-    ----------
-    scene : Scene
-    rule : {"plain", "laminate", "links"}
-    shape : (3,) tuple of int
-        Voxels along each axis.
-    """
+    """Inclusions of which refinement tells too little: coats and parts not much wider than a voxel."""
     if not scene.inclusions:
         return np.empty(0, int)
     thin = np.flatnonzero(coats(scene) < np.max(np.array(scene.size) / shape))

@@ -22,24 +22,13 @@ from references.voxels.paint import Voxels, voxelise
 
 
 class Slab(NamedTuple):
-    """Planes of a grid that a rank has.
+    """Planes of a grid that a rank has."""
 
-    Attributes
-    ----------
-    low, high : int
-        First and end of its own nodes' planes, and of the voxels' beside or below them.
-    shape : (3,) tuple of int
-        Voxels of the whole grid.
-    walls : bool
-        Across the first axis.
-    comm : mpi4py.MPI.Comm
-    """
-
-    low: int
-    high: int
-    shape: tuple
-    walls: bool
-    comm: object
+    low: int  # First and end of its own nodes' planes, and of the voxels' beside or below them
+    high: int  # First and end of its own nodes' planes, and of the voxels' beside or below them
+    shape: tuple  # (3,) tuple of int: Voxels of the whole grid
+    walls: bool  # Across the first axis
+    comm: object  # mpi4py.MPI.Comm
 
     @property
     def nodes(self) -> slice:
@@ -57,51 +46,24 @@ class Slab(NamedTuple):
         return self.comm.rank == self.comm.size - 1
 
     def fill(self, values: np.ndarray) -> None:
-        """Fill the planes beside its own from the ranks that own them; those beyond walls stay as they are.
-
-        Parameters
-        ----------
-        values : (planes + 2, ny, nz) float array
-        """
+        """Fill the planes beside its own from the ranks that own them; those beyond walls stay as they are."""
         rank, size, end = self.comm.rank, self.comm.size, self.nodes.stop
         for own, ghost, way, wall in ((1, end, -1, self.last), (end - 1, 0, 1, rank == 0)):
             got = np.empty_like(values[ghost]) if self.walls and wall else values[ghost]
             self.comm.Sendrecv(values[own], dest=(rank + way) % size, recvbuf=got, source=(rank - way) % size)
 
     def gathered(self, values: np.ndarray) -> np.ndarray:
-        """Own planes of all ranks, one after the other, on each of them.
-
-        Parameters
-        ----------
-        values : (planes, ...) array
-            Own ones.
-        """
+        """Own planes of all ranks, one after the other, on each of them."""
         return np.concatenate(self.comm.allgather(np.ascontiguousarray(values)))
 
 
 def slab_of(shape: tuple, walls: bool, comm) -> Slab:
-    """A rank's slab of a grid.
-
-    Parameters
-    ----------
-    shape : (3,) tuple of int
-        Voxels of the whole grid.
-    walls : bool
-        Across the first axis.
-    comm : mpi4py.MPI.Comm
-    """
+    """A rank's slab of a grid."""
     return Slab(*share(shape[0] - walls, comm.size, comm.rank), tuple(shape), walls, comm)
 
 
 def painted(scene: Scene, slab: Slab, *, laminate: bool) -> Voxels:
-    """The voxels that a rank holds, and the fractions of all ranks'.
-
-    Parameters
-    ----------
-    scene : Scene
-    slab : Slab
-    laminate : bool
-    """
+    """The voxels that a rank holds, and the fractions of all ranks'."""
     planes = slab.shape[0]
     below, above = (slab.low - 1) % planes, slab.high % planes
     ends = (below, below + 1), (slab.low, slab.high), (above, above + 1)
@@ -118,15 +80,7 @@ def painted(scene: Scene, slab: Slab, *, laminate: bool) -> Voxels:
 
 
 class SlabSystem:
-    """What `cg.System` is, on a rank's slab: to be used by all ranks at the same time.
-
-    Parameters
-    ----------
-    problem : Problem
-        Its voxels are those of `painted`.
-    slab : Slab
-    transform : Pencils
-    """
+    """What `cg.System` is, on a rank's slab: to be used by all ranks at the same time."""
 
     def __init__(self, problem: Problem, slab: Slab, transform):
         self.problem, self.slab, self.transform = problem, slab, transform
@@ -140,14 +94,7 @@ class SlabSystem:
         self.symbol = Symbol(*((x, y[transform.rows], z) for x, y, z in whole))
 
     def conduct(self, theta: np.ndarray, gradient: np.ndarray) -> Sums:
-        """As `cg.System.conduct`; the sums are those of all ranks' planes.
-
-        Parameters
-        ----------
-        theta : float array
-            One of the vectors; planes beside its own are filled.
-        gradient : (3,) float array
-        """
+        """As `cg.System.conduct`; the sums are those of all ranks' planes."""
         self.slab.fill(theta)
         self._run(self.kernel, theta, self.vectors.work, self.body, gradient, self.sums)
         own = np.column_stack([self.sums.energy, self.sums.flux])[self.slab.voxels]
@@ -155,13 +102,7 @@ class SlabSystem:
         return Sums(whole[:, 0], whole[:, 1:])
 
     def precondition(self, kernel: Callable, *arguments) -> float:
-        """As `cg.System.precondition`.
-
-        Parameters
-        ----------
-        kernel : callable (vectors, *arguments, low, high)
-        *arguments
-        """
+        """As `cg.System.precondition`."""
         transform, own = self.transform, self.slab.nodes
         self._run(kernel, self.vectors, *arguments)
         transform.real[...] = self.vectors.work[own]

@@ -126,23 +126,6 @@ def solve_axes(
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, between walls to the rounding
     of the voxels' laminates.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or a box between two isothermal walls with four insulated faces.
-    voxels, scheme, rule, precision, threads, tolerance, max_iterations
-        As those of `solve`, which also says what is raised and warned of.
-
-    Returns
-    -------
-    tuple of three Fields
-        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
-
-    Raises
-    ------
-    NotImplementedError
-        If the load is another.
     """
     knobs = checked(scheme, rule, precision, tolerance, max_iterations, threads)
     loads = axis_loads(scene)

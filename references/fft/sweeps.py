@@ -31,36 +31,15 @@ class Plans(NamedTuple):
 
 
 class Worker(NamedTuple):
-    """What one thread needs for itself.
+    """What one thread needs for itself."""
 
-    Attributes
-    ----------
-    planes : dict of int to Plans
-        By the number of planes in a block: callables (values, modes) and back.
-    buffer : (components, columns, mx) complex or float array
-    columns : Plans
-        Callables () that transform each component of the buffer along its last axis.
-    """
-
-    planes: dict
-    buffer: np.ndarray
-    columns: Plans
+    planes: dict  # dict of int to Plans: By the number of planes in a block: callables (values, modes) and back
+    buffer: np.ndarray  # (components, columns, mx) complex or float array
+    columns: Plans  # Callables () that transform each component of the buffer along its last axis
 
 
 class Transform:
-    """A field of one or more components and what transforms it in place; neither way is normalised.
-
-    Attributes
-    ----------
-    real : (components, nx, ny, nz or more) float array
-        Values; in a periodic cell the last axis is padded and the padding means nothing.
-    modes : (components, mx, my, mz) complex or float array
-        Coefficients, in the same memory.
-    scale : float
-        1 / scale is what a round trip multiplies values by.
-    seconds : float
-        Spent in transforms so far, columns taken to buffers and back included; mean over the threads.
-    """
+    """A field of one or more components and what transforms it in place; neither way is normalised."""
 
     def __init__(self, real, modes, scale, depth, threads, worker):
         self.real, self.modes, self.scale, self.seconds = real, modes, scale, 0.0
@@ -79,31 +58,12 @@ class Transform:
         self.planes(backward=True)
 
     def planes(self, kernel=None, *arguments, backward=False, forward=False):
-        """Block by block: transform back along y and z, call kernel(*arguments, low, high), transform along y and z.
-
-        Parameters
-        ----------
-        kernel : callable (*arguments, low, high), optional
-            Works on the planes low <= i < high of the first axis.
-        *arguments
-        backward, forward : bool
-            Whether to transform before the kernel, and after it.
-        """
+        """Block by block: transform back along y and z, call kernel(*arguments, low, high), transform along y and z."""
         job = (kernel, arguments, backward, forward)
         self._share(self._planes, job, -(-self.modes.shape[1] // self._block))
 
     def columns(self, kernel=None, *arguments, forward=True, backward=True):
-        """Some columns at a time: transform along x, call kernel(rows, first, count, *arguments), transform back.
-
-        Parameters
-        ----------
-        kernel : callable (rows, first, count, *arguments), optional
-            `rows` is a (components, count or more, width) float array of coefficients along x, where width is mx, or
-            2 mx with real and imaginary parts in turn; row r belongs to column first + r of the my * mz columns.
-        *arguments
-        forward, backward : bool
-            Whether to transform before the kernel, and after it.
-        """
+        """Some columns at a time: transform along x, call kernel(rows, first, count, *arguments), transform back."""
         job = (kernel, arguments, forward, backward)
         self._share(self._columns, job, -(-self.modes[0, 0].size // self._count))
 

@@ -27,16 +27,7 @@ _loaded, _PLANNING = set(), open_after_fork(threading.RLock())
 
 
 def fourier(components: int, shape: tuple, dtype: type, threads: int) -> Transform:
-    """Real discrete Fourier transform of a periodic field.
-
-    Parameters
-    ----------
-    components : int
-    shape : (3,) tuple of int
-        Values along each axis.
-    dtype : numpy float type
-    threads : int
-    """
+    """Real discrete Fourier transform of a periodic field."""
     half = shape[2] // 2 + 1
     modes = pyfftw.zeros_aligned((components, shape[0], shape[1], half), np.result_type(dtype, np.complex64))
     ways = [_Ways("FFTW_FORWARD", "FFTW_FORWARD", "FFTW_BACKWARD", "FFTW_BACKWARD")] * components
@@ -44,17 +35,7 @@ def fourier(components: int, shape: tuple, dtype: type, threads: int) -> Transfo
 
 
 def trigonometric(kinds: Sequence, shape: tuple, dtype: type, threads: int) -> Transform:
-    """Sine and cosine transforms of fields in a box.
-
-    Parameters
-    ----------
-    kinds : sequence of 3-tuples of str
-        Per component and axis: "sin" or "cos", each of type 1 (values on the walls, those that are zero left out) or
-        2 (values half a step inside), as "sin1", "cos1", "sin2", "cos2".
-    shape : (3,) tuple of int
-    dtype : numpy float type
-    threads : int
-    """
+    """Sine and cosine transforms of fields in a box."""
     values = pyfftw.zeros_aligned((len(kinds), *shape), dtype)
     ways = []
     for names in kinds:

@@ -53,15 +53,7 @@ def units_of(grid: Grid) -> Units:
 
 
 def problem_of(grid: Grid, units: Units, knobs: Knobs, team: Team) -> Problem:
-    """The problem that a scheme solves.
-
-    Parameters
-    ----------
-    grid : Grid
-    units : Units
-    knobs : Knobs
-    team : Team
-    """
+    """The problem that a scheme solves."""
     return Problem(
         voxels=_scaled(grid.voxels, units),
         links=_links(grid, units) if knobs.rule == "links" else None,
@@ -75,13 +67,7 @@ def problem_of(grid: Grid, units: Units, knobs: Knobs, team: Team) -> Problem:
 
 
 def direction(grid: Grid, units: Units) -> np.ndarray:
-    """The gradient of length 1.
-
-    Parameters
-    ----------
-    grid : Grid
-    units : Units
-    """
+    """The gradient of length 1."""
     # Equal wall temperatures: any load's solution, times zero.
     return grid.slope / units.slope if units.slope else np.array([1.0, 0.0, 0.0])
 
@@ -104,29 +90,14 @@ def _links(grid, units):
 
 
 def mean_flux(grid: Grid, units: Units, solution: SolvedGrid) -> np.ndarray:
-    """Along Fourier's direction in the user's axes, (3,) float array, W/m2.
-
-    Parameters
-    ----------
-    grid : Grid
-    units : Units
-    solution : SolvedGrid
-    """
+    """Along Fourier's direction in the user's axes, (3,) float array, W/m2."""
     flux = np.empty(3)
     flux[list(grid.order)] = 0.0 - units.flux * solution.mean_flux
     return flux
 
 
 def wall_heat(scene: Scene, units: Units, solution: SolvedGrid) -> dict:
-    """Heat into the body through each of the two walls, W.
-
-    Parameters
-    ----------
-    scene : Scene
-        In the user's axes.
-    units : Units
-    solution : SolvedGrid
-    """
+    """Heat into the body through each of the two walls, W."""
     if scene.periodic:
         return {}
     area, name = scene.volume / scene.size[scene.axis], "xyz"[scene.axis]

@@ -229,18 +229,7 @@ def _axes(shape, spacing):
 
 
 def tangents(n: int, spacing: float) -> Tangents:
-    """Frequencies of the rotated scheme along an axis, as `numpy.fft.fftfreq` orders them.
-
-    Parameters
-    ----------
-    n : int
-        Voxels along the axis.
-    spacing : float, m
-
-    Returns
-    -------
-    Tangents
-    """
+    """Frequencies of the rotated scheme along an axis, as `numpy.fft.fftfreq` orders them."""
     k = np.fft.fftfreq(n)
     nyquist = k == -0.5
     t = np.tan(np.pi * np.where(nyquist, 0.0, k))

@@ -44,39 +44,7 @@ def run_apart(
     memory: float | None = None,
     most: float | None = None,
 ):
-    """Call function(*arguments) in another process.
-
-    Parameters
-    ----------
-    function : callable
-        Of a module, for pickle finds it by its name.
-    *arguments
-        Which pickle takes, as the answer.
-    seconds : float
-        That it takes, about.
-    done : callable (share)
-        Called meanwhile with the share of them that is over; what it raises ends the process.
-    memory : float, bytes, optional
-        Of addresses that the process may have: gmsh runs away on some geometries, and would take the machine's all.
-    most : float, s, optional
-        Of processor time that it may take.
-
-    Returns
-    -------
-    object
-        What the function returns.
-
-    Raises
-    ------
-    MemoryError
-        If the process was killed, as systems do that run out of memory.
-    RuntimeError
-        If it crashed, as gmsh does that wants more than `memory`.
-    Stopped
-        If it took more than the processor time allowed.
-    Exception
-        Whatever the function raises.
-    """
+    """Call function(*arguments) in another process."""
     job = pickle.dumps((function, arguments, memory, most))
     worker = _worker()
     try:

@@ -29,37 +29,7 @@ MOST_FIELDS = 400
 
 
 def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
-    """Mesh a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m, optional
-        Longest wanted edge; it is less on small spheres, in thin layers and in narrow gaps. Default: the cube root
-        of the box volume over 26 (order 2) or 50 (order 1), with many spheres an eighth of their mean distance.
-    order : {1, 2}
-        Nodes at the corners only, or also at the middles of the edges.
-    curved : bool
-        With order 2, put the middle nodes onto the spheres.
-    coarser : float
-        All edges, those at features and the default size included, are so many times longer: the same mesh on another
-        scale, for what extrapolates.
-
-    Returns
-    -------
-    Mesh
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, or asks for more than 3e7 elements, or more than memory holds.
-    NotImplementedError
-        If surfaces of the scene touch, or inclusions are of a shape that is not known here.
-    RuntimeError
-        If gmsh fails at four neighbouring sizes.
-    ImportError
-        If gmsh or a system library that it needs is missing; the message lists the packages.
-    """
+    """Mesh a scene."""
     check_scene(scene)
     flag("curved", curved)
     known = "cylinders, ellipsoids, boxes, half-spaces and unions of them"
@@ -170,27 +140,7 @@ def _(shape: Sphere):
 
 @singledispatch
 def solid(shape: Shape, occ, box, scale: float) -> int:
-    """Add a shape to the geometry; shapes are registered by their type, and their sizes in `references.mesh.sizes`.
-
-    Parameters
-    ----------
-    shape : Shape
-        One image of an inclusion.
-    occ : gmsh.model.occ
-    box : (3,) float array, unit lengths
-    scale : float, m
-        The unit length.
-
-    Returns
-    -------
-    int
-        Tag of the volume.
-
-    Raises
-    ------
-    NotImplementedError
-        If the shape is not registered.
-    """
+    """Add a shape to the geometry; shapes are registered by their type, and their sizes in `references.mesh.sizes`."""
     return add(shape, occ, box, scale)
 
 

@@ -21,18 +21,10 @@ EDGE_COLUMN = {(0, 1): 4, (1, 2): 5, (0, 2): 6, (0, 3): 7, (1, 3): 8, (2, 3): 9}
 
 
 class Wall(NamedTuple):
-    """Triangles on one face of the box, or on one wall of a round body.
+    """Triangles on one face of the box, or on one wall of a round body."""
 
-    Attributes
-    ----------
-    triangles : (k, 3) or (k, 6) int32 array
-        Corners, then the middles of the edges 01, 12, 02.
-    owners : (k,) int array
-        The element behind each.
-    """
-
-    triangles: np.ndarray
-    owners: np.ndarray
+    triangles: np.ndarray  # (k, 3) or (k, 6) int32 array: Corners, then the middles of the edges 01, 12, 02
+    owners: np.ndarray  # (k,) int array: The element behind each
 
 
 class Faces(NamedTuple):
@@ -84,24 +76,7 @@ class Mesh(NamedTuple):
 
 
 def snap(points, box, periodic):
-    """Put nodes exactly onto the faces, in place, and pair those of opposite faces of a periodic cell.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, longest edge of the box
-    box : (3,) float array, longest edge of the box
-    periodic : bool
-
-    Returns
-    -------
-    (p, 2) int32 array
-        Node on a face "+", twin on the face "-".
-
-    Raises
-    ------
-    RuntimeError
-        If the nodes of two opposite faces differ.
-    """
+    """Put nodes exactly onto the faces, in place, and pair those of opposite faces of a periodic cell."""
     pairs = [np.zeros((0, 2), np.int32)]
     for axis in range(3):
         for at in (0.0, box[axis]):
@@ -118,15 +93,7 @@ def snap(points, box, periodic):
 
 
 def twins(count, pairs):
-    """The one node that stands for each node and its periodic twins, (count,) int array.
-
-    Parameters
-    ----------
-    count : int
-        Of nodes.
-    pairs : (p, 2) int array
-        Periodic twins.
-    """
+    """The one node that stands for each node and its periodic twins, (count,) int array."""
     twin = np.arange(count)
     twin[pairs[:, 0]] = pairs[:, 1]
     for _ in range(2):  # a corner of the box reaches its last twin in three steps
@@ -135,29 +102,13 @@ def twins(count, pairs):
 
 
 def wall(points, cells, box, name):
-    """`Wall` of the tetrahedra that have three corners on a face of the box.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, longest edge of the box
-    cells : (m, 4) or (m, 10) int array
-    box : (3,) float array, longest edge of the box
-    name : str
-        Of the face.
-    """
+    """`Wall` of the tetrahedra that have three corners on a face of the box."""
     axis = "xyz".index(name[0])
     return triangles_on(cells, points[:, axis] == (0.0 if name[1] == "-" else box[axis]))
 
 
 def triangles_on(cells, on) -> Wall:
-    """All faces of tetrahedra with three corners among some nodes.
-
-    Parameters
-    ----------
-    cells : (m, 4) or (m, 10) int array
-    on : (n,) bool array
-        Which nodes.
-    """
+    """All faces of tetrahedra with three corners among some nodes."""
     triangles, owners = [], []
     for a, b, c in combinations(range(4), 3):
         mine = np.flatnonzero(on[cells[:, a]] & on[cells[:, b]] & on[cells[:, c]])
@@ -199,27 +150,7 @@ def jacobian_coefficients(nodes):
 
 
 def straighten(points, cells, pairs):
-    """Straighten the edges of elements that are, or nearly are, inverted, and their periodic twins.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, changed in place
-    cells : (m, 10) int array
-    pairs : (p, 2) int array
-        Periodic twins.
-
-    Returns
-    -------
-    int
-        How many elements were straightened.
-    float
-        Lower bound of the smallest Jacobian over its element's mean.
-
-    Raises
-    ------
-    RuntimeError
-        If elements stay inverted.
-    """
+    """Straighten the edges of elements that are, or nearly are, inverted, and their periodic twins."""
     twin, total = twins(len(points), pairs), 0
     for _ in range(20):  # each round may bend a neighbour too far; found: 1 or 2
         curved = np.flatnonzero(bent(points[cells]))
@@ -246,13 +177,7 @@ def volumes_of(nodes):
 
 
 def check(scene, mesh):
-    """Raise RuntimeError for inverted elements, a body that does not fill the box, or misplaced phases.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    """
+    """Raise RuntimeError for inverted elements, a body that does not fill the box, or misplaced phases."""
     volumes, phase = mesh.volumes, mesh.phase
     if volumes.min() <= 0:
         raise RuntimeError(f"{np.sum(volumes <= 0)} inverted elements")

@@ -4,15 +4,7 @@ from __future__ import annotations
 
 
 def write(path, mesh, field=None):
-    """Write a mesh for ParaView or another format that meshio knows by its suffix.
-
-    Parameters
-    ----------
-    path : str or Path
-    mesh : Mesh
-    field : Field, optional
-        Of any method: its temperature is written at the nodes and its flux at the elements' centres.
-    """
+    """Write a mesh for ParaView or another format that meshio knows by its suffix."""
     import meshio
 
     points, cells = {}, {"phase": [mesh.phase]}

@@ -57,17 +57,7 @@ BASE_SECONDS, MOST_TIMES = 600.0, 20.0
 
 
 def load_gmsh():
-    """Import gmsh.
-
-    Returns
-    -------
-    module
-
-    Raises
-    ------
-    ImportError
-        If the package or a system library that it needs is missing; the message names what to install.
-    """
+    """Import gmsh."""
     try:
         return importlib.import_module("gmsh")
     except ModuleNotFoundError as error:
@@ -90,49 +80,16 @@ def _loads(name):
 
 
 class Elements(NamedTuple):
-    """What tetrahedra to make.
+    """What tetrahedra to make."""
 
-    Attributes
-    ----------
-    algorithm : int
-        Number of gmsh's 3-D algorithm.
-    quadratic : bool
-        With nodes at the middles of the edges.
-    curved : bool
-        Put those onto the surfaces.
-    estimated : float
-        Their number, about.
-    """
-
-    algorithm: int
-    quadratic: bool
-    curved: bool
-    estimated: float
+    algorithm: int  # Number of gmsh's 3-D algorithm
+    quadratic: bool  # With nodes at the middles of the edges
+    curved: bool  # Put those onto the surfaces
+    estimated: float  # Their number, about
 
 
 def attempts(scene, attempt, size):
-    """Mesh at the size asked for, or if gmsh fails at neighbouring ones.
-
-    Parameters
-    ----------
-    scene : Scene
-    attempt : callable (factor on the size, number of gmsh's 3-D algorithm, done)
-        One try; returns a Mesh, and calls done(share) meanwhile.
-    size : float, m
-        That a factor of 1 stands for.
-
-    Returns
-    -------
-    Mesh
-        Its stats begin with the `size` used, the number of `attempts` and the time, `mesh_s`.
-
-    Raises
-    ------
-    RuntimeError
-        If gmsh fails at four neighbouring sizes, or hangs.
-    ImportError
-        If gmsh or a system library that it needs is missing.
-    """
+    """Mesh at the size asked for, or if gmsh fails at neighbouring ones."""
     begin, errors = time.perf_counter(), []
     for number, (factor, algorithm) in enumerate(ATTEMPTS, start=1):
         try:
@@ -152,23 +109,7 @@ def attempts(scene, attempt, size):
 
 
 def call_gmsh(function, *arguments, cells, done):
-    """Call function(*arguments), which works in a `session`, in another process.
-
-    Parameters
-    ----------
-    function : callable
-        Of a module.
-    *arguments
-        Which pickle takes.
-    cells : float
-        Estimated number of tetrahedra.
-    done : callable (share)
-
-    Returns
-    -------
-    object
-        What the function returns.
-    """
+    """Call function(*arguments), which works in a `session`, in another process."""
     seconds = cells * SECONDS_EACH
     limits = {"memory": BASE_BYTES + cells * MOST_BYTES_EACH, "most": BASE_SECONDS + MOST_TIMES * seconds}
     return run_apart(function, *arguments, seconds=seconds, done=done, **limits)
@@ -185,15 +126,7 @@ def session():
 
 
 def look_up(gmsh, table):
-    """Take the sizes of elements from a table: gmsh's own fields all go through all features for each point.
-
-    Parameters
-    ----------
-    gmsh : module
-        In a `session`.
-    table : (n,) float array
-        Of `references.mesh.sizes.table`; must live as long as the model is meshed.
-    """
+    """Take the sizes of elements from a table: gmsh's own fields all go through all features for each point."""
     from references.mesh.size_kernels import size_callback
 
     # gmsh's own wrapper takes functions of Python, which cost as much as the mesh.
@@ -205,31 +138,7 @@ def look_up(gmsh, table):
 
 
 def tetrahedra(gmsh, phases, elements):
-    """Mesh the volumes of the current model.
-
-    Parameters
-    ----------
-    gmsh : module
-        In a `session`, with its sizes set.
-    phases : mapping of int to int
-        Phase of each volume tag.
-    elements : Elements
-
-    Returns
-    -------
-    points : (n, 3) float array
-        In the unit of the model, nodes of cells only.
-    cells : (m, 4) or (m, 10) int32 array
-        As in `Mesh`.
-    phase : (m,) int32 array
-    surface : (t, 3) int32 array
-        Corners of the triangles that gmsh has put on all surfaces; -1 for a node of no cell.
-
-    Raises
-    ------
-    RuntimeError
-        If no tetrahedra were made.
-    """
+    """Mesh the volumes of the current model."""
     gmsh.option.setNumber("Mesh.Algorithm3D", elements.algorithm)
     gmsh.option.setNumber("Mesh.SecondOrderLinear", not elements.curved)
     # All dimensions at once: one after the other they make other meshes.

@@ -16,33 +16,7 @@ LARGEST_LOSS = 0.2
 
 
 def make_round(scene, *, size, order):
-    """Mesh a round body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Without inclusions, domain "sphere" or a cylinder.
-    size : float, m
-        Longest wanted edge.
-    order : {1, 2}
-        Straight elements whose corners lie on the surface, or curved ones.
-
-    Returns
-    -------
-    Mesh
-        Its walls are "round" and the flat ends; `stats["volume_error"]` is relative to the exact body.
-
-    Raises
-    ------
-    ValueError
-        If the size or the order is not as described, or asks for more than 3e7 elements.
-    NotImplementedError
-        If there are inclusions.
-    RuntimeError
-        If gmsh fails at four neighbouring sizes.
-    ImportError
-        If gmsh or a system library that it needs is missing.
-    """
+    """Mesh a round body."""
     check_scene(scene)
     scene.require("only boxes can have them here", shapes=(), takes=("exchange",))
     size = checked_size(scene, size, order)

@@ -30,18 +30,7 @@ class _Copies(NamedTuple):
 
 
 def split(scene, mesh) -> Mesh:
-    """The mesh with nodes doubled where surfaces resist, and the triangles between; the mesh itself if none does.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-        Of the scene, as `references.mesh.make` makes it.
-
-    Returns
-    -------
-    Mesh
-    """
+    """The mesh with nodes doubled where surfaces resist, and the triangles between; the mesh itself if none does."""
     resistance = between(scene)
     if resistance is None:
         return mesh

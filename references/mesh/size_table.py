@@ -14,18 +14,7 @@ CORNERS = np.array(list(np.ndindex(2, 2, 2)))
 
 
 def table(sizes: Sizes, box) -> np.ndarray:
-    """Balls and shells sorted into cells of the box, as `references.mesh.size_kernels.size_at` reads them.
-
-    Parameters
-    ----------
-    sizes : Sizes
-    box : (3,) float array
-        Sides, in the same unit.
-
-    Returns
-    -------
-    (n,) float array
-    """
+    """Balls and shells sorted into cells of the box, as `references.mesh.size_kernels.size_at` reads them."""
     shells = sizes.shells
     features = np.vstack(
         [

@@ -41,45 +41,16 @@ BEYOND = 0.25
 
 
 class Sizes(NamedTuple):
-    """Wanted edge lengths; away from each feature they grow to `size`.
+    """Wanted edge lengths; away from each feature they grow to `size`."""
 
-    Attributes
-    ----------
-    size : float, m
-        Everywhere else.
-    balls : (k, 5) float array, m
-        Centre, radius and the edge length inside.
-    shells : (k, 6) float array, m
-        Centre, inner radius, outer radius and the edge length between them.
-    slabs : (k, 4) float array
-        Axis, start, stop (m) and the edge length between them (m).
-    """
-
-    size: float
-    balls: np.ndarray
-    shells: np.ndarray
-    slabs: np.ndarray
+    size: float  # m: Everywhere else
+    balls: np.ndarray  # (k, 5) float array, m: Centre, radius and the edge length inside
+    shells: np.ndarray  # (k, 6) float array, m: Centre, inner radius, outer radius and the edge length between them
+    slabs: np.ndarray  # (k, 4) float array: Axis, start, stop (m) and the edge length between them (m)
 
 
 def checked_size(scene, size, order):
-    """Longest edge for a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m, or None
-        As asked for.
-    order : {1, 2}
-
-    Returns
-    -------
-    float, m
-
-    Raises
-    ------
-    ValueError
-        If the order or the size is not as described, or asks for more than 3e7 elements.
-    """
+    """Longest edge for a scene."""
     whole("order", order, "1 or 2", lambda v: v in (1, 2))
     if size is None:
         bounded = sum(not shape.flat for shape in scene.inclusions)
@@ -93,26 +64,7 @@ def checked_size(scene, size, order):
 
 
 def wanted_sizes(scene, size, *, coarser=1.0):
-    """Edge lengths for a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of shapes that `references.mesh.make` does not refuse.
-    size : float, m
-        Longest edge.
-    coarser : float
-        Everything at features is so many times longer, up to that edge.
-
-    Returns
-    -------
-    Sizes
-
-    Raises
-    ------
-    NotImplementedError
-        If two surfaces, or a surface and a face or edge of the box, come closer than 1e-6 of its longest edge.
-    """
+    """Edge lengths for a scene."""
     centers, radii = _spheres(scene, size)
     planes = _planes(scene)
     outer, inner, gaps = _pairs(scene, centers, radii, size)
@@ -134,25 +86,7 @@ def wanted_sizes(scene, size, *, coarser=1.0):
 
 
 def check_cost(sizes: Sizes, box, order: int) -> float:
-    """Refuse a mesh that is hopeless, before it is begun.
-
-    Parameters
-    ----------
-    sizes : Sizes
-        In metres.
-    box : (3,) sequence of float, m
-    order : {1, 2}
-
-    Returns
-    -------
-    float
-        Estimated number of tetrahedra.
-
-    Raises
-    ------
-    ValueError
-        If there would be more than 3e7 tetrahedra, or they would need more memory than is free.
-    """
+    """Refuse a mesh that is hopeless, before it is begun."""
     box = np.array(box)
     cells, most = estimated_cells(sizes, box), min(MOST_CELLS, free_memory() / BYTES[order])
     if cells > most:
@@ -257,14 +191,7 @@ def _box_gaps(scene, centers, radii, planes):
 
 
 def unit_lengths(sizes, scale):
-    """The same sizes in another unit.
-
-    Parameters
-    ----------
-    sizes : Sizes
-    scale : float, m
-        The unit.
-    """
+    """The same sizes in another unit."""
     slabs = sizes.slabs / np.array([1.0, scale, scale, scale])
     return sizes._replace(size=sizes.size / scale, balls=sizes.balls / scale, shells=sizes.shells / scale, slabs=slabs)
 
@@ -274,12 +201,6 @@ def estimated_cells(sizes: Sizes, box) -> float:
 
     Sizes beyond a quarter of the box make the same mesh, of which up to six times as many are expected: where spheres
     are near each other, fine regions overlap.
-
-    Parameters
-    ----------
-    sizes : Sizes
-    box : (3,) float array
-        Sides, in the same unit.
     """
     cells = CELLS * float(np.prod(box)) / sizes.size**3
     middle = sizes.balls[:, :3]

@@ -25,15 +25,7 @@ FACING = 0.9
 
 @singledispatch
 def add(shape: Shape, occ, box, scale: float) -> int:
-    """Add a shape to the geometry; see `references.mesh.cad.solid`.
-
-    Parameters
-    ----------
-    shape : Shape
-    occ : gmsh.model.occ
-    box : (3,) float array, unit lengths
-    scale : float, m
-    """
+    """Add a shape to the geometry; see `references.mesh.cad.solid`."""
     raise NotImplementedError(f"meshes around inclusions of shape {type(shape).__name__}: not known here")
 
 
@@ -93,29 +85,7 @@ def _(shape: Union, occ, box, scale):
 
 
 def sized(scene, size: float, planes, rules) -> np.ndarray:
-    """Balls in which edges must be short beside the surfaces of solids, and between them and others.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    planes : sequence of three float arrays, m
-        Coordinates of the faces of the box and of layers along each axis.
-    rules : (on, gap, far, narrowest) tuple of float
-        Edge over the least length of a shape; over the root of that times a gap's width; gaps wider than so many least
-        lengths count as none; in longest edges of the box, what is narrower touches.
-
-    Returns
-    -------
-    (k, 5) float array, m
-        Centre, radius and edge, images included.
-
-    Raises
-    ------
-    NotImplementedError
-        If surfaces touch.
-    """
+    """Balls in which edges must be short beside the surfaces of solids, and between them and others."""
     found = [np.zeros((0, 5))]
     for number, shape in enumerate(scene.inclusions):
         if isinstance(shape, KNOWN):

@@ -23,20 +23,7 @@ STEEP = 0.7
 
 
 def turn(center, radius: float, planes) -> tuple[float, float, float, float]:
-    """Axis and angle of the rotation that keeps poles and seam farthest from the curves in which planes cut a sphere.
-
-    Parameters
-    ----------
-    center : (3,) float array
-    radius : float
-    planes : three float arrays
-        Coordinates of the planes across x, y and z.
-
-    Returns
-    -------
-    tuple of float
-        x, y and z of the axis; angle, rad.
-    """
+    """Axis and angle of the turn that keeps poles and seam farthest from the curves in which planes cut a sphere."""
     cuts = [np.asarray(across)[np.abs(across - c) < radius] for across, c in zip(planes, center, strict=True)]
     heights = [np.clip((cut - c) / radius, -1, 1) for cut, c in zip(cuts, center, strict=True)]
     if not any(map(len, heights)):

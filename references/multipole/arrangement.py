@@ -22,45 +22,16 @@ SAME = 1e-12
 
 
 class Arrangement(NamedTuple):
-    """What is solved, in its own unit of length.
+    """What is solved, in its own unit of length."""
 
-    Attributes
-    ----------
-    spheres : Spheres
-        The scene's, in its order, then their mirror images.
-    gradient : (3,) float array, K/unit
-        The mean one.
-    level : float, K
-        Temperature at the origin: that of the wall there; 0 in a periodic cell.
-    unit : float, m
-        The largest diameter.
-    """
-
-    spheres: Spheres
-    gradient: np.ndarray
-    level: float
-    unit: float
+    spheres: Spheres  # The scene's, in its order, then their mirror images
+    gradient: np.ndarray  # (3,) float array, K/unit: The mean one
+    level: float  # K: Temperature at the origin: that of the wall there; 0 in a periodic cell
+    unit: float  # m: The largest diameter
 
 
 def arrange(scene, *, any_matrix=False) -> Arrangement:
-    """Read a scene.
-
-    Parameters
-    ----------
-    scene : Scene
-    any_matrix : bool
-        Whether the matrix may be without conductivity; contrasts are then plain conductivities.
-
-    Returns
-    -------
-    Arrangement
-
-    Raises
-    ------
-    NotImplementedError
-        If the load is neither a mean gradient nor one pair of isothermal walls; for layers, nested spheres, spheres
-        that a wall cuts (but not through the centre), a matrix of no conductivity.
-    """
+    """Read a scene."""
     gradient, level = _load(scene)
     scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, takes=("resistance",))
     k = scene.matrix.conductivity
@@ -107,17 +78,7 @@ def _gaps(spheres, one, two):
 
 
 def wrapped(points, size):
-    """Points moved into a periodic cell, as trees want them: from 0 to below its size.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, length
-    size : (3,) float array, length
-
-    Returns
-    -------
-    (n, 3) float array, length
-    """
+    """Points moved into a periodic cell, as trees want them: from 0 to below its size."""
     inside = points - size * np.floor(points / size)
     return np.where(inside < size, inside, 0.0)
 

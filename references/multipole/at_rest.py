@@ -14,20 +14,7 @@ from references.midpoints import midpoints
 
 
 def at_rest(scene, spheres, points_per_axis) -> Field:
-    """The Field of a scene whose matrix has no conductivity: no heat passes.
-
-    Parameters
-    ----------
-    scene : Scene
-    spheres : Spheres
-        As they are arranged.
-    points_per_axis : int
-        The samples are the midpoints of so many equal cells along each axis.
-
-    Returns
-    -------
-    Field
-    """
+    """The Field of a scene whose matrix has no conductivity: no heat passes."""
     temperature = sphere_temperature(scene)
     if temperature is None:
         raise NotImplementedError("multipole: a matrix of no conductivity, and a sphere from wall to wall")

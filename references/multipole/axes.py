@@ -40,16 +40,7 @@ class Axes(NamedTuple):
 
 @lru_cache(maxsize=8)
 def axes(order) -> Axes:
-    """Tables up to a degree.
-
-    Parameters
-    ----------
-    order : int
-
-    Returns
-    -------
-    Axes
-    """
+    """Tables up to a degree."""
     return Axes(_swap(order), _along(order).ravel(), _shift(order))
 
 

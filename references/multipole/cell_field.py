@@ -17,13 +17,7 @@ CHUNK = 4096
 
 
 class CellField:
-    """What spheres make at points.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    solved : Solved
-    """
+    """What spheres make at points."""
 
     def __init__(self, spheres: Spheres, solved: Solved):
         exchange = FastMultipole(spheres, plan(spheres, solved.order, PRECISION))
@@ -37,18 +31,7 @@ class CellField:
         self.slope, self.level = exchange.background(spheres, solved.source)
 
     def owners(self, points):
-        """Offsets from the nearest image of the sphere that owns a point, else the point itself, and that sphere.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, length
-
-        Returns
-        -------
-        (n, 3) float array, length
-        (n,) int array
-            Number of the sphere, or -1.
-        """
+        """Offsets from the nearest image of the sphere that owns a point, else the point itself, and that sphere."""
         places, home = self._placed(points)
         owner = np.empty(len(points), dtype=np.int64)
         kernels.owners_by_cells(places, home, self.cells, owner)
@@ -56,16 +39,7 @@ class CellField:
         return np.where(owned[:, None], places, points), np.where(owned, self.numbers[owner], -1)
 
     def outside(self, points):
-        """Temperature and its slope at points outside the spheres, without the mean gradient.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, length
-
-        Returns
-        -------
-        (n, 4) float array, K and K/length
-        """
+        """Temperature and its slope at points outside the spheres, without the mean gradient."""
         result = np.empty((len(points), 4))
         for low in range(0, len(points), CHUNK):
             part = result[low : low + CHUNK]

@@ -12,56 +12,21 @@ WIDTH = 2
 
 
 class Cells(NamedTuple):
-    """A grid of cells and the spheres in them, numbered cell by cell.
+    """A grid of cells and the spheres in them, numbered cell by cell."""
 
-    Attributes
-    ----------
-    shape : (3,) int array
-        Numbers of cells; they fill the periodic cell.
-    edge : (3,) float array, length
-        Of a cell.
-    start : (cells + 1,) int array
-        First sphere of each cell.
-    home : (n,) int array
-        Cell of each sphere, that of its centre.
-    places : (n, 3) float array, length
-        Of the spheres' centres, from the middles of their cells.
-    radii : (n,) float array, length
-    receivers : (count,) int array
-        Spheres that are no mirror images.
-    near : (k, 3) int array
-        Offsets of near cells, the closest first.
-    negligible : float
-        Degrees above which (radius/distance)^l stays below it are not exchanged in near cells.
-    """
-
-    shape: np.ndarray
-    edge: np.ndarray
-    start: np.ndarray
-    home: np.ndarray
-    places: np.ndarray
-    radii: np.ndarray
-    receivers: np.ndarray
-    near: np.ndarray
-    negligible: float
+    shape: np.ndarray  # (3,) int array: Numbers of cells; they fill the periodic cell
+    edge: np.ndarray  # (3,) float array, length: Of a cell
+    start: np.ndarray  # (cells + 1,) int array: First sphere of each cell
+    home: np.ndarray  # (n,) int array: Cell of each sphere, that of its centre
+    places: np.ndarray  # (n, 3) float array, length: Of the spheres' centres, from the middles of their cells
+    radii: np.ndarray  # (n,) float array, length
+    receivers: np.ndarray  # (count,) int array: Spheres that are no mirror images
+    near: np.ndarray  # (k, 3) int array: Offsets of near cells, the closest first
+    negligible: float  # Degrees above which (radius/distance)^l stays below it are not exchanged in near cells
 
 
 def sorted_into(shape, spheres, negligible):
-    """Sort spheres into cells.
-
-    Parameters
-    ----------
-    shape : (3,) int array
-        Numbers of cells.
-    spheres : Spheres
-    negligible : float
-
-    Returns
-    -------
-    Cells
-    (n,) int array
-        The spheres' numbers, cell by cell.
-    """
+    """Sort spheres into cells."""
     shape = np.asarray(shape, dtype=np.int64)
     edge = spheres.size / shape
     steps = np.floor(spheres.centers / edge).astype(np.int64)

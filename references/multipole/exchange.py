@@ -10,20 +10,7 @@ ENTRY = 2e-6
 
 
 def exchange(spheres, order, precision):
-    """What makes c of b by `translations.received`.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    order : int
-        Highest one that it will be used for; by cells any order will do.
-    precision : float
-        Relative error of b that is allowed; all pairs are exact to rounding.
-
-    Returns
-    -------
-    Translation or FastMultipole
-    """
+    """What makes c of b by `translations.received`."""
     by_cells = plan(spheres, order, precision)
     if direct_seconds(spheres, order) <= by_cells.setup + PRODUCTS * by_cells.product:
         return translation(spheres, 2 * order)
@@ -31,16 +18,6 @@ def exchange(spheres, order, precision):
 
 
 def direct_seconds(spheres, order) -> float:
-    """What all pairs cost, estimated.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    order : int
-
-    Returns
-    -------
-    float, s
-    """
+    """What all pairs cost, estimated."""
     ordered = spheres.count * len(spheres.radii)
     return ordered * (ENTRY / 2 * (order + 1) * (2 * order + 1) + PRODUCTS * SECONDS * (order + 1) ** 4)

@@ -19,24 +19,7 @@ CHUNK = 128
 
 
 def far_sums(shape, edge, near, degree):
-    """Sums of I_L^M(X + R) over all lattice vectors R but those for which X + R is near.
-
-    Parameters
-    ----------
-    shape : (3,) int array
-        Numbers of cells.
-    edge : (3,) float array, length
-        Of a cell.
-    near : (k, 3) int array
-        Offsets, in cells, that are left out; zero is one of them.
-    degree : int
-        Highest L.
-
-    Returns
-    -------
-    (n, entries) complex array, length^-(L+1)
-        Racah's normalisation, degree 0 zero; X = 0, ..., shape // 2 cells along each axis, the last one fastest.
-    """
+    """Sums of I_L^M(X + R) over all lattice vectors R but those for which X + R is near."""
     size, half = shape * edge, shape // 2 + 1
     cells = np.stack(np.meshgrid(*[np.arange(n) for n in half], indexing="ij"), axis=-1).reshape(-1, 3)
     cut = splitting(size, float(np.linalg.norm(edge)), degree)
@@ -64,20 +47,7 @@ def _take_off(result, near, shape, edge, eta):
 
 
 def transformed(sums, shape):
-    """Fourier transforms over the grid, times i^L: real and imaginary parts of the sums have real ones.
-
-    Parameters
-    ----------
-    sums : (n, entries) complex array, length^-(L+1)
-        As from `far_sums`.
-    shape : (3,) int array
-
-    Returns
-    -------
-    (2, n, entries) float array
-        Of the kernels' harmonics, which are sqrt((L-M)! (L+M)!) times Racah's; waves 0, ..., shape // 2 along each
-        axis.
-    """
+    """Fourier transforms over the grid, times i^L: real and imaginary parts of the sums have real ones."""
     half = shape // 2 + 1
     n, m = entries(int(np.sqrt(2 * sums.shape[1])) - 1)
     root = np.exp(0.5 * (gammaln(n - m + 1) + gammaln(n + m + 1)))
@@ -91,16 +61,7 @@ def transformed(sums, shape):
 
 
 def mirror_parities(degree, order):
-    """Signs of the real and of the imaginary part of an entry mirrored along x, y and z.
-
-    Parameters
-    ----------
-    degree, order : int or int arrays
-
-    Returns
-    -------
-    (2, 3, ...) int array
-    """
+    """Signs of the real and of the imaginary part of an entry mirrored along x, y and z."""
     x, z = (-1) ** np.asarray(order), (-1) ** (np.asarray(degree) + order)
     one = np.ones_like(x)
     return np.array([[x, one, z], [-x, -one, z]])

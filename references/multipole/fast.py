@@ -39,41 +39,17 @@ ABOVE, FASTER = 60.0, 1.06
 
 
 class Plan(NamedTuple):
-    """How to divide a periodic cell.
+    """How to divide a periodic cell."""
 
-    Attributes
-    ----------
-    shape : (3,) int array
-        Numbers of cells.
-    degree : int
-        Highest degree of the cells' multipoles.
-    precision : float
-        Relative error of what spheres make at each other.
-    product, setup : float, s
-        Estimated cost of one product with all translations and of the far sums.
-    """
-
-    shape: np.ndarray
-    degree: int
-    precision: float
-    product: float
-    setup: float
+    shape: np.ndarray  # (3,) int array: Numbers of cells
+    degree: int  # Highest degree of the cells' multipoles
+    precision: float  # Relative error of what spheres make at each other
+    product: float  # s: Estimated cost of one product with all translations and of the far sums
+    setup: float  # s: Estimated cost of one product with all translations and of the far sums
 
 
 def plan(spheres, order, precision) -> Plan:
-    """The division of the periodic cell that costs least.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    order : int
-        Of the spheres' multipoles.
-    precision : float
-
-    Returns
-    -------
-    Plan
-    """
+    """The division of the periodic cell that costs least."""
     edge, best = SMALLEST * 2 * float(spheres.radii.max()), None
     edge = max(edge, (float(np.prod(spheres.size)) / MOST_CELLS) ** (1 / 3))
     while best is None or edge < 1.3 * spheres.size.max():
@@ -95,15 +71,6 @@ def far_degree(edge, precision) -> int:
     source makes at any point is known up to (r/(D - r))^(degree + 1) or so of itself: sources and points in the corners
     that face each other. Most are elsewhere: at random, in cubes, errors of b of equal spheres were found to be
     0.43^degree/60 of the largest b, those of the conductivity a hundred times less.
-
-    Parameters
-    ----------
-    edge : (3,) float array, length
-    precision : float
-
-    Returns
-    -------
-    int
     """
     half = float(np.linalg.norm(edge)) / 2
     ratio = half / ((WIDTH + 1) * float(np.min(edge)) - half)
@@ -114,13 +81,7 @@ def far_degree(edge, precision) -> int:
 
 
 class FastMultipole:
-    """What spheres make at each other, by cells.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    plan : Plan
-    """
+    """What spheres make at each other, by cells."""
 
     def __init__(self, spheres, plan: Plan):
         self.cells, self.order = sorted_into(plan.shape, spheres, plan.precision)
@@ -133,19 +94,7 @@ class FastMultipole:
         self.root = np.exp(-0.5 * (gammaln(n - m + 1) + gammaln(n + m + 1)))
 
     def exchanged(self, spheres, source, threads=1):
-        """c that spheres make at those that count, but for the background: see `translations.received`.
-
-        Parameters
-        ----------
-        spheres : Spheres
-        source : (2, n, entries) float array, K
-            b of all spheres.
-        threads : int
-
-        Returns
-        -------
-        (2, count, entries) float array, K
-        """
+        """c that spheres make at those that count, but for the background: see `translations.received`."""
         cells, degree, order = self.cells, self.degree, highest_degree(source.shape[2])
         n, _ = entries(order)
         sent = self.sent(source)
@@ -166,17 +115,7 @@ class FastMultipole:
         return result
 
     def sent(self, source):
-        """Multipoles of the spheres, cell by cell, in the order of memory that the kernels are compiled for.
-
-        Parameters
-        ----------
-        source : (2, n, entries) float array, K
-            b of all spheres.
-
-        Returns
-        -------
-        (2, n, entries) float array, K length^(l+1)
-        """
+        """Multipoles of the spheres, cell by cell, in the order of memory that the kernels are compiled for."""
         n, _ = entries(highest_degree(source.shape[2]))
         return np.ascontiguousarray(source[:, self.order] * self.cells.radii[:, None] ** (n + 1.0))
 
@@ -184,35 +123,13 @@ class FastMultipole:
         """What the uniform background of the periodic sums makes of dipoles off the middles of their cells.
 
         A dipole p at y makes -4 pi/(3 volume) p.(x - y) at x in any cell; `translations.received` adds the slope.
-
-        Parameters
-        ----------
-        spheres : Spheres
-        source : (2, n, entries) float array, K
-            b of all spheres.
-
-        Returns
-        -------
-        (3,) float array, K/length
-        float, K
         """
         share = background_share(spheres)
         moments = dipoles(spheres, source)[self.order]
         return -share * moments.sum(axis=0), share * float(np.sum(moments * self.cells.places))
 
     def local(self, sent, team):
-        """Local coefficients of all cells, what near cells make left out.
-
-        Parameters
-        ----------
-        sent : (2, n, entries) float array, K length^(l+1)
-            b of the spheres, cell by cell, times radius^(l+1).
-        team : Team
-
-        Returns
-        -------
-        (2, cells, entries) float array, K length^-l
-        """
+        """Local coefficients of all cells, what near cells make left out."""
         cells, degree = self.cells, self.degree
         few = min(highest_degree(sent.shape[2]), degree)
         each = np.empty((2, sent.shape[1], len(self.root)))

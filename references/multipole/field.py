@@ -26,15 +26,7 @@ MANY = 100
 
 
 class Evaluator:
-    """The solution at points.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    solved : Solved
-    gradient : (3,) float array, K/length
-        The mean one.
-    """
+    """The solution at points."""
 
     def __init__(self, spheres: Spheres, solved: Solved, gradient):
         self.spheres, self.order, self.gradient = spheres, solved.order, np.asarray(gradient, dtype=float)
@@ -46,19 +38,7 @@ class Evaluator:
             self.amplitudes = _amplitudes(spheres, solved, self.split)
 
     def __call__(self, points):
-        """Temperature and its slope, and which sphere owns the point.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, length
-
-        Returns
-        -------
-        (n, 4) float array, K and K/length
-            On a surface that of the sphere's side.
-        (n,) int array
-            Number of the sphere, or -1.
-        """
+        """Temperature and its slope, and which sphere owns the point."""
         points = np.asarray(points, dtype=float)
         offsets, owner = self._owners(points)
         result = np.zeros((len(points), 4))

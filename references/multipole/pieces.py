@@ -7,18 +7,7 @@ PIECE = 0.3
 
 
 def in_pieces(team, kernel, planes, cost, *arguments):
-    """Call kernel(*arguments, low, high) on chunks that make up range(planes).
-
-    Parameters
-    ----------
-    team : Team
-    kernel : callable
-    planes : int
-    cost : float, s
-        Of one plane, about.
-    *arguments
-        Handed on.
-    """
+    """Call kernel(*arguments, low, high) on chunks that make up range(planes)."""
     most = max(1, int(PIECE * team.threads / cost))
     for first in range(0, planes, most):
 

@@ -104,23 +104,6 @@ def solve_axes(
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, to the residual of the linear
     system: sums for a higher degree than one load needs are those of all.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell, or a box between two isothermal walls with four insulated faces.
-    order, accuracy, tolerance, points_per_axis, threads
-        As those of `solve`, which also says what is raised.
-
-    Returns
-    -------
-    tuple of three Fields
-        Under loads along x, y and z; `demheat.tensor.conductivity_tensor` takes them.
-
-    Raises
-    ------
-    NotImplementedError
-        If the load is another, or the spheres are none that `solve` takes.
     """
     _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
     wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads, "kept": {}}

@@ -60,22 +60,7 @@ def highest_degree(width) -> int:
 
 
 def splitting(size, contact, degree, eta=None) -> Splitting:
-    """Choose where to split and to cut, for harmonics up to `degree` in units of contact^-(L+1).
-
-    Parameters
-    ----------
-    size : (3,) float array, length
-        Of the cell.
-    contact : float, length
-        Largest distance to which sources and receivers refer.
-    degree : int
-    eta : float, length^-2, optional
-        The result of a sum does not depend on it.
-
-    Returns
-    -------
-    Splitting
-    """
+    """Choose where to split and to cut, for harmonics up to `degree` in units of contact^-(L+1)."""
     volume = float(np.prod(size))
     if eta is None:
         eta = max(FEWEST_WAVES / volume ** (2 / 3), min(FEWEST_IMAGES / volume ** (2 / 3), CANCEL / contact**2))
@@ -110,18 +95,7 @@ def _half_space(size, reach):
 
 
 def harmonics(points, degree):
-    """R_L^M of points on the unit sphere.
-
-    Parameters
-    ----------
-    points : (n, 3) float array
-    degree : int
-        Highest L.
-
-    Returns
-    -------
-    (n, entries) complex array
-    """
+    """R_L^M of points on the unit sphere."""
     x, y, z = points.T
     table = np.empty((len(points), (degree + 1) * (degree + 2) // 2), dtype=complex)
     for m in range(degree + 1):
@@ -132,50 +106,14 @@ def harmonics(points, degree):
 
 
 def wave_weights(waves, size, eta, degree):
-    """Weights of R_L^M(K/k) in the sum over waves, without (-i)^L.
-
-    Parameters
-    ----------
-    waves : (w, 3) int array
-        K in units of 2 pi/size.
-    size : (3,) float array, length
-        Of the cell.
-    eta : float, length^-2
-        Where Ewald's sum is split.
-    degree : int
-        Highest L.
-
-    Returns
-    -------
-    (w, degree + 1) float array, length^-(L+1)
-    (w, 3) float array, length^-1
-        K.
-    """
+    """Weights of R_L^M(K/k) in the sum over waves, without (-i)^L."""
     vectors = 2 * math.pi * waves / np.asarray(size)
     k = np.linalg.norm(vectors, axis=1)[:, None]
     return np.exp(_log_weight(np.arange(degree + 1)[None], k, eta, float(np.prod(size)))), vectors
 
 
 def periodic_irregular(offsets, degree, size, contact, *, eta=None):
-    """Sum of I_L^M(X + R) over all lattice vectors R; where X = 0, over all but R = 0.
-
-    Parameters
-    ----------
-    offsets : (n, 3) float array, length
-        X.
-    degree : int
-        Highest L.
-    size : (3,) float array, length
-        Of the cell.
-    contact : float, length
-        Largest sum of two radii: errors are of the order of rounding in units of contact^-(L+1).
-    eta : float, length^-2, optional
-
-    Returns
-    -------
-    (n, entries) complex array, length^-(L+1)
-        Degree 0, which no sphere emits, is left zero.
-    """
+    """Sum of I_L^M(X + R) over all lattice vectors R; where X = 0, over all but R = 0."""
     cut = splitting(size, contact, degree, eta)
     offsets = offsets - size * np.round(offsets / size)
     vectors, table = wave_table(degree, size, cut)
@@ -195,22 +133,7 @@ def _add_images(result, offsets, degree, size, cut):
 
 
 def images(offsets, size, reach):
-    """Offsets of the images that may be within reach.
-
-    Parameters
-    ----------
-    offsets : (n, 3) float array, length
-        Of the nearest ones.
-    size : (3,) float array, length
-        Of the cell.
-    reach : float, length
-
-    Returns
-    -------
-    (n, images, 3) float array, length
-    (n, images) float array, length^2
-        Their squares.
-    """
+    """Offsets of the images that may be within reach."""
     spans = [np.arange(-int(n), int(n) + 1) for n in reach / size + 0.5]
     cells = np.stack(np.meshgrid(*spans, indexing="ij"), axis=-1).reshape(-1, 3) * size
     apart = offsets[:, None] + cells
@@ -218,20 +141,7 @@ def images(offsets, size, reach):
 
 
 def add_screened(result, owner, apart, degree, screen):
-    """Add I_L^M of many offsets to the rows of a table, each times a factor of its degree and distance.
-
-    Parameters
-    ----------
-    result : (n, entries) complex array, length^-(L+1)
-    owner : (k,) int array
-        Row to which each offset adds.
-    apart : (k, 3) float array, length
-        Not zero.
-    degree : int
-        Highest L.
-    screen : callable int, (k,) float array, length^2 -> (k,) float array
-        Factor of the degree and r^2.
-    """
+    """Add I_L^M of many offsets to the rows of a table, each times a factor of its degree and distance."""
     square = np.einsum("ik,ik->i", apart, apart)
     r = np.sqrt(square)
     x, y, z = (apart / r[:, None]).T
@@ -247,21 +157,7 @@ def add_screened(result, owner, apart, degree, screen):
 
 
 def wave_table(degree, size, cut):
-    """Reciprocal vectors and what each adds without its phase.
-
-    Parameters
-    ----------
-    degree : int
-        Highest L.
-    size : (3,) float array, length
-        Of the cell.
-    cut : Splitting
-
-    Returns
-    -------
-    (w, 3) float array, length^-1
-    (w, entries) complex array, length^-(L+1)
-    """
+    """Reciprocal vectors and what each adds without its phase."""
     weights, vectors = wave_weights(cut.waves, size, cut.eta, degree)
     table = harmonics(vectors / np.linalg.norm(vectors, axis=1)[:, None], degree)
     n, _ = entries(degree)
@@ -269,16 +165,7 @@ def wave_table(degree, size, cut):
 
 
 def add_waves(result, angle, table):
-    """Add the waves: K and -K together give 2 Re((-i)^L exp(i K.X)), a cosine where L is even, a sine where it is odd.
-
-    Parameters
-    ----------
-    result : (n, entries) complex array, length^-(L+1)
-    angle : (n, w) float array
-        K.X.
-    table : (w, entries) complex array, length^-(L+1)
-        As `wave_table` makes it.
-    """
+    """Add waves: K and -K together give 2 Re((-i)^L exp(i K.X)), a cosine where L is even, a sine where it is odd."""
     n, _ = entries(highest_degree(table.shape[1]))
     for parity, wave in ((0, np.cos(angle)), (1, np.sin(angle))):
         chosen = np.flatnonzero(n % 2 == parity)

@@ -24,26 +24,14 @@ MOST_ITERATIONS = 400
 
 
 class Solved(NamedTuple):
-    """Multipoles of one order.
-
-    Attributes
-    ----------
-    order : int
-    source, local : (2, n, entries) float arrays, K
-        b and c of all spheres.
-    mean_flux : (3,) float array, K/length
-        Over the conductivity of the matrix.
-    iterations : int
-    residual : float
-        Relative, recomputed.
-    """
+    """Multipoles of one order."""
 
     order: int
-    source: np.ndarray
-    local: np.ndarray
-    mean_flux: np.ndarray
+    source: np.ndarray  # (2, n, entries) float arrays, K: b and c of all spheres
+    local: np.ndarray  # (2, n, entries) float arrays, K: b and c of all spheres
+    mean_flux: np.ndarray  # (3,) float array, K/length: Over the conductivity of the matrix
     iterations: int
-    residual: float
+    residual: float  # Relative, recomputed
 
 
 def mirror_signs(spheres, gradient, order):
@@ -51,18 +39,6 @@ def mirror_signs(spheres, gradient, order):
 
     Mirrored along x the azimuth p turns into pi - p, along y into -p; along z P_l^m turns its sign with l + m. And the
     temperature itself is odd along the mean gradient, even across it.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    gradient : (3,) float array, K/length
-        Along one axis if there are mirror images.
-    order : int
-        Highest degree.
-
-    Returns
-    -------
-    (2, n, entries) float array
     """
     n, m = entries(order)
     x, y, z = spheres.flips.T[:, :, None]
@@ -75,17 +51,6 @@ def uniform(spheres, gradient, order):
     """c that a uniform gradient makes at all spheres, without its value at the centres.
 
     g.x = g_z R_10 + 2 Re(-(g_x - i g_y)/sqrt(2) R_11).
-
-    Parameters
-    ----------
-    spheres : Spheres
-    gradient : (3,) float array, K/length
-    order : int
-        Highest degree.
-
-    Returns
-    -------
-    (2, n, entries) float array, K
     """
     table = np.zeros((2, len(spheres.radii), (order + 1) * (order + 2) // 2))
     table[0, :, 1] = gradient[2] * spheres.radii
@@ -95,34 +60,13 @@ def uniform(spheres, gradient, order):
 
 
 def homogeneous(spheres, gradient) -> Solved:
-    """The solution of order 0, the matrix alone.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    gradient : (3,) float array, K/length
-
-    Returns
-    -------
-    Solved
-    """
+    """The solution of order 0, the matrix alone."""
     applied = uniform(spheres, gradient, 1)
     return Solved(0, np.zeros_like(applied)[:, :, :1], applied[:, :, :1], -np.asarray(gradient), 0, 0.0)
 
 
 def dipoles(spheres, source):
-    """Moments p of the temperatures p.x/r^3.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    source : (2, n, entries) float array, K
-        b of all spheres.
-
-    Returns
-    -------
-    (n, 3) float array, K length^2
-    """
+    """Moments p of the temperatures p.x/r^3."""
     root = math.sqrt(2)
     return np.stack([-root * source[0, :, 2], root * source[1, :, 2], source[0, :, 1]], axis=1) * (
         spheres.radii[:, None] ** 2
@@ -130,33 +74,7 @@ def dipoles(spheres, source):
 
 
 def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threads=1, heard=None) -> Solved:
-    """Solve for multipoles up to one degree.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    table : Translation or FastMultipole
-        The former up to degree 2 order at least.
-    gradient : (3,) float array, K/length
-        Along one axis if there are mirror images.
-    order : int
-    tolerance : float
-        Relative residual.
-    guess : Solved, optional
-        Of a lower order.
-    threads : int
-    heard : callable, optional
-        Called with the share done.
-
-    Returns
-    -------
-    Solved
-
-    Raises
-    ------
-    RuntimeError
-        If GMRES does not reach the tolerance.
-    """
+    """Solve for multipoles up to one degree."""
     n, _ = entries(order)
     count, signs = spheres.count, mirror_signs(spheres, gradient, order)
     own = zip(spheres.contrasts[:count], spheres.resistances[:count], strict=True)
@@ -188,23 +106,7 @@ def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threa
 
 
 def gmres(system, load, start, tolerance, heard=None):
-    """Full GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856), without restarts.
-
-    Parameters
-    ----------
-    system : callable (n,) float array -> (n,) float array
-        The matrix times a vector.
-    load, start : (n,) float arrays
-    tolerance : float
-        Of the residual over the norm of the load.
-    heard : callable, optional
-        Called with the share done, by the logarithm of the residual.
-
-    Returns
-    -------
-    (n,) float array
-    iterations : int
-    """
+    """Full GMRES (Saad and Schultz, SIAM J. Sci. Stat. Comput. 7 (1986) 856), without restarts."""
     first = load - system(start) if np.any(start) else load.copy()
     size, wanted = float(np.linalg.norm(first)), tolerance * float(np.linalg.norm(load))
     if size <= wanted:

@@ -24,31 +24,15 @@ SECONDS = 2.5e-9
 
 
 class Spheres(NamedTuple):
-    """Spheres in a periodic cell: first those that count, then what are mirror images of them.
+    """Spheres in a periodic cell: first those that count, then what are mirror images of them."""
 
-    Attributes
-    ----------
-    centers : (n, 3) float array, length
-    radii : (n,) float array, length
-    contrasts : (n,) float array
-        Conductivity over that of the matrix.
-    resistances : (n,) float array
-        Of their surfaces, times the conductivity of the matrix over the radius.
-    size : (3,) float array, length
-        Of the cell.
-    original : (n,) int array
-        Sphere that each one mirrors; itself if it counts.
-    flips : (n, 3) bool array
-        Axes along which it is mirrored.
-    """
-
-    centers: np.ndarray
-    radii: np.ndarray
-    contrasts: np.ndarray
-    resistances: np.ndarray
-    size: np.ndarray
-    original: np.ndarray
-    flips: np.ndarray
+    centers: np.ndarray  # (n, 3) float array, length
+    radii: np.ndarray  # (n,) float array, length
+    contrasts: np.ndarray  # (n,) float array: Conductivity over that of the matrix
+    resistances: np.ndarray  # (n,) float array: Of their surfaces, times the conductivity of the matrix over the radius
+    size: np.ndarray  # (3,) float array, length: Of the cell
+    original: np.ndarray  # (n,) int array: Sphere that each one mirrors; itself if it counts
+    flips: np.ndarray  # (n, 3) bool array: Axes along which it is mirrored
 
     @property
     def count(self) -> int:
@@ -57,23 +41,7 @@ class Spheres(NamedTuple):
 
 
 def unmirrored(centers, radii, contrasts, size, resistances=None) -> Spheres:
-    """Spheres of a cell without mirror images.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, length
-    radii : (n,) float array, length
-    contrasts : (n,) float array
-        Conductivity over that of the matrix.
-    size : (3,) float array, length
-        Of the cell.
-    resistances : (n,) float array, optional
-        Of their surfaces, times the conductivity of the matrix over the radius; 0 by default.
-
-    Returns
-    -------
-    Spheres
-    """
+    """Spheres of a cell without mirror images."""
     resistances = np.zeros(len(radii)) if resistances is None else resistances
     flips = np.zeros((len(radii), 3), dtype=bool)
     return Spheres(centers, radii, contrasts, resistances, size, np.arange(len(radii)), flips)
@@ -94,19 +62,7 @@ class Translation(NamedTuple):
     top: np.ndarray
 
     def exchanged(self, spheres, source, threads=1):
-        """c that spheres make at those that count, but for the background: see `received`.
-
-        Parameters
-        ----------
-        spheres : Spheres
-        source : (2, n, entries) float array, K
-            b of all spheres.
-        threads : int
-
-        Returns
-        -------
-        (2, count, entries) float array, K
-        """
+        """c that spheres make at those that count, but for the background: see `received`."""
         order, count = highest_degree(source.shape[2]), spheres.count
         scale = scales(spheres.radii, order)
         result = np.zeros((2, count, source.shape[2]))
@@ -117,32 +73,16 @@ class Translation(NamedTuple):
 
 
 class Scales(NamedTuple):
-    """Factors from b to multipoles of the kernels' harmonics, and from their local coefficients to c.
+    """Factors from b to multipoles of the kernels' harmonics, and from their local coefficients to c."""
 
-    Attributes
-    ----------
-    sent : (n, entries) float array, length^(l+1)
-    made : (n, entries) float array, length^l
-    """
-
-    sent: np.ndarray
-    made: np.ndarray
+    sent: np.ndarray  # (n, entries) float array, length^(l+1)
+    made: np.ndarray  # (n, entries) float array, length^l
 
 
 def scales(radii, order) -> Scales:
     """Scales of spheres: Racah's harmonics are sqrt((l-m)! (l+m)!) times the kernels' regular ones.
 
     And the irregular ones are the kernels' over that root.
-
-    Parameters
-    ----------
-    radii : (n,) float array, length
-    order : int
-        Highest degree.
-
-    Returns
-    -------
-    Scales
     """
     n, m = entries(order)
     root = np.exp(0.5 * (gammaln(n - m + 1) + gammaln(n + m + 1)))
@@ -151,18 +91,7 @@ def scales(radii, order) -> Scales:
 
 
 def translation(spheres, degree) -> Translation:
-    """Periodic sums for all pairs of spheres; both ways of a pair share one.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    degree : int
-        Highest L.
-
-    Returns
-    -------
-    Translation
-    """
+    """Periodic sums for all pairs of spheres; both ways of a pair share one."""
     i, j = np.triu_indices(spheres.count, 1, len(spheres.radii))
     offsets = np.vstack([np.zeros((1, 3)), spheres.centers[i] - spheres.centers[j]])
     contact = 2 * float(spheres.radii.max())
@@ -189,21 +118,7 @@ def complex_table(table):
 
 
 def received(spheres, table, source, threads=1):
-    """c that all spheres and their periodic images make at those that count.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    table : Translation or FastMultipole
-        The former up to twice the order of the multipoles at least.
-    source : (2, n, entries) float array, K
-        b of all spheres.
-    threads : int
-
-    Returns
-    -------
-    (2, count, entries) float array, K
-    """
+    """c that all spheres and their periodic images make at those that count."""
     result, count = table.exchanged(spheres, source, threads), spheres.count
     # Two derivatives of the periodic Green function have the trace 4 pi/volume of its background, which no harmonic
     # of degree 2 carries: dipoles p shift every slope by -4 pi/(3 volume) times their sum.

@@ -31,30 +31,7 @@ RATIOS = (0.2, 0.95)
 
 
 def converged(arrangement: Arrangement, *, order, accuracy, tolerance, threads=1, kept=None):
-    """Solutions of rising order, two degrees apart; the last is the answer.
-
-    Parameters
-    ----------
-    arrangement : Arrangement
-    order : int or None
-        The last one; None raises it until the mean flux is known to the accuracy.
-    accuracy : float
-        Relative; for order = None.
-    tolerance : float or None
-        Relative residual of each; None for one that follows from the accuracy.
-    threads : int
-
-    Returns
-    -------
-    list of Solved
-
-    Raises
-    ------
-    ValueError
-        If the order is beyond memory and time.
-    RuntimeError
-        If the accuracy asks for such an order, or a solve does not converge.
-    """
+    """Solutions of rising order, two degrees apart; the last is the answer."""
     spheres = arrangement.spheres
     highest = highest_order(spheres)
     if order is not None and order > highest:
@@ -144,19 +121,7 @@ def truncation(history) -> float:
 
 
 def field_truncation(spheres, solved, gradient) -> float:
-    """Largest term of the last two degrees in the flux at an interface, over the mean gradient.
-
-    Parameters
-    ----------
-    spheres : Spheres
-    solved : Solved
-    gradient : (3,) float array, K/length
-        The mean one.
-
-    Returns
-    -------
-    float
-    """
+    """Largest term of the last two degrees in the flux at an interface, over the mean gradient."""
     n, _ = entries(solved.order)
     last = np.abs(n * solved.source / spheres.radii[:, None])[:, :, n >= max(1, solved.order - 1)]
     return float(last.max(initial=0.0) / (np.linalg.norm(gradient) or 1.0))

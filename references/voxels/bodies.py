@@ -47,23 +47,7 @@ class Bodies(NamedTuple):
 
 
 def bodies(scene: Scene, voxels: Voxels, slope, *, linked: bool) -> Bodies:
-    """Bodies of a scene on a grid.
-
-    Parameters
-    ----------
-    scene : Scene
-        If it has walls, those across the first axis.
-    voxels : Voxels
-        Of the scene.
-    slope : (3,) float array, K/m
-        Mean gradient of a periodic cell.
-    linked : bool
-        By links between voxel centres instead of whole voxels.
-
-    Returns
-    -------
-    Bodies
-    """
+    """Bodies of a scene on a grid."""
     below, first, last = (_linked if linked else _open)(scene, voxels)
     solid = voxels.conductivity[voxels.phase] > 0
     if len(voxels.cut) and not linked:
@@ -81,19 +65,7 @@ def bodies(scene: Scene, voxels: Voxels, slope, *, linked: bool) -> Bodies:
 
 
 def settle(found: Bodies, scene: Scene, temperature, slope, rise) -> None:
-    """Give the bodies that no heat passes their temperature, and in a periodic cell all bodies their level, in place.
-
-    Parameters
-    ----------
-    found : Bodies
-    scene : Scene
-    temperature : (nx, ny, nz) float array, K
-        Less the linear part. Becomes NaN where a body reaches no wall.
-    slope : (3,) float array, K/m
-        Of the linear part.
-    rise : float, K
-        From wall to wall.
-    """
+    """Give the bodies that no heat passes their temperature, and in periodic cells all their level, in place."""
     shape, count, label = temperature.shape, len(found.passing), found.label
     still = np.append(~found.passing, False)[label]
     x = np.meshgrid(*centers(shape, np.array(scene.size) / shape), indexing="ij", sparse=True)

@@ -11,18 +11,6 @@ def phase_parts(n_phases, rank, cuts, parent, background):
     """Fraction of each phase in each cut voxel, as (voxel, phase, fraction) columns.
 
     A voxel starts as its background; each surface in it moves its fraction from the phase it was painted on.
-
-    Parameters
-    ----------
-    n_phases : int
-    rank : (m,) int array
-        Which cut voxel each surface is in.
-    cuts : Cuts
-        The m surfaces, of `references.voxels.paint`.
-    parent : (n_phases,) int array
-        Phase that each was painted on.
-    background : (n,) int array
-        Of the cut voxels.
     """
     voxels = np.concatenate([np.arange(len(background)), rank, rank])
     phases = np.concatenate([background, cuts.phase, parent[cuts.phase]])
@@ -36,16 +24,7 @@ def phase_parts(n_phases, rank, cuts, parent, background):
 
 
 def laminate_tensors(part, conductivities, moment):
-    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal.
-
-    Parameters
-    ----------
-    part : tuple of (m,) array
-        As of `phase_parts`.
-    conductivities : (n_phases,) float array, W/(m K)
-    moment : (n, 6) float array
-        Mean of n n over the surfaces in each cut voxel, times their area.
-    """
+    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal."""
     voxel, phase, fraction = part
     # A pore blocks the normal direction; the smallest normal number stands for its zero conductivity.
     resistance = fraction / np.maximum(conductivities[phase], np.finfo(float).tiny)

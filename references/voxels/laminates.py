@@ -27,23 +27,7 @@ def unpacked(entries) -> np.ndarray:
 
 
 def laminated(rank, fraction, tensors, normals) -> np.ndarray:
-    """Conductivities of laminates.
-
-    Parameters
-    ----------
-    rank : (m,) int array
-        Which laminate each part is of, 0 to n - 1.
-    fraction : (m,) float array
-        Of its laminate.
-    tensors : (m, 3, 3) float array, W/(m K)
-        Of the parts; a pore's is 0.
-    normals : (n, 3) float array
-        Unit vectors.
-
-    Returns
-    -------
-    (n, 3, 3) float array, W/(m K)
-    """
+    """Conductivities of laminates."""
     count, n = len(normals), normals[rank]
     # The smallest normal number stands for a pore's zero.
     empty = ~tensors.any(axis=(1, 2))
@@ -61,20 +45,7 @@ def laminated(rank, fraction, tensors, normals) -> np.ndarray:
 
 
 def cut_tensors(part, tensors, moment) -> np.ndarray:
-    """Conductivities of cut voxels.
-
-    Parameters
-    ----------
-    part : (voxel, phase, fraction) columns
-        What each cut voxel is made of.
-    tensors : (phases, 3, 3) float array, W/(m K)
-    moment : (n, 6) float array, m2
-        Integral of n n over the surface in each cut voxel.
-
-    Returns
-    -------
-    (n, 6) float array, W/(m K)
-    """
+    """Conductivities of cut voxels."""
     voxel, phase, fraction = part
     shares, directions = np.linalg.eigh(unpacked(moment / moment[:, :3].sum(axis=1, keepdims=True)))
     total = np.zeros((len(moment), 3, 3))
@@ -85,18 +56,7 @@ def cut_tensors(part, tensors, moment) -> np.ndarray:
 
 
 def with_own(voxels):
-    """The same voxels where every one that a tensor's phase fills has a tensor of its own, as cut ones do.
-
-    Parameters
-    ----------
-    voxels : Voxels
-        With `tensors`.
-
-    Returns
-    -------
-    Voxels
-        Only for what reads conductivities: `cut` is no longer what interfaces cut.
-    """
+    """The same voxels where every one that a tensor's phase fills has a tensor of its own, as cut ones do."""
     bent = np.any(voxels.tensors != voxels.conductivity[:, None] * [1, 1, 1, 0, 0, 0], axis=1)
     whole = np.flatnonzero(bent[voxels.phase.reshape(-1)])
     own = np.union1d(whole, voxels.cut)

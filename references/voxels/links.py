@@ -25,20 +25,6 @@ def links(scene: Scene, shape, *, phase=None) -> tuple:
 
     Link i of an axis joins voxels i - 1 and i.  The first and the last pass through a face of the box: one and the
     same link in a periodic cell; mirrored in an isothermal wall, so twice its inner half; 0 in an insulated one.
-
-    Parameters
-    ----------
-    scene : Scene
-        All conductivities positive.
-    shape : (3,) tuple of int
-        Voxels along each side.
-    phase : (nx, ny, nz) uint16 array, optional
-        Phase number at the centre of each voxel, if it is known already.
-
-    Returns
-    -------
-    tuple of three float arrays
-        Shapes (nx + 1, ny, nz), (nx, ny + 1, nz) and (nx, ny, nz + 1).
     """
     resistivity = 1.0 / scene.conductivities
     change = resistivity - resistivity[scene.parents()]
@@ -112,24 +98,7 @@ def _rounded(scene):
 
 @singledispatch
 def cut(shape: Shape, resistance, axis: int, change: float, spacing) -> None:
-    """Add a shape's change of resistivity to the links along one axis; shapes are registered by their type.
-
-    Parameters
-    ----------
-    shape : Shape
-        One image of an inclusion as it meets the box.
-    resistance : float array, m K/W
-        Of each link along the axis, over its length; changed in place.
-    axis : {0, 1, 2}
-    change : float, m K/W
-        Resistivity of the inclusion less that of the phase it was painted on.
-    spacing : (3,) float array, m
-
-    Raises
-    ------
-    NotImplementedError
-        If the shape is not registered.
-    """
+    """Add a shape's change of resistivity to the links along one axis; shapes are registered by their type."""
     raise NotImplementedError(
         f"links cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
     )

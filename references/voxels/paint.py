@@ -106,21 +106,7 @@ class Cuts(NamedTuple):
 
 
 def grid_shape(scene: Scene, voxels, usual: int | None = None) -> tuple[int, int, int]:
-    """Voxels along each side.
-
-    Parameters
-    ----------
-    scene : Scene
-    voxels : int, (3,) sequence of int, or None
-        An int counts voxels along the longest side; the other sides get the whole number that makes the voxels as
-        nearly cubic as they can be. None: the usual number, or an image's own voxels, which it must be content with.
-    usual : int, optional
-
-    Raises
-    ------
-    ValueError
-        If `voxels` is neither, a count is below 1, the grid has more than 2^31 - 1 voxels, or an image has others.
-    """
+    """Voxels along each side."""
     if scene.image is not None:
         shape = scene.image.shape
         if voxels is not None and _counted(scene, voxels) != shape:
@@ -150,25 +136,7 @@ def _counted(scene, voxels):
 
 
 def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
-    """Put a scene on a grid, or on some planes of it.
-
-    Parameters
-    ----------
-    scene : Scene
-    shape : (3,) tuple of int
-        Voxels along each side; those of the image, if it is one.
-    laminate : bool
-        Cut voxels get a laminate's tensor; else every voxel belongs wholly to the phase of its centre.
-    planes : (2,) tuple of int, optional
-        First and end of planes across the first axis that are kept, bit for bit as of the whole grid. Default: all.
-
-    Raises
-    ------
-    ValueError
-        If there are 65536 inclusions or more.
-    NotImplementedError
-        If laminates are asked for and the voxels that a shape cuts are not known; see `paint`.
-    """
+    """Put a scene on a grid, or on some planes of it."""
     spacing = np.array(scene.size) / shape
     if len(scene.inclusions) >= MOST_PHASES:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
@@ -213,13 +181,7 @@ def _tensors(scene):
 
 
 def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
-    """The same voxels with axes order[0], order[1], order[2] as axes 0, 1, 2.
-
-    Parameters
-    ----------
-    voxels : Voxels
-    order : (3,) sequence of int
-    """
+    """The same voxels with axes order[0], order[1], order[2] as axes 0, 1, 2."""
     if tuple(order) == (0, 1, 2):
         return voxels
     phase = np.ascontiguousarray(voxels.phase.transpose(order))
@@ -234,29 +196,12 @@ def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
 
 
 def centers(shape, spacing) -> list:
-    """Coordinates of the voxel centres along each axis, m.
-
-    Parameters
-    ----------
-    shape : (3,) tuple of int
-    spacing : (3,) float array, m
-    """
+    """Coordinates of the voxel centres along each axis, m."""
     return [(np.arange(n) + 0.5) * h for n, h in zip(shape, spacing, strict=True)]
 
 
 def medium(voxels: Voxels, scalar, tensor, dtype) -> Medium:
-    """A property given per phase and per cut voxel, laid out for kernels.
-
-    Parameters
-    ----------
-    voxels : Voxels
-    scalar : (phases,) float array
-        The property of each phase.
-    tensor : (m, 6) float array
-        That of each cut voxel.
-    dtype : numpy dtype
-        Of both as kernels read them.
-    """
+    """A property given per phase and per cut voxel, laid out for kernels."""
     nx, ny, nz = voxels.phase.shape
     start = np.searchsorted(voxels.cut, np.arange(nx * ny + 1) * nz)
     place = (voxels.cut % nz).astype(np.int32)
@@ -298,28 +243,7 @@ def _none():
 
 @singledispatch
 def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
-    """Paint one image of an inclusion; shapes for which more is known than `Shape` tells are registered by their type.
-
-    Parameters
-    ----------
-    shape : Shape
-        As it meets the box, without images.
-    grid : (nx, ny, nz) uint16 array
-        Phase of each voxel; those whose centres lie in the shape get its number.
-    spacing : (3,) float array, m
-    number : int
-    cutting : bool
-        Whether the voxels that the surface cuts are wanted, too.
-
-    Returns
-    -------
-    Cuts
-
-    Raises
-    ------
-    NotImplementedError
-        If cut voxels are wanted of a shape that is not registered.
-    """
+    """Paint one image of an inclusion; shapes of which more is known are registered by type."""
     if cutting:
         raise NotImplementedError(
             f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"

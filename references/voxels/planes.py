@@ -8,17 +8,7 @@ from demheat.scene import Shape
 
 
 def reaches(shape: Shape, planes, spacing: float) -> bool:
-    """Whether a shape may fill or cut voxels of some planes.
-
-    Parameters
-    ----------
-    shape : Shape
-        As it meets the box, without images.
-    planes : (2,) tuple of int, or None
-        First and end; None for all.
-    spacing : float, m
-        Of planes.
-    """
+    """Whether a shape may fill or cut voxels of some planes."""
     if planes is None:
         return True
     low, high = (bound[0] / spacing for bound in shape.bounds())
@@ -27,15 +17,7 @@ def reaches(shape: Shape, planes, spacing: float) -> bool:
 
 
 def kept(phase, cuts, planes) -> tuple:
-    """Some planes of a painted grid, and the surfaces in them.
-
-    Parameters
-    ----------
-    phase : (nx, ny, nz) array
-    cuts : Cuts
-        Of the whole grid; see `references.voxels.paint`.
-    planes : (2,) tuple of int, or None
-    """
+    """Some planes of a painted grid, and the surfaces in them."""
     if planes is None:
         return phase, cuts
     (low, high), plane = planes, phase[0].size

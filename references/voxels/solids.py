@@ -30,17 +30,7 @@ BLOCK = 2**18
 
 
 def window(shape: Shape, counts, spacing, *, clipped: bool) -> tuple[np.ndarray, np.ndarray]:
-    """First voxel of a shape's bounds along each axis, and the one after the last, two (3,) int arrays.
-
-    Parameters
-    ----------
-    shape : Shape
-    counts : (3,) tuple of int
-        Voxels of the grid.
-    spacing : (3,) float array, m
-    clipped : bool
-        Whether voxels beyond the grid are left out; along an axis without an end they are.
-    """
+    """First voxel of a shape's bounds along each axis, and the one after the last, two (3,) int arrays."""
     low, high = shape.bounds()
     ends = np.isfinite(low) & ~clipped
     first = np.where(ends, low, np.clip(low, 0.0, counts * spacing)) / spacing
@@ -49,24 +39,7 @@ def window(shape: Shape, counts, spacing, *, clipped: bool) -> tuple[np.ndarray,
 
 
 def cut_voxels(shape: Shape, counts, spacing) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Voxels of a grid that the surface of one image of a shape cuts.
-
-    Parameters
-    ----------
-    shape : Shape
-    counts : (3,) tuple of int
-        Voxels of the grid.
-    spacing : (3,) float array, m
-
-    Returns
-    -------
-    index : (m,) int64 array
-        Flat indices, ascending.
-    fraction : (m,) float array
-        Part of each inside.
-    moment : (m, 6) float array, m2
-        Integral of n n over the surface inside, order xx, yy, zz, yz, xz, xy.
-    """
+    """Voxels of a grid that the surface of one image of a shape cuts."""
     box, (low, high) = np.array(counts) * spacing, shape.bounds()
     # Of what reaches far beyond the grid only what is on it is looked at, and its volume is as planes have it.
     clipped = bool(np.any(np.isfinite(low) & (high - low > WIDEST * box)))
@@ -118,24 +91,7 @@ def _volume(shape, box):
 
 
 def inside_parts(shape: Shape, counts, spacing, axis: int) -> tuple[np.ndarray, np.ndarray]:
-    """What lies in a shape of the links along an axis between middles of voxels, and of the halves at both ends.
-
-    Parameters
-    ----------
-    shape : Shape
-        Convex; of others, each link that it cuts more than twice is taken to be cut once or twice.
-    counts : (3,) tuple of int
-        Voxels of the grid.
-    spacing : (3,) float array, m
-    axis : {0, 1, 2}
-
-    Returns
-    -------
-    rows : (m, 2) int array
-        Of the links that are looked at, indices along the other axes.
-    inside : (m, counts[axis] + 1) float array
-        Over the distance of two voxels' middles.
-    """
+    """What lies in a shape of the links along an axis between middles of voxels, and of the halves at both ends."""
     others = [a for a in range(3) if a != axis]
     low, high = window(shape, np.array(counts), spacing, clipped=True)
     grid = np.meshgrid(*(np.arange(low[a], high[a]) for a in others), indexing="ij")

@@ -15,54 +15,25 @@ MOST_LOOKED_AT = 2**20
 
 
 class Balls(NamedTuple):
-    """Images of spheres as they meet the box, in painting order.
+    """Images of spheres as they meet the box, in painting order."""
 
-    Attributes
-    ----------
-    number : (n,) int64 array
-        Phase.
-    center : (n, 3) float array, m
-    radius : (n,) float array, m
-    """
-
-    number: np.ndarray
-    center: np.ndarray
-    radius: np.ndarray
+    number: np.ndarray  # (n,) int64 array: Phase
+    center: np.ndarray  # (n, 3) float array, m
+    radius: np.ndarray  # (n,) float array, m
 
 
 class Windows(NamedTuple):
-    """Pieces of spheres with the voxels that each may fill or cut, as kernels read them.
-
-    Attributes
-    ----------
-    number, center, radius
-        As in `Balls`, of the sphere that each is a piece of.
-    low, high : (n, 3) int64 array
-        Voxels to look at, low <= index < high.
-    """
+    """Pieces of spheres with the voxels that each may fill or cut, as kernels read them."""
 
     number: np.ndarray
     center: np.ndarray
     radius: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
+    low: np.ndarray  # (n, 3) int64 array: Voxels to look at, low <= index < high
+    high: np.ndarray  # (n, 3) int64 array: Voxels to look at, low <= index < high
 
 
 def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> Iterator[Balls | tuple[int, Shape]]:
-    """Inclusions that meet the box: spheres that follow one another as arrays, images of other shapes one by one.
-
-    Parameters
-    ----------
-    inclusions : sequence of (phase number, Shape)
-        In painting order.
-    size : (3,) sequence of float, m
-    periodic : bool
-        Whether images count.
-
-    Yields
-    ------
-    Balls, or tuple of int and Shape
-    """
+    """Inclusions that meet the box: spheres that follow one another as arrays, images of other shapes one by one."""
     # What only derives from a sphere may be registered with a painting of its own.
     for spheres, group in groupby(inclusions, key=lambda pair: type(pair[1]) is Sphere):
         if spheres:
@@ -72,14 +43,7 @@ def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> 
 
 
 def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Balls:
-    """All images of spheres, as `Shape.images` finds them one by one.
-
-    Parameters
-    ----------
-    spheres : sequence of (phase number, Sphere)
-    size : (3,) sequence of float, m
-    periodic : bool
-    """
+    """All images of spheres, as `Shape.images` finds them one by one."""
     number = np.array([n for n, _ in spheres], np.int64)
     center, radius = np.array([s.center for _, s in spheres]), np.array([s.radius for _, s in spheres])
     size = np.array(size, dtype=float)
@@ -93,21 +57,7 @@ def images(spheres: Sequence[tuple[int, Sphere]], size, *, periodic: bool) -> Ba
 def windows(
     spheres: Balls, shape, spacing, *, whole: bool = False, most: int = MOST_LOOKED_AT, planes=None
 ) -> list[Windows]:
-    """The voxels that spheres may fill or cut, in blocks of not many voxels.
-
-    Parameters
-    ----------
-    spheres : Balls
-    shape : (3,) tuple of int
-        Voxels along each side.
-    spacing : (3,) float array, m
-    whole : bool
-        Leave large spheres in one piece, which else are divided along the x-axis.
-    most : int
-        Voxels of a block, about.
-    planes : (2,) tuple of int, optional
-        Leave out voxels but those with low <= first index < high.
-    """
+    """The voxels that spheres may fill or cut, in blocks of not many voxels."""
     first, last, radius = np.zeros(3, np.int64), np.array(shape), spheres.radius[:, None]
     if planes is not None:
         first[0], last[0] = planes

@@ -11,12 +11,7 @@ from studies.harness.pick import pick
 
 
 def draw(df):
-    """Two panels.
-
-    Parameters
-    ----------
-    df : DataFrame
-    """
+    """Two panels."""
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8))

@@ -7,22 +7,12 @@ from studies.harness.pick import order
 
 
 def narrowest(rows):
-    """Least width of rows, %; None if there is none.
-
-    Parameters
-    ----------
-    rows : DataFrame
-    """
+    """Least width of rows, %; None if there is none."""
     return None if rows.empty else rows["width_percent"].min()
 
 
 def order_of_width(rows):
-    """Order with which the width falls with the edge of elements; None without two rows.
-
-    Parameters
-    ----------
-    rows : DataFrame
-    """
+    """Order with which the width falls with the edge of elements; None without two rows."""
     if len(rows) < 2:
         return None
     # Meshes follow spheres besides the size that is asked for: their number of elements says how fine they are.
@@ -30,38 +20,18 @@ def order_of_width(rows):
 
 
 def place(rows):
-    """Where between lower (0) and upper bound (1) the exact value is.
-
-    Parameters
-    ----------
-    rows : DataFrame
-    """
+    """Where between lower (0) and upper bound (1) the exact value is."""
     return (rows["exact"] - rows["lower"]) / (rows["upper"] - rows["lower"])
 
 
 def narrow(rows, scene):
-    """The narrowest bracket of a scene and its cost, as a part of a sentence.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of that scene.
-    scene : str
-    """
+    """The narrowest bracket of a scene and its cost, as a part of a sentence."""
     least = rows.loc[rows["width_percent"].idxmin()]
     return f"{scene} to {least['width_percent']:.2g} % in {least['cpu_s']:.0f} CPU seconds"
 
 
 def beside(rows, held):
-    """Where answers of methods lie beside a bracket, in its widths, as parts of a sentence.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of methods.
-    held : Series
-        Row of the bracket.
-    """
+    """Where answers of methods lie beside a bracket, in its widths, as parts of a sentence."""
     for _, row in rows.iterrows():
         width, title = held["upper"] - held["lower"], found()[row["name"]].title
         if row["k"] > held["upper"]:

@@ -12,31 +12,14 @@ from studies.harness.cost import measured
 
 
 def bounded(name, seed, parts):
-    """Bounds of a scene's conductivity beside the exact one.
-
-    Parameters
-    ----------
-    name : str
-        Of the scene.
-    seed : int or None
-    parts : int
-        Edges of elements: the longest side of the box over this.
-    """
+    """Bounds of a scene's conductivity beside the exact one."""
     scene = scene_of(name, seed)
     found, cost = measured(bracket.solve, scene, size=max(scene.size) / parts)
     return _row(name, scene, found, found.stats["elements"]) | cost
 
 
 def on_voxels(name, *, voxels):
-    """Bounds of a scene's conductivity by fields on voxels, beside the exact one.
-
-    Parameters
-    ----------
-    name : str
-        Of the scene.
-    voxels : int
-        Along the box's longest side.
-    """
+    """Bounds of a scene's conductivity by fields on voxels, beside the exact one."""
     scene = scene_of(name)
     found, cost = measured(on_grid.solve, scene, voxels=voxels)
     return _row(name, scene, found, math.prod(found.stats["voxels"])) | cost
@@ -60,17 +43,7 @@ def _row(name, scene, found, elements):
 
 
 def answered(name, *, method, **knobs):
-    """A method's answer by default, or with the knobs that its name stands for.
-
-    Parameters
-    ----------
-    name : str
-        Of the scene.
-    method : str
-        Of its module.
-    **knobs
-        Of its `solve`.
-    """
+    """A method's answer by default, or with the knobs that its name stands for."""
     scene = scene_of(name)
     field, cost = measured(methods.load(method).solve, scene, **knobs)
     return {"k": field.conductivity / scene.matrix.conductivity, **cost}

@@ -20,29 +20,14 @@ CLOSELY = {
 
 
 def scene_of(name, seed=None):
-    """A scene by its name.
-
-    Parameters
-    ----------
-    name : str
-        Of a kind, or of a scene that is looked at closely.
-    seed : int, optional
-        Of a drawn scene.
-    """
+    """A scene by its name."""
     if name in CLOSELY:
         return CLOSELY[name]()
     return drawn.scene_of(name, seed)
 
 
 def exact_of(name, scene):
-    """Exact conductivity along the load, W/(m K); multipoles' where there is no closed form.
-
-    Parameters
-    ----------
-    name : str
-        Of the scene.
-    scene : Scene
-    """
+    """Exact conductivity along the load, W/(m K); multipoles' where there is no closed form."""
     if name == "sphere":
         return exact.solve(scene).conductivity
     if name in CLOSELY:

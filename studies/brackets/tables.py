@@ -10,12 +10,7 @@ from studies.harness.pick import pick
 
 
 def lines(df):
-    """One line of each kind of drawn scenes, of each refined mesh, and of each answer.
-
-    Parameters
-    ----------
-    df : DataFrame
-    """
+    """One line of each kind of drawn scenes, of each refined mesh, and of each answer."""
     rows = [_kind(kind, group) for kind, group in pick(df, part="drawn").groupby("scene", sort=False)]
     rows += [_mesh(row) for _, row in pick(df, part="refined").iterrows()]
     rows += [_mesh(row) for _, row in pick(df, part="voxels").iterrows()]

@@ -15,39 +15,14 @@ LENGTH, CONDUCTIVITY, COLD, HOT = 0.1, 33.0, 25.0, 35.0
 
 
 def scene_of(walls, conductivity=CONDUCTIVITY):
-    """Block under a mean gradient of 100 K/m.
-
-    Parameters
-    ----------
-    walls : {"held", "periodic"}
-        Between two walls, or a periodic cell.
-    conductivity : float, W/(m K)
-
-    Returns
-    -------
-    Scene
-    """
+    """Block under a mean gradient of 100 K/m."""
     gradient = (0.0, (HOT - COLD) / LENGTH, 0.0)
     load = {"gradient": gradient} if walls == "periodic" else {"walls": {"y-": COLD, "y+": HOT}}
     return Scene(size=(LENGTH,) * 3, matrix=Material(conductivity), **load)
 
 
 def contact_field(scene, packing, law, split):
-    """Field of a network of contacts whose samples have the particles' fluxes by one of the splits.
-
-    Parameters
-    ----------
-    scene : Scene
-    packing : Packing
-    law : Calibrated
-    split : str
-        As in `demheat.sampling.particle_flux.particle_flux`.
-
-    Returns
-    -------
-    Field
-        Its stats have the network's.
-    """
+    """Field of a network of contacts whose samples have the particles' fluxes by one of the splits."""
     network = network_of(scene, packing, law)
     solution = solve_steady(network, scene)
     field = field_of(scene, network, solution, stats={})

@@ -2,17 +2,7 @@
 
 
 def laws_by_size(numbers, laws, seeds):
-    """Cases of the DEM: each number of particles by each (law, coordination), packing by packing.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Of particles.
-    laws : sequence of (str, float or None)
-        Law and mean number of contacts.
-    seeds : sequence of int
-        Of the packings.
-    """
+    """Cases of the DEM: each number of particles by each (law, coordination), packing by packing."""
     for particles in numbers:
         for law, coordination in laws:
             for seed in seeds:

@@ -17,20 +17,6 @@ def compared(particles=100_000, *, seed=0, threads=2):
 
     Each runs in a process of its own, one after the other. The Voro++ of multivoro is that of November 2023, before its
     bounds of radical cells were mended against rounding.
-
-    Parameters
-    ----------
-    particles, seed : int
-        Of the packing.
-    threads : int
-        To be compared with one.
-
-    Returns
-    -------
-    dict
-        `us_per_cell` and `cells_per_s` (CPU time, one thread); `peer_us_per_cell` (None without multivoro), `ratio` of
-        the two; `efficiency`, wall time with one thread over `threads` times that with so many; `again`, share of the
-        cells begun more than once.
     """
     one, many = (_run(particles, seed, count) for count in (1, threads))
     cpu, peer = one["cpu_s"] / particles, one["peer_cpu_s"]
@@ -45,14 +31,7 @@ def compared(particles=100_000, *, seed=0, threads=2):
 
 
 def cells(particles, seed, peer):
-    """Costs of the cells of a packing in this process, the best of three runs: what `compared` puts together.
-
-    Parameters
-    ----------
-    particles, seed : int
-    peer : bool
-        Run Voro++ too.
-    """
+    """Costs of the cells of a packing in this process, the best of three runs: what `compared` puts together."""
     from demheat.network.laguerre import tessellated
     from demheat.packing.cache import relaxed
 

@@ -139,18 +139,7 @@ CLOSED = ("cubic array", "coated sphere", "laminate", "neutral spheres")
 
 
 def scene_of(kind, seed):
-    """A drawn scene.
-
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
-    seed : int
-
-    Returns
-    -------
-    Scene
-    """
+    """A drawn scene."""
     rng = np.random.default_rng([seed, KINDS.index(kind)])
     while True:
         try:
@@ -161,16 +150,5 @@ def scene_of(kind, seed):
 
 
 def exact_field(kind, scene):
-    """Exact solution of a scene; multipoles' where there is no closed form.
-
-    Parameters
-    ----------
-    kind : str
-        One of `KINDS`.
-    scene : Scene
-
-    Returns
-    -------
-    Field
-    """
+    """Exact solution of a scene; multipoles' where there is no closed form."""
     return exact.solve(scene) if kind in CLOSED else multipole.solve(scene, accuracy=ACCURACY)

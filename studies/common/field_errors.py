@@ -20,29 +20,13 @@ WITHIN = 19.6
 
 
 def mean_diameter(particles, scene):
-    """Mean diameter of so many particles that fill the scene as packings do, m.
-
-    Parameters
-    ----------
-    particles : int
-    scene : Scene
-    """
+    """Mean diameter of so many particles that fill the scene as packings do, m."""
     cubes = scene.volume * PACKED / (particles * math.pi / 6)  # mean cube of the diameters
     return (cubes / (1 + 3 * SPREAD**2)) ** (1 / 3)
 
 
 def clearance(scene, points):
-    """Distance to the nearest surface of a sphere or insulated face.
-
-    Parameters
-    ----------
-    scene : Scene
-    points : (n, 3) float array, m
-
-    Returns
-    -------
-    (n,) float array, m
-    """
+    """Distance to the nearest surface of a sphere or insulated face."""
     gaps = [np.abs(np.linalg.norm(points - sphere.center, axis=1) - sphere.radius) for sphere in scene.inclusions]
     for axis, letter in enumerate("xyz"):
         for side, face in (("-", 0.0), ("+", scene.size[axis])):
@@ -52,21 +36,7 @@ def clearance(scene, points):
 
 
 def at_points(field, flux_at, reference, places):
-    """Temperature, and flux down the load, at named points; their errors, K and % of the exact flux there.
-
-    Parameters
-    ----------
-    field, reference : Field
-    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2
-        The flux of `field` that is looked at.
-    places : dict of str to (3,) tuple
-        In units of the box.
-
-    Returns
-    -------
-    dict
-        `T_A`, `T_A_error`, `q_A`, `q_A_error` and the like.
-    """
+    """Temperature, and flux down the load, at named points; their errors, K and % of the exact flux there."""
     points, axis = np.array(list(places.values())) * field.scene.size, field.scene.axis
     warm = field.temperature_at(points)
     off = referee.temperature_error(field, reference, points, values=warm, unit="K").values
@@ -80,27 +50,7 @@ def at_points(field, flux_at, reference, places):
 
 
 def over_plane(field, flux_at, reference, where, n, widths):
-    """Errors over a plane, rms and largest, and what it cost to look at it.
-
-    Parameters
-    ----------
-    field, reference, flux_at
-        As for `at_points`.
-    where : dict
-        `axis` and `at` of the plane.
-    n : int
-        Points along each side.
-    widths : dict of str to float, m
-        Ending of a column, and width of the band along interfaces and insulated faces that it leaves out; that of ""
-        gives the columns of the band too.
-
-    Returns
-    -------
-    dict
-        `temperature_rms`, `temperature_max` (% of the span), `flux_rms` and `flux_max` (size of the vector's error, %
-        of the exact mean flux) with each ending and "_band"; `relative_...`, see `in_papers_measure`; `sample_cpu_s`
-        and the like.
-    """
+    """Errors over a plane, rms and largest, and what it cost to look at it."""
     points, _ = plane(field.scene, **where, n=n)
     (temperature, flux), cost = measured(lambda: (field.temperature_at(points), flux_at(points)))
     warm = referee.temperature_error(field, reference, points, values=temperature, unit="%")
@@ -117,21 +67,7 @@ def over_plane(field, flux_at, reference, where, n, widths):
 
 
 def in_papers_measure(temperature, flux, reference, points):
-    """Errors over the exact value at the point itself, %, as Haddad et al. 2021 state theirs against their FEM.
-
-    Parameters
-    ----------
-    temperature : (n,) float array, degrees Celsius
-    flux : (n, 3) float array, W/m2
-    reference : Field
-    points : (n, 3) float array, m
-
-    Returns
-    -------
-    dict
-        `relative_temperature`, the largest |dT| / T with T in degrees Celsius; `relative_flux`, the largest error of
-        the flux's size over it; `relative_within`, the share of the points, %, at which that is within `WITHIN`.
-    """
+    """Errors over the exact value at the point itself, %, as Haddad et al. 2021 state theirs against their FEM."""
     warm = referee.value_error(temperature, reference.temperature_at(points))
     sizes = (np.linalg.norm(vectors, axis=1) for vectors in (flux, reference.flux_at(points)))
     off = 100 * np.abs(referee.value_error(*sizes))
@@ -140,28 +76,14 @@ def in_papers_measure(temperature, flux, reference, points):
 
 
 def at_own_points(field, reference):
-    """Error of the temperature at the method's own points, %, rms weighted by volume; every k-th of many points.
-
-    Parameters
-    ----------
-    field, reference : Field
-    """
+    """Error of the temperature at the method's own points, %, rms weighted by volume; every k-th of many points."""
     number = len(field.samples.points)
     some = np.arange(number) % -(-number // OWN_POINTS) == 0
     return {"own_temperature_rms": referee.temperature_error(field, reference, mask=some, unit="%").rms}
 
 
 def field_pictures(field, where, n):
-    """A field on a plane in two cells, `slice_temperature` and `slice_flux`: over the coldest wall's, down the load, %.
-
-    Parameters
-    ----------
-    field : Field
-    where : dict
-        `axis` and `at` of the plane.
-    n : int
-        Pixels along each side.
-    """
+    """A field on a plane in two cells, `slice_temperature` and `slice_flux`: %."""
     axis, coldest = field.scene.axis, min(field.scene.wall_temperatures.values())
     points, mask = plane(field.scene, **where, n=n)
     warm = 100 * (field.temperature_at(points) - coldest) / referee.span(field.scene)
@@ -170,15 +92,7 @@ def field_pictures(field, where, n):
 
 
 def error_pictures(field, flux_at, reference, where, n):
-    """Errors on a plane in the same two cells: of the temperature, % of the span; along the mean flux, % of it.
-
-    Parameters
-    ----------
-    field, flux_at, reference
-        As for `at_points`.
-    where, n
-        As for `field_pictures`.
-    """
+    """Errors on a plane in the same two cells: of the temperature, % of the span; along the mean flux, % of it."""
     points, mask = plane(field.scene, **where, n=n)
     warm = referee.temperature_error(field, reference, points, unit="%")
     flux = referee.flux_error(field, reference, points, values=flux_at(points), unit="%", along=True)

@@ -12,17 +12,6 @@ def draw_variants(ax, made, names, printed=None, unit="%"):
     """Errors of all variants at the largest number of particles that all have, with intervals, side by side.
 
     Colours are the walls, full markers LSA and open ones relaxed packings, squares the paper's calibration by a flux.
-
-    Parameters
-    ----------
-    ax : matplotlib axes
-    made : dict
-        From `variant_errors`.
-    names : sequence of str
-        Places along the axis.
-    printed : float, optional
-        Error that the paper prints, drawn as a band.
-    unit : str
     """
     most = best_variant(made)[1]
     shown = [key for key in made if key[1] == most]

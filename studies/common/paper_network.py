@@ -28,16 +28,6 @@ def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
 
     Their method is `NAME`: a study's `MODULES` names what they run, so that its other rows do not change with it. There
     it is spelt out, as all that `run` reaches counts in the code of every row.
-
-    Parameters
-    ----------
-    numbers : sequence of int
-        Of particles, all replicas together.
-    held, packings : sequence of str
-        Of `HELD` and `PACKINGS`.
-    seeds : sequence of int
-    replicas : int
-        Along each axis, of a smaller packing; for periodic cells.
     """
     repeated = {} if replicas == 1 else {"replicas": replicas}
     for number in numbers:
@@ -48,13 +38,7 @@ def cases(numbers, *, held=HELD, packings=PACKINGS, seeds=SEEDS, replicas=1):
 
 
 def once(number):
-    """Cases of one packing of each kind under every kind of walls; of relaxed ones without walls, the least dear, more.
-
-    Parameters
-    ----------
-    number : int
-        Of particles.
-    """
+    """Cases of one packing of each kind under every kind of walls; of relaxed ones without walls more."""
     yield from cases([number], seeds=SEEDS[:1])
     yield from cases([number], held=["periodic"], packings=["relaxed"], seeds=SEEDS[1:])
 
@@ -65,20 +49,7 @@ def calibrations(held):
 
 
 def packed(size, packing, held, particles, seed, replicas=1):
-    """Packing in a box, kept in the cache: one for all scenes of its shape.
-
-    Parameters
-    ----------
-    size : (3,) sequence of float, m
-        Of all replicas together.
-    packing, held, particles, seed, replicas
-        Of a case.
-
-    Returns
-    -------
-    Packing
-        Of one replica.
-    """
+    """Packing in a box, kept in the cache: one for all scenes of its shape."""
     from demheat.packing.cache import grown, relaxed
 
     here = {"size": [side / replicas for side in size], "periodic": held == "periodic", "seed": seed}
@@ -89,17 +60,7 @@ def packed(size, packing, held, particles, seed, replicas=1):
 
 
 def unit_law(packing, held):
-    """The paper's law with C_t = 1 on a packing, its gap found once.
-
-    Parameters
-    ----------
-    packing : Packing
-    held : {"center", "surface", "periodic"}
-
-    Returns
-    -------
-    Calibrated
-    """
+    """The paper's law with C_t = 1 on a packing, its gap found once."""
     from demheat.laws import Calibrated
     from demheat.packing.neighbours import contacts
 
@@ -108,21 +69,7 @@ def unit_law(packing, held):
 
 
 def calibrated(packing, law, held):
-    """C_t of a packing by every calibration that its walls allow.
-
-    Parameters
-    ----------
-    packing : Packing
-        In a box.
-    law : Calibrated
-        With C_t = 1.
-    held : {"center", "surface", "periodic"}
-
-    Returns
-    -------
-    dict of float
-        `ct_flux` and `ct_isothermal`, or `ct_cell`, under a load along y.
-    """
+    """C_t of a packing by every calibration that its walls allow."""
     from demheat.build import network_of
     from demheat.calibration import calibration
     from demheat.scene import Material, Scene
@@ -138,24 +85,7 @@ def calibrated(packing, law, held):
 
 
 def solved(scenes, packing, held, replicas=1):
-    """Fields of scenes of one box by one packing, and its C_t.
-
-    Parameters
-    ----------
-    scenes : dict of str to Scene
-        Periodic ones for `held = "periodic"`, else walled ones; loaded along y.
-    packing : Packing
-        Of one replica, on which C_t is calibrated: without walls all replicas have the same.
-    held : {"center", "surface", "periodic"}
-    replicas : int
-
-    Returns
-    -------
-    fields : dict of str to Field
-        With the last of C_t, whose value is in their stats as "calibration".
-    row : dict
-        C_t, and the unknowns, iterations and residual of the last solve.
-    """
+    """Fields of scenes of one box by one packing, and its C_t."""
     from dataclasses import replace
 
     from demheat import dem
@@ -171,21 +101,7 @@ def solved(scenes, packing, held, replicas=1):
 
 
 def fields_and_row(scenes, packing, held, particles, seed, replicas=1):
-    """Scenes of one box by one packing of a case: their fields, and the row of the case.
-
-    Parameters
-    ----------
-    scenes : dict of str to Scene
-        As those of `solved`, by the column of their conductivity.
-    packing, held, particles, seed, replicas
-        Of a case.
-
-    Returns
-    -------
-    fields : dict of str to Field
-    row : dict
-        That of `solved`, and of each scene its conductivity over the matrix's with C_t = 1.
-    """
+    """Scenes of one box by one packing of a case: their fields, and the row of the case."""
     one = packed(_size(scenes), packing, held, particles, seed, replicas)
     fields, row = solved(scenes, one, held, replicas)
     return fields, row | {column: unscaled(field) for column, field in fields.items()}
@@ -196,24 +112,12 @@ def _size(scenes):
 
 
 def unscaled(field):
-    """Conductivity with C_t = 1 over the matrix's.
-
-    Parameters
-    ----------
-    field : Field
-        From `solved`.
-    """
+    """Conductivity with C_t = 1 over the matrix's."""
     return field.conductivity / (field.scene.matrix.conductivity * field.stats["calibration"])
 
 
 def warm_up(scenes, packing, held, particles, seed, replicas=1):
-    """Make and keep the packing, which is not part of what is compared; load and compile by a tiny one, kept nowhere.
-
-    Parameters
-    ----------
-    scenes, packing, held, particles, seed, replicas
-        As those of `fields_and_row`.
-    """
+    """Make and keep the packing, which is not part of what is compared; compile by a tiny one."""
     from demheat.gallery import sphere_in_cube
     from demheat.packing.relax import relax
 

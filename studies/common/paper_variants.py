@@ -30,47 +30,18 @@ class Variant(NamedTuple):
 
 
 def parted(df):
-    """Rows of the network in its variants, and all others.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    network, others : data frame
-        Of the network those with numbers only.
-    """
+    """Rows of the network in its variants, and all others."""
     ours = df["name"] == NAME if "name" in df else np.zeros(len(df), dtype=bool)
     return df[ours & (df["status"] == "ok")] if "status" in df else df[ours], df[~ours]
 
 
 def variants(held=HELD, packings=PACKINGS):
-    """All variants there are under some kinds of walls.
-
-    Parameters
-    ----------
-    held, packings : sequence of str
-        Of `paper_network.HELD` and `PACKINGS`.
-    """
+    """All variants there are under some kinds of walls."""
     return [Variant(p, walls, way) for p in packings for walls in held for way in calibrations(walls)]
 
 
 def values(network, variant, column):
-    """A column in proportion to C_t, calibrated, of each packing of one variant.
-
-    Parameters
-    ----------
-    network : data frame
-        Of one number of particles.
-    variant : Variant
-    column : str
-
-    Returns
-    -------
-    (n,) float array
-        Without packings that have no such value.
-    """
+    """A column in proportion to C_t, calibrated, of each packing of one variant."""
     rows = pick(network, packing=variant.packing, held=variant.held)
     if column not in rows or f"ct_{variant.calibration}" not in rows:
         return np.empty(0)
@@ -79,33 +50,14 @@ def values(network, variant, column):
 
 
 def interval(found):
-    """Mean and interval of values of packings, see `pick.student`; of a single one without an interval; None of none.
-
-    Parameters
-    ----------
-    found : (n,) float array
-    """
+    """Mean and interval of values of packings, see `pick.student`; without it of one; None of none."""
     if len(found) == 1:
         return Interval(float(found[0]), np.nan, np.nan, 1)
     return student(found) if len(found) else None
 
 
 def variant_errors(network, exact, *, column="k_{}"):
-    """Errors of all variants, %, by number of particles.
-
-    Parameters
-    ----------
-    network : data frame
-    exact : dict of str to float
-        By what the columns are called; those without a value are left out.
-    column : str
-        Of what is in proportion to C_t.
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-        Of errors, % of the exact value, over packings; variants without rows are left out.
-    """
+    """Errors of all variants, %, by number of particles."""
     made = {}
     for number in sorted(network["particles"].unique()) if len(network) else ():
         rows = network[network["particles"] == number]
@@ -120,32 +72,12 @@ def variant_errors(network, exact, *, column="k_{}"):
 
 
 def worst_error(found, among=None):
-    """Largest |mean error| of one variant.
-
-    Parameters
-    ----------
-    found : dict of str to Interval
-    among : sequence of str, optional
-        Which of them count.
-    """
+    """Largest |mean error| of one variant."""
     return max(abs(each.mean) for name, each in found.items() if among is None or name in among)
 
 
 def best_variant(made, among=None):
-    """The variant whose largest |mean error| is least at the largest number of particles that all have.
-
-    Parameters
-    ----------
-    made : dict
-        From `variant_errors`.
-    among : sequence of str, optional
-        Which errors count.
-
-    Returns
-    -------
-    (Variant, int) or None
-        None without variants.
-    """
+    """The variant whose largest |mean error| is least at the largest number of particles that all have."""
     counts = {number: sum(other == number for _, other in made) for _, number in made}
     full = [number for number, count in counts.items() if count == max(counts.values())]
     ranked = [key for key in made if key[1] == max(full)] if full else []
@@ -153,16 +85,7 @@ def best_variant(made, among=None):
 
 
 def told_of(made, among=None, measure="error", unit="%"):
-    """A sentence on the best and the worst variant, made of rows; empty without any.
-
-    Parameters
-    ----------
-    made, among
-        As those of `best_variant`.
-    measure : str
-        What the values are, in a word.
-    unit : str
-    """
+    """A sentence on the best and the worst variant, made of rows; empty without any."""
     first = best_variant(made, among)
     if first is None:
         return ""
@@ -186,21 +109,7 @@ def cell(each):
 
 
 def lines_of(made, names, among=None):
-    """Lines of a table, one for each variant and number of particles.
-
-    Parameters
-    ----------
-    made : dict
-        From `variant_errors`.
-    names : dict of str to str
-        Columns of the errors, and their titles.
-    among : sequence of str, optional
-        Which errors make the best.
-
-    Returns
-    -------
-    list of dict
-    """
+    """Lines of a table, one for each variant and number of particles."""
     first, rows = best_variant(made, among), []
     for (variant, number), found in made.items():
         row = {"packing": PACKED[variant.packing], "temperatures": ACTING[variant.held]}
@@ -212,21 +121,7 @@ def lines_of(made, names, among=None):
 
 
 def shown(made, names, what, best="", among=None):
-    """A sentence on what a table of all variants shows, and the table; nothing without any.
-
-    Parameters
-    ----------
-    made, names, among
-        As those of `lines_of`.
-    what : str
-        Of the network and its errors, as the sentence goes on.
-    best : str
-        How it ends: which variant is the best.
-
-    Returns
-    -------
-    list of str
-    """
+    """A sentence on what a table of all variants shows, and the table; nothing without any."""
     import pandas as pd
 
     said = f"The paper's network {what}, means over packings with their 95 % intervals (Student's){best}."

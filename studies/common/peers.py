@@ -12,19 +12,7 @@ from studies.harness.cost import measured
 
 
 def tessellation(particles, seed):
-    """CPU time of the radical cells of one walled packing by our kernel and by Voro++ (multivoro).
-
-    Parameters
-    ----------
-    particles, seed : int
-        Of the packing between walls.
-
-    Returns
-    -------
-    dict
-        `us_per_particle`, `peer_us_per_particle` (CPU time, microseconds; the peer's None where it is not installed),
-        `facets_per_cell` of both, and the cost of our own.
-    """
+    """CPU time of the radical cells of one walled packing by our kernel and by Voro++ (multivoro)."""
     from demheat.network.laguerre import laguerre
     from demheat.packing.cache import relaxed
 
@@ -56,19 +44,6 @@ def steady(particles, seed, scene):
     """CPU time of one steady solve by our solver and by plain pyamg on the same matrix, to the same residual.
 
     The packing is replicas of a smaller one, drawn off the walls; twins at interfaces are not repeated.
-
-    Parameters
-    ----------
-    particles, seed : int
-    scene : Scene
-        With temperatures on two walls across y.
-
-    Returns
-    -------
-    dict
-        `unknowns`; `residual`, `solver`, `iterations` and the cost of ours; and of each peer ("ruge_stuben",
-        "aggregation") `*_cpu_s`, `*_peak_mib`, `*_iterations` and `*_residual`, set-up included; residuals are norms
-        of b - A x over that of b, recomputed.
     """
     import pyamg
 
@@ -96,13 +71,7 @@ REPLICA = 130_000
 
 
 def laguerre_network(scene, particles, seed):
-    """The network of a scene on replicas of a small packing.
-
-    Parameters
-    ----------
-    scene : Scene
-    particles, seed : int
-    """
+    """The network of a scene on replicas of a small packing."""
     from demheat.build import network_of
     from demheat.laws import Laguerre
     from demheat.packing.cache import replicated
@@ -116,13 +85,7 @@ def laguerre_network(scene, particles, seed):
 
 
 def matrix_of(network, scene):
-    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-    """
+    """Heat balance of the particles as a SciPy matrix and right-hand side, W/K and W."""
     from demheat.conduction.steady import matrix
     from demheat.network.base import row_numbers
     from demheat.scene import WALLS

@@ -12,24 +12,7 @@ LONGEST = 131_072
 
 
 def packed(values, step):
-    """Square picture as a cell.
-
-    Parameters
-    ----------
-    values : (n, n) float array
-        Rounded to whole steps.
-    step : float
-        Unit of the values.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    ValueError
-        If the picture is not square, not finite, or too long for a cell.
-    """
+    """Square picture as a cell."""
     values = np.asarray(values, dtype=float)
     if values.ndim != 2 or values.shape[0] != values.shape[1] or not np.isfinite(values).all():
         raise ValueError(f"picture of shape {values.shape}: must be square, of finite numbers")
@@ -43,13 +26,7 @@ def packed(values, step):
 
 
 def unpacked(text):
-    """The picture of a cell, (n, n) float array.
-
-    Raises
-    ------
-    ValueError
-        If the cell holds none.
-    """
+    """The picture of a cell, (n, n) float array."""
     try:
         side, step, rest = str(text).split(":")
         planes = np.frombuffer(zlib.decompress(base64.b64decode(rest)), np.uint8).reshape(4, -1)

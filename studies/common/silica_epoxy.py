@@ -21,22 +21,6 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
     """Spheres of one kind in a cube: equal ones in a periodic cell or between walls, or unequal ones in a cell.
 
     Walled spheres, none of which crosses a face, can be under a mean gradient as well as between isothermal walls.
-
-    Parameters
-    ----------
-    kind : {"periodic", "walled", "unequal"}
-    fraction : float
-        Of the spheres' volume.
-    seed : int
-    axis : {0, 1, 2}
-        Of the load.
-    boundary : {"gradient", "walls"}
-    gap : float
-        Least distance of two surfaces, in diameters.
-
-    Returns
-    -------
-    Scene
     """
     from demheat.packing.dispersion import dispersion_scene
     from demheat.packing.radii import Gaussian
@@ -57,20 +41,7 @@ def scene(kind, fraction, *, seed, axis=1, boundary="gradient", gap=GAP):
 
 
 def solved(made, *, method, **knobs):
-    """Solve a scene; return its Field and a row: k over the matrix's, the discrete fraction, statistics and cost.
-
-    Parameters
-    ----------
-    made : Scene
-    method : str
-        Name of its module.
-    knobs : keywords of its `solve`
-
-    Returns
-    -------
-    field : Field
-    row : dict
-    """
+    """Solve a scene; return its Field and a row: k over the matrix's, the discrete fraction, statistics and cost."""
     field, cost = measured(methods.load(method).solve, made, **knobs)
     row = {"k_ratio": field.conductivity / EPOXY.conductivity, "inclusion": float(sum(field.fractions[1:]))}
     # "order" is a knob of finite elements.
@@ -82,19 +53,7 @@ def solved(made, *, method, **knobs):
 
 
 def together(rows, axes):
-    """One row of the solves along some axes: the mean of k and each one's; costs are sums, sizes those of the last.
-
-    Parameters
-    ----------
-    rows : sequence of dict
-        As from `solved`.
-    axes : str
-        Of the load, as "xyz".
-
-    Returns
-    -------
-    dict
-    """
+    """One row of the solves along some axes: the mean of k and each one's; costs are sums, sizes those of the last."""
     row = dict(rows[-1]) | {f"k_{axis}": each["k_ratio"] for axis, each in zip(axes, rows, strict=True)}
     row["k_ratio"] = sum(each["k_ratio"] for each in rows) / len(rows)
     for name in ("wall_s", "cpu_s"):

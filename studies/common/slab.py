@@ -16,16 +16,7 @@ def slab():
 
 
 def packing_of(particles, seed=0):
-    """Packing between the slab's walls, kept in the cache.
-
-    Parameters
-    ----------
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing between the slab's walls, kept in the cache."""
     from demheat.packing.cache import relaxed
 
     return relaxed(particles, size=slab().size, periodic=False, seed=seed)

@@ -6,20 +6,7 @@ import numpy as np
 
 
 def slice_means(place, values, bins=20):
-    """Middles of the slices, and means of values in them.
-
-    Parameters
-    ----------
-    place : (n,) float array
-        Along the body, in its lengths.
-    values : (n,) float array, any unit
-    bins : int
-
-    Returns
-    -------
-    middle, mean : (bins,) float array
-        Not-a-number in empty slices.
-    """
+    """Middles of the slices, and means of values in them."""
     edges = np.linspace(0.0, 1.0, bins + 1)
     here = np.clip(np.digitize(place, edges) - 1, 0, bins - 1)
     count = np.bincount(here, minlength=bins)

@@ -57,39 +57,14 @@ def quick(case):
 
 
 def packing_of(particles, seed):
-    """Packing in the sphere, kept in the cache.
-
-    Parameters
-    ----------
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing in the sphere, kept in the cache."""
     from demheat.packing.cache import relaxed
 
     return relaxed(particles, size=sphere().size, periodic=False, domain="sphere", seed=seed)
 
 
 def marched(times, look, *, method, **knobs):
-    """March to the times by a method, and read something off each Field.
-
-    Parameters
-    ----------
-    times : sequence of float, s
-    look : callable (Field, exact Field) -> dict
-    method : str
-        Name of its module.
-    knobs : keywords of its `evolve`
-        Instead of a packing its `particles` and `seed`.
-
-    Returns
-    -------
-    row : dict
-        All that `look` gave, the statistics at the last time, and the cost of march and looks. The packing comes from
-        the cache before the clock starts; a mesh is made while it runs.
-    """
+    """March to the times by a method, and read something off each Field."""
     from references import series
 
     if "particles" in knobs:
@@ -110,13 +85,7 @@ def marched(times, look, *, method, **knobs):
 
 
 def prepare(times, look, *, method, **knobs):
-    """Make and keep the packing, load and compile: nothing of it is part of what is compared.
-
-    Parameters
-    ----------
-    times, look, method, knobs
-        As those of `marched`.
-    """
+    """Make and keep the packing, load and compile: nothing of it is part of what is compared."""
     if "particles" in knobs:
         packing = packing_of(knobs["particles"], knobs["seed"])
         if knobs["law"] == "calibrated":
@@ -132,20 +101,7 @@ def radii(points):
 
 
 def in_shells(r, values, weights, shells=20):
-    """Weighted mean and largest size of values in shells of equal thickness; not-a-number in empty ones.
-
-    Parameters
-    ----------
-    r : (n,) float array
-        Distance from the centre, in radii.
-    values : (n,) float array, any unit
-    weights : (n,) float array, m3
-    shells : int
-
-    Returns
-    -------
-    middle, mean, largest : (shells,) float arrays
-    """
+    """Weighted mean and largest size of values in shells of equal thickness; not-a-number in empty ones."""
     place = np.minimum((r * shells).astype(int), shells - 1)
     weight, total = (np.bincount(place, w, shells) for w in (weights, weights * values))
     largest = np.full(shells, -np.inf)
@@ -174,18 +130,7 @@ def solved(df):
 
 
 def order_of(rows, column):
-    """Order in the particle spacing of a column's mean over packings.
-
-    Parameters
-    ----------
-    rows : data frame
-    column : str
-        Of errors.
-
-    Returns
-    -------
-    float
-    """
+    """Order in the particle spacing of a column's mean over packings."""
     means = rows.groupby("particles")[column].agg(lambda errors: errors.mean(skipna=False))
     return -3 * np.polyfit(np.log(means.index), np.log(means), 1)[0]
 

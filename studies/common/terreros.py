@@ -37,36 +37,13 @@ def sheet():
 
 
 def packing_of(scene, particles, seed):
-    """Packing between the walls of a body, radii as in the paper, kept in the cache.
-
-    Parameters
-    ----------
-    scene : Scene
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing between the walls of a body, radii as in the paper, kept in the cache."""
     domain = {} if scene.domain == "box" else {"domain": scene.domain}
     return relaxed(particles, size=scene.size, periodic=False, radii=SPREAD, seed=seed, **domain)
 
 
 def steady_conductivity(packing, law, **contact):
-    """Conductivity of a law's network between the ends of the beam over the material's; with "calibrated", of C_t = 1.
-
-    Parameters
-    ----------
-    packing : Packing
-        Of the beam.
-    law : {"laguerre", "calibrated", "platonic"}
-    contact : coordination, float
-        As in `demheat.dem.evolve`; end temperatures act in the centres of particles, as its default has it.
-
-    Returns
-    -------
-    float
-    """
+    """Conductivity of a law's network between the beam's ends over the material's; with "calibrated", of C_t = 1."""
     kind = LAWS[law]
     if kind.factor is None:  # of a law that is calibrated
         contact["factor"] = 1.0

@@ -26,21 +26,7 @@ SPAN = 500.0
 
 
 def spheres(cells, crystal="simple cubic", *, periodic):
-    """Touching spheres of a crystal in a box of cubic cells.
-
-    Parameters
-    ----------
-    cells : (3,) tuple of int
-        Along each axis.
-    crystal : str
-        One of `demheat.network.platonic.CRYSTALS`.
-    periodic : bool
-        Else between walls.
-
-    Returns
-    -------
-    Packing
-    """
+    """Touching spheres of a crystal in a box of cubic cells."""
     sites = np.array(CRYSTALS[crystal], dtype=float)
     corners = np.stack(np.meshgrid(*map(np.arange, cells), indexing="ij"), axis=-1).reshape(-1, 1, 3)
     centers = (corners + sites + (0.0 if periodic else 0.5)).reshape(-1, 3) * EDGE
@@ -50,16 +36,7 @@ def spheres(cells, crystal="simple cubic", *, periodic):
 
 
 def stencil_row(cells, walls, sphere):
-    """Largest differences between network and grid, relative to the largest value or the span of temperature.
-
-    Parameters
-    ----------
-    cells : (3,) tuple of int
-    walls : str
-        One of `LOADS`.
-    sphere : bool
-        With a sphere ten times as conducting.
-    """
+    """Largest differences between network and grid, relative to the largest value or the span of temperature."""
     size = np.array(cells) * EDGE
     # A radius that passes no centre of a cell.
     inclusions = [Sphere(tuple(size / 2), 3.3 * EDGE, SPHERE)] if sphere else []
@@ -144,15 +121,7 @@ def _off(ours, theirs, scale=None):
 
 
 def crystal_row(cells, crystal):
-    """Steady conductivity and heat capacity of a periodic crystal; arguments as those of `spheres`.
-
-    Parameters
-    ----------
-    cells : (3,) tuple of int
-        Along each axis.
-    crystal : str
-        One of `demheat.network.platonic.CRYSTALS`.
-    """
+    """Steady conductivity and heat capacity of a periodic crystal; arguments as those of `spheres`."""
     packing = spheres(cells, crystal, periodic=True)
     number, _ = crystal_packing(CRYSTALS[crystal])
     scene = Scene(tuple(packing.size), MATRIX, gradient=(0.0, 1.0, 0.0))

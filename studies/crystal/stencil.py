@@ -14,24 +14,13 @@ from scipy.sparse.linalg import spsolve
 
 
 class Grid(NamedTuple):
-    """Cells under a load.
+    """Cells under a load."""
 
-    Attributes
-    ----------
-    edge : float, m
-    k : (nx, ny, nz) float array, W/(m K)
-    capacity : (nx, ny, nz) float array, J/K
-    held : dict of str to float, K
-        Temperatures of walls "x-", "x+", ...; other walls are insulated.
-    fluxes : dict of str to float, W/m2
-        Into the body.
-    """
-
-    edge: float
-    k: np.ndarray
-    capacity: np.ndarray
-    held: dict
-    fluxes: dict
+    edge: float  # m
+    k: np.ndarray  # (nx, ny, nz) float array, W/(m K)
+    capacity: np.ndarray  # (nx, ny, nz) float array, J/K
+    held: dict  # dict of str to float, K: Temperatures of walls "x-", "x+", ...; other walls are insulated
+    fluxes: dict  # dict of str to float, W/m2: Into the body
 
 
 def links(grid):
@@ -44,29 +33,12 @@ def links(grid):
 
 
 def wall_links(grid, name):
-    """Conductance of the cells at a wall to it, W/K.
-
-    Parameters
-    ----------
-    grid : Grid
-    name : str
-        Of the wall, as "x-".
-
-    Returns
-    -------
-    (n, m) float array, W/K
-    """
+    """Conductance of the cells at a wall to it, W/K."""
     return 2.0 * _layer(grid.k, name) * grid.edge
 
 
 def heat(grid, temperature):
-    """Heat that each cell receives, (nx, ny, nz) float array, W.
-
-    Parameters
-    ----------
-    grid : Grid
-    temperature : (nx, ny, nz) float array, K
-    """
+    """Heat that each cell receives, (nx, ny, nz) float array, W."""
     received = np.zeros_like(temperature)
     for axis, conductance in enumerate(links(grid)):
         flow = conductance * np.diff(temperature, axis=axis)
@@ -79,14 +51,7 @@ def heat(grid, temperature):
 
 
 def explicit_step(grid, temperature, dt):
-    """Temperatures after one explicit step.
-
-    Parameters
-    ----------
-    grid : Grid
-    temperature : (nx, ny, nz) float array, K
-    dt : float, s
-    """
+    """Temperatures after one explicit step."""
     return temperature + dt * heat(grid, temperature) / grid.capacity
 
 

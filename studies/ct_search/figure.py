@@ -24,12 +24,7 @@ STEPS = (-4.0, -2.0, -1.0, 1.0, 2.0, 4.0)
 
 
 def draw(df):
-    """Figure of the rows.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Figure of the rows."""
     from matplotlib import pyplot
 
     lines = ranked(df)

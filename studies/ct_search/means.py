@@ -31,24 +31,12 @@ NAMES = {
 
 
 def between_walls(cell, block, number, exponent=WALLS):
-    """C_t between walls for a number of particles, from the periodic cell's and that of NUMBER between walls.
-
-    Parameters
-    ----------
-    cell, block : float or column
-    number : float
-    exponent : float
-    """
+    """C_t between walls for a number of particles, from the periodic cell's and that of NUMBER between walls."""
     return cell - (cell - block) * (NUMBER / number) ** exponent
 
 
 def predicted(df):
-    """The rows that are ok, with `ct_1e5`, `ct_1e6`, `sphere` and its range, `under_2` in per cent; and half widths.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """The rows that are ok, with `ct_1e5`, `ct_1e6`, `sphere` and its range, `under_2` in per cent; and half widths."""
     df = pick(df, status="ok").copy()
     for name, number in (("ct_1e5", 1e5), ("ct_1e6", 1e6)):
         df[name] = between_walls(df["ct_cell"], df["ct_block"], number)
@@ -63,18 +51,7 @@ def predicted(df):
 
 
 def ranked(df):
-    """A line for each set and weighting of the scatter, by the largest of its misfits, the best first.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    data frame
-        As `predicted`, with `weighting`, its `cov_0`, `cov_4` and `cov_11`, `misfit_...` of all that is judged (signed
-        where it is two-sided, in tolerances) and `worst`, the largest size of these.
-    """
+    """A line for each set and weighting of the scatter, by the largest of its misfits, the best first."""
     import pandas as pd
 
     rows, lines = predicted(df), []
@@ -90,12 +67,7 @@ def ranked(df):
 
 
 def shown(df):
-    """Table of the search: each set once, with the weighting that suits it better.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Table of the search: each set once, with the weighting that suits it better."""
     found = ranked(df).drop_duplicates(["spread", "links", "mean"], ignore_index=True)
     found = found.assign(
         sphere_range=[f"{a:.2f} to {b:.2f}" for a, b in zip(found["sphere_low"], found["sphere_high"], strict=True)],
@@ -114,12 +86,7 @@ def shown(df):
 
 
 def in_words(df):
-    """The best set and those that the paper's words name, as sentences.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """The best set and those that the paper's words name, as sentences."""
     found = ranked(df)
     best = found.iloc[0]
     fits = "This set gives all that is printed" if best["worst"] <= 1 else "No set gives all that is printed; the best"

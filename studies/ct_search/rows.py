@@ -25,54 +25,20 @@ CONTRASTS, RATIOS = (0.01, 0.1, 10.0, 100.0), (4.0, 11.0)
 
 
 def packed(spread, seed, *, periodic):
-    """Hard spheres in the block, kept in the cache.
-
-    Parameters
-    ----------
-    spread : float
-    seed : int
-    periodic : bool
-        A cell, or between six walls.
-
-    Returns
-    -------
-    Packing
-    """
+    """Hard spheres in the block, kept in the cache."""
     size = (LENGTH,) * 3
     return grown(NUMBER, size=size, pressure=PRESSURE, radii=Gaussian(spread), periodic=periodic, seed=seed)
 
 
 def set_row(spread, links, mean):
-    """Means over packings, and of C_t their standard deviation.
-
-    Parameters
-    ----------
-    spread, links : float
-    mean : {"arithmetic", "harmonic"}
-
-    Returns
-    -------
-    dict of float
-    """
+    """Means over packings, and of C_t their standard deviation."""
     found = [of_one(spread, links, mean, seed) for seed in SEEDS]
     row = {name: float(np.mean([one[name] for one in found])) for name in found[0]}
     return row | {f"{name}_sd": float(np.std([one[name] for one in found], ddof=1)) for name in ("ct_cell", "ct_block")}
 
 
 def of_one(spread, links, mean, seed):
-    """The same of one pair of packings.
-
-    Parameters
-    ----------
-    spread, links, mean
-        As in `set_row`.
-    seed : int
-
-    Returns
-    -------
-    dict of float
-        Links are counted over all particles, walls not among them, as in the papers.
-    """
+    """The same of one pair of packings."""
     cell, block = (packed(spread, seed, periodic=periodic) for periodic in (True, False))
     row = {"phi": cell.phi}
     row |= _in_cell(cell, links, mean)

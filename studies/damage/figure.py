@@ -12,12 +12,7 @@ from studies.harness.pick import finest, pick
 
 
 def draw(df):
-    """Three panels.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Three panels."""
     from matplotlib import pyplot
 
     figure, (one, two, three) = pyplot.subplots(1, 3, figsize=(14, 4.6))

@@ -26,12 +26,7 @@ NAMES = ("unknowns", "iterations", "residual", "packing_s", "solve_s")
 
 
 def damaged(share):
-    """Spheres a share of which has come off.
-
-    Parameters
-    ----------
-    share : float
-    """
+    """Spheres a share of which has come off."""
     return come_off(gallery.random_dispersion(SPHERES, fraction=FRACTION, gap=0.1), share, seed=SEED)
 
 
@@ -41,16 +36,7 @@ def _exact(share):
 
 
 def debonded(share, *, method, **knobs):
-    """Spheres that have come off, beside multipoles.
-
-    Parameters
-    ----------
-    share : float
-    method : str
-        Name of its module.
-    **knobs
-        Of its `solve`.
-    """
+    """Spheres that have come off, beside multipoles."""
     scene, sure = damaged(share), _exact(share)
     field, cost = measured(methods.load(method).solve, scene, **knobs)
     row = {"k_ratio": field.conductivity / scene.matrix.conductivity}
@@ -60,16 +46,7 @@ def debonded(share, *, method, **knobs):
 
 
 def cracks(radius, *, method, **knobs):
-    """A disc in the middle of a cell, across the load, beside the exact value.
-
-    Parameters
-    ----------
-    radius : float
-        Over the edge of the cell.
-    method : str
-    **knobs
-        Of `demheat.damage.solve`.
-    """
+    """A disc in the middle of a cell, across the load, beside the exact value."""
     sure = discs(radius).conductivity
     field, cost = measured(solve, CELL, cracks=[Disc((0.5, 0.5, 0.5), radius, (0.0, 0.0, 1.0))], **knobs)
     row = {"k_ratio": field.conductivity, "exact_ratio": sure}
@@ -78,34 +55,14 @@ def cracks(radius, *, method, **knobs):
 
 
 def links(body, number, removed, draw, *, method, **knobs):
-    """A lattice or a packing without some of its links.
-
-    Parameters
-    ----------
-    body : {"lattice", "packing"}
-    number : int
-        Cells along an edge of the lattice, or particles of the packing.
-    removed : float
-        Share of the links.
-    draw : int
-        Seed of their choice.
-    method : str
-    **knobs
-        Of `demheat.damage.solve`.
-    """
+    """A lattice or a packing without some of its links."""
     where = {"packing": lattice(number)} if body == "lattice" else {"particles": number}
     field, cost = measured(solve, DIAGONAL, removed=removed, draw=draw, **where, **knobs)
     return {"k_ratio": field.conductivity} | {name: field.stats.get(name) for name in NAMES} | cost
 
 
 def lattice(cells):
-    """A periodic packing on a simple cubic lattice, whose network is one of equal links.
-
-    Parameters
-    ----------
-    cells : int
-        Along each edge.
-    """
+    """A periodic packing on a simple cubic lattice, whose network is one of equal links."""
     step = 1 / cells
     places = np.stack(np.meshgrid(*3 * [np.arange(cells)], indexing="ij"), axis=-1).reshape(-1, 3) + 0.5
     return make_packing(step * places, np.full(cells**3, step / 2), CELL.size, (True,) * 3, {})

@@ -10,32 +10,17 @@ from studies.harness.pick import pick
 
 
 def of_spheres(df):
-    """Errors of bodies whose spheres have come off: a line of each method and resolution, a column of each share.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Errors of bodies whose spheres have come off: a line of each method and resolution, a column of each share."""
     return _errors(pick(df, part="debonded"), "share")
 
 
 def of_discs(df):
-    """Errors of arrays of discs: a line of each number of particles, a column of each radius.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Errors of arrays of discs: a line of each number of particles, a column of each radius."""
     return _errors(pick(df, part="cracks"), "radius")
 
 
 def of_links(df):
-    """What links that are gone leave of the conductivity, beside the theory: a line of each body.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """What links that are gone leave of the conductivity, beside the theory: a line of each body."""
     links = pick(df, part="links")
     if not len(links):
         return pd.DataFrame()

@@ -13,13 +13,7 @@ LEAST = 1e-5
 
 
 def draw(df, names):
-    """A panel for each method: above the line the interval holds.
-
-    Parameters
-    ----------
-    df : DataFrame
-    names : sequence of str
-    """
+    """A panel for each method: above the line the interval holds."""
     from matplotlib import pyplot
 
     names = [name for name in names if present(df, name)]

@@ -9,79 +9,36 @@ from studies.harness.methods import found
 
 
 def present(df, name):
-    """Whether a method has answered any scene.
-
-    Parameters
-    ----------
-    df : DataFrame
-    name : str
-    """
+    """Whether a method has answered any scene."""
     return f"{name}_off" in df and df[f"{name}_off"].notna().any()
 
 
 def answered(df, name):
-    """Rows of scenes with a conductivity that the method has answered.
-
-    Parameters
-    ----------
-    df : DataFrame
-    name : str
-    """
+    """Rows of scenes with a conductivity that the method has answered."""
     return df[df[f"{name}_off"].notna() & (df["exact"] > 0)]
 
 
 def inside(df, name, what=""):
-    """Whether the true error is no larger than what the method says, for each scene.
-
-    Parameters
-    ----------
-    df : DataFrame
-    name : str
-    what : {"", "t_"}
-        Of the conductivity or of the temperature.
-    """
+    """Whether the true error is no larger than what the method says, for each scene."""
     rows = answered(df, name)
     # What the reference itself may be off counts for neither.
     return rows[f"{name}_{what}off"].abs() <= rows[f"{name}_{what}half"] + 100 * ACCURACY
 
 
 def over(df, name, what="", nothing=1e-5):
-    """What the method says over its error, for each scene where there is one.
-
-    Parameters
-    ----------
-    df : DataFrame
-    name : str
-    what : {"", "t_"}
-    nothing : float, %
-        Errors below are rounding's or the reference's.
-    """
+    """What the method says over its error, for each scene where there is one."""
     rows = answered(df, name)
     rows = rows[rows[f"{name}_{what}off"].abs() > nothing]
     return rows[f"{name}_{what}half"] / rows[f"{name}_{what}off"].abs()
 
 
 def lines(df, names):
-    """One line of each method.
-
-    Parameters
-    ----------
-    df : DataFrame
-        Of unseen scenes.
-    names : sequence of str
-    """
+    """One line of each method."""
     return pd.DataFrame([_line(df, name) for name in names if present(df, name)])
 
 
 def intervals_in_words(df, names):
-    """How many exact conductivities lie inside, and how wide the intervals are, as a part of a sentence.
-
-    Parameters
-    ----------
-    df : DataFrame
-        Of unseen scenes.
-    names : sequence of str
-    """
+    """How many exact conductivities lie inside, and how wide the intervals are, as a part of a sentence."""
     names = [name for name in names if present(df, name)]
     held = [f"{inside(df, name).sum()} of {len(inside(df, name))} ({found()[name].title})" for name in names]
     wide = [f"{over(df, name).median():.2g}" for name in names]
@@ -89,15 +46,7 @@ def intervals_in_words(df, names):
 
 
 def answers_in_words(asked, accuracy):
-    """What `effective` got right, as a sentence.
-
-    Parameters
-    ----------
-    asked : DataFrame
-        Rows of it.
-    accuracy : float
-        That was asked for.
-    """
+    """What `effective` got right, as a sentence."""
     answered = asked[asked["worst_percent"].notna()]
     right, held = (answered["worst_percent"] <= 100 * accuracy).sum(), answered["inside"].eq(True).sum()
     return (

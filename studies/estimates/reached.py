@@ -15,22 +15,7 @@ METHODS = tuple(name for name in MODULES if name != "multipole")
 
 
 def answered(kind, seed, accuracy):
-    """Answer for one scene.
-
-    Parameters
-    ----------
-    kind : str
-        Of `studies.common.drawn.KINDS`.
-    seed : int
-    accuracy : float
-
-    Returns
-    -------
-    dict
-        `name`, the method that was chosen; `worst_percent`, the largest error of an entry, % of the mean of the
-        diagonal; `said_percent`, half of the widest interval; `inside`, whether all entries lie in theirs;
-        `rounds`, `cpu_s`, `saved`, and `note`, why there is no answer.
-    """
+    """Answer for one scene."""
     scene = scene_of(kind, seed)
     judge = exact.solve_axes(scene) if kind in CLOSED else multipole.solve_axes(scene, accuracy=ACCURACY)
     right = conductivity_tensor(judge)

@@ -25,25 +25,7 @@ POINTS = 500
 
 
 def judged(kind, seed, names):
-    """Error and estimate of each method.
-
-    Parameters
-    ----------
-    kind : str
-        Of `studies.common.drawn.KINDS`.
-    seed : int
-        Of the scene, and of what is spent on it.
-    names : sequence of str
-        Of methods.
-
-    Returns
-    -------
-    dict
-        Of each method, by its name: `off` and `half`, the conductivity's error and half of its interval, % of the exact
-        one; `t_off` and `t_half`, of the temperature's root mean square, % of the span; `low` and `high`, the interval
-        over the exact value; `value` of its knob; `cpu_s` of the solve and `more_s` of the estimate. A `note` alone of
-        a method that refuses the scene, or does not converge and says so.
-    """
+    """Error and estimate of each method."""
     scene = scene_of(kind, seed)
     exact = exact_field(kind, scene)
     rng = np.random.default_rng([seed, 1])

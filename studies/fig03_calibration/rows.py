@@ -25,22 +25,7 @@ PERIODIC = {"flux": False, "isothermal": False, "across": (True, False, True), "
 
 
 def packed(loading, domain, packing, particles, seed, *, spread=0.3, replicas=1):
-    """Packing of unit size for a load, kept in the cache; replicas is the number of repeats along each axis.
-
-    Parameters
-    ----------
-    loading : {"flux", "isothermal", "across", "periodic"}
-    domain : {"cube", "cylinder"}
-    packing : {"lsa", "relaxed"}
-    particles, seed : int
-    spread : float
-        Of the radii: standard deviation over mean of the Gaussian before it is cut.
-    replicas : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing of unit size for a load, kept in the cache; replicas is the number of repeats along each axis."""
     if replicas > 1:
         whole = packed(loading, domain, packing, particles // replicas**3, seed, spread=spread)
         return replicate(whole, (replicas, replicas, replicas)).scaled(1 / replicas)
@@ -64,30 +49,7 @@ def _bulk_to_whole(phi, particles, kind, radii):
 
 
 def calibrated(packing, loading, *, margin=None, wanted=7.5, count="all", **choices):
-    """C_t of a packing under a load, with what it depends on.
-
-    Parameters
-    ----------
-    packing : Packing
-        Of unit size.
-    loading : {"flux", "isothermal", "across", "periodic"}
-    margin : float, optional
-        As in `contacts`; by default none with walls all round, as in the papers.
-    wanted : float
-        Mean coordination number.
-    count : {"all", "rest"}
-        Over all particles, or over those that sparse = "drop" leaves.
-    **choices
-        Of `demheat.Calibrated`; `wall` is by default "center" with walls all round, as in the papers, and else
-        "surface".
-
-    Returns
-    -------
-    dict
-        ct; bound, 1 over the conductivity under a linear field, below which C_t cannot lie in a periodic cell;
-        formula, the same by 4 <R^3> / (Z phi <R_m^3>); gap; links (mean number), least, under_2, under_4, islands as in
-        `coordination`; phi; linked (mean number after sparse particles are dealt with); left (particles then).
-    """
+    """C_t of a packing under a load, with what it depends on."""
     as_papers = loading in ("flux", "isothermal")
     choices = {"wall": "center" if as_papers else "surface"} | choices
     additive = choices.get("additive", False)
@@ -120,16 +82,6 @@ def affine(packing, network):
     sum over links of S d cos^2 / V, the angle being that to the load, hence C_t at least its inverse (`bound`). For
     isotropic links that touch, d = 2 R_m, and the sum is (N Z / 2)(1/3) 2 pi <R_m^3> / V with N / V = phi / <4/3 pi
     R^3>: C_t >= 4 <R^3> / (Z phi <R_m^3>) (`formula`), with <R^3> over particles and <R_m^3> over links.
-
-    Parameters
-    ----------
-    packing : Packing
-    network : Network
-        Of it or of a part of its particles, with C_t = 1 and conductivity 1.
-
-    Returns
-    -------
-    dict of float
     """
     rest = packing._replace(centers=network.centers, radii=network.radii)
     here = np.repeat(rest.radii, np.diff(network.indptr))

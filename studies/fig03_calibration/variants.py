@@ -29,20 +29,7 @@ def unchanged(df):
 
 
 def variant(df, loading, change, column="ct"):
-    """Value of the one row with exactly this change; None without it.
-
-    Parameters
-    ----------
-    df : data frame
-    loading : {"flux", "periodic"}
-    change : dict
-        One of `VARIANTS`.
-    column : str
-
-    Returns
-    -------
-    float or None
-    """
+    """Value of the one row with exactly this change; None without it."""
     rows = pick(df, loading=loading, domain="cube", packing="lsa", particles=VARIED, seed=0)
     rows = pick(rows, **{name: change.get(name) for name in KNOBS})
     return float(rows[column].iloc[0]) if len(rows) == 1 else None

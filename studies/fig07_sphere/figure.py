@@ -15,12 +15,7 @@ from studies.harness.figures import BLACK
 
 
 def draw(df):
-    """Four panels, and one more where the network's variants have rows.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Four panels, and one more where the network's variants have rows."""
     from matplotlib import pyplot
 
     network, others = parted(df)

@@ -13,26 +13,12 @@ TIGHTER = {SIZES[2][0]: ACCURACY["fem"] / 10}
 
 
 def plain(df):
-    """Rows with numbers and their names, without those of tighter marches.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Rows with numbers and their names, without those of tighter marches."""
     return sphere_in_time.solved(pick(df, accuracy=None))
 
 
 def network_errors(network):
-    """Errors of the centre of the network's variants, K: at 10 s (signed) and the largest, with intervals.
-
-    Parameters
-    ----------
-    network : data frame
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-    """
+    """Errors of the centre of the network's variants, K: at 10 s (signed) and the largest, with intervals."""
     made = {}
     for number in sorted(network["particles"].unique()) if len(network) else ():
         for each in variants(WALLED):

@@ -17,17 +17,7 @@ from studies.harness.cells import cell
 
 
 def ball(packing, particles, seed):
-    """Packing in the sphere, kept in the cache.
-
-    Parameters
-    ----------
-    packing, particles, seed
-        Of a case.
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing in the sphere, kept in the cache."""
     if packing == "relaxed":
         return packing_of(particles, seed)
     from demheat.packing.cache import grown
@@ -37,19 +27,7 @@ def ball(packing, particles, seed):
 
 
 def cube(packing, made, particles, seed):
-    """Packing between walls on which C_t is calibrated, kept in the cache.
-
-    Parameters
-    ----------
-    packing : {"lsa", "relaxed"}
-    made : Packing
-        In the sphere.
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing between walls on which C_t is calibrated, kept in the cache."""
     from demheat.calibration import cube_like
 
     if packing == "relaxed":
@@ -61,17 +39,6 @@ def network_row(packing, held, particles, seed, *, times):
     """Errors of the centre in time, by both calibrations.
 
     All links scale with C_t, so that a march with half of C_t takes twice the time: one serves both calibrations.
-
-    Parameters
-    ----------
-    packing, held, particles, seed
-        Of a case.
-    times : sequence of float, s
-
-    Returns
-    -------
-    dict
-        `ct_flux` and the like; `error_10s_flux` (K, signed), `worst_flux` (its size) and `errors_flux` in time.
     """
     from demheat import dem
     from references import series
@@ -96,13 +63,7 @@ def network_row(packing, held, particles, seed, *, times):
 
 
 def warm_up(packing, held, particles, seed, *, times):
-    """Make and keep the packings, load and compile.
-
-    Parameters
-    ----------
-    packing, held, particles, seed, times
-        As those of `network_row`.
-    """
+    """Make and keep the packings, load and compile."""
     made = ball(packing, particles, seed)
     cube(packing, made, particles, seed)
     # Fewer leave no bulk in the cube.

@@ -8,12 +8,7 @@ from studies.harness.pick import pick
 
 
 def told(df):
-    """Sentences and the table of the variants, as far as there are rows.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Sentences and the table of the variants, as far as there are rows."""
     network, others = parted(df)
     made, among = network_errors(network), ["error_10s"]
     names = {"error_10s": "at 10 s, K", "worst": "largest, K"}

@@ -15,12 +15,7 @@ HALOS = {0.0: ("no halo", RED), 4.0: ("halo of 4", BLUE), 11.0: ("halo of 11", G
 
 
 def draw(df):
-    """CoV against the halo's radius by all four weightings; density functions; the flux near a wall.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """CoV against the halo's radius by all four weightings; density functions; the flux near a wall."""
     from matplotlib import pyplot
 
     rows = long(df)

@@ -12,17 +12,7 @@ from studies.harness.cost import measured
 
 
 def flux_row(law, split, walls, particles, seed):
-    """Statistics of the flux by halo radius, each a list in one cell, density functions, and the flux near a wall.
-
-    Parameters
-    ----------
-    law, split, walls, particles, seed
-        Of a case.
-
-    Returns
-    -------
-    dict
-    """
+    """Statistics of the flux by halo radius, each a list in one cell, density functions, and the flux near a wall."""
     packing = packing_of(walls, particles, seed)
     if law == "laguerre":
         field, row = _laguerre(packing)
@@ -41,17 +31,7 @@ def flux_row(law, split, walls, particles, seed):
 
 
 def packing_of(walls, particles, seed):
-    """Packing between the walls or in the cell, kept in the cache.
-
-    Parameters
-    ----------
-    walls : {"held", "periodic"}
-    particles, seed : int
-
-    Returns
-    -------
-    Packing
-    """
+    """Packing between the walls or in the cell, kept in the cache."""
     return relaxed(particles, size=(LENGTH,) * 3, periodic=walls == "periodic", seed=seed)
 
 

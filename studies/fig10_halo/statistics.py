@@ -29,19 +29,7 @@ PAPER = printed("fig10_halo")
 
 
 def by_radius(field, fluxes):
-    """Cells of each statistic over all particles and over the bulk, and of histograms.
-
-    Parameters
-    ----------
-    field : Field
-        Of a cube.
-    fluxes : dict of float to (n, 3) float array, W/m2
-        Fluxes of its particles by the halo's radius in mean radii.
-
-    Returns
-    -------
-    dict of str to str
-    """
+    """Cells of each statistic over all particles and over the bulk, and of histograms."""
     points, volumes, length = field.samples.points, field.samples.volumes, field.scene.size[0]
     radius = field.stats["mean_radius"]
     depth = np.inf if field.scene.periodic else np.minimum(points, length - points).min(axis=1)
@@ -60,20 +48,7 @@ def by_radius(field, fluxes):
 
 
 def near_wall(field, fluxes):
-    """Mean flux by the depth below the two walls with a temperature, in halos, as cells `near_RATIO`.
-
-    Parameters
-    ----------
-    field : Field
-        Of a cube between two walls across y, the others insulated.
-    fluxes : dict of float to (n, 3) float array, W/m2
-        As in `by_radius`; only particles whose halos reach no insulated face count.
-
-    Returns
-    -------
-    dict of str to str
-        Means by volume over `PAPER["flux"]` between `DEPTHS`; not-a-number where there are no particles.
-    """
+    """Mean flux by the depth below the two walls with a temperature, in halos, as cells `near_RATIO`."""
     points, volumes, length = field.samples.points, field.samples.volumes, field.scene.size[0]
     away = np.minimum(points, length - points) / field.stats["mean_radius"]
     row = {}

@@ -12,19 +12,7 @@ KEY = ["law", "split", "walls", "particles"]
 
 
 def factors(rows):
-    """How far each weighting of the paper's network is off the printed scatter, by halo.
-
-    Parameters
-    ----------
-    rows : data frame
-        Of `long`.
-
-    Returns
-    -------
-    data frame
-        A line for each of `WEIGHTINGS`, a column for each of `SHOWN`: scatter over what is printed, at the largest
-        number of particles.
-    """
+    """How far each weighting of the paper's network is off the printed scatter, by halo."""
     import pandas as pd
 
     here = pick(rows, law="calibrated", split="half", walls="held")
@@ -34,12 +22,7 @@ def factors(rows):
 
 
 def lines(df):
-    """Scatter by all four weightings as a data frame: two lines for each network and number of particles.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Scatter by all four weightings as a data frame: two lines for each network and number of particles."""
     import pandas as pd
 
     shown = []
@@ -62,12 +45,7 @@ def _title(ratio, by):
 
 
 def extremes(df):
-    """Smallest and largest flux of any particle, and what that costs.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Smallest and largest flux of any particle, and what that costs."""
     import pandas as pd
 
     shown = []
@@ -82,12 +60,7 @@ def extremes(df):
 
 
 def in_words(df):
-    """What each weighting makes of the printed numbers, and how deep the walls reach, as sentences.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """What each weighting makes of the printed numbers, and how deep the walls reach, as sentences."""
     found = factors(long(df))
     said = "; ".join(
         f"over {over}, by {by} " + ", ".join(f"{value:.2f}" for value in line)

@@ -215,12 +215,7 @@ def table(df):
 
 
 def headline(df):
-    """The finest rows of the methods that a first reader asks for, without what they cost besides time.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """The finest rows of the methods that a first reader asks for, without what they cost besides time."""
     from studies.fig14_single_inclusion.tables import short
 
     return short(df)

@@ -18,12 +18,7 @@ SHOWN = ("dem-plain", "dem-calibrated", "fem-p1", "maxwell")
 
 
 def draw(df):
-    """Two panels, and a third where the network's variants have rows.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Two panels, and a third where the network's variants have rows."""
     from matplotlib import pyplot
 
     network, others = parted(df)

@@ -8,12 +8,6 @@ PAPER = printed("fig14_single_inclusion")
 
 
 def exact_of(df, name="exact"):
-    """k over the matrix's by a method without resolution, by the labels of the network's scenes.
-
-    Parameters
-    ----------
-    df : data frame
-    name : {"exact", "maxwell"}
-    """
+    """k over the matrix's by a method without resolution, by the labels of the network's scenes."""
     found = {label(*where): pick(df, name=name, scene=where[0], contrast=where[1])["k_ratio"] for where in SCENES}
     return {where: float(values.iloc[0]) for where, values in found.items() if len(values)}

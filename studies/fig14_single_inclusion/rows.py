@@ -13,22 +13,10 @@ def _cubes(held):
 
 
 def network_row(held, **case):
-    """All scenes by one packing of the network.
-
-    Parameters
-    ----------
-    held, case
-        As of `paper_network.fields_and_row`.
-    """
+    """All scenes by one packing of the network."""
     return paper_network.fields_and_row(_cubes(held), held=held, **case)[1]
 
 
 def warm_up(held, **case):
-    """Make and keep the packing; load what solves.
-
-    Parameters
-    ----------
-    held, case
-        As those of `network_row`.
-    """
+    """Make and keep the packing; load what solves."""
     paper_network.warm_up(_cubes(held), held=held, **case)

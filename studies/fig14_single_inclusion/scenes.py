@@ -10,11 +10,5 @@ WORDS = tuple(f"{contrast:g}" for contrast in CONTRASTS)
 
 
 def label(scene, contrast):
-    """Scene in a word, as columns of the network's rows end.
-
-    Parameters
-    ----------
-    scene : {"third", "half"}
-    contrast : float
-    """
+    """Scene in a word, as columns of the network's rows end."""
     return f"{contrast:g}" if scene == "third" else scene

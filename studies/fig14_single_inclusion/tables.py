@@ -17,13 +17,7 @@ NETWORK = "DEM as in the paper, its best variant"
 
 
 def lines(df):
-    """Table as a data frame, a line for each method and resolution.
-
-    Parameters
-    ----------
-    df : data frame
-        Without the network's variants.
-    """
+    """Table as a data frame, a line for each method and resolution."""
     import pandas as pd
 
     shown = df[df["periodic"].isna() & df["contrast"].isin(CONTRASTS)]
@@ -46,12 +40,7 @@ def lines(df):
 
 
 def short(df):
-    """The finest rows of a few methods, with the best variant of the paper's network, whose cost is that of all scenes.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """The finest rows of a few methods, with the best variant of the paper's network, at the cost of all scenes."""
     import pandas as pd
 
     network, others = parted(df)
@@ -71,12 +60,7 @@ def short(df):
 
 
 def told(df):
-    """Sentences and tables below the main one.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Sentences and tables below the main one."""
     network, others = parted(df)
     made = variant_errors(network, exact_of(df))
     names = {word: word for word in WORDS} | {"half": "f = 0.5"}

@@ -24,17 +24,7 @@ TITLES = {
 
 
 def draw(df, paper, points):
-    """Figure of a study's rows: temperature above, flux below.
-
-    Parameters
-    ----------
-    df : data frame
-        With columns `slice_temperature` and `slice_flux`, cells of pictures in %, where a row is pictured.
-    paper : dict
-        Printed numbers.
-    points : dict of str to (3,) tuple
-        Points that are marked, in edges of the box.
-    """
+    """Figure of a study's rows: temperature above, flux below."""
     from matplotlib import pyplot
 
     exact, others = _pictured(df)

@@ -20,20 +20,7 @@ def ball(number=POINTS):
 
 
 def averaged(field, places, radii):
-    """Flux down the load at points, averaged over halos that end at the walls.
-
-    Parameters
-    ----------
-    field : Field
-    places : dict of str to (3,) tuple
-        In units of the box.
-    radii : sequence of float, m
-
-    Returns
-    -------
-    dict of str to list of float, W/m2
-        By letter, one mean for each radius.
-    """
+    """Flux down the load at points, averaged over halos that end at the walls."""
     size, axis, found = np.array(field.scene.size), field.scene.axis, {}
     for letter, place in places.items():
         means = []

@@ -16,16 +16,7 @@ COSTS = {"unknowns": "unknowns"}
 
 
 def lines(df, paper, points):
-    """Table as a data frame.
-
-    Parameters
-    ----------
-    df : data frame
-    paper : dict
-        Printed numbers.
-    points : dict of str to (3,) tuple
-        In edges of the box.
-    """
+    """Table as a data frame."""
     import pandas as pd
 
     exact = pick(df, name="exact").iloc[0]
@@ -35,32 +26,12 @@ def lines(df, paper, points):
 
 
 def largest(rows, columns):
-    """Largest size in some columns of rows; None without rows.
-
-    Parameters
-    ----------
-    rows : data frame
-    columns : list of str
-
-    Returns
-    -------
-    float or None
-    """
+    """Largest size in some columns of rows; None without rows."""
     return rows[columns].abs().max(axis=1, skipna=False).max(skipna=False) if len(rows) else None
 
 
 def error_columns(kind, points):
-    """Columns of the errors at the points, of "T" or of "q".
-
-    Parameters
-    ----------
-    kind : {"T", "q"}
-    points : iterable of str
-
-    Returns
-    -------
-    list of str
-    """
+    """Columns of the errors at the points, of "T" or of "q"."""
     return [f"{kind}_{letter}_error" for letter in points]
 
 
@@ -81,22 +52,12 @@ def label(row):
 
 
 def over_plane(df):
-    """Errors over the plane, a line for each method and resolution.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Errors over the plane, a line for each method and resolution."""
     return _means(df, ERRORS)
 
 
 def costs(df):
-    """Costs, a line for each method and resolution.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Costs, a line for each method and resolution."""
     return _means(df, COSTS)
 
 
@@ -112,14 +73,7 @@ def _means(df, columns):
 
 
 def in_words(df, paper):
-    """What the fluxes of Table 2 say of the paper's halos, as sentences.
-
-    Parameters
-    ----------
-    df : data frame
-    paper : dict
-        Printed numbers.
-    """
+    """What the fluxes of Table 2 say of the paper's halos, as sentences."""
     exact = pick(df, name="exact").iloc[0]
     off = {n: f"{100 * referee.value_error(paper[f'q_C_{n}'], exact['q_C']):+.1f} %" for n in ("150k", "500k")}
     yield (

@@ -15,14 +15,7 @@ CONTRAST = SILICA.conductivity / EPOXY.conductivity
 
 
 def witness(df, kind, fraction):
-    """k over the matrix's of the first cell along y, by multipoles; None if it was not solved.
-
-    Parameters
-    ----------
-    df : data frame
-    kind : {"periodic", "walled"}
-    fraction : float
-    """
+    """k over the matrix's of the first cell along y, by multipoles; None if it was not solved."""
     rows = pick(df, name="multipole", kind=kind, fraction=fraction, realisation=0, axes="y")
     return float(rows["k_ratio"].iloc[0]) if len(rows) else None
 
@@ -33,17 +26,7 @@ def all_axes(df):
 
 
 def bounds_of(df, row):
-    """Third-order bounds with the zeta_2 of the very cell and the method's own volume fraction, over the matrix's k.
-
-    Parameters
-    ----------
-    df : data frame
-    row : row of the data frame
-
-    Returns
-    -------
-    lower, upper : float
-    """
+    """Third-order bounds with the zeta_2 of the very cell and the method's own volume fraction, over the matrix's k."""
     rows = pick(df, name="zeta2", fraction=row["fraction"], realisation=row["realisation"])
     zeta2 = float(rows["zeta2"].iloc[0]) if len(rows) else np.nan
     if np.isnan(row["inclusion"]):  # a failed row: the claim that needs it fails
@@ -53,32 +36,13 @@ def bounds_of(df, row):
 
 
 def interval(df, kind, fraction, *, name="fft"):
-    """Interval of the mean over cells of one method's means over three axes; None if there are not two or more.
-
-    Parameters
-    ----------
-    df : data frame
-    kind : {"periodic", "walled", "unequal"}
-    fraction : float
-    name : str
-        Of the method.
-
-    Returns
-    -------
-    Interval or None
-    """
+    """Interval of the mean over cells of one method's means over three axes; None if there are not two or more."""
     cells = pick(df, name=name, kind=kind, boundary="gradient", fraction=fraction, axes="xyz")["k_ratio"]
     return student(cells.to_numpy()) if len(cells) > 1 else None
 
 
 def along_one_axis(df, fraction):
-    """Standard deviation of k of one cell along one axis, FFT, % of the mean; not-a-number if unknown.
-
-    Parameters
-    ----------
-    df : data frame
-    fraction : float
-    """
+    """Standard deviation of k of one cell along one axis, FFT, % of the mean; not-a-number if unknown."""
     rows = pick(df, name="fft", kind="periodic", fraction=fraction, axes="xyz")
     if not len(rows):
         return np.nan
@@ -87,42 +51,19 @@ def along_one_axis(df, fraction):
 
 
 def change(df, fraction, kind):
-    """Change of that mean from equal periodic cells to another kind, %; None if one is missing.
-
-    Parameters
-    ----------
-    df : data frame
-    fraction : float
-    kind : {"walled", "unequal"}
-    """
+    """Change of that mean from equal periodic cells to another kind, %; None if one is missing."""
     equal, other = (interval(df, each, fraction) for each in ("periodic", kind))
     return 100 * referee.value_error(other.mean, equal.mean) if equal and other else None
 
 
 def change_interval(df, fraction, kind):
-    """Half the width of the 95 % interval of that change, %; None if one is missing.
-
-    Parameters
-    ----------
-    df, fraction, kind
-        As those of `change`.
-    """
+    """Half the width of the 95 % interval of that change, %; None if one is missing."""
     equal, other = (interval(df, each, fraction) for each in ("periodic", kind))
     return 100 * float(np.hypot(equal.half / equal.mean, other.half / other.mean)) if equal and other else None
 
 
 def of_walls(df, fraction):
-    """Isothermal walls less gradient on the same walled spheres, %, of each cell; empty where not solved.
-
-    Parameters
-    ----------
-    df : data frame
-    fraction : float
-
-    Returns
-    -------
-    Series
-    """
+    """Isothermal walls less gradient on the same walled spheres, %, of each cell; empty where not solved."""
     rows = pick(df, name="fft", kind="walled", fraction=fraction, axes="xyz")
     if rows["boundary"].nunique() < 2:
         return rows["k_ratio"][:0]
@@ -131,15 +72,7 @@ def of_walls(df, fraction):
 
 
 def walls_less_gradient(df, name, fraction):
-    """Isothermal walls less gradient on the first walled cell, converged values of one method, %; None if unknown.
-
-    Parameters
-    ----------
-    df : data frame
-    name : str
-        Of the method.
-    fraction : float
-    """
+    """Isothermal walls less gradient on the first walled cell, converged values of one method, %; None if unknown."""
     pair = [
         converged(df, name, kind="walled", boundary=boundary, fraction=fraction, realisation=0, axes="y")
         for boundary in ("walls", "gradient")
@@ -148,19 +81,7 @@ def walls_less_gradient(df, name, fraction):
 
 
 def network_errors(df, boundary):
-    """Errors of the paper's network's variants on the first cells under one boundary condition.
-
-    Parameters
-    ----------
-    df : data frame
-    boundary : {"gradient", "walls"}
-        Against the multipoles; against the converged voxels.
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-        As `paper_variants.variant_errors`, by the fraction as text.
-    """
+    """Errors of the paper's network's variants on the first cells under one boundary condition."""
     network, others = parted(df)
     fractions = sorted(others["fraction"].unique())
     if boundary == "gradient":

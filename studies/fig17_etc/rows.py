@@ -11,22 +11,10 @@ def _cells(held):
 
 
 def network_row(held, **case):
-    """All first cells by one packing of the network.
-
-    Parameters
-    ----------
-    held, case
-        As of `paper_network.fields_and_row`.
-    """
+    """All first cells by one packing of the network."""
     return paper_network.fields_and_row(_cells(held), held=held, **case)[1]
 
 
 def warm_up(held, **case):
-    """Make and keep the dispersions and the packing; load what solves.
-
-    Parameters
-    ----------
-    held, case
-        As those of `network_row`.
-    """
+    """Make and keep the dispersions and the packing; load what solves."""
     paper_network.warm_up(_cells(held), held=held, **case)

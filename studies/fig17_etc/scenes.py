@@ -8,17 +8,7 @@ WALLED = 0.4
 
 
 def first_cells(held):
-    """First cells by their fraction, as text: periodic ones, or those between isothermal walls.
-
-    Parameters
-    ----------
-    held : {"center", "surface", "periodic"}
-        Of a case of the paper's network.
-
-    Returns
-    -------
-    dict of str to Scene
-    """
+    """First cells by their fraction, as text: periodic ones, or those between isothermal walls."""
     kind, boundary, some = ("walled", "walls", (WALLED,))
     if held == "periodic":
         kind, boundary, some = ("periodic", "gradient", FRACTIONS)

@@ -156,12 +156,7 @@ def _walls(df, fractions):
 
 
 def told(df):
-    """The paper's network in all its variants; nothing without its rows.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """The paper's network in all its variants; nothing without its rows."""
     said = []
     for boundary, against in (("gradient", "periodic cells, against the multipoles"), ("walls", "")):
         made = network_errors(df, boundary)

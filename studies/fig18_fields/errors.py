@@ -16,17 +16,7 @@ BOUNDARIES = {"gradient": "periodic cell, mean gradient", "walls": "isothermal a
 
 
 def witness(df, boundary):
-    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM.
-
-    Parameters
-    ----------
-    df : data frame
-    boundary : {"gradient", "walls"}
-
-    Returns
-    -------
-    row of the data frame, or None without any
-    """
+    """Row that the others of a load are held against: the multipoles of the highest degree, else the finest FEM."""
     rows = pick(df, boundary=boundary)
     exact = pick(rows, name="multipole")
     if len(exact):
@@ -36,16 +26,7 @@ def witness(df, boundary):
 
 
 def with_errors(df):
-    """Rows of fields with their errors against the witness; that of the witness itself is 0.
-
-    Returns
-    -------
-    data frame
-        With `T_A_error` and the like (% of the span), `q_A_error` (of the flux's size, % of the local flux) and
-        `vector_A_error` (% of the mean flux); the worst of each over the points; `temperature_rms`, `temperature_max`
-        (% of the span), `flux_rms`, `flux_max` away from interfaces and insulated faces, `flux_rms_band`,
-        `flux_max_band` within the band along them (% of the mean flux).
-    """
+    """Rows of fields with their errors against the witness; that of the witness itself is 0."""
     import pandas as pd
 
     place = pick(df, name="arrangement")
@@ -60,17 +41,7 @@ def with_errors(df):
 
 
 def at_points(row, truth):
-    """Errors of one row at the points, and the worst of each kind.
-
-    Parameters
-    ----------
-    row, truth : rows of a data frame
-        With the temperatures, C, and the fluxes, W/m2, at the points.
-
-    Returns
-    -------
-    dict
-    """
+    """Errors of one row at the points, and the worst of each kind."""
     found = {}
     for letter in POINTS:
         found[f"T_{letter}_error"] = 100 * referee.value_error(row[f"T_{letter}"], truth[f"T_{letter}"], scale=SPAN)
@@ -85,38 +56,14 @@ def at_points(row, truth):
 
 
 def shown(row, name, *, fine=False):
-    """Picture of a row: its temperature, % of the span, or a part of its flux, W/m2.
-
-    Parameters
-    ----------
-    row : row of a data frame
-    name : {"temperature", "x", "y", "z"}
-    fine : bool
-        The one of many pixels.
-
-    Returns
-    -------
-    (n, n) float array
-    """
+    """Picture of a row: its temperature, % of the span, or a part of its flux, W/m2."""
     found = unpacked(row[f"fine_{name}"]) if fine else picture(row[f"slice_{name}"])
     # Of the paper's network, whose rows have C_t = 1.
     return found if name == "temperature" else found * row.get("factor", 1.0)
 
 
 def error_pictures(row, truth, *, fine=False):
-    """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux.
-
-    Parameters
-    ----------
-    row, truth : rows of a data frame
-        With pictures of the plane.
-    fine : bool
-        The pictures of many pixels.
-
-    Returns
-    -------
-    temperature, flux : (n, n) float array, %
-    """
+    """Error of the temperature, % of the span, and of the flux, size of the vector's in % of the mean flux."""
     # The pictures of temperature are in % of the span.
     warm = referee.value_error(*(shown(each, "temperature", fine=fine) for each in (row, truth)), scale=1.0)
     pair = (np.stack([shown(each, axis, fine=fine) for axis in "xyz"], axis=-1) for each in (row, truth))
@@ -124,17 +71,7 @@ def error_pictures(row, truth, *, fine=False):
 
 
 def network_errors(df):
-    """Rows of the paper's network, one for each calibration, with their errors against the witness of their load.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    data frame
-        With `variant`, `factor` (C_t), `boundary` and the columns of `with_errors`; empty without rows or witness.
-    """
+    """Rows of the paper's network, one for each calibration, with their errors against the witness of their load."""
     import pandas as pd
 
     network, others = parted(df)
@@ -158,19 +95,7 @@ def _scaled(row, way):
 
 
 def network_means(found, columns):
-    """Means over packings of errors of the network's variants, with intervals.
-
-    Parameters
-    ----------
-    found : data frame
-        From `network_errors`.
-    columns : sequence of str
-        Errors.
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-    """
+    """Means over packings of errors of the network's variants, with intervals."""
     made = {}
     for (variant, number), rows in found.groupby(["variant", "particles"], sort=False) if len(found) else ():
         made[variant, int(number)] = {name: interval(rows[name].to_numpy(dtype=float)) for name in columns}

@@ -21,15 +21,7 @@ ERRORS = {"temperature": "|error|, % of the span", "flux": "|error|, % of the me
 
 
 def draw(df, paper):
-    """Pictures of the plane, one line of errors of the temperature and one of the flux; errors at points and by size.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
-    paper : dict
-        Printed numbers.
-    """
+    """Pictures of the plane, a line of errors of temperature, one of flux; errors at points, by size."""
     from matplotlib import pyplot
 
     network, others = network_errors(df), parted(df)[1]

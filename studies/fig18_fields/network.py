@@ -14,20 +14,7 @@ def _boundary(held):
 
 
 def network_row(held, *, fine=False, **case):
-    """Solve, and keep temperature and flux at the points and over the plane, with C_t = 1.
-
-    Parameters
-    ----------
-    held, case
-        As of `paper_network.fields_and_row`.
-    fine : bool
-        Keep pictures of many pixels, too.
-
-    Returns
-    -------
-    dict
-        With `under`, its boundary condition.
-    """
+    """Solve, and keep temperature and flux at the points and over the plane, with C_t = 1."""
     from demheat.sampling.halo import halo_flux
 
     boundary = _boundary(held)
@@ -39,11 +26,5 @@ def network_row(held, *, fine=False, **case):
 
 
 def warm_up(held, **case):
-    """Make the dispersion and the packing, load and compile.
-
-    Parameters
-    ----------
-    held, case
-        As those of `network_row`.
-    """
+    """Make the dispersion and the packing, load and compile."""
     paper_network.warm_up({"k": spheres_in(_boundary(held))}, held=held, **case)

@@ -49,18 +49,7 @@ def arrangement_row():
 
 
 def distance(scene, points):
-    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m.
-
-    Parameters
-    ----------
-    scene : Scene
-        With disjoint spheres.
-    points : (n, 3) float array, m
-
-    Returns
-    -------
-    (n,) float array, m
-    """
+    """Distance to the nearest interface, negative inside a sphere, (n, 3) float array, m -> (n,) float array, m."""
     centers = np.array([sphere.center for sphere in scene.inclusions])
     radii = np.array([sphere.radius for sphere in scene.inclusions])
     # Spheres are disjoint: the least signed distance is that of the sphere around the point, if there is one.
@@ -71,39 +60,13 @@ def field_row(boundary, *, method, fine=False, **knobs):
     """Solve, and keep temperature and flux at the points and over the plane.
 
     In a periodic cell the level of temperature is free: there the plane's mean is set to 30 C for all methods.
-
-    Parameters
-    ----------
-    boundary : {"gradient", "walls"}
-    method : str
-    fine : bool
-        Keep pictures of many pixels, too.
-    knobs : keywords of its `solve`
-
-    Returns
-    -------
-    dict
     """
     field, row = silica_epoxy.solved(spheres_in(boundary), method=method, **knobs)
     return row | looked(field, boundary, fine=fine)
 
 
 def looked(field, boundary, flux_at=None, *, fine=False):
-    """Temperature and flux of a field at the points and over the plane, and what it cost to look.
-
-    Parameters
-    ----------
-    field : Field
-    boundary : {"gradient", "walls"}
-    flux_at : callable (n, 3) float array, m -> (n, 3) float array, W/m2, optional
-        Instead of the field's own.
-    fine : bool
-        Keep pictures of many pixels, too.
-
-    Returns
-    -------
-    dict
-    """
+    """Temperature and flux of a field at the points and over the plane, and what it cost to look."""
     scene, flux_at = field.scene, flux_at or field.flux_at
     places = np.array(list(POINTS.values())) * scene.size
     points, mask = plane(scene, axis=0, at=scene.size[0] / 2, n=GRID)
@@ -140,13 +103,7 @@ def circles(scene):
 
 
 def warm_up(boundary, *, method, **knobs):
-    """Make the dispersion and the packing, load and compile, also what looks at the field.
-
-    Parameters
-    ----------
-    boundary, method, knobs
-        Of a case.
-    """
+    """Make the dispersion and the packing, load and compile, also what looks at the field."""
     scene = spheres_in(boundary)
     methods.warm_up(method, **knobs)
     if "particles" in knobs:

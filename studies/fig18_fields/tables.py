@@ -25,20 +25,7 @@ def label(row):
 
 
 def lines(df, found, paper):
-    """Where the points lie; rows of each load, its witness first; what the paper prints.
-
-    Parameters
-    ----------
-    df : data frame
-    found : data frame
-        With errors, from `errors.with_errors`.
-    paper : dict
-        Printed numbers.
-
-    Returns
-    -------
-    list of dict
-    """
+    """Where the points lie; rows of each load, its witness first; what the paper prints."""
     place = pick(df, name="arrangement").iloc[0]
     blank = {"load": "", "method": "where the points lie", "resolution": ""}
     where = {f"T_{x}": place[f"phase_{x}"] for x in "ABCD"}
@@ -63,14 +50,7 @@ def _line(boundary, row):
 
 
 def told(df, paper):
-    """Sentences below the table, and the table of the network's variants where they have rows.
-
-    Parameters
-    ----------
-    df : data frame
-    paper : dict
-        Printed numbers.
-    """
+    """Sentences below the table, and the table of the network's variants where they have rows."""
     others = parted(df)[1]
     made = network_means(network_errors(df), tuple(NETWORK))
     best = (

@@ -18,12 +18,7 @@ MARKS = {10.0: "o", 100.0: "s", 1000.0: "^"}
 
 
 def draw(df):
-    """Three panels.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Three panels."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8))

@@ -27,14 +27,7 @@ DIGITS, ACCURACY = 3, 1e-3
 
 
 def crystal(kind, apart):
-    """Three cells each way of equal grains of radius 1, so far apart between neighbours' surfaces.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    apart : float
-        Negative where they overlap.
-    """
+    """Three cells each way of equal grains of radius 1, so far apart between neighbours' surfaces."""
     nearest, sites = SITES[kind]
     edge = (2.0 + apart) / nearest
     corners = np.stack(np.meshgrid(*[np.arange(3.0)] * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
@@ -43,15 +36,7 @@ def crystal(kind, apart):
 
 
 def array(kind, gap, contrast):
-    """A cubic array in a medium, beside the exact value.
-
-    Parameters
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    gap : float
-        Over the radius.
-    contrast : float
-    """
+    """A cubic array in a medium, beside the exact value."""
     bed = crystal(kind, gap)
     fraction = bed.number * 4 / 3 * math.pi / bed.volume
     exact = lattice.conductivity(kind, contrast, fraction, digits=DIGITS)
@@ -59,15 +44,7 @@ def array(kind, gap, contrast):
 
 
 def contact(contact, contrast):
-    """Grains of a cubic array that share discs, beside elements on the cell of one: conductances over the radius.
-
-    Parameters
-    ----------
-    contact : float
-        Radius of the disc.
-    contrast : float or None
-        None in a vacuum: conductances then are in units of the grain's conductivity.
-    """
+    """Grains of a cubic array that share discs, beside elements on the cell of one: conductances over the radius."""
     # No room is left for gaps but along the load: grains of a row see their cylinder, others a wider lattice.
     apart = 2.0 * math.sqrt(1.0 - contact**2) - 2.0
     solid, medium = (1.0, 0.0) if contrast is None else (contrast, 1.0)
@@ -82,16 +59,7 @@ def contact(contact, contrast):
 
 
 def bed(fraction, realisation, contrast):
-    """Unlike spheres at random that do not touch, beside multipoles.
-
-    Parameters
-    ----------
-    fraction : float
-        Of their volume.
-    realisation : int
-        Seed.
-    contrast : float
-    """
+    """Unlike spheres at random that do not touch, beside multipoles."""
     how = {"fraction": fraction, "gap": APART, "seed": realisation, "ratio": RATIO, "edge": 1.0}
     scene = gallery.dispersion(
         SPHERES, **how, matrix=Material(1.0), inclusion=Material(contrast), axis=2, periodic=True

@@ -8,12 +8,7 @@ from studies.harness.pick import pick
 
 
 def lines(df):
-    """One line of each array and gap, of each contact, of each fraction of beds; a column for each contrast.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One line of each array and gap, of each contact, of each fraction of beds; a column for each contrast."""
     found = []
     for (kind, gap), rows in pick(df, part="array").groupby(["kind", "gap"], sort=False):
         found.append(_line(f"{kind}, gap {gap:g}", rows))

@@ -34,12 +34,7 @@ TERMS = 400
 
 
 def corner(seed: int) -> dict:
-    """A homogeneous box, two walls that meet held, a flux through a third: exact by Fourier's series.
-
-    Parameters
-    ----------
-    seed : int
-    """
+    """A homogeneous box, two walls that meet held, a flux through a third: exact by Fourier's series."""
     rng = np.random.default_rng([seed, 1, 16])
     scene = _corner_scene(rng)
     points = rng.uniform(0.05, 0.95, (POINTS, 3)) * scene.size
@@ -76,12 +71,7 @@ def _corner_temperature(scene, points):
 
 
 def in_time(seed: int) -> dict:
-    """A slab in time, with steps from a thousandth to twice the limit of explicit Euler.
-
-    Parameters
-    ----------
-    seed : int
-    """
+    """A slab in time, with steps from a thousandth to twice the limit of explicit Euler."""
     rng = np.random.default_rng([seed, 2, 16])
     scene, knobs = _slab(rng), {"particles": int(10 ** rng.uniform(2.3, 3.3)), "seed": int(rng.integers(100))}
     verdicts = []

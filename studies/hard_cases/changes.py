@@ -24,15 +24,7 @@ EXACT = {"units": 1e-4, "turned": SAME, "mirrored": SAME}
 
 
 def relations(scene: Scene, found, rng: np.random.Generator) -> dict:
-    """How many relations were tried on a scene, how many are broken, and which.
-
-    Parameters
-    ----------
-    scene : Scene
-    found : list of Way
-        Those of them that answered right.
-    rng : numpy Generator
-    """
+    """How many relations were tried on a scene, how many are broken, and which."""
     tried, broken = 0, []
     for way in (each for each in found if each.name in ASKED):
         first = _conductivity(way, scene, scene)
@@ -48,30 +40,13 @@ def relations(scene: Scene, found, rng: np.random.Generator) -> dict:
 
 
 def holds(name: str, off: float, way, scene: Scene) -> bool:
-    """Whether a relation holds that is off by so much, relative.
-
-    Parameters
-    ----------
-    name : str
-        Of the relation.
-    off : float
-    way : Way
-    scene : Scene
-    """
+    """Whether a relation holds that is off by so much, relative."""
     # Schulgasser's inequality: swapped phases conduct at least so much.
     return (-off if name == "swapped" else abs(off)) <= limit(name, way, scene)
 
 
 def limit(name: str, way, scene: Scene) -> float:
-    """Largest difference that keeps a relation.
-
-    Parameters
-    ----------
-    name : str
-        Of the relation.
-    way : Way
-    scene : Scene
-    """
+    """Largest difference that keeps a relation."""
     turns = "rotation" not in way.method.exceptions
     if way.method.resolution == DEGREE or name == "dual":
         return SOLVED
@@ -81,13 +56,7 @@ def limit(name: str, way, scene: Scene) -> float:
 
 
 def images(scene: Scene, rng: np.random.Generator):
-    """Names, changed scenes, and what the first one's conductivity makes of theirs.
-
-    Parameters
-    ----------
-    scene : Scene
-    rng : numpy Generator
-    """
+    """Names, changed scenes, and what the first one's conductivity makes of theirs."""
     metre, watt = 10.0 ** rng.choice([-9, 9, rng.uniform(-9, 9)], 2)
     yield "units", in_units(scene, metre, watt), lambda k: k * watt
     yield "turned", turned(scene), lambda k: k
@@ -113,13 +82,7 @@ def turned(scene: Scene) -> Scene:
 
 
 def mirrored(scene: Scene, axis: int) -> Scene:
-    """The scene in a mirror across an axis.
-
-    Parameters
-    ----------
-    scene : Scene
-    axis : {0, 1, 2}
-    """
+    """The scene in a mirror across an axis."""
     inclusions = [_mirrored(each, axis, scene.size[axis]) for each in scene.inclusions]
     if scene.periodic:
         flip = np.where(np.arange(3) == axis, -1.0, 1.0)
@@ -137,13 +100,7 @@ def _mirrored(shape, axis, length):
 
 
 def moved(scene: Scene, shift) -> Scene:
-    """The spheres of a periodic cell moved by parts of its sides.
-
-    Parameters
-    ----------
-    scene : Scene
-    shift : (3,) float array
-    """
+    """The spheres of a periodic cell moved by parts of its sides."""
     size = np.array(scene.size)
     return replace(
         scene, inclusions=[replace(each, center=(each.center + shift * size) % size) for each in scene.inclusions]
@@ -151,13 +108,7 @@ def moved(scene: Scene, shift) -> Scene:
 
 
 def dual(scene: Scene) -> Scene:
-    """Reciprocal conductivities and the load turned by a right angle: conducts 1 / k (Keller 1964).
-
-    Parameters
-    ----------
-    scene : Scene
-        Of layers.
-    """
+    """Reciprocal conductivities and the load turned by a right angle: conducts 1 / k (Keller 1964)."""
     inclusions = [replace(each, material=_reciprocal(each.material)) for each in scene.inclusions]
     normal = scene.inclusions[0].axis
     along = int(np.argmax(np.abs(scene.gradient))) if scene.periodic else scene.axis
@@ -173,13 +124,7 @@ def _reciprocal(material):
 
 
 def swapped(scene: Scene) -> Scene:
-    """Matrix of the spheres' material, and they of its.
-
-    Parameters
-    ----------
-    scene : Scene
-        With spheres of one material.
-    """
+    """Matrix of the spheres' material, and they of its."""
     inside, outside = scene.inclusions[0].material, scene.matrix
     return replace(scene, matrix=inside, inclusions=[replace(each, material=outside) for each in scene.inclusions])
 

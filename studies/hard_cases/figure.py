@@ -21,13 +21,7 @@ CEILING = 1e6
 
 
 def draw(df):
-    """Bars above, errors below.
-
-    Parameters
-    ----------
-    df : data frame
-        Of rows.
-    """
+    """Bars above, errors below."""
     from matplotlib import pyplot
 
     each = verdicts(df)

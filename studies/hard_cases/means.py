@@ -14,13 +14,7 @@ JUDGED = ("verified", "warned", "wrong")
 
 
 def verdicts(df):
-    """One line for each case: family, seed, and what `Verdict` has.
-
-    Parameters
-    ----------
-    df : data frame
-        Of rows.
-    """
+    """One line for each case: family, seed, and what `Verdict` has."""
     found = [
         {"family": row["family"], "seed": row["seed"], **Verdict(*each)._asdict()}
         for row in df[df["status"] == "ok"].to_dict("records")
@@ -39,15 +33,7 @@ def title(name: str) -> str:
 
 
 def share(each, main: float, beside: float):
-    """Title, verified share of the answers that are judged, and the least that is asked, of each method.
-
-    Parameters
-    ----------
-    each : data frame
-        Of `verdicts`.
-    main, beside : float
-        Asked of the main methods and witnesses, and of those beside.
-    """
+    """Title, verified share of the answers that are judged, and the least that is asked, of each method."""
     answers = each[each["outcome"].isin(JUDGED)]
     base = answers["method"].str.split(",").str[0]
     for name in dict.fromkeys(base):

@@ -14,15 +14,7 @@ from studies.harness import methods
 
 
 def steady(family: str, seed: int, changed: bool = False) -> dict:
-    """Verdicts on one scene by all methods.
-
-    Parameters
-    ----------
-    family : str
-    seed : int
-    changed : bool
-        Try what must not change, too.
-    """
+    """Verdicts on one scene by all methods."""
     scene, _, refusal = answer(lambda: scene_of(family, seed))
     if refusal is not None:
         return row_of([refused("scene", refusal)], "none")
@@ -37,14 +29,7 @@ def steady(family: str, seed: int, changed: bool = False) -> dict:
 
 
 def asked(way, scene, known: Truth):
-    """Verdict on one method.
-
-    Parameters
-    ----------
-    way : Way
-    scene : Scene
-    known : Truth
-    """
+    """Verdict on one method."""
     solve = methods.load(way.method.module).solve
     field, said, refusal = answer(lambda: solve(scene, **way.knobs))
     if refusal is not None:
@@ -53,15 +38,7 @@ def asked(way, scene, known: Truth):
 
 
 def row_of(verdicts, source: str, known: Truth | None = None) -> dict:
-    """Verdicts as a row: counts, the worst that was not said, and all in one cell.
-
-    Parameters
-    ----------
-    verdicts : list of Verdict
-    source : str
-        Of the truth.
-    known : Truth, optional
-    """
+    """Verdicts as a row: counts, the worst that was not said, and all in one cell."""
     counts = Counter(each.outcome for each in verdicts)
     wrong = [each for each in verdicts if each.outcome == "wrong"]
     words = "; ".join(f"{each.method} {100 * each.error:+.3g} % {each.note}".strip() for each in wrong)

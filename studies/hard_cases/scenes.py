@@ -25,30 +25,12 @@ MOST = {"sc": 0.52, "bcc": 0.6, "fcc": 0.6}
 
 
 def scene_of(family: str, seed: int) -> Scene:
-    """The scene of a family by a seed, the same at every call.
-
-    Parameters
-    ----------
-    family : str
-        Of `FAMILIES`.
-    seed : int
-
-    Raises
-    ------
-    ValueError
-        By the scene itself, which refuses an infinite conductivity and spheres that overlap in part.
-    """
+    """The scene of a family by a seed, the same at every call."""
     return FAMILIES[family](rng_of(family, seed), seed)
 
 
 def rng_of(family, seed, stream=0):
-    """Generator of a family and a seed; what knobs are drawn from is another stream than the scenes'.
-
-    Parameters
-    ----------
-    family : str
-    seed, stream : int
-    """
+    """Generator of a family and a seed; what knobs are drawn from is another stream than the scenes'."""
     return np.random.default_rng([list(FAMILIES).index(family), seed, stream, 15])
 
 
@@ -219,15 +201,7 @@ def _units(rng, seed):
 
 
 def in_units(scene: Scene, metre: float, watt: float) -> Scene:
-    """The same scene, its lengths and its conductivities multiplied.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of spheres and layers.
-    metre, watt : float
-        Factors of lengths and of conductivities.
-    """
+    """The same scene, its lengths and its conductivities multiplied."""
     made = {m: Material(m.conductivity * watt) for m in scene.materials}
     load = {"gradient": scene.gradient} if scene.periodic else {"walls": dict(scene.walls)}
     inclusions = [replace(_longer(each, metre), material=made[each.material]) for each in scene.inclusions]

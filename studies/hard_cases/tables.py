@@ -10,13 +10,7 @@ SHOWN = ("verified", "refused", "warned", "wrong")
 
 
 def lines(df):
-    """Counts of the four outcomes in each cell, and of all methods and families.
-
-    Parameters
-    ----------
-    df : data frame
-        Of rows.
-    """
+    """Counts of the four outcomes in each cell, and of all methods and families."""
     each = verdicts(df)
     each["method"] = each["method"].str.split(",").str[0].map(title)
     families, names = (list(dict.fromkeys(each[column])) for column in ("family", "method"))

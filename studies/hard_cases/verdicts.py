@@ -41,39 +41,17 @@ class Truth(NamedTuple):
 
 
 class Verdict(NamedTuple):
-    """What is said of one case.
-
-    Attributes
-    ----------
-    method : str
-    outcome : str
-        Of `OUTCOMES`.
-    error : float
-        Relative, signed, to the nearer end of the true interval; not-a-number without an answer.
-    allowed : float
-    note : str
-        Words of the refusal or of the warning, or which bound is passed.
-    """
+    """What is said of one case."""
 
     method: str
-    outcome: str
-    error: float
+    outcome: str  # Of `OUTCOMES`
+    error: float  # Relative, signed, to the nearer end of the true interval; not-a-number without an answer
     allowed: float
-    note: str
+    note: str  # Words of the refusal or of the warning, or which bound is passed
 
 
 def truth(scene: Scene) -> Truth:
-    """The conductivity, exact or between certain bounds.
-
-    Parameters
-    ----------
-    scene : Scene
-
-    Raises
-    ------
-    RuntimeError
-        If nothing here knows it.
-    """
+    """The conductivity, exact or between certain bounds."""
     from references import bracket, exact
 
     try:
@@ -108,13 +86,7 @@ def _shrunk(scene):
 
 
 def answer(call):
-    """What a call returns, what it warns of and what it refuses: (answer, warnings, refusal), or the last one alone.
-
-    Raises
-    ------
-    Exception
-        Whatever is no refusal.
-    """
+    """What a call returns, what it warns of and what it refuses: (answer, warnings, refusal), or the last one alone."""
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
         try:
@@ -127,33 +99,14 @@ def answer(call):
 
 
 def refused(name: str, error: Exception) -> Verdict:
-    """Verdict of a refusal; one without a reason, in one line of some words, is wrong.
-
-    Parameters
-    ----------
-    name : str
-        Of the method.
-    error : Exception
-    """
+    """Verdict of a refusal; one without a reason, in one line of some words, is wrong."""
     words = str(error)
     told = len(words.split()) >= 4 and "\n" not in words
     return Verdict(name, "refused" if told else "wrong", math.nan, math.nan, " ".join(words.split()))
 
 
 def judged(name: str, field, known: Truth, allowed: float, said) -> Verdict:
-    """Verdict of an answer.
-
-    Parameters
-    ----------
-    name : str
-        Of the method.
-    field : Field
-    known : Truth
-    allowed : float
-        Relative.
-    said : list of str
-        What it warned of.
-    """
+    """Verdict of an answer."""
     off = error(field.conductivity, known, float(max(field.scene.conductivities)) or 1.0)
     passed = beyond_elementary(field, allowed if name.startswith("dem") or name == "fft-links" else SLACK)
     if passed or not math.isfinite(off):
@@ -165,14 +118,7 @@ def judged(name: str, field, known: Truth, allowed: float, said) -> Verdict:
 
 
 def error(found: float, known: Truth, scale: float) -> float:
-    """Signed relative error to the nearer end of an interval, 0 inside; of heat that is stopped over a scale.
-
-    Parameters
-    ----------
-    found : float, W/(m K)
-    known : Truth
-    scale : float, W/(m K)
-    """
+    """Signed relative error to the nearer end of an interval, 0 inside; of heat that is stopped over a scale."""
     if known.lower <= found <= known.upper:
         return 0.0
     end = known.upper if found > known.upper else known.lower
@@ -180,14 +126,7 @@ def error(found: float, known: Truth, scale: float) -> float:
 
 
 def beyond_elementary(field, slack: float) -> str:
-    """Which of Voigt's and Reuss's bounds, for the fractions that the method saw, a field passes; empty if none.
-
-    Parameters
-    ----------
-    field : Field
-    slack : float
-        Relative.
-    """
+    """Which of Voigt's and Reuss's bounds, for the fractions that the method saw, a field passes; empty if none."""
     shares, k = np.asarray(field.fractions), field.scene.conductivities
     seen = shares > 0
     voigt = float(shares @ k)

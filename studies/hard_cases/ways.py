@@ -31,35 +31,16 @@ DECLARED = 2 / 3
 
 
 class Way(NamedTuple):
-    """One method with its knobs.
-
-    Attributes
-    ----------
-    name : str
-    method : Method
-        As declared.
-    knobs : dict
-        Of its `solve`.
-    element : float, m
-        Size of an element; 0 of what has none.
-    """
+    """One method with its knobs."""
 
     name: str
-    method: Method
-    knobs: dict
-    element: float
+    method: Method  # As declared
+    knobs: dict  # Of its `solve`
+    element: float  # m: Size of an element; 0 of what has none
 
 
 def ways(family: str, scene: Scene, rng: np.random.Generator) -> list[Way]:
-    """All methods, with resolutions drawn; finite elements only where the scene's own details let a mesh be cheap.
-
-    Parameters
-    ----------
-    family : str
-        Resolutions of "coarse" begin at one element.
-    scene : Scene
-    rng : numpy Generator
-    """
+    """All methods, with resolutions drawn; finite elements only where the scene's own details let a mesh be cheap."""
     coarse = family == "coarse"
     particles = int(rng.integers(1, 16)) ** 3 if coarse else int(10 ** rng.uniform(2.3, 3.5))
     voxels = int(rng.choice(COARSE if coarse else ODD))
@@ -114,11 +95,6 @@ def allowed(way: Way, scene: Scene) -> float:
     What the method declares, at the resolution at which it does, grows with the size of an element over the thinnest
     feature: with the first order, which is less than declared orders grow. It stays between `LEAST` and `MOST`.
     Features are bodies, and gaps of an element or more. Narrower gaps earn nothing: what they spoil must be said.
-
-    Parameters
-    ----------
-    way : Way
-    scene : Scene
     """
     method = way.method
     if method.resolution == DEGREE or (scene.only(Layer) and "laminate" not in method.exceptions):
@@ -129,14 +105,7 @@ def allowed(way: Way, scene: Scene) -> float:
 
 
 def thinnest(scene: Scene, least_gap: float = np.inf) -> float:
-    """Least thickness of a feature, m: box, spheres, layers and what is between them, coats, gaps that are not narrow.
-
-    Parameters
-    ----------
-    scene : Scene
-    least_gap : float, m
-        Narrower ones do not count.
-    """
+    """Least thickness of a feature, m: box, spheres, layers and between them, coats, gaps not narrow."""
     spheres = [each for each in scene.inclusions if isinstance(each, Sphere)]
     found = [min(scene.size), *coats(scene), *(2 * each.radius for each in spheres)]
     for axis, side in enumerate(scene.size):

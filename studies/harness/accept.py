@@ -17,23 +17,7 @@ from studies.harness.tolerance import COUNTED, moved, value_columns
 
 
 def accept(names, out, say):
-    """Make again the rows of the groups that a replay finds moved, and say what that did to claims and values.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of studies; those without rows are passed over.
-    out : path
-        Folder of the rows.
-    say : callable (str)
-
-    Returns
-    -------
-    touched : list of str
-        Studies whose rows were made again.
-    failed : list of str
-        Rows that could not be made again, and why: they stay as they were.
-    """
+    """Make again the rows of the groups that a replay finds moved, and say what that did to claims and values."""
     studies = {name: runner.load(name) for name in names if runner.csv_of(name, out).exists()}
     before = {name: _now(study, runner.csv_of(name, out)) for name, study in studies.items()}
     with replay.side_by_side() as compute:
@@ -89,18 +73,7 @@ def _made_again(tasks, out, say, compute):
 
 
 def renewed(study, case, stored, row):
-    """A stored row with the values of a new one, and with its own costs.
-
-    Parameters
-    ----------
-    study : module
-    case : dict
-    stored, row : mapping
-
-    Returns
-    -------
-    dict
-    """
+    """A stored row with the values of a new one, and with its own costs."""
     # A column that the new row has no longer is empty; what is neither a value nor a cost (a note) is the new row's.
     old = {name: stored[name] for name in stored if name in TAIL and name not in COUNTED}
     costs = {name: stored[name] for name in stored if name not in TAIL and name not in _new_names(study, case, stored)}
@@ -117,20 +90,7 @@ def _new_names(study, case, names):
 
 
 def compared(name, study, claims, rows, out, fresh):
-    """What new values did to a study, in Markdown: claims and groups of rows, old and new.
-
-    Parameters
-    ----------
-    name : str
-    study : module
-    claims : list of Claim
-        Before.
-    rows : dict of str to dict
-        Before.
-    out : path
-    fresh : dict of (str, str) to dict
-        Rows as made, by study and case.
-    """
+    """What new values did to a study, in Markdown: claims and groups of rows, old and new."""
     now = judged(study, read_frame(study, runner.csv_of(name, out)))
     return "\n\n".join([f"## {name}", *_claims(name, claims, now), _groups(name, study, rows, fresh)])
 

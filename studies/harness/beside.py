@@ -15,13 +15,7 @@ def folder():
 
 @contextmanager
 def counted():
-    """Count the rows of other processes that run at the beginning or at the end of a block.
-
-    Yields
-    ------
-    dict
-        Has `beside`, the larger of both numbers, after the block; is empty where files cannot be written.
-    """
+    """Count the rows of other processes that run at the beginning or at the end of a block."""
     found = {}
     own = folder() / str(os.getpid())
     try:

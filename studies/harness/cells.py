@@ -9,17 +9,7 @@ from numpy.typing import ArrayLike
 
 
 def cell(values: ArrayLike, form: str = ".6g", *, decimals: int | None = None) -> str:
-    """Numbers as one cell, separated by blanks.
-
-    Parameters
-    ----------
-    values : float array
-        Of any shape; written row by row.
-    form : str
-        How each is written, as ".6g".
-    decimals : int, optional
-        Round to so many digits behind the point first, the same for large and small values.
-    """
+    """Numbers as one cell, separated by blanks."""
     found = (float(value) for value in np.ravel(values))
     if decimals is not None:
         # Adding zero turns the -0.0 that rounding leaves into 0.0.
@@ -33,13 +23,7 @@ def numbers(text: str | float) -> np.ndarray:
 
 
 def picture(text: str) -> np.ndarray:
-    """The numbers of a cell that holds a square picture, (n, n) float array.
-
-    Raises
-    ------
-    ValueError
-        If their number is no square.
-    """
+    """The numbers of a cell that holds a square picture, (n, n) float array."""
     values = numbers(text)
     side = math.isqrt(len(values))
     if side**2 != len(values):

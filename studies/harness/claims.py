@@ -55,18 +55,7 @@ class Claim(NamedTuple):
 
 
 def claim(sentence, value, limit):
-    """Judge a value by a limit: a number (at most), or text such as ">= 1.7"; not-a-number never holds.
-
-    Parameters
-    ----------
-    sentence : str
-    value : float
-    limit : float or str
-
-    Returns
-    -------
-    Claim
-    """
+    """Judge a value by a limit: a number (at most), or text such as ">= 1.7"; not-a-number never holds."""
     limit = f"<= {limit:g}" if isinstance(limit, int | float) else limit
     match = re.fullmatch(r"(<=|>=|<|>|=)\s*(\S+)", limit)
     if match is None:
@@ -76,19 +65,7 @@ def claim(sentence, value, limit):
 
 
 def broken(what, error, *, why=""):
-    """The claim that something can be done, which has raised an exception.
-
-    Parameters
-    ----------
-    what : str
-    error : Exception
-    why : str
-        If it need not be possible yet.
-
-    Returns
-    -------
-    Claim
-    """
+    """The claim that something can be done, which has raised an exception."""
     return Claim(f"{what} ({type(error).__name__}: {error})", math.nan, "= 1", False, why)
 
 
@@ -97,16 +74,6 @@ def judged(study, df):
 
     A claim that rests on costs of rows that are dirty or noisy (`sound.faults`) is not judged; nor are, of a run
     that has not ended, those whose rows are not there yet.
-
-    Parameters
-    ----------
-    study : module
-    df : data frame
-        Of `table.read_frame`.
-
-    Returns
-    -------
-    list of Claim
     """
     bad = df[df["status"].isin(("failed", "timeout"))]
     found, error = _yielded(study, df)
@@ -120,14 +87,7 @@ def judged(study, df):
 
 
 def unfinished(study, df):
-    """Whether rows are neither those of a quick run nor of a full one.
-
-    Parameters
-    ----------
-    study : module
-    df : data frame
-        With "case".
-    """
+    """Whether rows are neither those of a quick run nor of a full one."""
     every = {case_key(case) for case in study.CASES}
     there = set(df["case"] if "case" in df else ()) & every
     return there not in (every, {case_key(case) for case in study.CASES if study.QUICK(case)})

@@ -17,15 +17,7 @@ ORIGIN = ("commit", "versions")
 
 @contextmanager
 def spreading(scheduler, workers, say):
-    """What spreads rows over a cluster for `runner.run_study`; None if none is asked for.
-
-    Parameters
-    ----------
-    scheduler, workers
-        As those of `demheat.cluster.cluster`.
-    say : callable (str)
-        Told where the dashboard is.
-    """
+    """What spreads rows over a cluster for `runner.run_study`; None if none is asked for."""
     if scheduler is None and workers is None:
         yield None
         return
@@ -35,16 +27,7 @@ def spreading(scheduler, workers, say):
 
 
 def spread_over(client):
-    """What `runner.run_study` needs to have its rows made by the workers of a cluster.
-
-    Parameters
-    ----------
-    client : distributed.Client
-
-    Returns
-    -------
-    callable (name, study, cases) -> iterator of dict
-    """
+    """What `runner.run_study` needs to have its rows made by the workers of a cluster."""
 
     def spread(name, study, cases):
         expected = _origin(provenance(study))
@@ -61,15 +44,7 @@ def spread_over(client):
 
 
 def row_of(name, key):
-    """Compute one row in a fresh process of this machine.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    key : str
-        Of the case.
-    """
+    """Compute one row in a fresh process of this machine."""
     study = runner.load(name)
     bandwidth = _bandwidth()
     row = runner.spawn_row(name, study, runner.find_case(study, key), environment=row_environment())
@@ -77,13 +52,7 @@ def row_of(name, key):
 
 
 def origin_of(name):
-    """What a row of this machine would say of its code and libraries.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    """
+    """What a row of this machine would say of its code and libraries."""
     return _origin(provenance(runner.load(name)))
 
 

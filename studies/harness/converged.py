@@ -14,18 +14,6 @@ def converged(df, name, **where):
 
     Terms of the exponents that the method declares are taken off, through one row more from the finest on; without
     exponents the finest row counts.
-
-    Parameters
-    ----------
-    df : data frame
-    name : str
-        Of the method.
-    where
-        As those of `pick`.
-
-    Returns
-    -------
-    float or None
     """
     terms = methods.found()[name].terms
     needed = len(terms) + 1

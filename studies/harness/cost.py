@@ -16,22 +16,7 @@ MIB = 2**20
 
 
 def measured(function, /, *args, **knobs):
-    """Call a function and say what the call cost.
-
-    Parameters
-    ----------
-    function : callable
-    args, knobs
-        What it is called with.
-
-    Returns
-    -------
-    value : whatever `function` returns
-    cost : dict
-        `wall_s`, `cpu_s` (all threads and finished child processes, s), `peak_mib` (growth of the process's resident
-        memory during the call, at its peak, MiB), `base_mib` (resident before the call, MiB) and `peak_by` (how the
-        peak was read: "VmHWM" is of the call alone, "ru_maxrss" of the whole life of the process).
-    """
+    """Call a function and say what the call cost."""
     gc.collect()
     _give_back_freed_memory()
     peak_by = "VmHWM" if _reset_peak() else "ru_maxrss"
@@ -44,15 +29,7 @@ def measured(function, /, *args, **knobs):
 
 
 def triad_gbs(*, threads=None, elements=8_000_000, repeats=5):
-    """Memory bandwidth of a = b + s c, best of a few, GB/s, counted as STREAM counts it (24 bytes per element).
-
-    Parameters
-    ----------
-    threads : int, optional
-        Default: every processor this process may use.
-    elements : int
-        Per array; three arrays of 64 MB at the default, well beyond the caches.
-    """
+    """Memory bandwidth of a = b + s c, best of a few, GB/s, counted as STREAM counts it (24 bytes per element)."""
     import numpy as np
 
     threads = threads or len(os.sched_getaffinity(0))

@@ -46,14 +46,6 @@ LOOK = {
 
 
 def look(name, **more):
-    """Keywords of a line for a method: its label, colour, marker and line style.
-
-    Parameters
-    ----------
-    name : str
-        Of a method.
-    **more
-        Instead of these, or besides.
-    """
+    """Keywords of a line for a method: its label, colour, marker and line style."""
     label, colour, marker, style = LOOK[name]
     return {"label": label, "color": colour, "marker": marker, "linestyle": style} | more

@@ -33,20 +33,7 @@ PATIENCE = 5.0
 
 @contextmanager
 def forking(*, values=False, count=None):
-    """Have a first process while rows are made.
-
-    Parameters
-    ----------
-    values : bool
-        Values alone count, see `runner.spawn_row`.
-    count : int, optional
-        Threads of a row; default all.
-
-    Yields
-    ------
-    callable (name, study, case) -> dict
-        As `runner.spawn_row`.
-    """
+    """Have a first process while rows are made."""
     if not sys.platform.startswith("linux"):
         yield partial(runner.spawn_row, environment=provenance.row_environment(count), values=values)
         return
@@ -112,15 +99,7 @@ def _started(first, words, log, limit):
 
 
 def serve(main, parent):
-    """Be the first process: for each line of orders load what that row needs and copy this process.
-
-    Parameters
-    ----------
-    main : callable (words) -> int
-        The command line, of which a copy does what an order's words say.
-    parent : int
-        Process with whose end this one ends.
-    """
+    """Be the first process: for each line of orders load what that row needs and copy this process."""
     fresh.die_with_parent(parent)
     own = os.getpid()
     answers = os.dup(1)
@@ -139,13 +118,7 @@ def serve(main, parent):
 
 @cache
 def load(path):
-    """Load what rows of a method need, and compute nothing with it; what is missing is for the row to tell.
-
-    Parameters
-    ----------
-    path : str
-        Of the method's module; empty without one.
-    """
+    """Load what rows of a method need, and compute nothing with it; what is missing is for the row to tell."""
     for name in LIBRARIES if path else ():
         with suppress(ImportError):
             importlib.import_module(name)

@@ -39,22 +39,7 @@ addEventListener("hashchange", open); open();
 
 
 def page(found, first, figures, out):
-    """The whole page.
-
-    Parameters
-    ----------
-    found : sequence of report.Chapter
-    first : list of (str, Claim)
-        Of `report.headlines`.
-    figures : sequence of (str, str, str)
-        Paper, what of it, study.
-    out : path
-        Where the pictures are.
-
-    Returns
-    -------
-    str
-    """
+    """The whole page."""
     body = [
         "<h1>demheat: results</h1>",
         f'<p class="note">{len(found)} studies, {sound.total(found)}. A claim that rests on costs of such rows is not'
@@ -107,18 +92,7 @@ def _chapter(each, folder):
 
 
 def converted(text, folder):
-    """A study's page in Markdown as HTML: wide tables scroll by themselves, pictures are in it.
-
-    Parameters
-    ----------
-    text : str
-    folder : path
-        Of the pictures.
-
-    Returns
-    -------
-    str
-    """
+    """A study's page in Markdown as HTML: wide tables scroll by themselves, pictures are in it."""
     from markdown_it import MarkdownIt
 
     reader = MarkdownIt("commonmark", {"html": False}).enable("table")

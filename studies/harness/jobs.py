@@ -13,20 +13,7 @@ from studies.harness.store import add_rows, case_key, check_writable, read_rows
 
 
 def commands(name, out, *, quick=False, force=False):
-    """A command for each row that is still to be made; it leaves its row in a file of its own.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    out : path
-    quick, force : bool
-        As those of `runner.run_study`.
-
-    Returns
-    -------
-    list of str
-    """
+    """A command for each row that is still to be made; it leaves its row in a file of its own."""
     study = runner.load(name)
     path = runner.csv_of(name, out)
     folder = path.with_name(f"{path.stem}-rows").absolute()
@@ -42,27 +29,7 @@ def _command(name, key, file):
 
 
 def gather(name, out, files):
-    """Add rows from files to those of a study; a row that failed takes the place of none that did not.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    out : path
-    files : sequence of path
-
-    Returns
-    -------
-    path : Path
-        Of the rows.
-    count : int
-        How many were added.
-
-    Raises
-    ------
-    ValueError
-        If a file holds no row of the study; nothing is added then.
-    """
+    """Add rows from files to those of a study; a row that failed takes the place of none that did not."""
     study = runner.load(name)
     keys, path = [case_key(case) for case in study.CASES], runner.csv_of(name, out)
     stored, found = read_rows(path), {}

@@ -18,18 +18,6 @@ def seconds(study, path, cases):
 
     Of a row that says so what it took. Else its wall time and `START`; where values alone count its CPU time, as it has
     one thread.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-        Of the stored rows.
-    cases : iterable of dict
-
-    Returns
-    -------
-    dict of str to float
-        By the case; not-a-number where there is no row.
     """
     rows, alone = read_rows(path), uncosted(study)
     own, found = _own(rows), {}
@@ -44,13 +32,7 @@ def seconds(study, path, cases):
 
 
 def told(lasting):
-    """How many rows take how long, in words.
-
-    Parameters
-    ----------
-    lasting : sequence of float, s
-        Of each row; those of which nobody knows are not in the sum.
-    """
+    """How many rows take how long, in words."""
     minutes = math.fsum(filter(math.isfinite, lasting)) / 60
     unknown = sum(not math.isfinite(each) for each in lasting)
     more = f", and {unknown} of which nobody knows" if unknown else ""

@@ -7,17 +7,7 @@ from collections import Counter
 
 
 def origins(rows):
-    """Which machine each row is from; one of unknown host is taken for the only other of its model, if there is one.
-
-    Parameters
-    ----------
-    rows : sequence of mapping
-        With "machine" and, but for old rows, "host".
-
-    Returns
-    -------
-    list of str
-    """
+    """Which machine each row is from; one of unknown host is taken for the only other of its model, if there is one."""
     pairs = [(_text(row.get("machine")), _text(row.get("host"))) for row in rows]
     hosts = {}
     for model, host in pairs:
@@ -26,17 +16,7 @@ def origins(rows):
 
 
 def of_one_machine(df):
-    """The rows, without the seconds of those that are not from the machine that made most of their part of the study.
-
-    Parameters
-    ----------
-    df : data frame
-        Where a study has parts, as its column "part", these are never compared by seconds.
-
-    Returns
-    -------
-    data frame
-    """
+    """The rows, without the seconds of other machines than the one that made most of their part."""
     timings = [name for name in df if name in ("cpu_s", "wall_s") or name.endswith(("_cpu_s", "_wall_s"))]
     found, parts = origins(df.to_dict("records")), df["part"].astype(str) if "part" in df else [""] * len(df)
     timed = df[timings].notna().any(axis=1)
@@ -48,13 +28,7 @@ def of_one_machine(df):
 
 
 def said(df):
-    """What a page says of the machines of its rows, a list of sentences; empty if there is nothing to say.
-
-    Parameters
-    ----------
-    df : data frame
-        Of `of_one_machine`.
-    """
+    """What a page says of the machines of its rows, a list of sentences; empty if there is nothing to say."""
     lines, count = [], len(set(origins(df.to_dict("records"))))
     if count > 1:
         lines.append(f"rows are from {count} machines: seconds of all but the one that made most are left out")

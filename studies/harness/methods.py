@@ -25,20 +25,7 @@ def compared(*beside):
 
 
 def spent(method, resolutions):
-    """Values of its knob that a study spends on a method.
-
-    Parameters
-    ----------
-    method : Method
-    resolutions : dict of str to sequence
-        The study's, by the method's name, or else by its knob: lengths in edges of the cube. On a knob that it does not
-        know the coarsest and the finest value of the method's own.
-
-    Returns
-    -------
-    tuple of float
-        (None,) if nothing refines the method.
-    """
+    """Values of its knob that a study spends on a method."""
     if method.resolution is None:
         return (None,)
     own = method.orders.values if method.orders else (method.small, method.coarse)
@@ -47,13 +34,7 @@ def spent(method, resolutions):
 
 
 def value_of(row):
-    """Value of the knob that refines a row's method, not-a-number if there is none.
-
-    Parameters
-    ----------
-    row : mapping
-        With the method's `name`.
-    """
+    """Value of the knob that refines a row's method, not-a-number if there is none."""
     method = found().get(row["name"])
     refined = method.resolution if method else None
     value = row.get(refined.column or refined.knob) if refined else None
@@ -79,81 +60,32 @@ def size_of(row):
 
 
 def at(method, value, seed=0):
-    """What a case says of the resolution of a method: its knob and, where elements lie at random, the seed.
-
-    Parameters
-    ----------
-    method : Method
-    value : float or None
-        Of the knob; a length in edges of the cube.
-    seed : int
-
-    Returns
-    -------
-    dict
-    """
+    """What a case says of the resolution of a method: its knob and, where elements lie at random, the seed."""
     seeded = {"seed": seed} if method.resolution and method.resolution.seeded else {}
     return method.at(value, EDGE) | seeded
 
 
 def case(name, **more):
-    """Case of one method: its name, what is given here, its module, and what the method fixes.
-
-    Parameters
-    ----------
-    name : str
-        Of a method.
-    **more
-        Parameters of the scene and the resolution, in the order of the key.
-    """
+    """Case of one method: its name, what is given here, its module, and what the method fixes."""
     return {"name": name, **more, "method": found()[name].module, **found()[name].knobs}
 
 
 def exact_ratio(fraction, contrast):
-    """Exact effective conductivity of the sphere in a cube over that of the matrix.
-
-    Parameters
-    ----------
-    fraction, contrast : float
-        Volume fraction of the sphere; its conductivity over the matrix's.
-    """
+    """Exact effective conductivity of the sphere in a cube over that of the matrix."""
     from references import exact
 
     return exact.solve(sphere_in_cube(contrast, fraction=fraction)).conductivity / MATRIX
 
 
 def solve_row(scene, ratio, *, method, **knobs):
-    """Row of one solve, or of a formula.
-
-    Parameters
-    ----------
-    scene, ratio, method, knobs
-        As those of `solved`.
-    """
+    """Row of one solve, or of a formula."""
     if not hasattr(load(method), "solve"):
         return _estimated_row(scene, ratio, load(method).estimate, knobs)
     return solved(scene, ratio, method=method, **knobs)[1]
 
 
 def solved(scene, ratio, *, method, **knobs):
-    """Solve a scene by a method; return its Field and what a row shows.
-
-    Parameters
-    ----------
-    scene : Scene
-    ratio : float
-        Exact effective conductivity over that of the matrix.
-    method : str
-        Name of its module.
-    knobs : keywords of its `solve`
-
-    Returns
-    -------
-    field : Field
-    row : dict
-        `k_ratio`, `error_percent` (relative to exact), `inclusion` (its discrete volume fraction), `heat_imbalance`
-        (heat entering minus leaving over heat passing), statistics and cost of the solve.
-    """
+    """Solve a scene by a method; return its Field and what a row shows."""
     field, cost = measured(load(method).solve, scene, **knobs)
     row = {"k_ratio": field.conductivity / MATRIX, "exact_ratio": ratio}
     row["error_percent"] = 100 * conductivity_error(field, MATRIX * ratio)
@@ -181,15 +113,7 @@ def small(module):
 
 
 def warm_up(method, **knobs):
-    """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk.
-
-    Parameters
-    ----------
-    method : str
-        Name of its module.
-    **knobs
-        Of its `solve`; the resolution is the method's own small one.
-    """
+    """Solve a small scene the same way, so that a row pays for no loading or compiling; keeps nothing on disk."""
     for first in declared(method)[:1]:
         scene = sphere_in_cube(2.0, fraction=0.1, periodic="walls" in first.refuses)
         with tempfile.TemporaryDirectory() as folder, packings_in(folder):

@@ -21,14 +21,7 @@ class Interval(NamedTuple):
 
 
 def pick(df, **where):
-    """Rows whose columns have the given values; None means empty, a missing column is empty everywhere.
-
-    Parameters
-    ----------
-    df : data frame
-    where
-        Column = value.
-    """
+    """Rows whose columns have the given values; None means empty, a missing column is empty everywhere."""
     mask = np.ones(len(df), dtype=bool)
     for column, value in where.items():
         if column not in df:
@@ -50,28 +43,13 @@ def finest(rows):
 
 
 def mean_errors(df, by="contrast", **where):
-    """Mean error over packings for each value of a column, %, as a Series; not-a-number if a row has none.
-
-    Parameters
-    ----------
-    df : data frame
-        With `error_percent`.
-    by : str
-    where
-        As those of `pick`.
-    """
+    """Mean error over packings for each value of a column, %, as a Series; not-a-number if a row has none."""
     groups = pick(df, **where).groupby(by)["error_percent"]
     return groups.agg(lambda errors: errors.mean(skipna=False))
 
 
 def worst(df, **where):
-    """Largest |mean error over packings| of any contrast, %; None if there are no such rows.
-
-    Parameters
-    ----------
-    df, where
-        As those of `mean_errors`.
-    """
+    """Largest |mean error over packings| of any contrast, %; None if there are no such rows."""
     errors = mean_errors(df, **where)
     return abs(errors).max(skipna=False) if len(errors) else None
 
@@ -80,13 +58,6 @@ def extrapolated(df, coarse, fine, **where):
     """Largest |error| of any contrast after extrapolating two particle numbers at second order, %; None without rows.
 
     The error falls with the square of the particle size, that is with N^(-2/3).
-
-    Parameters
-    ----------
-    df, where
-        As those of `mean_errors`.
-    coarse, fine : int
-        Numbers of particles.
     """
     errors = [mean_errors(df, particles=number, **where) for number in (coarse, fine)]
     if not len(errors[0]) or not len(errors[1]):
@@ -105,29 +76,12 @@ def student(values):
 
 
 def largest(rows, column):
-    """Largest size in a column; None without rows, not-a-number if one is missing.
-
-    Parameters
-    ----------
-    rows : data frame
-    column : str
-    """
+    """Largest size in a column; None without rows, not-a-number if one is missing."""
     return rows[column].abs().max(skipna=False) if len(rows) else None
 
 
 def order(sizes, errors):
-    """Slope of log |error| over log size by least squares.
-
-    Parameters
-    ----------
-    sizes : (n,) float array, any unit
-        Of elements; of numbers of particles the slope is minus a third of the order in the spacing.
-    errors : (n,) float array, any unit
-
-    Returns
-    -------
-    float
-    """
+    """Slope of log |error| over log size by least squares."""
     return float(np.polyfit(np.log(sizes), np.log(np.abs(errors)), 1)[0])
 
 

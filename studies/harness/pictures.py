@@ -17,18 +17,7 @@ WIDEST, COLOURS = 1_400, 128
 
 
 def saved(figure, path):
-    """Write a figure as PATH.png and PATH.svg and return the paths of the files there are.
-
-    Parameters
-    ----------
-    figure : matplotlib figure
-    path : path
-        Its ending is replaced.
-
-    Returns
-    -------
-    list of Path
-    """
+    """Write a figure as PATH.png and PATH.svg and return the paths of the files there are."""
     picture, vector = (Path(path).with_suffix(end) for end in (".png", ".svg"))
     with replaced(picture) as temporary:
         figure.savefig(temporary)
@@ -55,18 +44,7 @@ def pixels_for_many(figure):
 
 
 def embedded(path):
-    """A picture file as the address of itself, for a page that needs no other file.
-
-    Parameters
-    ----------
-    path : path
-        Of a PNG.
-
-    Returns
-    -------
-    str
-        "data:image/png;base64,...", of fewer pixels and colours where there are too many.
-    """
+    """A picture file as the address of itself, for a page that needs no other file."""
     from PIL import Image
 
     with Image.open(path) as picture:

@@ -25,12 +25,7 @@ ANYWHERE = ("versions",)
 
 
 def provenance(study):
-    """Columns that say where a row of a study comes from.
-
-    Parameters
-    ----------
-    study : module
-    """
+    """Columns that say where a row of a study comes from."""
     return {
         "commit": commit(study.__file__),
         "when": now(),
@@ -48,24 +43,12 @@ def now():
 
 
 def guest_case(study, key):
-    """Case of a method that is not ours, by its key; None if the study takes no such, or it is no such key.
-
-    Parameters
-    ----------
-    study : module
-    key : str
-    """
+    """Case of a method that is not ours, by its key; None if the study takes no such, or it is no such key."""
     return study.guest_case(key) if hasattr(study, "guest_case") else None
 
 
 def row_environment(count=None):
-    """Environment of a row's process: one thread count for all, waiting threads that do not spin, no helper.
-
-    Parameters
-    ----------
-    count : int, optional
-        Of threads; default `threads()`.
-    """
+    """Environment of a row's process: one thread count for all, waiting threads that do not spin, no helper."""
     count = str(count or threads())
     return {
         **os.environ,
@@ -91,13 +74,7 @@ def versions():
 
 
 def commit(file=""):
-    """Short hash of the checked-out commit; "+" and a digest of what differs from it follow where the packages do.
-
-    Parameters
-    ----------
-    file : path, optional
-        Of a study; one that lies outside of the packages is no part of any commit here, and counts by its bytes.
-    """
+    """Short hash of the checked-out commit; "+" and a digest of what differs from it follow where the packages do."""
     file = Path(file)
     strange = file.name and not any(file.is_relative_to(ROOT / name) for name in PACKAGES)
     changed = _differences() + (file.read_bytes() if strange else b"")
@@ -105,14 +82,7 @@ def commit(file=""):
 
 
 def of_this_code(stored, file=""):
-    """Whether a commit that stands in a row has the packages' present source: rows made by it are this code's.
-
-    Parameters
-    ----------
-    stored : str
-    file : path, optional
-        As that of `commit`.
-    """
+    """Whether a commit that stands in a row has the packages' present source: rows made by it are this code's."""
     here = commit(file)
     return bool(stored) and (stored == here or ("+" not in stored + here and _alike(stored)))
 
@@ -158,21 +128,6 @@ def module_of(study, method):
     """Path of the module that a case means by its "method"; rows keep the name, so that the module may move.
 
     A name is that of a method, a module of `references` or `demheat`, or what the study's own `MODULES` says of it.
-
-    Parameters
-    ----------
-    study : module
-    method : str
-
-    Returns
-    -------
-    str
-        Empty without a method.
-
-    Raises
-    ------
-    ValueError
-        If there is no such module.
     """
     from importlib.util import find_spec
 

@@ -63,16 +63,6 @@ def others(begin, end=None):
 
     What a hypervisor gave to other machines counts; what this process and its finished children used does not, nor
     what may be the coarseness of the count.
-
-    Parameters
-    ----------
-    begin, end : Moment
-        The end is now by default.
-
-    Returns
-    -------
-    float
-        Not-a-number if nobody knows, or the time was too short to tell.
     """
     end = moment() if end is None else end
     elapsed = end.time - begin.time
@@ -101,21 +91,7 @@ def look():
 
 
 def waiting(seconds, say, *, clock=time.monotonic, sleep=time.sleep):
-    """What waits for a quiet machine, at most so long in all its calls together.
-
-    Parameters
-    ----------
-    seconds : float, s
-    say : callable (str)
-        Told when a wait begins, and when there is no more patience.
-    clock, sleep : callable
-        Those of a test do not wait.
-
-    Returns
-    -------
-    callable (look) -> look
-        Takes what was seen, returns what was seen last: not quiet if patience has ended.
-    """
+    """What waits for a quiet machine, at most so long in all its calls together."""
     left = float(seconds)
 
     def wait(seen):
@@ -135,22 +111,7 @@ def waiting(seconds, say, *, clock=time.monotonic, sleep=time.sleep):
 
 
 def quietly(compute, *, seconds=0.0, say=print, clock=time.monotonic):
-    """Rows one after another, each when the machine is quiet, with what was seen of it before and after.
-
-    Parameters
-    ----------
-    compute : callable (name, study, case) -> dict
-    seconds : float, s
-        How long to wait for others to end, in all rows together; then rows are made all the same, and marked.
-    say : callable (str)
-    clock : callable
-
-    Returns
-    -------
-    callable (name, study, case) -> dict
-        With `triad_gbs`, the memory's bandwidth before the row, and `noise`, the largest share of others before,
-        during and after it, where the system tells.
-    """
+    """Rows one after another, each when the machine is quiet, with what was seen of it before and after."""
     wait, last, looked = waiting(seconds, say), None, -math.inf
 
     def computed(name, study, case):

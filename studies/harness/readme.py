@@ -17,24 +17,7 @@ MARKED = re.compile(r"(<!-- (table|words) (\w+)(?: (\w+))? -->).*?(<!-- end of \
 
 
 def filled(text, folder):
-    """Page with each marked table and sentence written anew from folder/NAME.csv.
-
-    Parameters
-    ----------
-    text : str
-        Of a page in Markdown.
-    folder : path
-        Of the studies' results.
-
-    Returns
-    -------
-    str
-
-    Raises
-    ------
-    ValueError
-        If a marked study has no rows in the folder, or no such function.
-    """
+    """Page with each marked table and sentence written anew from folder/NAME.csv."""
 
     def anew(match):
         begin, kind, name, function, end = match.groups()
@@ -51,14 +34,7 @@ def filled(text, folder):
 
 
 def fill(page, folder):
-    """Write what is marked in a page anew.
-
-    Parameters
-    ----------
-    page : path
-    folder : path
-        Of the studies' results.
-    """
+    """Write what is marked in a page anew."""
     page = Path(page)
     text = filled(page.read_text(encoding="utf-8"), folder)
     with replaced(page) as temporary:

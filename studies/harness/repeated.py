@@ -19,25 +19,7 @@ PEAK = ("peak_mib", "base_mib", "peak_by")
 
 
 def measured_again(run, case, *, most=RUNS, seconds=SECONDS):
-    """Call a study's `run`, repeat it while that is short, and return what the cheapest call gave.
-
-    Parameters
-    ----------
-    run : callable (**case) -> dict
-    case : dict
-    most : int
-        Calls in all.
-    seconds : float, s
-        No call begins later than this.
-
-    Returns
-    -------
-    metrics : dict
-        Of the call with the least CPU time, by its own `cpu_s` if it measures that itself.
-    cost : dict
-        As of `cost.measured`, of the same call but for its memory, which is the first's; `repeats`, how many calls
-        there were; `cpu_spread`, by how much the dearest call's CPU time was more than the cheapest's, relative.
-    """
+    """Call a study's `run`, repeat it while that is short, and return what the cheapest call gave."""
     begin, kept = time.perf_counter(), _packings()
     found = [measured(run, **case)]
     while len(found) < most and time.perf_counter() - begin < seconds and "status" not in found[0][0]:

@@ -27,29 +27,12 @@ WORKERS = 2
 
 
 def group_of(case):
-    """What a row stands or falls with, in its study.
-
-    Parameters
-    ----------
-    case : mapping
-    """
+    """What a row stands or falls with, in its study."""
     return tuple((kind, case[kind]) for kind in KINDS if case.get(kind) is not None)
 
 
 def cheapest(rows, cases):
-    """Of each group the case whose stored row took least.
-
-    Parameters
-    ----------
-    rows : dict of str to dict
-        Stored, by their cases.
-    cases : iterable of dict
-
-    Returns
-    -------
-    dict of tuple to dict
-        Cases by their groups.
-    """
+    """Of each group the case whose stored row took least."""
     found = {}
     for case in sorted(cases, key=lambda case: _cost(rows.get(case_key(case), {}))):
         found.setdefault(group_of(case), case)
@@ -65,13 +48,7 @@ def _cost(row):
 
 @contextmanager
 def side_by_side(workers=WORKERS):
-    """Have rows made for their values, several at a time, one thread each.
-
-    Yields
-    ------
-    callable (tasks) -> iterator of dict
-        Of tasks (name, study, case) their rows, in order.
-    """
+    """Have rows made for their values, several at a time, one thread each."""
     with ExitStack() as stack:
         free = SimpleQueue()
         for _ in range(workers):
@@ -98,25 +75,7 @@ def side_by_side(workers=WORKERS):
 
 
 def replayed(tasks, out, say, *, compute=None):
-    """Make stored rows again and note in them when they came out the same.
-
-    Parameters
-    ----------
-    tasks : sequence of (name, study, case)
-        All with a stored row.
-    out : path
-        Folder of the rows.
-    say : callable (str)
-        Told of each row.
-    compute : callable (tasks) -> iterator of dict, optional
-        Default `side_by_side`.
-
-    Returns
-    -------
-    list of (task, list of Moved)
-        In the same order, without rows that want a program which is not here; nothing has moved where the list is
-        empty.
-    """
+    """Make stored rows again and note in them when they came out the same."""
     found = []
     check_writable(out)
     with ExitStack() as stack:
@@ -148,29 +107,12 @@ def told(wrong):
 
 
 def keys_of(study, path):
-    """Cases of a study in order, then all others in its file: of guests, or of another version. None is lost.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-    """
+    """Cases of a study in order, then all others in its file: of guests, or of another version. None is lost."""
     return list(dict.fromkeys([*map(case_key, study.CASES), *read_rows(path)]))
 
 
 def bear_out(name, out, *, quick=False, say=print, compute=None):
-    """Replay, of the rows that other code has made, the cheapest of each group; note in a group that is borne out.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    out : path
-    quick : bool
-        Rows of a quick run alone.
-    say, compute
-        As those of `replayed`.
-    """
+    """Replay, of the rows that other code has made, the cheapest of each group; note in a group that is borne out."""
     study, path = runner.load(name), runner.csv_of(name, out)
     rows = read_rows(path)
     cases = [case for case in stored_cases(study, path, quick=quick) if rows[case_key(case)]["status"] in runner.KEPT]
@@ -187,29 +129,13 @@ def bear_out(name, out, *, quick=False, say=print, compute=None):
 
 
 def stored_cases(study, path, *, quick=False, unproved=False):
-    """Cases of a study with a stored row.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-    quick : bool
-        Those of a quick run alone.
-    unproved : bool
-        Those alone whose values the present code has neither made nor made again.
-    """
+    """Cases of a study with a stored row."""
     rows = read_rows(path)
     cases = [case for case in study.CASES if case_key(case) in rows and (study.QUICK(case) or not quick)]
     return [case for case in cases if not (unproved and proved(study, rows[case_key(case)]))]
 
 
 def lacking(study, path):
-    """Keys of cases without a stored row.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-    """
+    """Keys of cases without a stored row."""
     rows = read_rows(path)
     return [key for key in map(case_key, study.CASES) if key not in rows]

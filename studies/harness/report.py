@@ -35,23 +35,7 @@ class Chapter(NamedTuple):
 
 
 def chapters(names, out):
-    """Render every study that has rows in a folder; one whose rows cannot be read is a chapter that says so.
-
-    Parameters
-    ----------
-    names : sequence of str
-        Of studies.
-    out : path
-
-    Returns
-    -------
-    list of Chapter
-
-    Raises
-    ------
-    ValueError
-        If none of them has rows there.
-    """
+    """Render every study that has rows in a folder; one whose rows cannot be read is a chapter that says so."""
     paths = {name: runner.csv_of(name, out) for name in names}
     found = [_chapter(name, path) for name, path in paths.items() if path.exists()]
     if not found:
@@ -72,19 +56,7 @@ def _chapter(name, path):
 
 
 def headlines(found, wanted):
-    """Claims of the chapters that are wanted first.
-
-    Parameters
-    ----------
-    found : sequence of Chapter
-    wanted : sequence of (str, str)
-        Study, and words of one of its claims.
-
-    Returns
-    -------
-    list of (str, Claim)
-        Study and claim; one that is not there, or not the only one with such words, is one that is not judged.
-    """
+    """Claims of the chapters that are wanted first."""
     claims = {each.name: each.claims for each in found}
     picked = []
     for name, words in wanted:
@@ -95,19 +67,7 @@ def headlines(found, wanted):
 
 
 def write(found, out, contents):
-    """Write README.md and index.html into a folder and return their paths.
-
-    Parameters
-    ----------
-    found : sequence of Chapter
-    out : path
-    contents : module
-        With HEADLINES and FIGURES, see `studies.contents`.
-
-    Returns
-    -------
-    list of Path
-    """
+    """Write README.md and index.html into a folder and return their paths."""
     from studies.harness.html import page
 
     first = headlines(found, contents.HEADLINES)
@@ -122,20 +82,7 @@ def write(found, out, contents):
 
 
 def readme(found, first, figures):
-    """The short page that leads to those of the studies, in Markdown.
-
-    Parameters
-    ----------
-    found : sequence of Chapter
-    first : list of (str, Claim)
-        Of `headlines`.
-    figures : sequence of (str, str, str)
-        Paper, what of it, study.
-
-    Returns
-    -------
-    str
-    """
+    """The short page that leads to those of the studies, in Markdown."""
     there = {each.name for each in found}
     claims = [
         f"| {each.verdict} | {_cell(each.sentence)} | {each.value:.3g} | {each.limit} | [{name}]({name}.md) |"

@@ -53,14 +53,7 @@ KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
 
 
 def load(name):
-    """Module of a study: `studies.NAME`, or any importable module that has CASES.
-
-    Raises
-    ------
-    ValueError
-        If there is no such study, two of its cases have the same parameters, or one is called as a column that every
-        row has.
-    """
+    """Module of a study: `studies.NAME`, or any importable module that has CASES."""
     if not all(part.isidentifier() for part in name.split(".")):
         raise ValueError(f"no study {name!r}; must be a name, and `python -m studies list` shows them all")
     for path in (f"studies.{name}", name):
@@ -82,17 +75,7 @@ def load(name):
 
 
 def find_case(study, case):
-    """Case of a study by its key, or by its number in CASES.
-
-    Parameters
-    ----------
-    study : module
-    case : str
-
-    Returns
-    -------
-    dict
-    """
+    """Case of a study by its key, or by its number in CASES."""
     cases = {case_key(each): each for each in study.CASES}
     guest = guest_case(study, case)
     if guest is not None:
@@ -110,31 +93,6 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
 
     Rows that the present code has made or borne out (`replay.bear_out`), on this machine, are reused, unless forced.
     Rows of cases that are not asked for now (a full run's, in a quick one) stay.
-
-    Parameters
-    ----------
-    name : str
-    out : path
-    quick : bool
-        Only the cases that QUICK accepts.
-    force : bool or "unsound"
-        Repeat every row, or also those that are dirty or noisy (`sound.faults`).
-    method : str, optional
-        One that is not ours: its rows alone are run, and each anew, as nothing here knows when its code has changed.
-    say : callable (str)
-        Told of each row as it ends.
-    compute : callable (name, study, case) -> dict
-        Default `quiet.quietly(spawn_row)`: each row in a fresh process, so that its cost means something, and with what
-        others did meanwhile. Its `beside`, callable (tasks) -> iterator of dict, if it has one (`replay.side_by_side`),
-        makes the rows whose values alone count, of tasks (name, study, case), after the others.
-    spread : callable (name, study, cases) -> iterator of dict, optional
-        Instead: all rows, in the order in which they are done, by other machines perhaps (`cluster.spread_over`). A
-        stored row then holds whatever machine it is from.
-
-    Raises
-    ------
-    ValueError
-        If there is no such study, or its file cannot be read or written.
     """
     study = load(name)
     path = csv_of(name, out)
@@ -173,20 +131,7 @@ def _made(name, study, todo, compute):
 
 
 def guests_of(name, method, *, quick=False):
-    """Cases of a method that is not ours, in a study that takes such.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    method : str
-    quick : bool
-
-    Raises
-    ------
-    ValueError
-        If the study takes none, or there is no such method.
-    """
+    """Cases of a method that is not ours, in a study that takes such."""
     study = load(name)
     if not hasattr(study, "guests"):
         raise ValueError(f"method = {method!r}: study {name} takes no methods but ours; sphere_benchmark does")
@@ -194,35 +139,12 @@ def guests_of(name, method, *, quick=False):
 
 
 def csv_of(name, out):
-    """Path of a study's rows in a folder.
-
-    Parameters
-    ----------
-    name : str
-    out : path
-    """
+    """Path of a study's rows in a folder."""
     return Path(out) / f"{name.rsplit('.', 1)[-1]}.csv"
 
 
 def still_to_run(study, path, cases=None, *, quick=False, force=False, same=SAME):
-    """Cases that are asked for, and those of them without a row that holds.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-        Of the rows there are.
-    cases : list of dict, optional
-        Those of a method that is not ours, instead of the study's.
-    quick, force
-        As those of `run_study`.
-    same : sequence of str
-        Columns in which a stored row must agree with a new one.
-
-    Returns
-    -------
-    wanted, todo : list of dict
-    """
+    """Cases that are asked for, and those of them without a row that holds."""
     rows = read_rows(path)
     wanted = [case for case in study.CASES if not quick or study.QUICK(case)] if cases is None else cases
     here = {"machine": machine(), "threads": threads(), "versions": versions()}
@@ -254,26 +176,7 @@ def _short(key):
 
 
 def spawn_row(name, study, case, *, environment=None, start=None, values=False):
-    """Compute a row in a process of its own; whatever happens to that process, a row comes back.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    study : module
-    case : dict
-    environment : mapping of str to str, optional
-        Of that process; default that of this one.
-    start : callable (words, log, limit) -> int, optional
-        Does what the command line says with these words, in a process of its own; default: a fresh one.
-    values : bool
-        Values alone count: once, without a warm-up.
-
-    Returns
-    -------
-    dict
-        Its status says what happened: "ok", "unsupported", "failed" or "timeout".
-    """
+    """Compute a row in a process of its own; whatever happens to that process, a row comes back."""
     key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
     base = {"case": key, **case}
     with tempfile.TemporaryDirectory() as folder:
@@ -297,16 +200,7 @@ def _started(words, log, limit, *, environment):
 
 
 def compute_row(study, case, *, warm=True):
-    """Compute a row in this process: the case, its metrics, costs and provenance.
-
-    Parameters
-    ----------
-    study : module
-    case : dict
-    warm : bool
-        Call the study's warm-up first, repeat a short run, and say what others did meanwhile; without it costs include
-        what is loaded on first use.
-    """
+    """Compute a row in this process: the case, its metrics, costs and provenance."""
     row, alone = {"case": case_key(case), **case}, values_only(study, case)
     warm = warm and not alone
     try:
@@ -345,12 +239,6 @@ def _quietly_measured(study, case):
 
 
 def write_json(row, path):
-    """Hand a row over to the process that asked for it.
-
-    Parameters
-    ----------
-    row : dict
-    path : path
-    """
+    """Hand a row over to the process that asked for it."""
     with replaced(path) as temporary:
         temporary.write_text(json.dumps(row, default=lambda value: value.item()), encoding="utf-8")

@@ -26,15 +26,6 @@ def faults(row):
     - dirty: its code was at no commit.
     - noisy: others used more than a tenth of the processors around it, or nobody knows, or it compiled kernels in
       more than a tenth of its time; only rows with costs are.
-
-    Parameters
-    ----------
-    row : mapping
-        Of a file or of a data frame.
-
-    Returns
-    -------
-    tuple of str
     """
     wrong = ("+" in str(row.get("commit")), math.isfinite(_number(row.get("cpu_s"))) and not _quiet(row))
     return tuple(name for name, yes in zip(FAULTS, wrong, strict=True) if yes)
@@ -46,38 +37,17 @@ def _quiet(row):
 
 
 def values_only(study, case):
-    """Whether nobody asks what a row costs: by the study's `VALUES`. Then it may be made beside another.
-
-    Parameters
-    ----------
-    study : module
-    case : mapping
-    """
+    """Whether nobody asks what a row costs: by the study's `VALUES`. Then it may be made beside another."""
     return hasattr(study, "VALUES") and bool(study.VALUES(case))
 
 
 def uncosted(study):
-    """Keys of the cases of a study whose values alone count.
-
-    Parameters
-    ----------
-    study : module
-    """
+    """Keys of the cases of a study whose values alone count."""
     return {case_key(case) for case in study.CASES if values_only(study, case)}
 
 
 def counted(found):
-    """How many rows have each fault.
-
-    Parameters
-    ----------
-    found : iterable of tuple of str
-        Of `faults`.
-
-    Returns
-    -------
-    dict of str to int
-    """
+    """How many rows have each fault."""
     count = Counter(name for each in found for name in each)
     return {name: count[name] for name in FAULTS}
 
@@ -88,55 +58,25 @@ def told(count):
 
 
 def checked(study, path):
-    """Faults of all rows of a study's present cases in a file.
-
-    Parameters
-    ----------
-    study : module
-    path : path
-
-    Returns
-    -------
-    dict of str to tuple of str
-        By the case; the tuple of a good row is empty.
-    """
+    """Faults of all rows of a study's present cases in a file."""
     cases, spared = {case_key(case) for case in study.CASES}, uncosted(study)
     rows = {key: row | {"cpu_s": ""} if key in spared else row for key, row in read_rows(path).items()}
     return {key: faults(row) for key, row in rows.items() if key in cases or guest_case(study, key) is not None}
 
 
 def proved(study, row):
-    """Whether a row's values are those of the present code: it has made them, or made them again and found the same.
-
-    Parameters
-    ----------
-    study : module
-    row : mapping
-        Of a file.
-    """
+    """Whether a row's values are those of the present code: it has made them, or made them again and found the same."""
     commits = (row.get("values_commit") or row.get("commit"), row.get("replayed_commit"))
     return any(of_this_code(str(commit or ""), study.__file__) for commit in commits)
 
 
 def held(study, row):
-    """Whether a run need not make a row: its values are proved, or a replay of another row of its group bears them out.
-
-    Parameters
-    ----------
-    study, row
-        As those of `proved`.
-    """
+    """Whether a run need not make a row: its values are proved, or another row's of its group are."""
     return proved(study, row) or of_this_code(row.get("borne_commit") or "", study.__file__)
 
 
 def cost_columns(study, df):
-    """Names of a data frame's, or of a row's, columns that hold costs.
-
-    Parameters
-    ----------
-    study : module
-    df : data frame, or iterable of str
-    """
+    """Names of a data frame's, or of a row's, columns that hold costs."""
     own = getattr(study, "COSTS", ())
     return [name for name in df if name in own or COSTS.fullmatch(name)]
 
@@ -149,23 +89,13 @@ def _number(value):
 
 
 def total(found):
-    """Rows of all chapters of a report, and those whose costs do not count, in words.
-
-    Parameters
-    ----------
-    found : sequence of report.Chapter
-    """
+    """Rows of all chapters of a report, and those whose costs do not count, in words."""
     count = {name: sum(each.count[name] for each in found) for name in FAULTS}
     return f"{sum(each.rows for each in found)} rows: {told(count)}"
 
 
 def ages(rows):
-    """Of which commits rows are, most first, and when they were last replayed, in words.
-
-    Parameters
-    ----------
-    rows : iterable of mapping
-    """
+    """Of which commits rows are, most first, and when they were last replayed, in words."""
     rows = list(rows)
     count = Counter(str(row.get("values_commit") or row.get("commit") or "no commit") for row in rows)
     said = [f"{number} of {commit}" for commit, number in count.most_common(MOST_COMMITS)]

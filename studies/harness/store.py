@@ -36,13 +36,7 @@ def case_key(case):
 
 
 def read_rows(path):
-    """Rows of a CSV file as {case key: {column: text}}; empty if there is no such file.
-
-    Raises
-    ------
-    ValueError
-        If it holds anything else.
-    """
+    """Rows of a CSV file as {case key: {column: text}}; empty if there is no such file."""
     path = Path(path)
     if not path.exists():
         return {}
@@ -72,21 +66,7 @@ def check_writable(folder):
 
 
 def add_rows(path, rows, keys):
-    """Add rows to those of a file as it is now: other runs may have added theirs.
-
-    Parameters
-    ----------
-    path : path
-    rows : dict of str to dict
-        By their cases; they take the place of older ones.
-    keys : sequence of str
-        All cases of the study, in order; rows of others are left out.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be written: the rows are then in a file of temporary ones, which is named.
-    """
+    """Add rows to those of a file as it is now: other runs may have added theirs."""
     path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -100,14 +80,7 @@ def add_rows(path, rows, keys):
 
 
 def write_rows(path, rows):
-    """Write rows, an iterable of dicts, whole or not at all.
-
-    Parameters
-    ----------
-    path : path
-    rows : iterable of dict
-        One for each case.
-    """
+    """Write rows, an iterable of dicts, whole or not at all."""
     rows = list(rows)
     seen = list(dict.fromkeys(name for row in rows for name in row))
     columns = [name for name in seen if name not in TAIL] + [name for name in TAIL if name in seen]

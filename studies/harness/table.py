@@ -27,16 +27,6 @@ def render(study, csv_path):
 
     What cannot be judged or drawn is a claim that failed, with the reason as its sentence; while rows are missing it is
     one that is not judged.
-
-    Parameters
-    ----------
-    study : module
-    csv_path : path
-
-    Returns
-    -------
-    claims : list of Claim
-    text : str
     """
     csv_path = Path(csv_path)
     df = read_frame(study, csv_path)
@@ -66,22 +56,7 @@ def _plain(study):
 
 
 def read_frame(study, csv_path):
-    """Rows of the study's present cases as a data frame, without costs where values alone count.
-
-    Parameters
-    ----------
-    study : module
-    csv_path : path
-
-    Returns
-    -------
-    data frame
-
-    Raises
-    ------
-    ValueError
-        If the file does not hold rows of a study.
-    """
+    """Rows of the study's present cases as a data frame, without costs where values alone count."""
     import pandas as pd
 
     rows = read_rows(csv_path)

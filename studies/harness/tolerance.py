@@ -66,47 +66,20 @@ ELSEWHERE = Tolerance(5e-3, 5e-3)
 
 
 def value_columns(study, case, names):
-    """Columns that a replay compares: neither parameters nor costs, nor what says how a row was made.
-
-    Parameters
-    ----------
-    study : module
-    case : mapping
-    names : iterable of str
-    """
+    """Columns that a replay compares: neither parameters nor costs, nor what says how a row was made."""
     names = [name for name in names if name not in case and not ASIDE.fullmatch(name)]
     costs = set(cost_columns(study, names))
     return [name for name in names if name not in costs and (name not in TAIL or name in COUNTED)]
 
 
 def tolerance_of(study, column):
-    """Tolerance of a column.
-
-    Parameters
-    ----------
-    study : module
-    column : str
-    """
+    """Tolerance of a column."""
     declared = (*getattr(study, "TOLERANCES", {}).items(), *TOLERANCES.items())
     return next(tolerance for form, tolerance in declared if re.fullmatch(form, column))
 
 
 def moved(name, study, case, stored, found):
-    """Values of a row that was made again which are not those that are stored, and its status.
-
-    Parameters
-    ----------
-    name : str
-        Of the study.
-    study : module
-    case : dict
-    stored, found : mapping
-        Of the file, as text; and as it was made.
-
-    Returns
-    -------
-    list of Moved
-    """
+    """Values of a row that was made again which are not those that are stored, and its status."""
     same = stored.get("machine") == machine() and stored.get("versions") == versions()
     key, status = stored["case"], (stored.get("status"), str(found.get("status")))
     if status[0] != status[1]:

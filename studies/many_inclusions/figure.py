@@ -13,17 +13,7 @@ COSTS = {"cpu_s": ("CPU time", "s", 1), "peak_mib": ("peak memory", "GiB", 1024)
 
 
 def draw(df, network, paper):
-    """Error against CPU time and memory, and, where they are counted, against elements per inclusion.
-
-    Parameters
-    ----------
-    df : data frame
-        With errors, without the network's packings.
-    network : dict
-        Their errors, from `network_errors`.
-    paper : dict
-        Printed numbers.
-    """
+    """Error against CPU time and memory, and, where they are counted, against elements per inclusion."""
     from matplotlib import pyplot
 
     df = df[df["error_percent"].notna()].assign(off=lambda d: d["error_percent"].abs().clip(lower=FLOOR))

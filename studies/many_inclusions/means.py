@@ -5,16 +5,7 @@ from studies.harness.pick import pick
 
 
 def network_errors(df):
-    """Errors of the network's variants against the multipoles' finest.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    dict of (Variant, int) to dict of str to Interval
-    """
+    """Errors of the network's variants against the multipoles' finest."""
     network, others = parted(df)
     spheres = pick(others, name="multipole")
     exact = spheres.loc[spheres["highest"].idxmax(), "k_ratio"]

@@ -9,24 +9,12 @@ COLUMN = "k_spheres"
 
 
 def network_row(**case):
-    """The cell of 83 spheres by one packing of the network.
-
-    Parameters
-    ----------
-    case
-        As of `paper_network.fields_and_row`.
-    """
+    """The cell of 83 spheres by one packing of the network."""
     fields, row = paper_network.fields_and_row({COLUMN: spheres()}, **case)
     field = fields[COLUMN]
     return row | {"number": len(field.scene.inclusions), "inside": inside(field)}
 
 
 def warm_up(**case):
-    """Make and keep the dispersion and the packing; load what solves.
-
-    Parameters
-    ----------
-    case
-        As that of `network_row`.
-    """
+    """Make and keep the dispersion and the packing; load what solves."""
     paper_network.warm_up({COLUMN: spheres()}, **case)

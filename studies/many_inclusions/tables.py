@@ -60,14 +60,7 @@ def _steady(df):
 
 
 def told(df, paper):
-    """Sentences below the table, and the network's errors where there are rows.
-
-    Parameters
-    ----------
-    df : data frame
-    paper : dict
-        Printed numbers.
-    """
+    """Sentences below the table, and the network's errors where there are rows."""
     what = "on its own kind of packing and on relaxed ones, C_t of the periodic cell: errors, %"
     said = shown(network_errors(df), {"spheres": "error, %"}, what, " where there are more than one")
     most = pick(df, name="fem-p1")["elements"].max() if "elements" in df else math.nan

@@ -184,27 +184,13 @@ def _orders(df):
 
 
 def finest_there(df, which, name):
-    """Whether a method's finest rows of a problem are there: an order of the coarsest two says little.
-
-    Parameters
-    ----------
-    df : data frame
-    which, name : str
-        Of the problem and of the method.
-    """
+    """Whether a method's finest rows of a problem are there: an order of the coarsest two says little."""
     rows = pick(df, problem=which, name=name)
     return bool((rows["particles"] == NUMBERS[-1]).any() if name == "dem" else (rows["edge"] == EDGES[name][-1]).any())
 
 
 def order_of(df, which, name):
-    """Fitted order of the error over the body of a method's rows of a problem; None where they are of one size.
-
-    Parameters
-    ----------
-    df : data frame
-    which, name : str
-        Of the problem and of the method.
-    """
+    """Fitted order of the error over the body of a method's rows of a problem; None where they are of one size."""
     rows = pick(df, problem=which, name=name)
     means = rows.groupby("particles" if name == "dem" else "edge")["rms_percent"].mean()
     if len(means) < 2:

@@ -12,13 +12,7 @@ KINDS = (("over the body", {"linestyle": "-"}), ("at the point", {"linestyle": "
 
 
 def drawn(df):
-    """Two panels of errors and one of the plate.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows of the study.
-    """
+    """Two panels of errors and one of the plate."""
     figure, panels = pyplot.subplots(1, 3, figsize=(15, 4.8), width_ratios=(1, 1, 0.8))
     for axes, which, title in zip(
         panels, ("T3", "T4"), ("T3: an end swings, 32 s", "T4: a plate convects"), strict=False

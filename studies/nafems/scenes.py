@@ -22,25 +22,13 @@ POINTS, SEED = 2000, 11
 
 
 class Problem(NamedTuple):
-    """A benchmark.
-
-    Attributes
-    ----------
-    scene : Scene
-    time : float, s, or None
-        When the temperature is asked for; None in a steady state.
-    point : (3,) tuple of float, m
-        Where.
-    span : float, K
-        That the load imposes.
-    exact : callable (n, 3) float array, m -> (n,) float array, K or degrees Celsius
-    """
+    """A benchmark."""
 
     scene: Scene
-    time: float | None
-    point: tuple[float, float, float]
-    span: float
-    exact: Callable
+    time: float | None  # s, or None: When the temperature is asked for; None in a steady state
+    point: tuple[float, float, float]  # (3,) tuple of float, m: Where
+    span: float  # K: That the load imposes
+    exact: Callable  # callable (n, 3) float array, m -> (n,) float array, K or degrees Celsius
 
     def points(self):
         """Points over the body at which errors are taken, (n, 3) float array, m."""

@@ -11,14 +11,7 @@ OURS = {"lsa": ("ours", RED, "o"), "spheropack": ("spheropack", BLUE, "s")}
 
 
 def draw(df, large):
-    """Six panels from the rows; the polar plot and S2(r) of the packing of `large` spheres, if it is there.
-
-    Parameters
-    ----------
-    df : data frame
-    large : int
-        Number of spheres.
-    """
+    """Six panels from the rows; the polar plot and S2(r) of the packing of `large` spheres, if it is there."""
     from matplotlib import pyplot
 
     figure = pyplot.figure(figsize=(13, 8))

@@ -26,26 +26,7 @@ STRAIN = 0.03
 
 
 def packed(maker, particles, radii, seed, *, growth=0.02, pressure=None, phi=None, domain="box"):
-    """Make a packing of a unit cube or what is inscribed in it, by one of three programs, and say what that cost.
-
-    Parameters
-    ----------
-    maker : {"lsa", "relax", "spheropack"}
-    particles : int
-    radii : {"equal", "gaussian", "ten"}
-        Equal, Gaussian with spread 0.3, or 1 % of the spheres ten times as large as the others.
-    seed : int
-        Of the radii too: every maker gets the same.
-    growth, pressure, phi
-        As in `demheat.packing.lsa.lsa`; relaxation takes phi only, spheropack growth and pressure only.
-    domain : {"box", "walls", "cylinder-y", "sphere"}
-        A periodic cell, a cube between six walls, or round.
-
-    Returns
-    -------
-    packing : Packing
-    row : dict
-    """
+    """Make a packing of a unit cube or what is inscribed in it, by one of three programs, and say what that cost."""
     laws = {"equal": Gaussian(0.0), "gaussian": Gaussian(0.3), "ten": Bidisperse(10.0, 0.01)}
     drawn = laws[radii].draw(particles, np.random.default_rng([seed, 2]))
     if maker == "spheropack":
@@ -81,20 +62,7 @@ def _counted(cost, pressure, collisions, particles):
 
 
 def described(packing, row, *, curves):
-    """What a packing is like: density, overlap, contacts, isotropy; with curves for the figure if asked for.
-
-    Parameters
-    ----------
-    packing : Packing
-    row : dict
-        From `packed`.
-    curves : bool
-        Also g(r), S2(r) and the polar plot, as numbers separated by blanks.
-
-    Returns
-    -------
-    dict
-    """
+    """What a packing is like: density, overlap, contacts, isotropy; with curves for the figure if asked for."""
     margin = 0.0 if packing.periodic.all() else 5.0
     found = {"phi_reached": packing.phi, "phi_core": statistics.packing_fraction(packing, margin=margin)}
     found |= {"overlap": overlap(packing), "bytes_per_sphere": row["peak_mib"] * 2**20 / packing.number}

@@ -11,41 +11,13 @@ THREADS = {"OMP_NUM_THREADS": "2", "OPENBLAS_NUM_THREADS": "2", "MKL_NUM_THREADS
 
 
 def ran_alone(command, *, folder=None, stdin="", environment=None) -> tuple[str, dict]:
-    """Run a program to its end, as `studies.peers.outside.ran` does, on two threads.
-
-    Parameters
-    ----------
-    command : sequence of str
-    folder : path, optional
-        Where it runs.
-    stdin : str
-    environment : mapping of str to str, optional
-        What is added to the environment, besides two threads.
-
-    Returns
-    -------
-    printed : str
-        On its standard output.
-    cost : dict
-        `wall_s`, `cpu_s`, s, and `peak_mib`, MiB, of the largest of its processes; `whole`, for start and reading are
-        included.
-
-    Raises
-    ------
-    RuntimeError
-        If it did not exit with 0.
-    """
+    """Run a program to its end, as `studies.peers.outside.ran` does, on two threads."""
     printed, cost = ran(command, folder=folder, stdin=stdin, environment=THREADS | (environment or {}))
     return printed, cost | {"whole": True}
 
 
 def packaged(name) -> str:
-    """Version of a Debian package; empty where there is none.
-
-    Parameters
-    ----------
-    name : str
-    """
+    """Version of a Debian package; empty where there is none."""
     try:
         asked = subprocess.run(["dpkg-query", "-W", "-f=${Version}", name], capture_output=True, text=True)
     except FileNotFoundError:

@@ -26,30 +26,15 @@ UNLIKE = ((1.0, 1.0), (0.7, 0.25), (1.3, 4.0))
 
 
 class Bed(NamedTuple):
-    """Grains between two held layers.
+    """Grains between two held layers."""
 
-    Attributes
-    ----------
-    centers : (n, 3) float array, m
-    radii : (n,) float array, m
-    solid : (n,) float array, W/(m K)
-    size : (3,) float array, m
-        Of the box; all centres are inside.
-    layer : float, m
-        Grains whose centres are so near to x = 0 are held at 1 K, at the other end at 0 K.
-    length : float, m
-        Over which the conductivity is counted; its area is the cross-section of the box.
-    law : str
-        One of LAWS.
-    """
-
-    centers: np.ndarray
-    radii: np.ndarray
-    solid: np.ndarray
-    size: np.ndarray
-    layer: float
-    length: float
-    law: str
+    centers: np.ndarray  # (n, 3) float array, m
+    radii: np.ndarray  # (n,) float array, m
+    solid: np.ndarray  # (n,) float array, W/(m K)
+    size: np.ndarray  # (3,) float array, m: Of the box; all centres are inside
+    layer: float  # m: Grains whose centres are so near to x = 0 are held at 1 K, at the other end at 0 K
+    length: float  # m: Over which the conductivity is counted; its area is the cross-section of the box
+    law: str  # One of LAWS
 
     @property
     def held(self) -> np.ndarray:
@@ -75,24 +60,12 @@ class Scene(NamedTuple):
 
 
 def circle(d, r, s):
-    """Squared radius of the circle in which spheres cut each other, (m,) float array, m2.
-
-    Parameters
-    ----------
-    d, r, s : (m,) float arrays, m
-        Between the centres, and radii.
-    """
+    """Squared radius of the circle in which spheres cut each other, (m,) float array, m2."""
     return r**2 - ((d**2 + r**2 - s**2) / (2 * d)) ** 2
 
 
 def hertz(d, r, s):
-    """Squared contact radius of elastic spheres that overlap so far, (m,) float array, m2.
-
-    Parameters
-    ----------
-    d, r, s : (m,) float arrays, m
-        Between the centres, and radii.
-    """
+    """Squared contact radius of elastic spheres that overlap so far, (m,) float array, m2."""
     return (r + s - d) * r * s / (r + s)
 
 
@@ -203,13 +176,7 @@ BEDS = {f"{name}, {law}": Scene(name, law) for name in ARRANGEMENTS for law in L
 
 @cache
 def known(name: str) -> float:
-    """Conductivity of a bed between its held layers, W/(m K), by its law: in closed form, at random by elimination.
-
-    Parameters
-    ----------
-    name : str
-        One of BEDS. Of a chain of unlike grains that of ten.
-    """
+    """Conductivity of a bed between its held layers, W/(m K), by its law: in closed form, at random by elimination."""
     scene = BEDS[name]
     return float(ARRANGEMENTS[scene.arrangement][1](scene.law))
 
@@ -241,21 +208,7 @@ def eliminated(bed: Bed) -> float:
 
 
 def march(bed: Bed, *, accuracy: float = 1e-10) -> tuple[float, int]:
-    """Step and number of steps in which explicit Euler gets so near to the steady state.
-
-    Parameters
-    ----------
-    bed : Bed
-        Each free grain stores STORED for its volume.
-    accuracy : float
-        What is left of the slowest part of what there is at first.
-
-    Returns
-    -------
-    step : float, s
-        No weight of any grain in its next temperature is negative.
-    count : int
-    """
+    """Step and number of steps in which explicit Euler gets so near to the steady state."""
     from scipy.sparse import coo_array, diags_array
     from scipy.sparse.linalg import eigsh
 
@@ -271,19 +224,7 @@ def march(bed: Bed, *, accuracy: float = 1e-10) -> tuple[float, int]:
 
 
 def solved(scene: Scene, n: int | None = None) -> dict:
-    """The bed by `demheat.grains`: its own law where it has it, else the contact radii that give the same.
-
-    Parameters
-    ----------
-    scene : Scene
-    n : int, optional
-        Layers.
-
-    Returns
-    -------
-    dict
-        conductivity, unknowns, iterations, cost.
-    """
+    """The bed by `demheat.grains`: its own law where it has it, else the contact radii that give the same."""
     from studies.harness.cost import measured
 
     bed = scene.drawn(n)
@@ -320,20 +261,7 @@ def drop(field) -> float:
 
 
 def flows(bed: Bed, warmth) -> tuple[dict, np.ndarray]:
-    """Heat that `demheat.grains` has contacts and grains exchange at given temperatures.
-
-    Parameters
-    ----------
-    bed : Bed
-    warmth : (n,) array_like, K
-
-    Returns
-    -------
-    contacts : dict of (int, int) to float, W
-        From the second to the first grain of each pair of numbers that rise.
-    received : (n,) float array, W
-        By each grain.
-    """
+    """Heat that `demheat.grains` has contacts and grains exchange at given temperatures."""
     pairs, warmth = network(bed).pairs, np.asarray(warmth)
     heat = pairs.conductance * (warmth[pairs.second] - warmth[pairs.first])
     n = len(bed.radii)

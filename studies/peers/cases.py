@@ -60,16 +60,7 @@ def our_beds():
 
 
 def thinned(cases):
-    """Cases without those that say little more: one body at every resolution, some at two, others at one or at none.
-
-    Parameters
-    ----------
-    cases : list of dict
-
-    Returns
-    -------
-    list of dict
-    """
+    """Cases without those that say little more: one body at every resolution, some at two, others at one or at none."""
     values, cases = {}, [case for case in cases if not _dear(case)]
     for case in cases:
         values.setdefault(_kind(case), set()).add(_fineness(case))

@@ -15,13 +15,7 @@ STYLES = {"image": "-", "mesh": "--", "body": "-.", "network": ":"}
 
 
 def draw(df):
-    """Four bodies; of each program what no other of its own rows beats.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
-    """
+    """Four bodies; of each program what no other of its own rows beats."""
     from matplotlib import pyplot
 
     figure, panels = pyplot.subplots(2, 2, figsize=(12, 9), sharex=True, sharey=True)
@@ -50,12 +44,7 @@ def draw(df):
 
 
 def front(rows):
-    """Rows that no other beats in error and cost at once, by rising cost.
-
-    Parameters
-    ----------
-    rows : data frame
-    """
+    """Rows that no other beats in error and cost at once, by rising cost."""
     rows = rows.sort_values("cpu_s")
     error = rows["error_percent"].abs()
     return rows[error < error.cummin().shift(fill_value=float("inf"))]

@@ -68,25 +68,13 @@ SCENES = {
 
 
 def scene(name: str) -> Scene:
-    """A body.
-
-    Parameters
-    ----------
-    name : str
-        One of SCENES, or of `studies.peers.beds.BEDS`.
-    """
+    """A body."""
     return BEDS[name] if name in BEDS else SCENES[name][0]()
 
 
 @cache
 def known(name: str) -> float:
-    """Effective conductivity of a body between its walls, W/(m K), by what knows it to seven digits or more.
-
-    Parameters
-    ----------
-    name : str
-        One of SCENES, or of `studies.peers.beds.BEDS`.
-    """
+    """Effective conductivity of a body between its walls, W/(m K), by what knows it to seven digits or more."""
     if name in BEDS:
         return known_bed(name)
     draw, witness = SCENES[name]
@@ -95,13 +83,7 @@ def known(name: str) -> float:
 
 
 def image(body: Scene, n: int) -> Image:
-    """Image of a body, n^3 voxels, each of the material of its centre; labels are 0, 1, ... by rising conductivity.
-
-    Parameters
-    ----------
-    body : Scene
-    n : int
-    """
+    """Image of a body, n^3 voxels, each of the material of its centre; labels are 0, 1, ... by rising conductivity."""
     phase = voxelise(body, (n, n, n), laminate=False).phase
     values, label = np.unique(body.conductivities, return_inverse=True)
     return Image(label[phase].astype(np.uint8), 1.0 / n, {i: Material(float(k)) for i, k in enumerate(values)})

@@ -21,13 +21,7 @@ COSTED = (*COMPARED, "pore")
 
 
 def same_mesh(df):
-    """Largest relative difference between elements of others and ours on the same mesh, by program.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
-    """
+    """Largest relative difference between elements of others and ours on the same mesh, by program."""
     found = {}
     for degree, name in ELEMENTS.items():
         mine = df[(df["name"] == name) & (df["given"] == "body")]
@@ -44,11 +38,6 @@ def ahead(df):
     """Least CPU time of other programs to an error over the least of ours, by body; infinite where no other gets there.
 
     The DEM, whose packing is kept, is left out.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
     """
     there = df[df["error_percent"].abs() <= AIM]
     found = {}

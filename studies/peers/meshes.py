@@ -47,21 +47,7 @@ EXACT = "%.17g"
 
 
 def conforming(scene, *, size, order=1) -> Mesh:
-    """Straight tetrahedra of what conducts in a body between two isothermal walls across x.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest wanted edge.
-    order : {1, 2}
-        Nodes at the corners only, or also in the middles of the edges.
-
-    Raises
-    ------
-    NotImplementedError
-        If its load is another.
-    """
+    """Straight tetrahedra of what conducts in a body between two isothermal walls across x."""
     scene.require("programs of others are given two walls across x", steady=True, domain="box")
     if set(scene.walls or ()) != {"x-", "x+"}:
         raise NotImplementedError(f"walls {sorted(scene.walls or ())}: programs of others are given two across x")
@@ -97,12 +83,7 @@ def _kept(mesh, chosen):
 
 
 def corners(mesh) -> Mesh:
-    """The same tetrahedra by their corners alone, for programs that put nodes on edges themselves.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    """
+    """The same tetrahedra by their corners alone, for programs that put nodes on edges themselves."""
     linear = mesh._replace(
         cells=mesh.cells[:, :4],
         walls={name: wall._replace(triangles=wall[0][:, :3]) for name, wall in mesh.walls.items()},
@@ -111,81 +92,40 @@ def corners(mesh) -> Mesh:
 
 
 def unknowns(mesh) -> int:
-    """Nodes that no wall holds.
-
-    Parameters
-    ----------
-    mesh : Mesh
-    """
+    """Nodes that no wall holds."""
     held = np.concatenate([mesh.walls[name].triangles.ravel() for name in ("x-", "x+")])
     return len(mesh.points) - len(np.unique(held))
 
 
 def phases(mesh, scene) -> dict[int, float]:
-    """Conductivity by the number that a phase has in files, of those that have elements, W/(m K).
-
-    Parameters
-    ----------
-    mesh : Mesh
-    scene : Scene
-    """
+    """Conductivity by the number that a phase has in files, of those that have elements, W/(m K)."""
     return {FIRST + int(phase): float(scene.conductivities[phase]) for phase in np.unique(mesh.phase)}
 
 
 def drop(scene) -> float:
-    """Temperature of the wall x- over that of x+, K.
-
-    Parameters
-    ----------
-    scene : Scene
-    """
+    """Temperature of the wall x- over that of x+, K."""
     return scene.walls["x-"] - scene.walls["x+"]
 
 
 def by_heat(scene, heat) -> float:
-    """Effective conductivity of a body by the heat that enters at the wall x-, W/(m K).
-
-    Parameters
-    ----------
-    scene : Scene
-    heat : float, W
-    """
+    """Effective conductivity of a body by the heat that enters at the wall x-, W/(m K)."""
     length, *sides = scene.size
     return heat * length / (math.prod(sides) * drop(scene))
 
 
 def by_energy(scene, energy) -> float:
-    """The same by the integral of k grad T . grad T.
-
-    Parameters
-    ----------
-    scene : Scene
-    energy : float, W K
-    """
+    """The same by the integral of k grad T . grad T."""
     return by_heat(scene, energy / drop(scene))
 
 
 def cases(*, quadratic=(0.08, 0.05)):
-    """Bodies, sizes and orders of the rows of a program.
-
-    Parameters
-    ----------
-    quadratic : sequence of float, m
-        Sizes of quadratic elements.
-    """
+    """Bodies, sizes and orders of the rows of a program."""
     sizes = {1: SIZES, 2: quadratic}
     return tuple({"scene": name, "size": h, "order": order} for name in BODIES for order in sizes for h in sizes[order])
 
 
 def write_msh(path, mesh):
-    """Write Gmsh's format 2.2, which nearly all read; faces and phases are its physical groups.
-
-    Parameters
-    ----------
-    path : path
-    mesh : Mesh
-        Faces are those numbers and names of FACES, phases FIRST, FIRST + 1, ...
-    """
+    """Write Gmsh's format 2.2, which nearly all read; faces and phases are its physical groups."""
     groups = [(2, *FACES[name]) for name in mesh.walls]
     groups += [(3, FIRST + int(phase), f"phase{phase}") for phase in np.unique(mesh.phase)]
     count = len(mesh.cells) + sum(len(wall.triangles) for wall in mesh.walls.values())
@@ -217,14 +157,7 @@ def _numbered(file, first, rows, form):
 
 
 def write_medit(path, mesh):
-    """Write Medit's format, which FreeFEM reads without a plug-in.
-
-    Parameters
-    ----------
-    path : path
-    mesh : Mesh
-        By its corners; faces and phases as in `write_msh`.
-    """
+    """Write Medit's format, which FreeFEM reads without a plug-in."""
     triangles = [np.insert(wall.triangles + 1, 3, FACES[name][0], axis=1) for name, wall in mesh.walls.items()]
     blocks = {
         "Vertices": (np.insert(mesh.points, 3, 0, axis=1), f"{EXACT} {EXACT} {EXACT} %d"),
@@ -240,14 +173,7 @@ def write_medit(path, mesh):
 
 
 def write_inp(path, mesh):
-    """Write nodes and elements as Abaqus and CalculiX read them; faces are sets of nodes, phases sets of elements.
-
-    Parameters
-    ----------
-    path : path
-    mesh : Mesh
-        Faces are called as in FACES, phases PHASE11, ...
-    """
+    """Write nodes and elements as Abaqus and CalculiX read them; faces are sets of nodes, phases sets of elements."""
     kind = {4: "DC3D4", 10: "DC3D10"}[mesh.cells.shape[1]]
     with open(path, "w") as file:
         file.write("*NODE, NSET=ALL\n")

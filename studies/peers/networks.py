@@ -56,12 +56,7 @@ class System(NamedTuple):
 
 
 def cases(solvers):
-    """Cases of linear solvers, every body at every number of particles.
-
-    Parameters
-    ----------
-    solvers : sequence of str
-    """
+    """Cases of linear solvers, every body at every number of particles."""
     return tuple(
         {"scene": scene, "particles": particles, "solver": solver}
         for scene, numbers in SCENES.items()
@@ -71,19 +66,7 @@ def cases(solvers):
 
 
 def system(scene, particles) -> System:
-    """The equations of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x, all of it conducting.
-    particles : int
-
-    Raises
-    ------
-    NotImplementedError
-        If something does not conduct.
-    """
+    """The equations of a body."""
     if scene.conductivities.min() <= 0:
         raise NotImplementedError("pores leave particles without an equation, which only our own solver knows")
     network = laguerre_network(scene, particles, SEED)
@@ -91,24 +74,7 @@ def system(scene, particles) -> System:
 
 
 def solved_by(name, scene, *, particles, solver, module=None) -> Found:
-    """Hand the equations to the script `with_NAME.py`, see what its temperatures are worth.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    scene : Scene
-    particles : int
-    solver : str
-        As the script knows it.
-    module : str, optional
-        What is imported, if it is not called as the program.
-
-    Raises
-    ------
-    RuntimeError
-        If the residual, recomputed, is above `RESIDUAL`.
-    """
+    """Hand the equations to the script `with_NAME.py`, see what its temperatures are worth."""
     equations = system(scene, particles)
     with tempfile.TemporaryDirectory() as folder:
         given, answer = Path(folder) / "system.npz", Path(folder) / "x.npy"
@@ -121,15 +87,7 @@ def solved_by(name, scene, *, particles, solver, module=None) -> Found:
 
 
 def judged(equations, x, told) -> Found:
-    """A `Found` with the conductivity that follows from temperatures.
-
-    Parameters
-    ----------
-    equations : System
-    x : (n,) float array, K
-    told : Found
-        What the solver said of itself.
-    """
+    """A `Found` with the conductivity that follows from temperatures."""
     reached = equations.residual(x)
     # Solvers update their residuals, whose rounding grows with the conditioning.
     if not reached <= 2 * RESIDUAL:

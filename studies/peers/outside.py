@@ -39,32 +39,7 @@ class Found(NamedTuple):
 
 
 def ran(command, *, folder=None, stdin="", limit=LIMIT, environment=None) -> tuple[str, dict]:
-    """Run a program to its end.
-
-    Parameters
-    ----------
-    command : sequence of str
-    folder : path, optional
-        Where it runs.
-    stdin : str
-    limit : float, s
-        After which it is ended.
-    environment : mapping of str to str, optional
-        What is added to the environment.
-
-    Returns
-    -------
-    printed : str
-        On its standard output.
-    cost : dict
-        `wall_s`, `cpu_s` of the process and its children, `peak_mib` resident at its peak, s and MiB; of the whole
-        process, its start included.
-
-    Raises
-    ------
-    RuntimeError
-        If it did not exit with 0; with the end of what it printed.
-    """
+    """Run a program to its end."""
     start = time.perf_counter()
     with (
         tempfile.TemporaryFile("w+") as said,
@@ -98,22 +73,7 @@ def ran(command, *, folder=None, stdin="", limit=LIMIT, environment=None) -> tup
 
 
 def asked(python, script, given, **knobs) -> dict:
-    """Run a script that reads one JSON object and prints another as its last line.
-
-    Parameters
-    ----------
-    python : path
-    script : path
-    given : dict
-        What can be written as JSON.
-    **knobs
-        Of `ran`.
-
-    Returns
-    -------
-    dict
-        What it printed, with `whole`, the cost of the whole process.
-    """
+    """Run a script that reads one JSON object and prints another as its last line."""
     printed, cost = ran([python, script], stdin=json.dumps(given), **knobs)
     lines = printed.strip().splitlines()
     try:
@@ -124,15 +84,7 @@ def asked(python, script, given, **knobs) -> dict:
 
 @cache
 def python_of(name: str, module: str | None = None) -> str | None:
-    """The Python that has a package: `.peers/NAME`, this one, or the system's; None if there is none.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    module : str, optional
-        What is imported, if it is not called as the program.
-    """
+    """The Python that has a package: `.peers/NAME`, this one, or the system's; None if there is none."""
     search = f"import importlib.util as u, sys; sys.exit(u.find_spec({(module or name)!r}) is None)"
     for python in (HOMES / name / "bin" / "python", Path(sys.executable), Path("/usr/bin/python3")):
         if python.exists() and subprocess.run([python, "-c", search], capture_output=True).returncode == 0:

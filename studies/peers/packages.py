@@ -16,53 +16,19 @@ SCRIPTS = Path(__file__).parent / "programs" / "scripts"
 
 
 def missing(name: str, get: str, module: str | None = None) -> str | None:
-    """Reason why a package cannot run here, in one line; None if it can.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    get : str
-        How it is installed.
-    module : str, optional
-        What is imported, if it is not called as the program.
-    """
+    """Reason why a package cannot run here, in one line; None if it can."""
     return None if python_of(name, module) else f"no Python here has {module or name} ({get})"
 
 
 @cache
 def version(name: str, distribution: str, module: str | None = None) -> str:
-    """Version of an installed distribution.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    distribution : str
-        As the package index knows it.
-    module : str, optional
-        What is imported, if it is not called as the program.
-    """
+    """Version of an installed distribution."""
     code = f"from importlib.metadata import version; print(version({distribution!r}))"
     return subprocess.run([python_of(name, module), "-c", code], capture_output=True, text=True, check=True).stdout[:-1]
 
 
 def found(name: str, given: dict, *, module: str | None = None, note="", **knobs) -> Found:
-    """What the script `with_NAME.py` answers to what it is given.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    given : dict
-        What can be written as JSON.
-    module : str, optional
-        What is imported, if it is not called as the program.
-    note : str
-        Filled in from the answer.
-    **knobs
-        Of `outside.asked`.
-    """
+    """What the script `with_NAME.py` answers to what it is given."""
     answer = asked(python_of(name, module), SCRIPTS / f"with_{name}.py", given, **knobs)
     return Found(
         answer["conductivity"], answer["cost"], answer["unknowns"], answer["iterations"], note.format_map(answer)
@@ -70,19 +36,7 @@ def found(name: str, given: dict, *, module: str | None = None, note="", **knobs
 
 
 def found_on_image(name: str, scene, n: int, **more) -> Found:
-    """What the script `with_NAME.py` answers to the image of a body.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    **more
-        What else the script is given.
-    """
+    """What the script `with_NAME.py` answers to the image of a body."""
     drawn = image(scene, n)
     values = [drawn.materials[label].conductivity for label in range(len(drawn.materials))]
     given = {"conductivities": values, "walls": dict(scene.wall_temperatures), **more}

@@ -16,18 +16,7 @@ SCRIPTS = Path(__file__).parent / "programs" / "scripts"
 
 
 def solved(name, scene, *, size, order) -> Found:
-    """Solve a body by the script NAME_body.py in the Python that has the library.
-
-    Parameters
-    ----------
-    name : str
-        Of the program and of its package.
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-        The script puts nodes on edges itself.
-    """
+    """Solve a body by the script NAME_body.py in the Python that has the library."""
     mesh = meshes.corners(meshes.conforming(scene, size=size, order=order))
     given = {
         "order": order,
@@ -49,15 +38,7 @@ def solved(name, scene, *, size, order) -> Found:
 
 
 def absent(name, *packages) -> str | None:
-    """Why a library cannot be run here, or None.
-
-    Parameters
-    ----------
-    name : str
-        Of the program.
-    *packages
-        Modules that it needs.
-    """
+    """Why a library cannot be run here, or None."""
     for package in packages:
         if python_of(name, package) is None:
             return f"no Python here has {package}"
@@ -65,13 +46,7 @@ def absent(name, *packages) -> str | None:
 
 
 def told_version(name, expression) -> str:
-    """What a library says its version is.
-
-    Parameters
-    ----------
-    name, expression : str
-        The program, and what is printed once its module is imported.
-    """
+    """What a library says its version is."""
     code = f"import {expression.partition('.')[0]}; print({expression})"
     asked = subprocess.run([python_of(name), "-c", code], capture_output=True, text=True)
     return asked.stdout.strip()

@@ -38,13 +38,7 @@ NOTHING = 1e-9
 
 
 def title(name):
-    """How a method of ours, or a program of others, is called.
-
-    Parameters
-    ----------
-    name : str
-        Of a row.
-    """
+    """How a method of ours, or a program of others, is called."""
     if name == GRAINS:
         return "demheat.grains"
     if name in methods.found():
@@ -53,12 +47,7 @@ def title(name):
 
 
 def way(row):
-    """How a program of others was asked to do it, where it knows several ways; empty for ours.
-
-    Parameters
-    ----------
-    row : mapping
-    """
+    """How a program of others was asked to do it, where it knows several ways; empty for ours."""
     if row["name"] in methods.found():
         return ""
     said = {knob: row[knob] for knob in WAYS if knob in row and row[knob] == row[knob] and row[knob] is not None}
@@ -71,29 +60,14 @@ def ours(df):
 
 
 def resolution(row):
-    """What refines a row, in words.
-
-    Parameters
-    ----------
-    row : mapping
-    """
+    """What refines a row, in words."""
     words = [form.format(row[knob]) for knob, form in KNOBS.items() if knob in row and row[knob] == row[knob]]
     degree = [f"degree {row['order']:g}"] if row["name"] not in methods.found() and row.get("order", 0) > 0 else []
     return ", ".join(words + degree)
 
 
 def lines(df):
-    """A line for each program and resolution, a column for each body: error of the conductivity, %; cost of one.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
-
-    Returns
-    -------
-    data frame
-    """
+    """A line for each program and resolution, a column for each body: error of the conductivity, %; cost of one."""
     found = []
     df = df[~df["scene"].isin(BEDS)]
     records = df.to_dict("records")
@@ -114,15 +88,6 @@ def abilities(df):
     """A line for each program, ours too, a column for what may be asked: its best |error|, %.
 
     Of two bodies the worse one counts. "refused" is an answer; an empty place says that no row asks.
-
-    Parameters
-    ----------
-    df : data frame
-        All rows.
-
-    Returns
-    -------
-    data frame
     """
     df = df[df["status"].isin(["ok", "unsupported"])]
     lines = []
@@ -148,13 +113,7 @@ def _shown(error):
 
 
 def beds(df):
-    """Sentences: how far programs are from what is known of beds of grains, by law and program.
-
-    Parameters
-    ----------
-    df : data frame
-        Rows that are ok.
-    """
+    """Sentences: how far programs are from what is known of beds of grains, by law and program."""
     rows = df[df["scene"].isin(BEDS)]
     if rows.empty:
         return
@@ -167,12 +126,7 @@ def beds(df):
 
 
 def sources(names):
-    """A line for each program: what it is given and how it is installed.
-
-    Parameters
-    ----------
-    names : iterable of str
-    """
+    """A line for each program: what it is given and how it is installed."""
     modules = [import_module(f"studies.peers.programs.{name}") for name in names if name != SOLVER]
     rows = [{"program": m.TITLE, "given": KINDS[m.KIND], "from": m.GET} for m in modules]
     return pd.DataFrame(
@@ -181,12 +135,7 @@ def sources(names):
 
 
 def cannot(names):
-    """Sentences: what programs cannot do, by their own files.
-
-    Parameters
-    ----------
-    names : iterable of str
-    """
+    """Sentences: what programs cannot do, by their own files."""
     for name in sorted(set(names) - {SOLVER}):
         module = import_module(f"studies.peers.programs.{name}")
         limits = "; ".join(f"{what}: {why}" for what, why in module.CANNOT.items())
@@ -196,12 +145,7 @@ def cannot(names):
 
 
 def versions(df):
-    """One sentence of the versions that ran.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One sentence of the versions that ran."""
     pairs = df[["name", "version"]].dropna().drop_duplicates()
     said = [f"{title(name)} {version}" for name, version in pairs.itertuples(index=False) if version]
     return "Versions: " + ", ".join(said) + "." if said else ""

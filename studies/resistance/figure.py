@@ -14,12 +14,7 @@ COLOURS = dict(zip(FRACTIONS, (BLUE, GREEN, ORANGE, RED), strict=True))
 
 
 def draw(df):
-    """Three panels.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Three panels."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8))

@@ -12,13 +12,7 @@ from studies.harness.pick import pick
 
 
 def curve(rows, fraction):
-    """Mean conductivity over the matrix's at each Kapitza length, a Series; those of one arrangement weigh the same.
-
-    Parameters
-    ----------
-    rows : data frame
-    fraction : float
-    """
+    """Mean conductivity over the matrix's at each Kapitza length, a Series; those of one arrangement weigh the same."""
     return pick(rows, fraction=fraction).groupby("kapitza")["k_ratio"].agg(lambda k: k.mean(skipna=False))
 
 
@@ -33,13 +27,6 @@ def explaining(rows, fraction, fall):
     """Kapitza length over the radius at which the conductivity is so much less; None if rows do not reach it.
 
     By the inverse of 1 - k/k(0), which is nearly a line in the inverse of the length, between the two rows beside it.
-
-    Parameters
-    ----------
-    rows : data frame
-    fraction : float
-    fall : float
-        Of the conductivity with perfect interfaces.
     """
     found = curve(rows, fraction)
     if 0.0 not in found.index or len(found) < 3:
@@ -53,12 +40,7 @@ def explaining(rows, fraction, fall):
 
 
 def foreseen(fraction, fall):
-    """The same by Hasselman and Johnson's formula: Maxwell's, with s/(1 + s l) for the contrast s.
-
-    Parameters
-    ----------
-    fraction, fall : float
-    """
+    """The same by Hasselman and Johnson's formula: Maxwell's, with s/(1 + s l) for the contrast s."""
 
     def lost(length):
         return -value_error(conductivity(fraction, length), conductivity(fraction, 0.0)) - fall
@@ -67,23 +49,11 @@ def foreseen(fraction, fall):
 
 
 def conductivity(fraction, length):
-    """Conductivity over the matrix's by Hasselman and Johnson (J. Compos. Mater. 21 (1987) 508).
-
-    Parameters
-    ----------
-    fraction : float
-    length : float
-        Kapitza length over the radius.
-    """
+    """Conductivity over the matrix's by Hasselman and Johnson (J. Compos. Mater. 21 (1987) 508)."""
     contrast = SILICA.conductivity / EPOXY.conductivity
     return float(maxwell(1.0, contrast / (1 + contrast * length), fraction))
 
 
 def radius_of(length, resistance):
-    """Radius, m, at which a resistance in m2 K/W is a Kapitza length over the radius.
-
-    Parameters
-    ----------
-    length, resistance : float
-    """
+    """Radius, m, at which a resistance in m2 K/W is a Kapitza length over the radius."""
     return resistance * EPOXY.conductivity / length

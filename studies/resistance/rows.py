@@ -17,13 +17,7 @@ SEED, POINTS = 7, 4000
 
 
 def resisting(scene, length):
-    """The spheres of a scene with surfaces of one Kapitza length over the radius.
-
-    Parameters
-    ----------
-    scene : Scene
-    length : float
-    """
+    """The spheres of a scene with surfaces of one Kapitza length over the radius."""
     k = scene.matrix.conductivity
     spheres = [replace(each, resistance=length * each.radius / k) for each in scene.inclusions]
     assert all(isinstance(each, Sphere) for each in spheres)
@@ -31,28 +25,13 @@ def resisting(scene, length):
 
 
 def array(kapitza, *, method, **knobs):
-    """A sphere in a cube beside the exact value.
-
-    Parameters
-    ----------
-    kapitza : float
-        Kapitza length over the radius.
-    method, **knobs
-        As those of `methods.solved`.
-    """
+    """A sphere in a cube beside the exact value."""
     scene = resisting(gallery.sphere_in_cube(CONTRAST, fraction=FRACTION), kapitza)
     return methods.solve_row(scene, exact.solve(scene).conductivity / methods.MATRIX, method=method, **knobs)
 
 
 def neutral(spheres, *, method, **knobs):
-    """Spheres that nothing outside of them notices.
-
-    Parameters
-    ----------
-    spheres : int
-    method, **knobs
-        As those of `methods.solved`.
-    """
+    """Spheres that nothing outside of them notices."""
     made = gallery.random_dispersion(spheres, fraction=FRACTION)
     contrast = made.inclusions[0].material.conductivity / made.matrix.conductivity
     scene = resisting(made, (contrast - 1) / contrast)
@@ -68,18 +47,6 @@ def neutral(spheres, *, method, **knobs):
 
 
 def silica(fraction, kapitza, realisation, *, method, **knobs):
-    """The papers' spheres, in a periodic cell.
-
-    Parameters
-    ----------
-    fraction : float
-        Of the spheres' volume.
-    kapitza : float
-        Kapitza length over the radius.
-    realisation : int
-        Seed of the arrangement.
-    method, **knobs
-        As those of `methods.solved`.
-    """
+    """The papers' spheres, in a periodic cell."""
     scene = resisting(silica_epoxy.scene("periodic", fraction, seed=realisation), kapitza)
     return silica_epoxy.solved(scene, method=method, **knobs)[1]

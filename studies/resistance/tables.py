@@ -12,12 +12,7 @@ from studies.resistance.means import curve, explaining, foreseen, radius_of
 
 
 def lines(df):
-    """One line of each method and resolution, of each neutral dispersion, of each fraction of silica.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One line of each method and resolution, of each neutral dispersion, of each fraction of silica."""
     found = []
     for name in KNOWING:
         rows = pick(df, part="array", name=name)

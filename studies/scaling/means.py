@@ -19,16 +19,7 @@ BILLION = 1e9
 
 
 def of_stages(df):
-    """CPU seconds of every stage of every row: a row for each, with its `stage`.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    data frame
-    """
+    """CPU seconds of every stage of every row: a row for each, with its `stage`."""
     import pandas as pd
 
     found = [df.assign(stage="all", seconds=df["cpu_s"], wall=df["wall_s"])]
@@ -40,21 +31,7 @@ def of_stages(df):
 
 
 def fitted(df, by):
-    """Exponent of the CPU time of every stage of every method.
-
-    Parameters
-    ----------
-    df : data frame
-        Of one part.
-    by : {"number", "unknowns"}
-        What grows.
-
-    Returns
-    -------
-    data frame
-        name, stage, exponent and its standard error, `doubt`, number of rows, seconds of the largest and what is
-        largest. A stage that never lasts LEAST seconds has no exponent; nor one with fewer than three rows.
-    """
+    """Exponent of the CPU time of every stage of every method."""
     import pandas as pd
 
     rows = []
@@ -78,17 +55,7 @@ def _slope(sizes, seconds):
 
 
 def efficiencies(df):
-    """Wall time with one thread over that with n, divided by n, of every stage.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    data frame
-        name, resolution (particles or voxels), stage, wall (s, one thread) and efficiency.
-    """
+    """Wall time with one thread over that with n, divided by n, of every stage."""
     import pandas as pd
 
     rows = []
@@ -119,17 +86,7 @@ def _spheres(df):
 
 
 def billion(df):
-    """What 1e9 unknowns would take by the costs of the largest row and the exponents of its method.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    list of dict
-        name, unknowns, CPU hours, within which factor they are by the exponent's standard error, and TiB.
-    """
+    """What 1e9 unknowns would take by the costs of the largest row and the exponents of its method."""
     parts = pick(df[df["status"] == "ok"], part="elements")
     exponents = fitted(parts, "unknowns")
     lines = []

@@ -102,26 +102,13 @@ class Blocks(NamedTuple):
 
 
 def slabs(unknowns, ranks, number=1):
-    """A row of cubes cut across.
-
-    Parameters
-    ----------
-    unknowns : float
-    ranks, number : int
-        Of slabs and of cubes.
-    """
+    """A row of cubes cut across."""
     edge = (unknowns / number) ** (1 / 3)
     return Blocks((number * edge, edge, edge), (ranks, 1, 1))
 
 
 def bricks(unknowns, ranks):
-    """A cube cut along all axes, into blocks that are as near to cubes as can be.
-
-    Parameters
-    ----------
-    unknowns : float
-    ranks : int
-    """
+    """A cube cut along all axes, into blocks that are as near to cubes as can be."""
     counts = [(a, b, ranks // (a * b)) for a in _divisors(ranks) for b in _divisors(ranks // a)]
     edge = unknowns ** (1 / 3)
     # The surface of a block of a cube goes with the sum of their numbers.
@@ -133,27 +120,12 @@ def _divisors(number):
 
 
 def most_slabs(unknowns):
-    """So many slabs of a cube are as thick as what they see of each other, and no more.
-
-    Parameters
-    ----------
-    unknowns : float
-    """
+    """So many slabs of a cube are as thick as what they see of each other, and no more."""
     return int(unknowns ** (1 / 3) / LAYER)
 
 
 def fitted(rows):
-    """Constants of rows, each by least squares of what is relative.
-
-    Parameters
-    ----------
-    rows : data frame
-        Of strong and weak scaling, three or more, one of them on several ranks.
-
-    Returns
-    -------
-    Fit
-    """
+    """Constants of rows, each by least squares of what is relative."""
     from scipy.optimize import nnls
 
     blocks = [_blocks(row) for _, row in rows.iterrows()]
@@ -203,37 +175,13 @@ def _seconds(rows, stage):
 
 
 def of_row(fit, row):
-    """What the model says of a row, its ranks on one machine: seconds of each stage and their sum.
-
-    Parameters
-    ----------
-    fit : Fit
-    row : mapping
-
-    Returns
-    -------
-    dict
-    """
+    """What the model says of a row, its ranks on one machine: seconds of each stage and their sum."""
     here = fit._replace(triad=1e9 * row["triad_rank_gbs"])
     return _stages(here, _blocks(row), row["unknowns"], row["twins"], None)
 
 
 def predicted(fit, unknowns, blocks, network=NETWORK):
-    """What a cube with one sphere would take, a core for each block.
-
-    Parameters
-    ----------
-    fit : Fit
-    unknowns : float
-    blocks : Blocks
-    network : Network
-
-    Returns
-    -------
-    dict
-        Seconds of each stage, of the twins in the packing, of messages and of sums in the iterations, and of all;
-        number of iterations; GiB of a core.
-    """
+    """What a cube with one sphere would take, a core for each block."""
     twins = fit.crowd * unknowns ** (2 / 3)
     found = _stages(fit, blocks, unknowns, twins, network)
     return found | {"twins": fit.twins * twins, "gib": (fit.held * blocks.seen + fit.base) / 2**30}
@@ -258,30 +206,14 @@ def _stages(fit, blocks, unknowns, twins, network):
 
 
 def rows_of(df):
-    """Rows that the model is fitted to.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Rows that the model is fitted to."""
     if "ranks" not in df:
         return df[:0]
     return df[df["part"].isin(("strong", "weak")) & (df["status"] == "ok") & (df["unknowns"] >= FROM)]
 
 
 def left_out(rows):
-    """Relative error of all seconds of each row, %, by the model that is fitted to the others.
-
-    Parameters
-    ----------
-    rows : data frame
-        Of `rows_of`.
-
-    Returns
-    -------
-    list of float
-        Empty where the others are too few.
-    """
+    """Relative error of all seconds of each row, %, by the model that is fitted to the others."""
     found = []
     for k in range(len(rows)):
         others, row = rows.drop(rows.index[k]), rows.iloc[k]
@@ -291,18 +223,7 @@ def left_out(rows):
 
 
 def plans(rows):
-    """What sizes and cores of interest would take, cut into slabs where they are thick enough, and into bricks.
-
-    Parameters
-    ----------
-    rows : data frame
-        Of `rows_of`.
-
-    Returns
-    -------
-    list of dict
-        Of `predicted`, with unknowns, cores, shape and whether a slab may be so thin.
-    """
+    """What sizes and cores of interest would take, cut into slabs where they are thick enough, and into bricks."""
     if len(rows) < 3 or not (rows["ranks"] > 1).any():
         return []
     fit, found = fitted(rows), []

@@ -29,16 +29,7 @@ STAGES = ("packing", "cells", "solve", "field")
 
 
 def bar(number):
-    """Spheres in a row, each in a cube of its own, heated across.
-
-    Parameters
-    ----------
-    number : int
-
-    Returns
-    -------
-    Scene
-    """
+    """Spheres in a row, each in a cube of its own, heated across."""
     one = sphere_in_cube(CONTRAST)
     (sphere,), (edge, *sides) = one.inclusions, one.size
     spheres = [replace(sphere, center=(sphere.center[0] + k * edge, *sphere.center[1:])) for k in range(number)]

@@ -39,13 +39,7 @@ def python() -> str | None:
 
 @cache
 def finds(python: str, *names: str) -> bool:
-    """Whether a Python finds modules where ranks run.
-
-    Parameters
-    ----------
-    python : str
-    *names : str
-    """
+    """Whether a Python finds modules where ranks run."""
     search = [python, "-c", SEARCH, *names]
     return not subprocess.run(search, env=environment(), capture_output=True).returncode
 
@@ -60,23 +54,7 @@ def missing() -> str | None:
 
 
 def row(number: int, particles: int, seed: int, ranks: int) -> dict:
-    """One body solved on so many ranks.
-
-    Parameters
-    ----------
-    number : int
-        Spheres in a row, see `studies.scaling.on_ranks.bar`.
-    particles, seed, ranks : int
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    NotImplementedError
-        In one line, where MPI or PETSc is missing.
-    """
+    """One body solved on so many ranks."""
     from studies.scaling import on_ranks
 
     why = missing()

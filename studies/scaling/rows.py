@@ -25,43 +25,19 @@ PRODUCTS = 10
 
 
 def scene_of(number, kind, fraction):
-    """So many spheres in a periodic cell under a mean gradient.
-
-    Parameters
-    ----------
-    number : int
-        One is at the cell's centre.
-    kind : {"equal", "polydisperse"}
-    fraction : float
-        Of their volume.
-
-    Returns
-    -------
-    Scene
-    """
+    """So many spheres in a periodic cell under a mean gradient."""
     if number == 1:
         return simple_cubic(CONTRAST, fraction=fraction, matrix=EPOXY)
     return dispersion(number, fraction=fraction, ratio=RATIOS[kind])
 
 
 def cell():
-    """The cell of 83 spheres, a fifth of its volume.
-
-    Returns
-    -------
-    Scene
-    """
+    """The cell of 83 spheres, a fifth of its volume."""
     return silica_epoxy.scene("periodic", 0.2, seed=0)
 
 
 def warm_up(method):
-    """Load and compile what a row of a method needs.
-
-    Parameters
-    ----------
-    method : str
-        Name of its module.
-    """
+    """Load and compile what a row of a method needs."""
     if method != "dem":
         methods.warm_up(method)
         return
@@ -95,20 +71,7 @@ class Stages:
 
 
 def dem_row(scene, particles, seed, *, cores=None):
-    """Every stage of the DEM, its packing replicas of one that is made anew.
-
-    Parameters
-    ----------
-    scene : Scene
-        A periodic cell.
-    particles, seed : int
-    cores : int, optional
-        Threads.
-
-    Returns
-    -------
-    dict
-    """
+    """Every stage of the DEM, its packing replicas of one that is made anew."""
     from demheat.conduction.steady import solve_checked
     from demheat.laws import Laguerre
     from demheat.network.interface import connect
@@ -167,22 +130,7 @@ def _said(scene, field):
 
 
 def solved_row(scene, *, method, cores=None, **knobs):
-    """Costs of one solve by another method, and of its field at points.
-
-    Parameters
-    ----------
-    scene : Scene
-    method : str
-        Name of its module.
-    cores : int, optional
-        Threads.
-    **knobs
-        Of its `solve`.
-
-    Returns
-    -------
-    dict
-    """
+    """Costs of one solve by another method, and of its field at points."""
     stage = Stages()
     knobs |= {} if cores is None else {"threads": cores}
     field = stage("solve", methods.load(method).solve, scene, **knobs)

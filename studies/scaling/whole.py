@@ -42,24 +42,7 @@ print(time.perf_counter() - begun)
 
 
 def before_row(particles, seed, then):
-    """The DEM with today's code and with that of a commit, one after the other.
-
-    Parameters
-    ----------
-    particles, seed : int
-    then : str
-        In the history of this repository.
-
-    Returns
-    -------
-    dict
-        Costs and results of today's, and those of then with `then_` before their names.
-
-    Raises
-    ------
-    NotImplementedError
-        Where the history is not at hand.
-    """
+    """The DEM with today's code and with that of a commit, one after the other."""
     words = SOLVE.format(fraction=FRACTION, particles=particles, seed=seed)
     with tempfile.TemporaryDirectory() as folder:
         now = _ran(ROOT, words, folder)
@@ -82,17 +65,7 @@ def _ran(root, words, folder):
 
 
 def start_row(particles, seed):
-    """Wall seconds of the first `solve` of a fresh machine, in a copy of the package that was never compiled, twice.
-
-    Parameters
-    ----------
-    particles, seed : int
-
-    Returns
-    -------
-    dict
-        `first_s` and, the packing and the compiled code being there, `second_s`.
-    """
+    """Wall seconds of the first `solve` of a fresh machine, in a copy of the package that was never compiled, twice."""
     words = FIRST.format(particles=particles, seed=seed)
     with tempfile.TemporaryDirectory() as folder:
         # Rows compile on one core; who solves for the first time does on two.

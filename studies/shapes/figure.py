@@ -14,12 +14,7 @@ LEAST = 1e-5
 
 
 def draw(df):
-    """Two panels.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Two panels."""
     from matplotlib import pyplot
 
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(12, 5), width_ratios=(3, 2))

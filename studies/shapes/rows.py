@@ -18,16 +18,7 @@ SEED, POINTS = 7, 2000
 
 
 def fibres(contrast, fraction=FRACTION, *, kapitza=0.0, method, **knobs):
-    """A fibre in its cell beside Rayleigh's value; at one contrast and fraction its temperature, too.
-
-    Parameters
-    ----------
-    contrast, fraction : float
-    kapitza : float
-        Kapitza length over the radius.
-    method, **knobs
-        As those of `methods.solved`.
-    """
+    """A fibre in its cell beside Rayleigh's value; at one contrast and fraction its temperature, too."""
     scene = scenes.fibre(contrast, fraction, kapitza=kapitza)
     right = exact.solve(scene)
     field, row = methods.solved(scene, right.conductivity / methods.MATRIX, method=method, **knobs)
@@ -38,62 +29,27 @@ def fibres(contrast, fraction=FRACTION, *, kapitza=0.0, method, **knobs):
 
 
 def neutral_fibre(contrast, **knobs):
-    """A fibre whose surface resists just as much that its dipole is none; see `fibres`.
-
-    Parameters
-    ----------
-    contrast : float
-    **knobs
-        As those of `methods.solved`.
-    """
+    """A fibre whose surface resists just as much that its dipole is none; see `fibres`."""
     return fibres(contrast, kapitza=(contrast - 1) / contrast, **knobs)
 
 
 def square_rods(contrast, **knobs):
-    """Square rods beside Obnosov's value.
-
-    Parameters
-    ----------
-    contrast : float
-    **knobs
-        As those of `methods.solved`.
-    """
+    """Square rods beside Obnosov's value."""
     return methods.solve_row(scenes.square_rod(contrast), squares.square_rods(contrast), **knobs)
 
 
 def diagonal(contrast, **knobs):
-    """A square cut along its diagonal beside the root of the contrast: it is its own dual.
-
-    Parameters
-    ----------
-    contrast : float
-    **knobs
-        As those of `methods.solved`.
-    """
+    """A square cut along its diagonal beside the root of the contrast: it is its own dual."""
     return methods.solve_row(scenes.diagonal(contrast), squares.checkerboard(contrast), **knobs)
 
 
 def sphere(contrast, **knobs):
-    """A sphere beside Rayleigh's value.
-
-    Parameters
-    ----------
-    contrast : float
-    **knobs
-        As those of `methods.solved`.
-    """
+    """A sphere beside Rayleigh's value."""
     return _ball("sphere", contrast, knobs)
 
 
 def level_set(contrast, **knobs):
-    """The same sphere, as what a function tells.
-
-    Parameters
-    ----------
-    contrast : float
-    **knobs
-        As those of `methods.solved`.
-    """
+    """The same sphere, as what a function tells."""
     return _ball("level set", contrast, knobs)
 
 
@@ -103,20 +59,7 @@ def _ball(shape, contrast, knobs):
 
 
 def ellipsoid(contrast, *, method, **knobs):
-    """The tensor of few turned ellipsoids beside theory of second order in their fraction.
-
-    Parameters
-    ----------
-    contrast : float
-    method, **knobs
-        As those of `methods.solved`.
-
-    Returns
-    -------
-    dict
-        Besides the cost `error_percent` (of the tensor's largest, in the norm that a load sees), `added_percent`
-        (of what the ellipsoid adds, in the root of squares) and `theory_percent` (the same of theory of first order).
-    """
+    """The tensor of few turned ellipsoids beside theory of second order in their fraction."""
     scene = scenes.ellipsoid(contrast, FEW)
     fields, cost = measured(methods.load(method).solve_axes, scene, **knobs)
     found = conductivity_tensor(fields) / methods.MATRIX
@@ -138,14 +81,7 @@ def ellipsoid(contrast, *, method, **knobs):
 
 
 def capped_rod(contrast, *, method, **knobs):
-    """A short rod, of which no exact value is known, with the interval that the method gives itself.
-
-    Parameters
-    ----------
-    contrast : float
-    method, **knobs
-        As those of `methods.solved`.
-    """
+    """A short rod, of which no exact value is known, with the interval that the method gives itself."""
     field, cost = measured(methods.load(method).solve, scenes.rod(contrast), **knobs)
     error = field.error
     ratios = {"k_ratio": field.conductivity, "lower_ratio": error.lower, "upper_ratio": error.upper}

@@ -23,14 +23,7 @@ ROD = {"radius": 0.2, "axis": (1.0, 2.0, 3.0), "length": 0.5}
 
 
 def fibre(contrast, fraction, *, kapitza=0.0):
-    """Square array of fibres, across them.
-
-    Parameters
-    ----------
-    contrast, fraction : float
-    kapitza : float
-        Kapitza length of the surface over the radius.
-    """
+    """Square array of fibres, across them."""
     radius = EDGE * math.sqrt(fraction / math.pi)
     resistance = kapitza * radius / HADDAD.conductivity
     shape = Cylinder(_place(), radius, (0, 0, 1), scaled(HADDAD, contrast), resistance=resistance)
@@ -38,59 +31,33 @@ def fibre(contrast, fraction, *, kapitza=0.0):
 
 
 def square_rod(contrast):
-    """Square rods on a quarter of the area, edges and all; walls are its planes of symmetry.
-
-    Parameters
-    ----------
-    contrast : float
-    """
+    """Square rods on a quarter of the area, edges and all; walls are its planes of symmetry."""
     middle = (EDGE / 2, EDGE / 2, DEPTH * EDGE / 2)
     shape = Box(middle, (EDGE / 2, EDGE / 2, EDGE), scaled(HADDAD, contrast))
     return Scene((EDGE, EDGE, DEPTH * EDGE), HADDAD, [shape], walls={"x-": 10.0, "x+": 0.0})
 
 
 def ellipsoid(contrast, fraction):
-    """Cubic array of turned ellipsoids.
-
-    Parameters
-    ----------
-    contrast, fraction : float
-    """
+    """Cubic array of turned ellipsoids."""
     shape = Ellipsoid(_place(), semi_axes(fraction), scaled(HADDAD, contrast), rotation=TURN)
     return Scene((EDGE, EDGE, EDGE), HADDAD, [shape], gradient=ALONG_X)
 
 
 def semi_axes(fraction):
-    """Semi-axes of the ellipsoid, m.
-
-    Parameters
-    ----------
-    fraction : float
-    """
+    """Semi-axes of the ellipsoid, m."""
     unit = cube_root(fraction * EDGE**3 / (4 / 3 * math.pi * math.prod(RATIOS)))
     return tuple(unit * ratio for ratio in RATIOS)
 
 
 def diagonal(contrast):
-    """Square between two walls, cut along its diagonal.
-
-    Parameters
-    ----------
-    contrast : float
-    """
+    """Square between two walls, cut along its diagonal."""
     middle = (EDGE / 2, EDGE / 2, DEPTH * EDGE / 2)
     shape = HalfSpace(middle, (1, 1, 0), scaled(HADDAD, contrast))
     return Scene((EDGE, EDGE, DEPTH * EDGE), HADDAD, [shape], walls={"x-": 10.0, "x+": 0.0})
 
 
 def ball(shape, contrast, fraction):
-    """Simple cubic array of balls.
-
-    Parameters
-    ----------
-    shape : {"sphere", "level set"}
-    contrast, fraction : float
-    """
+    """Simple cubic array of balls."""
     radius, material = EDGE * cube_root(3 * fraction / (4 * math.pi)), scaled(HADDAD, contrast)
     middle = np.full(3, EDGE / 2)
 
@@ -103,12 +70,7 @@ def ball(shape, contrast, fraction):
 
 
 def rod(contrast):
-    """Cubic array of short rods with flat ends.
-
-    Parameters
-    ----------
-    contrast : float
-    """
+    """Cubic array of short rods with flat ends."""
     radius, length = ROD["radius"] * EDGE, ROD["length"] * EDGE
     shape = Cylinder(_place(), radius, ROD["axis"], scaled(HADDAD, contrast), length=length)
     return Scene((EDGE, EDGE, EDGE), HADDAD, [shape], gradient=ALONG_X)

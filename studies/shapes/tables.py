@@ -14,10 +14,6 @@ def compared(df):
     """The rows with an `error_percent` of capped rods, which is their distance from the finest elements, %.
 
     That of these elements itself stays empty.
-
-    Parameters
-    ----------
-    df : data frame
     """
     rods = pick(df, part="capped rod")
     witness = finest(pick(rods, name="fem"))
@@ -29,12 +25,7 @@ def compared(df):
 
 
 def lines(df):
-    """One line of each part, method and resolution.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One line of each part, method and resolution."""
     found, all_rows = [], compared(df)
     for part in ("fibres", *PARTS):
         for name in SPENT:

@@ -32,12 +32,7 @@ TITLES = {
 
 
 def draw(df):
-    """Panels of scenes, and of the flux at points of the first one and of the sphere that fills half.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Panels of scenes, and of the flux at points of the first one and of the sphere that fills half."""
     from matplotlib import pyplot
 
     scenes = [name for name in (*STEADY, *IN_TIME) if name in set(df["scene"])]

@@ -40,12 +40,7 @@ def measured(scene):
 
 
 def stored(csv_path):
-    """Rows of this study in a file, and those of links beside it.
-
-    Parameters
-    ----------
-    csv_path : path
-    """
+    """Rows of this study in a file, and those of links beside it."""
     import pandas as pd
 
     from studies.harness import runner
@@ -56,12 +51,7 @@ def stored(csv_path):
 
 
 def usable(df):
-    """Rows of steady solves that went well, with their method's knob and its value.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Rows of steady solves that went well, with their method's knob and its value."""
     good = df[df["scene"].isin(STEADY) & (df["status"] == "ok") & (df["name"] != "tessellation")]
     if "tolerance" in good:
         good = good[good["tolerance"].isna()]
@@ -70,16 +60,7 @@ def usable(df):
 
 
 def fitted(df):
-    """Laws of all methods that have enough rows.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    dict of str to Law
-    """
+    """Laws of all methods that have enough rows."""
     groups = usable(df).groupby("name", sort=True)
     return {name: _law(name, rows) for name, rows in groups if len(_errors(rows)) >= FEWEST}
 
@@ -131,14 +112,7 @@ def _fit(terms, logs, what):
 
 
 def within(ratios, share=SHARE):
-    """Factor, 1 or more, within which a share of ratios is.
-
-    Parameters
-    ----------
-    ratios : (n,) float array
-        Of what was predicted to what was found.
-    share : float
-    """
+    """Factor, 1 or more, within which a share of ratios is."""
     return float(np.exp(np.quantile(np.abs(np.log(ratios)), share)))
 
 
@@ -159,17 +133,7 @@ def _memory(rows, made):
 
 
 def left_out(df):
-    """Each scene's rows by laws fitted to the other scenes: ratios of what was predicted to what was found.
-
-    Parameters
-    ----------
-    df : data frame
-
-    Returns
-    -------
-    data frame
-        Columns `scene`, `name`, `error` (not-a-number where the found one is the solver's), `cpu_s` and `bytes`.
-    """
+    """Each scene's rows by laws fitted to the other scenes: ratios of what was predicted to what was found."""
     import pandas as pd
 
     rows, found = usable(df), []
@@ -191,12 +155,7 @@ def left_out(df):
 
 
 def written(found):
-    """Laws as the text of a file.
-
-    Parameters
-    ----------
-    found : dict of str to Law
-    """
+    """Laws as the text of a file."""
     lines = [",".join(shipped.Law._fields)]
     for law in found.values():
         lines.append(",".join(_word(value) for value in law))
@@ -208,14 +167,7 @@ def _word(value):
 
 
 def ship(csv_path, file=shipped.FILE):
-    """Fit the laws to stored rows and write the file that the package ships; returns its path.
-
-    Parameters
-    ----------
-    csv_path : path
-        Rows of this study.
-    file : path
-    """
+    """Fit the laws to stored rows and write the file that the package ships; returns its path."""
     from studies.harness.store import replaced
 
     with replaced(file) as temporary:

@@ -18,14 +18,7 @@ COLUMNS = ("scene", "quantity", "target", "name", "resolution", "error", *COSTS)
 
 
 def points(df, quantity="conductivity"):
-    """One point per method, scene and resolution: largest |error| of its packings, %, mean costs.
-
-    Parameters
-    ----------
-    df : data frame
-    quantity : str
-        Of `QUANTITIES`; in time that of all rows is the temperature's.
-    """
+    """One point per method, scene and resolution: largest |error| of its packings, %, mean costs."""
     import pandas as pd
 
     rows, column = [], QUANTITIES[quantity]
@@ -51,19 +44,7 @@ def words(row):
 
 
 def cheapest(df, quantity="conductivity", targets=TARGETS):
-    """For each scene, target and method the cheapest resolution from which on every finer one stays within the target.
-
-    Parameters
-    ----------
-    df : data frame
-    quantity : str
-    targets : sequence of float, %
-
-    Returns
-    -------
-    data frame
-        Columns `COLUMNS`, cheapest method first.
-    """
+    """For each scene, target and method the cheapest resolution from which on all are within it."""
     import pandas as pd
 
     found = []
@@ -87,19 +68,7 @@ def _said(scene, quantity):
 
 
 def winners(df, quantity="conductivity", targets=TARGETS):
-    """The cheapest method of each scene and target, and what the DEM costs beside it.
-
-    Parameters
-    ----------
-    df, quantity, targets
-        As those of `cheapest`.
-
-    Returns
-    -------
-    data frame
-        Those of `cheapest`, and `dem`: the DEM's CPU time over the cheapest one's, its packing made on the spot, and
-        `dem_cached`, its packing at hand; not-a-number where the DEM does not reach the target.
-    """
+    """The cheapest method of each scene and target, and what the DEM costs beside it."""
     every = cheapest(df, quantity, targets)
     first = every.groupby(["scene", "target"], sort=False).head(1)
     dem = every[every["name"] == "dem"].set_index(["scene", "target"])
@@ -117,30 +86,13 @@ def without_multipoles(df):
 
 
 def lost(df, target):
-    """Cost of the DEM over that of the cheapest method of any shape; infinite where others get there and it does not.
-
-    Parameters
-    ----------
-    df : data frame
-    target : float, %
-
-    Returns
-    -------
-    dict of str to float
-        Scenes in which some method reaches the target.
-    """
+    """Cost of the DEM over that of the cheapest method of any shape; infinite where only others get there."""
     best = winners(without_multipoles(df), targets=(target,))
     return {row["scene"]: np.inf if np.isnan(row["dem"]) else row["dem"] for _, row in best.iterrows()}
 
 
 def in_words(df, target):
-    """Where the DEM loses, as a sentence.
-
-    Parameters
-    ----------
-    df : data frame
-    target : float, %
-    """
+    """Where the DEM loses, as a sentence."""
     ratios = lost(df, target)
     wins = [scene for scene, ratio in ratios.items() if ratio == 1.0]
     never = [scene for scene, ratio in ratios.items() if np.isinf(ratio)]
@@ -156,13 +108,7 @@ def in_words(df, target):
 
 
 def counts_in_words(df, target):
-    """On how many scenes each method for any shape is the cheapest, and where the DEM does not get there.
-
-    Parameters
-    ----------
-    df : data frame
-    target : float, %
-    """
+    """On how many scenes each method for any shape is the cheapest, and where the DEM does not get there."""
     best = winners(without_multipoles(df), targets=(target,))
     scenes = [scene for scene in (*STEADY, *IN_TIME) if (df["scene"] == scene).any()]
     parts = [f"{label(name)} on {count}" for name, count in best["name"].value_counts().items()]
@@ -174,12 +120,7 @@ def counts_in_words(df, target):
 
 
 def losses_in_words(df):
-    """On how many scenes the DEM is not the cheapest method for any shape, by target.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """On how many scenes the DEM is not the cheapest method for any shape, by target."""
     parts = []
     for target in TARGETS:
         ratios = lost(df, target).values()
@@ -188,12 +129,7 @@ def losses_in_words(df):
 
 
 def packing_in_words(df):
-    """CPU time of the DEM's largest packing of one sphere, made on the spot.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """CPU time of the DEM's largest packing of one sphere, made on the spot."""
     rows = df[(df["scene"] == "third") & (df["name"] == "dem")]
     row = rows.loc[rows["particles"].idxmax()]
     made, solve = row["cpu_s"] - row["cached_cpu_s"], row["cached_cpu_s"]

@@ -20,21 +20,7 @@ STATS = ("unknowns", "iterations", "residual", "integrator", "steps")
 
 
 def solved(name, *, method, **knobs):
-    """Solve a scene by a method, the DEM from an empty packing cache and then again.
-
-    Parameters
-    ----------
-    name : str
-        Of the scene.
-    method : str
-        Name of its module.
-    **knobs
-        Of its `solve` or `evolve`.
-
-    Returns
-    -------
-    dict
-    """
+    """Solve a scene by a method, the DEM from an empty packing cache and then again."""
     if "degree" in knobs:
         knobs["order"] = knobs.pop("degree")
     once = _march if name in IN_TIME else _steady
@@ -110,13 +96,7 @@ def _contacts(name, knobs):
 
 
 def warm_up(name, *, method, **knobs):
-    """Load and compile what a row needs, at a size that costs next to nothing; keeps nothing on disk.
-
-    Parameters
-    ----------
-    name, method, **knobs
-        As those of `solved`.
-    """
+    """Load and compile what a row needs, at a size that costs next to nothing; keeps nothing on disk."""
     if "degree" in knobs:
         knobs["order"] = knobs.pop("degree")
     if name not in IN_TIME:

@@ -84,28 +84,13 @@ TIMES = {"slab": (0.05, 0.1, 0.2), "ball": (1.0, 5.0, 10.0), "beam": (0.001, 0.0
 
 @lru_cache(2)
 def scene_of(name):
-    """A scene by its name.
-
-    Parameters
-    ----------
-    name : str
-
-    Returns
-    -------
-    Scene
-    """
+    """A scene by its name."""
     return (STEADY | IN_TIME)[name]()
 
 
 @cache
 def points_of(name):
-    """Where its fields are compared, (n, 3) float array, m.
-
-    Parameters
-    ----------
-    name : str
-        Of a scene.
-    """
+    """Where its fields are compared, (n, 3) float array, m."""
     scene = scene_of(name)
     # Elements' chords leave a little of a round body out.
     inside = 0.98 * (np.random.default_rng(SEED).uniform(size=(4 * POINTS, 3)) - 0.5)
@@ -120,15 +105,6 @@ def exact_of(name):
 
     Closed forms, Rayleigh's method for the cubic array, multipoles for random spheres; those of spheres are kept on
     disk by scene and code, as they take longer than most rows.
-
-    Parameters
-    ----------
-    name : str
-        Of a steady scene.
-
-    Returns
-    -------
-    Field
     """
     found = _worked_out(name) if name == "laminate" else _kept(name)
     scene = scene_of(name)

@@ -12,12 +12,7 @@ OF_FIELDS = {"temperature": (0.1,), "flux": (1.0,)}
 
 
 def lines(df):
-    """One line for each scene, quantity and target.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One line for each scene, quantity and target."""
     parts = [means.winners(df), *(means.winners(df, name, targets) for name, targets in OF_FIELDS.items())]
     found = pd.concat([part for part in parts if len(part)])
     second = pd.concat([_any_shape(df, "conductivity", means.TARGETS)])
@@ -42,12 +37,7 @@ def lines(df):
 
 
 def by_accuracy(df):
-    """One line for each scene, a column for each target: the cheapest method for any shape, and the DEM beside it.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """One line for each scene, a column for each target: the cheapest method for any shape, and the DEM beside it."""
     best = means.winners(means.without_multipoles(df))
     best = best.assign(cell=[_beside_dem(row) for row in best.itertuples()])
     wide = best.pivot(index="scene", columns="target", values="cell").reindex(best["scene"].unique())

@@ -21,12 +21,7 @@ SAID = {"error": "errors", "cpu_s": "CPU times"}
 
 
 def all_claims(df):
-    """All claims whose rows are there.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """All claims whose rows are there."""
     yield from present([*_kernels(df), *_schemes(df)])
     there = [name for name in STEADY if name in set(df["scene"])]
     reach = {scene: len(means.cheapest(df[df["scene"] == scene], targets=(0.1,))) for scene in there}

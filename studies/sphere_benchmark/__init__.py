@@ -87,20 +87,7 @@ def VALUES(case):
 
 
 def guests(method, *, quick=False):
-    """Cases of a method that is not ours: all scenes and relations, at each of its knobs.
-
-    Parameters
-    ----------
-    method : str
-        A module that Python can import, or the path of a program.
-    quick : bool
-        Only those scenes that a quick run has.
-
-    Raises
-    ------
-    ValueError
-        If it is neither.
-    """
+    """Cases of a method that is not ours: all scenes and relations, at each of its knobs."""
     from studies.sphere_benchmark import ways
 
     there = [case["scene"] for case in CASES if not quick or QUICK(case)]

@@ -14,12 +14,7 @@ COLOURS = (ORANGE, SKY, PINK, BLUE, BLACK)
 
 
 def draw(df):
-    """Two panels.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Two panels."""
     from matplotlib import pyplot
 
     real = df[~df["scene"].str.startswith("relation")]

@@ -18,12 +18,7 @@ KEPT = {"uniform": 1e-10, "scaled": 1e-10, "reversed": 1e-10, "turned": 0.075, "
 
 
 def all_claims(df):
-    """Pairs of a sentence with a value and a limit.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """Pairs of a sentence with a value and a limit."""
     yield from present([_files(df), *_errors(df), *_relations(df)])
 
 
@@ -58,12 +53,7 @@ def _relations(df):
 
 
 def step_of(row) -> float:
-    """Place of a row on its method's ladder: the larger the finer.
-
-    Parameters
-    ----------
-    row : mapping
-    """
+    """Place of a row on its method's ladder: the larger the finer."""
     if row["method"] == GUEST:
         return row["step"]
     column, values = LADDERS[row["name"]]
@@ -90,12 +80,7 @@ def title_of(name) -> str:
 
 
 def resolution_of(row) -> str:
-    """Resolution of a row in words.
-
-    Parameters
-    ----------
-    row : mapping
-    """
+    """Resolution of a row in words."""
     from studies.harness import methods
 
     if row["method"] == GUEST:

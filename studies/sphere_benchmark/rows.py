@@ -18,21 +18,7 @@ AXES = "xyz"
 
 
 def solved(scene, way) -> dict:
-    """Solve a scene and hold it against what is known.
-
-    Parameters
-    ----------
-    scene : str
-        Of the benchmark.
-    way : callable (table) -> Answer
-
-    Returns
-    -------
-    dict
-        `error_percent`, of the conductivity, signed; or where none is asked for of the temperature that is farthest
-        off, in % of the span. `temperature_percent` and `flux_percent` are root mean squares at the file's points, in %
-        of the span and of the mean flux; `points_cpu_s` is what asking for them cost.
-    """
+    """Solve a scene and hold it against what is known."""
     table = benchmark.read(scene)
     known = benchmark.known_of(table)
     answer, cost = measured(way, table)
@@ -87,14 +73,7 @@ def _span(scene, known):
 
 
 def related(relation, way) -> dict:
-    """Solve a scene and one that a relation makes of it; the error is what the relation is broken by, in %.
-
-    Parameters
-    ----------
-    relation : str
-        "uniform", "scaled", "reversed", "turned" or "tenfold".
-    way : callable (table) -> Answer
-    """
+    """Solve a scene and one that a relation makes of it; the error is what the relation is broken by, in %."""
     table = benchmark.read(RELATED)
     changed, factor = globals()[f"_{relation}"](copy.deepcopy(table))
     answer, cost = measured(way, changed)

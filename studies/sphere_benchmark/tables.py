@@ -9,12 +9,7 @@ from studies.sphere_benchmark.means import finest, resolution_of, stepped, title
 
 
 def by_scene(df):
-    """|error| of each method at its finest, by scene.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """|error| of each method at its finest, by scene."""
     import pandas as pd
 
     best = finest(df)
@@ -33,12 +28,7 @@ def by_scene(df):
 
 
 def by_method(df):
-    """How many scenes a method answers at a resolution, its median and worst errors, and mean costs.
-
-    Parameters
-    ----------
-    df : data frame
-    """
+    """How many scenes a method answers at a resolution, its median and worst errors, and mean costs."""
     import pandas as pd
 
     real = stepped(df[~df["scene"].str.startswith("relation")])

@@ -37,76 +37,34 @@ VALID = (
 
 
 class Answer(NamedTuple):
-    """What a method says of a scene.
+    """What a method says of a scene."""
 
-    Attributes
-    ----------
-    conductivity : float or None, W/(m K)
-    fields : tuple
-        With `temperature_at`; one in a steady state, one for each time else; empty for a number alone.
-    stats : dict
-        Of the row: unknowns, iterations, residual, and peak_mib where a program has it.
-    """
-
-    conductivity: float | None
-    fields: tuple = ()
-    stats: dict = {}
+    conductivity: float | None  # float or None, W/(m K)
+    fields: tuple = ()  # With `temperature_at`; one in a steady state, one for each time else; empty for a number alone
+    stats: dict = {}  # Of the row: unknowns, iterations, residual, and peak_mib where a program has it
 
 
 Way = Callable[[dict], Answer]
 
 
 def ours(method: str, knobs: dict) -> Way:
-    """One of our methods.
-
-    Parameters
-    ----------
-    method : str
-        Of its module.
-    knobs : dict
-        Of a case: a `size` is in lengths of the box, a `degree` multipoles' order.
-    """
+    """One of our methods."""
     return partial(_by_module, load(method), knobs)
 
 
 def guest(method: str, step: int) -> Way:
-    """A method that is not ours.
-
-    Parameters
-    ----------
-    method : str
-        A module, or the path of a program.
-    step : int
-        Which of its `KNOBS`.
-
-    Raises
-    ------
-    ValueError
-        If it is neither.
-    """
+    """A method that is not ours."""
     path = _program(method)
     return partial(_by_program, path) if path else partial(_by_module, _module(method), knobs_of(method)[step])
 
 
 def knobs_of(method: str) -> list[dict]:
-    """Keywords of each row of a method that is not ours; one empty dict if it has none.
-
-    Raises
-    ------
-    ValueError
-        If there is no such method.
-    """
+    """Keywords of each row of a method that is not ours; one empty dict if it has none."""
     return [{}] if _program(method) else list(getattr(_module(method), "KNOBS", [{}]))
 
 
 def warm_up(method: str, step: int) -> None:
-    """Have a module load and compile what it needs; a program pays for its start each time.
-
-    Parameters
-    ----------
-    method, step
-        As those of `guest`.
-    """
+    """Have a module load and compile what it needs; a program pays for its start each time."""
     if not _program(method):
         try:
             guest(method, step)(benchmark.read(WARM))

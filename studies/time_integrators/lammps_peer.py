@@ -38,25 +38,6 @@ def beside(particles, contact="friction"):
     """Steps of LAMMPS and of our kernel on the slab's packing, in turns, best of a few by processor time.
 
     The upper half starts hot and the lower half cold; no wall conducts, so that every particle is free in both.
-
-    Parameters
-    ----------
-    particles : int
-    contact : {"friction", "bare"}
-        Forces that LAMMPS computes.
-
-    Returns
-    -------
-    dict
-        `million_particle_steps` (LAMMPS) and `kernel_million_particle_steps`, per CPU second; `over_lammps`, their
-        ratio; `links_per_particle`; `steps`; `difference`, the largest between the temperatures after as many steps,
-        over the largest change; `energy_error`, LAMMPS's change of heat over the heat moved; `cpu_s` and `wall_s` of
-        LAMMPS's steps alone.
-
-    Raises
-    ------
-    NotImplementedError
-        If LAMMPS is not installed, or cannot conduct heat.
     """
     lammps = _library()
     bed, network = grown(packing_of(particles))
@@ -86,21 +67,7 @@ def beside(particles, contact="friction"):
 
 
 def grown(packing, *, margin=4.0):
-    """Packing whose detected contacts overlap, and the network of what LAMMPS conducts through them.
-
-    Parameters
-    ----------
-    packing : Packing
-        Between walls: no axis is periodic.
-    margin : float
-        Contacts are counted so many mean radii away from walls; see `contacts`.
-
-    Returns
-    -------
-    bed : Packing
-    network : Network
-        Volumes are those of the grown spheres; no walls.
-    """
+    """Packing whose detected contacts overlap, and the network of what LAMMPS conducts through them."""
     indptr, indices, gap = contacts(packing, margin=margin)
     bed = packing._replace(radii=packing.radii * (1.0 + gap))
     nothing, empty = np.empty(0, dtype=np.int64), np.empty(0)
@@ -122,17 +89,6 @@ def conductances(bed, indptr, indices):
 
     LAMMPS manual, `pair_style granular`: heat model `radius`, contact radius of the models `hooke` and `hertz`; a
     circular contact of two half-spaces (Batchelor and O'Brien, Proc. R. Soc. A 355, 1977).
-
-    Parameters
-    ----------
-    bed : Packing
-        With radii that overlap.
-    indptr, indices : int array
-        Its links, as from `contacts`.
-
-    Returns
-    -------
-    (m,) float array
     """
     row = row_numbers(indptr)
     here, there = bed.radii[row], bed.radii[indices]
@@ -183,17 +139,7 @@ def _library():
 
 @contextmanager
 def opened(lammps, bed, temperature, step, contact):
-    """LAMMPS with a bed of grains ready to run; closed at the end.
-
-    Parameters
-    ----------
-    lammps : module
-    bed : Packing
-        Between walls: no axis is periodic.
-    temperature : (n,) float array
-    step : float, s
-    contact : {"friction", "bare"}
-    """
+    """LAMMPS with a bed of grains ready to run; closed at the end."""
     try:
         program = lammps.lammps(cmdargs=["-log", "none", "-screen", "none", "-nocite"])
     except OSError as error:
@@ -248,17 +194,7 @@ def _conduction(step, contact):
 
 
 def temperatures(program, particles):
-    """Temperatures in the order of the packing; LAMMPS sorts its particles.
-
-    Parameters
-    ----------
-    program : lammps
-    particles : int
-
-    Returns
-    -------
-    (n,) float array, degrees Celsius
-    """
+    """Temperatures in the order of the packing; LAMMPS sorts its particles."""
     out = np.empty(particles)
     place = program.numpy.extract_atom("id")[:particles] - 1
     out[place] = program.numpy.extract_atom("temperature")[:particles]

@@ -32,18 +32,7 @@ SAMPLE, MOST_STEPS = 400, 12_000
 
 
 def system_of(body, particles):
-    """Balance of a body's Laguerre network, and its temperatures at time 0.
-
-    Parameters
-    ----------
-    body : {"slab", "sphere"}
-    particles : int
-
-    Returns
-    -------
-    system : System
-    start : (n,) float array, degrees Celsius
-    """
+    """Balance of a body's Laguerre network, and its temperatures at time 0."""
     if body == "slab":
         scene, packing = slab(), packing_of(particles)
     else:
@@ -56,20 +45,7 @@ def system_of(body, particles):
 
 
 def marched(body, particles, integrator, accuracy):
-    """Run one integrator to the end and say what it cost and how far off it is.
-
-    Parameters
-    ----------
-    body : {"slab", "sphere"}
-    particles : int
-    integrator : str
-    accuracy : float or None
-        Of the whole march, over the span; None for explicit Euler.
-
-    Returns
-    -------
-    dict
-    """
+    """Run one integrator to the end and say what it cost and how far off it is."""
     system, start = system_of(body, particles)
     if integrator == "euler":
         return _euler(system, start, ENDS[body])

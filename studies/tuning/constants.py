@@ -133,14 +133,7 @@ CONSTANTS = {
 
 @contextmanager
 def constant_set(name, factor):
-    """Solve with one constant times a factor.
-
-    Parameters
-    ----------
-    name : str or None
-        One of CONSTANTS; None changes nothing.
-    factor : float
-    """
+    """Solve with one constant times a factor."""
     values = CONSTANTS[name].setting(factor * CONSTANTS[name].unit) if name else {}
     before = [(home, each, getattr(home, each)) for home in HOMES for each in values if hasattr(home, each)]
     try:

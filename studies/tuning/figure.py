@@ -26,12 +26,7 @@ PARTS = {
 
 
 def draw(df):
-    """Three panels.
-
-    Parameters
-    ----------
-    df : DataFrame
-    """
+    """Three panels."""
     from matplotlib import pyplot
 
     figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(15, 4.8))

@@ -14,18 +14,7 @@ PERCENT = 100.0
 
 
 def known(df, group):
-    """What witnesses say of the scenes of one group: conductivity and doubt, by family and number of the scene.
-
-    Parameters
-    ----------
-    df : DataFrame
-    group : str
-
-    Returns
-    -------
-    DataFrame
-        Columns `family`, `scene`, `known`, `doubt_percent`.
-    """
+    """What witnesses say of the scenes of one group: conductivity and doubt, by family and number of the scene."""
     lines = []
     for _, row in pick(df, part="reference", group=group).iterrows():
         pairs = zip(numbers(row["k"]), numbers(row["doubt"]), strict=True)
@@ -34,20 +23,7 @@ def known(df, group):
 
 
 def errors(df, group, part="varied"):
-    """Errors of every solve whose scene has a witness, one line each.
-
-    Parameters
-    ----------
-    df : DataFrame
-    group : str
-        Of scenes.
-    part : str
-
-    Returns
-    -------
-    DataFrame
-        Columns `constant` (empty as shipped), `factor`, `particles`, `unknowns`, `family`, `scene`, `error`, %.
-    """
+    """Errors of every solve whose scene has a witness, one line each."""
     right, lines = known(df, group), []
     for _, row in pick(df, part=part, group=group).iterrows():
         same = {name: row[name] for name in ("constant", "factor", "particles", "unknowns")}
@@ -61,25 +37,12 @@ def errors(df, group, part="varied"):
 
 
 def named(constants):
-    """Names of constants, empty where a row has none.
-
-    Parameters
-    ----------
-    constants : Series
-    """
+    """Names of constants, empty where a row has none."""
     return [name if isinstance(name, str) else "" for name in constants]
 
 
 def summed(found, by=("constant", "factor", "particles")):
-    """Median and 90th percentile of |error|, mean error and its standard error, %; mean unknowns; per group of lines.
-
-    Parameters
-    ----------
-    found : DataFrame
-        From `errors`.
-    by : sequence of str
-        Columns.
-    """
+    """Median and 90th percentile of |error|, mean error and its standard error, %; mean unknowns; by group."""
     size = found.assign(size=found["error"].abs())
     groups = size.groupby(list(by), sort=False)
     return groups.agg(
@@ -93,18 +56,7 @@ def summed(found, by=("constant", "factor", "particles")):
 
 
 def against_best(sums):
-    """For each constant and number of particles: the shipped median error over the least of any value of the constant.
-
-    Parameters
-    ----------
-    sums : DataFrame
-        From `summed`.
-
-    Returns
-    -------
-    DataFrame
-        Columns `constant`, `particles`, `ratio`, `best`, the factor of the best value.
-    """
+    """For each constant and number of particles: the shipped median error over the least of all its values."""
     lines = []
     for particles, rows in sums.groupby("particles"):
         shipped = pick(rows, constant="")
@@ -119,14 +71,7 @@ def against_best(sums):
 
 
 def wins(found, gain):
-    """Values of constants that lower the median error of every family by so much, as "OFFSET x 0.7".
-
-    Parameters
-    ----------
-    found : DataFrame
-        From `errors`, of one number of particles.
-    gain : float
-    """
+    """Values of constants that lower the median error of every family by so much, as "OFFSET x 0.7"."""
     sums = summed(found, by=("constant", "factor", "family"))
     shipped = pick(sums, constant="").set_index("family")["median"]
     better = []
@@ -138,14 +83,7 @@ def wins(found, gain):
 
 
 def parts(df, **where):
-    """Means over packings of the parts of the error, %, and the scatter of one packing, by number of particles.
-
-    Parameters
-    ----------
-    df : DataFrame
-    where
-        Column = value, of rows of the part "order".
-    """
+    """Means over packings of the parts of the error, %, and the scatter of one packing, by number of particles."""
     lines = []
     for _, row in pick(df, part="order", **where).sort_values("particles").iterrows():
         line = {"particles": row["particles"]}
@@ -158,17 +96,7 @@ def parts(df, **where):
 
 
 def fitted(table, name, *, draws=400):
-    """Order of a column in the particle size and its standard error, from the errors of its means.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `parts`.
-    name : str
-        Of a column; "_scatter" at the end asks for that of the standard deviation of a packing.
-    draws : int
-        Of the means from their errors.
-    """
+    """Order of a column in the particle size and its standard error, from the errors of its means."""
     sizes = table["particles"].to_numpy(float) ** (-1 / 3)
     values, rng = table[name].to_numpy(float), np.random.default_rng(0)
     if name.endswith("_scatter"):
@@ -183,19 +111,7 @@ def fitted(table, name, *, draws=400):
 
 
 def two_powers(table, name="error"):
-    """A column as a h^2 + b h^3, h = particles^(-1/3), by least squares weighted by the errors of its means.
-
-    Parameters
-    ----------
-    table : DataFrame
-        From `parts`, of three or more numbers of particles.
-    name : str
-
-    Returns
-    -------
-    values, doubts : (2,) float arrays
-        a and b, in the column's unit, and their standard errors; of a poor fit larger by as much as it is poor.
-    """
+    """A column as a h^2 + b h^3, h = particles^(-1/3), by least squares weighted by the errors of its means."""
     size = table["particles"].to_numpy(float) ** (-1 / 3)
     weight = 1 / table[f"{name}_sem"].to_numpy(float)
     matrix, right = np.column_stack([size**2, size**3]) * weight[:, None], table[name].to_numpy(float) * weight

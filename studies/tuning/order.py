@@ -35,25 +35,13 @@ INCLINED = (0.48, 0.6, 0.64)
 
 
 def sphere(contrast):
-    """A sphere in a periodic cell, as large as that of the benchmark, under a gradient along no axis.
-
-    Parameters
-    ----------
-    contrast : float
-        Its conductivity over the matrix's.
-    """
+    """A sphere in a periodic cell, as large as that of the benchmark, under a gradient along no axis."""
     inclusion = Sphere((0.5, 0.5, 0.5), RADIUS, Material(contrast))
     return Scene((1.0, 1.0, 1.0), Material(1.0), [inclusion], gradient=INCLINED)
 
 
 def layer(contrast):
-    """A layer, whose interfaces are flat, under the same gradient.
-
-    Parameters
-    ----------
-    contrast : float
-        Its conductivity over the matrix's.
-    """
+    """A layer, whose interfaces are flat, under the same gradient."""
     return Scene((1.0, 1.0, 1.0), Material(1.0), [Layer(1, 0.21, 0.57, Material(contrast))], gradient=INCLINED)
 
 
@@ -64,16 +52,7 @@ def _solution(shape, contrast):
 
 
 def decomposed(shape, contrast, particles, packings, *, constant=None, factor=1.0):
-    """Errors of the conductivity, and their two parts, on several packings; all in per cent of the exact one.
-
-    Parameters
-    ----------
-    shape : {"sphere", "layer"}
-    contrast : float
-    particles, packings : int
-    constant, factor
-        As in `constants.constant_set`.
-    """
+    """Errors of the conductivity, and their two parts, on several packings; all in per cent of the exact one."""
     scene, known = _solution(shape, contrast)
     parts = []
     for seed in range(FIRST_SEED, FIRST_SEED + packings):

@@ -15,28 +15,13 @@ DIGITS = ".10g"
 
 
 def references(family, seeds):
-    """Conductivities by a witness.
-
-    Parameters
-    ----------
-    family : str
-    seeds : sequence of int
-    """
+    """Conductivities by a witness."""
     known, doubts = zip(*(reference(family, seed) for seed in seeds), strict=True)
     return {"k": cell(known, DIGITS), "doubt": cell(doubts, ".2g")}
 
 
 def varied(families, seeds, constant, factor, particles):
-    """Conductivities by the DEM with one constant changed; packings have the scenes' seeds.
-
-    Parameters
-    ----------
-    families : sequence of str
-    seeds : sequence of int
-    constant : str or None
-    factor : float
-    particles : int
-    """
+    """Conductivities by the DEM with one constant changed; packings have the scenes' seeds."""
     row, unknowns = {}, []
     law = Laguerre(gap_spacing=factor * CLOSE) if constant == "GAP_SPACING" else Laguerre()
     with constant_set(constant, factor), warnings.catch_warnings():

@@ -129,33 +129,12 @@ MESHED = ("cut", "nested")
 
 
 def scene_of(family, seed):
-    """A scene.
-
-    Parameters
-    ----------
-    family : str
-        One of FAMILIES.
-    seed : int
-
-    Returns
-    -------
-    Scene
-    """
+    """A scene."""
     return DRAW[family](np.random.default_rng([seed, FAMILIES.index(family), 1789]))
 
 
 def reference(family, seed):
-    """Conductivity of a scene along its load by a witness, W/(m K), and how far off it may be, relative.
-
-    Parameters
-    ----------
-    family : str
-    seed : int
-
-    Returns
-    -------
-    conductivity, doubt : float
-    """
+    """Conductivity of a scene along its load by a witness, W/(m K), and how far off it may be, relative."""
     scene = scene_of(family, seed)
     if family not in MESHED:
         return multipole.solve(scene, accuracy=ACCURACY).conductivity, ACCURACY

@@ -12,12 +12,7 @@ KEYS = ["shape", "contrast", "constant", "factor"]
 
 
 def lines(df):
-    """One line of each value of a constant at each number of particles, then one of each series of packings.
-
-    Parameters
-    ----------
-    df : DataFrame
-    """
+    """One line of each value of a constant at each number of particles, then one of each series of packings."""
     return pd.DataFrame([*_values(means.summed(means.errors(df, "unseen"))), *_series(df)])
 
 

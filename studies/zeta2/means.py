@@ -14,14 +14,7 @@ KEYS = ("placed", "gap", "ratio", "fraction")
 
 
 def pooled(df):
-    """Means over all realisations of each kind of cell.
-
-    Returns
-    -------
-    data frame
-        Keys, `cells`, `spheres`, `zeta2` (mean), `scatter` (standard deviation of one cell), `se`, `half` (95 %
-        confidence, by Student's t), `polynomial` and `off_percent`, the mean's deviation from it.
-    """
+    """Means over all realisations of each kind of cell."""
     import pandas as pd
 
     from references.bounds import zeta2_hard_spheres
@@ -39,21 +32,7 @@ def pooled(df):
 
 
 def below(means, lower, upper):
-    """How far one kind of cells lies below another, at the fractions that both have.
-
-    Parameters
-    ----------
-    means : data frame
-        Of `pooled`.
-    lower, upper : dict
-        What picks each.
-
-    Returns
-    -------
-    percent, se : float
-        Mean of the relative differences weighted by their inverse variances, %, and its standard error; None if no
-        fraction has both.
-    """
+    """How far one kind of cells lies below another, at the fractions that both have."""
     both = pick(means, **lower).merge(pick(means, **upper), on="fraction", suffixes=("", "_upper"))
     if not len(both):
         return None, None

@@ -27,15 +27,7 @@ REACH, LAGS, LINES = 2.5, 51, 10_000
 
 
 def array_row(array, fraction, voxels):
-    """Voxels on a cubic array at three places; errors are the worst of them, signed, %.
-
-    Parameters
-    ----------
-    array : {"sc", "bcc", "fcc"}
-    fraction : float
-    voxels : int
-        Along each edge of the cell.
-    """
+    """Voxels on a cubic array at three places; errors are the worst of them, signed, %."""
     scene = ARRAYS[array](fraction=fraction)
     exact = multipole.zeta2(scene)
     places = [_moved(scene, place) for place in PLACES]
@@ -61,39 +53,14 @@ def _per_diameter(scene, voxels):
 
 
 def random_cell(placed, gap, fraction, ratio, seed, axis=1):
-    """Periodic cell of silica spheres in epoxy.
-
-    Parameters
-    ----------
-    placed : {"lsa", "rsa"}
-    gap : float
-        Least distance of two surfaces, in diameters.
-    fraction : float
-    ratio : float
-        Edge of the cell over the diameter.
-    seed : int
-    axis : {0, 1, 2}
-        Of the load.
-
-    Returns
-    -------
-    Scene
-    """
+    """Periodic cell of silica spheres in epoxy."""
     materials = {"matrix": gallery.EPOXY, "inclusion": gallery.SILICA, "size": (gallery.EDGE,) * 3}
     knobs = {"fraction": fraction, "ratio": ratio, "gap": gap, "method": placed, "seed": seed}
     return dispersion_scene(axis=axis, **materials, **knobs)
 
 
 def cells_row(placed, gap, fraction, ratio, first, cells):
-    """zeta_2 of some random cells by multipoles; their values are kept as text.
-
-    Parameters
-    ----------
-    placed, gap, fraction, ratio
-        As those of `random_cell`.
-    first, cells : int
-        First seed, and their number.
-    """
+    """zeta_2 of some random cells by multipoles; their values are kept as text."""
     scenes = [random_cell(placed, gap, fraction, ratio, seed) for seed in range(first, first + cells)]
     values, cost = measured(lambda: [multipole.zeta2(scene, order=ORDER) for scene in scenes])
     row = {"zeta2": float(np.mean(values)), "values": cell(values, ".7f")}
@@ -101,17 +68,7 @@ def cells_row(placed, gap, fraction, ratio, first, cells):
 
 
 def voxels_row(placed, gap, fraction, ratio, first, voxels):
-    """Voxels on a random cell against its multipoles.
-
-    Parameters
-    ----------
-    placed, gap, fraction, ratio
-        As those of `random_cell`.
-    first : int
-        Seed.
-    voxels : int
-        Along each edge of the cell.
-    """
+    """Voxels on a random cell against its multipoles."""
     scene = random_cell(placed, gap, fraction, ratio, first)
     exact = multipole.zeta2(scene, order=ORDER)
     found, cost = measured(zeta.zeta2, scene, voxels=voxels)
@@ -122,15 +79,7 @@ def voxels_row(placed, gap, fraction, ratio, first, voxels):
 
 
 def conductivity_row(placed, gap, fraction, ratio, first):
-    """Conductivity of a random cell by multipoles, mean of three axes, beside its zeta_2.
-
-    Parameters
-    ----------
-    placed, gap, fraction, ratio
-        As those of `random_cell`.
-    first : int
-        Seed.
-    """
+    """Conductivity of a random cell by multipoles, mean of three axes, beside its zeta_2."""
     scenes = [random_cell(placed, gap, fraction, ratio, first, axis) for axis in range(3)]
     fields, cost = measured(lambda: [multipole.solve(scene, order=SOLVED) for scene in scenes])
     found = [field.conductivity for field in fields]
@@ -141,13 +90,7 @@ def conductivity_row(placed, gap, fraction, ratio, first):
 
 
 def surface_row(placed, gap, fraction, ratio, first, cells):
-    """S2 of some random cells, mean of directions and cells, and the surface that its slope gives, against 3 f/R.
-
-    Parameters
-    ----------
-    placed, gap, fraction, ratio, first, cells
-        As those of `cells_row`.
-    """
+    """S2 of some random cells, mean of directions and cells, and the surface that its slope gives, against 3 f/R."""
     knobs = {"fraction": fraction, "ratio": ratio, "gap": gap, "method": placed}
     made = [dispersion(seed=seed, **knobs) for seed in range(first, first + cells)]
     packings = [make_packing(centers, radii, (1.0, 1.0, 1.0), True, {}) for centers, radii in made]

@@ -55,8 +55,6 @@ def test_coats_by_the_nearest_image():
 @pytest.mark.parametrize(
     "inclusions",
     [
-        # One plane of centres lies in it.
-        (Layer(0, 0.41, 0.42, Material(1e-3)),),
         (Layer(0, 0.4, 0.6, OTHER),),
         (ball(0.1, (0.4167, 0.4167, 0.4167)),),
         (ball(0.44), ball(0.4)),
@@ -65,6 +63,13 @@ def test_coats_by_the_nearest_image():
 def test_the_dem_without_twins_says_so(inclusions, knobs):
     with pytest.warns(UserWarning, match=r"inclusions \[0\] are thin for particles of diameter 0.167 m"):
         demheat.solve(cell(*inclusions), packing=crystal(), **knobs)
+
+
+def test_a_layer_that_cells_see_sixteen_times_too_thick_has_no_answer():
+    """One plane of centres lies in it."""
+    layer = Layer(0, 0.41, 0.42, Material(1e-3))
+    with pytest.warns(UserWarning, match="thin for"), pytest.raises(RuntimeError, match="a surface is not where"):
+        demheat.solve(cell(layer), packing=crystal(), conforming=False)
 
 
 @pytest.mark.parametrize(("core", "told"), [(40.0, False), (60.0, True), (0.6, False), (0.4, True)])

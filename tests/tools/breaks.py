@@ -60,16 +60,7 @@ class Break(NamedTuple):
 
 
 def drawn(count, seed, root=ROOT, packages=PACKAGES):
-    """Breaks drawn without repetition: each place is as likely, a larger count begins with the same ones.
-
-    Parameters
-    ----------
-    count : int
-    seed : int
-    root : Path
-    packages : tuple of str
-        Folders below it.
-    """
+    """Breaks drawn without repetition: each place is as likely, a larger count begins with the same ones."""
     generator, places = random.Random(seed), []
     for package in packages:
         for path in sorted((root / package).rglob("*.py")):
@@ -80,14 +71,7 @@ def drawn(count, seed, root=ROOT, packages=PACKAGES):
 
 
 def listed(path, root=ROOT):
-    """Breaks of a list, and its rows whose text no longer stands once in their module.
-
-    Parameters
-    ----------
-    path : Path
-        A table of module, before, after and meaning.
-    root : Path
-    """
+    """Breaks of a list, and its rows whose text no longer stands once in their module."""
     found, gone = [], []
     for row in rows(path):
         source, before = root / row["module"], row["before"]
@@ -102,16 +86,7 @@ def listed(path, root=ROOT):
 
 
 def stages(module, root=ROOT, rest=False):
-    """Lists of test files to run one after another for a break of a module, none twice, none empty.
-
-    Parameters
-    ----------
-    module : Path
-        From the root.
-    root : Path
-    rest : bool
-        All others too, folder by folder.
-    """
+    """Lists of test files to run one after another for a break of a module, none twice, none empty."""
     package = module.parent if module.stem == "__init__" else module.with_suffix("")
     near, exact = _mirror(package, root)
     beside = sorted(near.rglob("test_*.py") if exact else near.glob("test_*.py"))
@@ -154,15 +129,7 @@ def pytest_runtest_setup(item):
 
 
 class Copies:
-    """A sound copy of the tree, and broken copies of that; machine code is kept by content and shared by all.
-
-    Parameters
-    ----------
-    folder : Path
-    root : Path
-    limit : float, s
-        CPU-seconds of one test.
-    """
+    """A sound copy of the tree, and broken copies of that; machine code is kept by content and shared by all."""
 
     def __init__(self, folder, root=ROOT, limit=TEST):
         self.folder, self.sound, self.limit = folder, folder / "sound", limit
@@ -175,12 +142,7 @@ class Copies:
         self.trusted, self.lock = {}, Lock()
 
     def of(self, broken):
-        """A copy with the break in it. It has the sound copy's bytecode of all other modules.
-
-        Parameters
-        ----------
-        broken : Break
-        """
+        """A copy with the break in it. It has the sound copy's bytecode of all other modules."""
         copy = Path(tempfile.mkdtemp(dir=self.folder)) / "tree"
         shutil.copytree(self.sound, copy)
         path = copy / broken.module
@@ -188,18 +150,7 @@ class Copies:
         return copy
 
     def ran(self, tree, tests, *options, plain=False):
-        """Run tests in a copy. Returns the first that fails or hangs, or None.
-
-        Parameters
-        ----------
-        tree : Path
-        tests : list of str
-            Files, or names of tests.
-        *options : str
-            Of pytest.
-        plain : bool
-            Without compiling.
-        """
+        """Run tests in a copy. Returns the first that fails or hangs, or None."""
         own = {
             "PYTHONPATH": os.pathsep.join(map(str, (tree, tree / "tests", ROOT / "tests"))),
             "PYTHONUNBUFFERED": "1",  # what hangs has said its name
@@ -223,28 +174,14 @@ class Copies:
         return _seen(log.read_text(errors="replace"), status)
 
     def is_trusted(self, test):
-        """Whether a test passes in the sound copy.
-
-        Parameters
-        ----------
-        test : str
-        """
+        """Whether a test passes in the sound copy."""
         with self.lock:
             if test not in self.trusted:
                 self.trusted[test] = self.ran(self.sound, [test]) is None
         return self.trusted[test]
 
     def first_seen(self, broken, wide=True, rest=False):
-        """The first test that sees a break, or None.
-
-        Parameters
-        ----------
-        broken : Break
-        wide : bool
-            Run the tests of all methods too.
-        rest : bool
-            And all others.
-        """
+        """The first test that sees a break, or None."""
         copy, nearest = self.of(broken), True
         try:
             for tests, plain in self._calls(broken.module, wide, rest):
@@ -300,26 +237,13 @@ def _seen(log, status):
 
 
 def tried(broken, copies, wide=True, rest=False):
-    """One row of the table.
-
-    Parameters
-    ----------
-    broken : Break
-    copies : Copies
-    wide, rest : bool
-        As in `Copies.first_seen`.
-    """
+    """One row of the table."""
     by = copies.first_seen(broken, wide, rest)
     return [*broken.key(), "yes" if by else "no", by or "", ""]
 
 
 def rows(path):
-    """Rows of a table, if there is one.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """Rows of a table, if there is one."""
     if not path.is_file():
         return []
     with path.open(newline="", encoding="utf-8") as file:
@@ -327,20 +251,7 @@ def rows(path):
 
 
 def run(breaks, out, *, jobs=1, wide=True, rest=False, root=ROOT, limit=TEST):
-    """Try breaks that are not in the table yet, and add them.
-
-    Parameters
-    ----------
-    breaks : list of Break
-    out : Path
-    jobs : int
-        At once.
-    wide, rest : bool
-        As in `Copies.first_seen`.
-    root : Path
-    limit : float, s
-        As in `Copies`.
-    """
+    """Try breaks that are not in the table yet, and add them."""
     done = {tuple(row[name] for name in COLUMNS[:5]) for row in rows(out)}
     todo, lock = [each for each in breaks if each.key() not in done], Lock()
     if not out.is_file():

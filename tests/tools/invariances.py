@@ -80,13 +80,7 @@ def add(rows):
 
 
 def page(rows):
-    """The page, from rows alone.
-
-    Parameters
-    ----------
-    rows : dict of (str, str) to dict
-        From `stored`.
-    """
+    """The page, from rows alone."""
     lines = [HEAD, "| relation | of a scene |", "|---|---|"]
     lines += [f"| `{name}` | {relation.words} |" for name, relation in RELATIONS.items()]
     lines += ["", TABLES]

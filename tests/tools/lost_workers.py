@@ -28,40 +28,17 @@ PAUSE = 0.05
 
 
 class Run(NamedTuple):
-    """One run of a study's quick rows.
+    """One run of a study's quick rows."""
 
-    Attributes
-    ----------
-    rows : dict of str to dict
-        By their cases.
-    seconds : float
-    status : int
-    said : str
-        On its error stream.
-    killed : list of (seconds, rows home by then)
-    """
-
-    rows: dict
+    rows: dict  # dict of str to dict: By their cases
     seconds: float
     status: int
-    said: str
-    killed: list
+    said: str  # On its error stream
+    killed: list  # list of (seconds, rows home by then)
 
 
 def ran(name, out, *options, moments=(), drawn=None):
-    """Make the quick rows of a study by the command; kill one of its workers at some moments.
-
-    Parameters
-    ----------
-    name : str
-    out : Path
-    *options : str
-        Of the command.
-    moments : sequence of float, s
-        After its workers have started.
-    drawn : random.Random, optional
-        Says which worker.
-    """
+    """Make the quick rows of a study by the command; kill one of its workers at some moments."""
     out.mkdir(parents=True)
     words = [sys.executable, "-m", "studies", "run", name, "--quick", "--force", "--out", str(out), *options]
     begun, killed = time.monotonic(), []
@@ -112,12 +89,7 @@ def _environment():
 
 
 def main(words=None):
-    """Three runs and what differs; 1 if anything does.
-
-    Parameters
-    ----------
-    words : list of str, optional
-    """
+    """Three runs and what differs; 1 if anything does."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("name", metavar="STUDY")
     parser.add_argument("--kills", type=int, default=3)

@@ -19,36 +19,12 @@ JACOBI = 0.6
 
 
 def steps_of(accuracy, outputs):
-    """Steps of equal size that a second-order method takes at least.
-
-    Parameters
-    ----------
-    accuracy, outputs
-        As in `costs`.
-
-    Returns
-    -------
-    int
-    """
+    """Steps of equal size that a second-order method takes at least."""
     return max(outputs, math.ceil(STEPS * math.sqrt(1e-3 / accuracy)))
 
 
 def costs(spectrum, interval, accuracy, outputs):
-    """Estimated work of each integrator, in passes over the network.
-
-    Parameters
-    ----------
-    spectrum : Spectrum
-    interval : float, s
-    accuracy : float
-        Of the temperature span.
-    outputs : int
-        Number of asked times, each of which ends a step.
-
-    Returns
-    -------
-    dict
-    """
+    """Estimated work of each integrator, in passes over the network."""
     count = steps_of(accuracy, outputs)
     size = interval / count
     solves = GRADED * count * SOLVES
@@ -67,20 +43,6 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False, linear=True):
 
     Explicit Euler takes its stable steps, or those between outputs, whatever the error: they must be enough. It is left
     out where loads change in time.
-
-    Parameters
-    ----------
-    spectrum, interval, accuracy, outputs
-        As in `costs`.
-    moving : bool
-        Whether loads change in time.
-    linear : bool
-        Whether no load depends on the state.
-
-    Returns
-    -------
-    str
-        One of `INTEGRATORS`.
     """
     work = costs(spectrum, interval, accuracy, outputs)
     if moving or max(interval / spectrum.limit, outputs) < 0.5 / accuracy:
@@ -91,13 +53,7 @@ def chosen(spectrum, interval, accuracy, outputs, *, moving=False, linear=True):
 
 
 def check_linear(integrator):
-    """Raise NotImplementedError if an integrator cannot march what is not linear, as radiation is not.
-
-    Parameters
-    ----------
-    integrator : str
-        One of `INTEGRATORS`.
-    """
+    """Raise NotImplementedError if an integrator cannot march what is not linear, as radiation is not."""
     if integrator in IMPLICIT:
         raise NotImplementedError(
             f"integrator = {integrator!r} and a wall that radiates: its stages are linear equations, and the fourth "

@@ -44,16 +44,7 @@ class Ledger:
     through: np.ndarray = field(default_factory=lambda: np.zeros(ACCOUNTS))
 
     def add(self, done, step, accepted):
-        """Count a step.
-
-        Parameters
-        ----------
-        done : Step
-        step : float, s
-            Its size.
-        accepted : bool
-            Heat of a step that is not accepted does not count.
-        """
+        """Count a step."""
         self.stages += done.stages
         self.iterations += done.iterations
         if accepted:
@@ -86,17 +77,7 @@ class Span:
 
 
 def span_of(system, x):
-    """Range of temperatures of a state, over particles and walls with a temperature.
-
-    Parameters
-    ----------
-    system : System
-    x : (N,) float array, K
-
-    Returns
-    -------
-    Span
-    """
+    """Range of temperatures of a state, over particles and walls with a temperature."""
     used = np.zeros(len(x), dtype=bool)
     used[: system.particles] = True
     used[system.held] = True
@@ -104,29 +85,7 @@ def span_of(system, x):
 
 
 def fixed_steps(advance, system, x, times, *, step, span, pace=ANY):
-    """Equal steps of at most `step` between the asked times and breaks, from time 0.
-
-    Parameters
-    ----------
-    advance : callable (x, time, step, memory, estimate) -> Step
-    system : System
-    x : (N,) float array, K
-        At time 0; may be overwritten.
-    times : sequence of float, s
-        Increasing.
-    step : float, s
-    span : Span
-        Not widened.
-    pace : Pace
-        Breaks of the loads, and what they ask of steps between them.
-
-    Yields
-    ------
-    time : float, s
-        Each asked one.
-    x : (N,) float array, K
-    ledger : Ledger
-    """
+    """Equal steps of at most `step` between the asked times and breaks, from time 0."""
     ledger, memory, now, part = Ledger(), None, 0.0, in_parts("march")
     for end, asked in pace.stops(times):
         count = max(0, math.ceil((end - now) / min(step, pace.least(now, end)) * (1 - 1e-12)))
@@ -147,29 +106,7 @@ def fixed_steps(advance, system, x, times, *, step, span, pace=ANY):
 
 
 def adaptive_steps(advance, system, x, times, *, accuracy, span, first, pace=ANY):
-    """Steps whose estimated error, rms over the heat capacity in units of the span, meets the accuracy at the times.
-
-    Parameters
-    ----------
-    advance, system, x, times, pace
-        As in `fixed_steps`.
-    accuracy : float
-        Of the temperature span.
-    span : Span
-        Widened on the way.
-    first : float, s
-        First step to try, also after breaks.
-
-    Yields
-    ------
-    time, x, ledger
-        As in `fixed_steps`.
-
-    Raises
-    ------
-    RuntimeError
-        If no step is small enough.
-    """
+    """Steps whose estimated error, rms over the heat capacity in units of the span, meets the accuracy at the times."""
     ledger, memory, now, wanted, part = Ledger(), None, 0.0, first, in_parts("march")
     allowed = SAFETY * accuracy * (accuracy / USUAL) ** (0.5 * (1.0 + DAMPED))
     for end, asked in pace.stops(times):

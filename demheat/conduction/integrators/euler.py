@@ -10,20 +10,7 @@ ESTIMATES = False
 
 
 def stepper(system, spectrum):
-    """Explicit Euler on a system.
-
-    Parameters
-    ----------
-    system : System
-    spectrum : Spectrum
-        Not needed: `largest_step` says what is stable.
-
-    Returns
-    -------
-    callable (x, time, step, memory, estimate) -> Step
-        From a state x, (N,) float array, K, at a time, s, one step, s, ahead. `memory` is that of the step before, or
-        None; `estimate` asks for the error. The array of x may be used again once the step after this one is taken.
-    """
+    """Explicit Euler on a system."""
 
     def advance(x, time, step, memory, estimate):
         heat, totals = system.heat(x, time)

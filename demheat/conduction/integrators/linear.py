@@ -25,22 +25,7 @@ CORRECTED, CORRECTIONS = 1e-2, 8
 
 
 def solver(system, preconditioner):
-    """A function that solves one implicit stage.
-
-    Parameters
-    ----------
-    system : System
-    preconditioner : {"jacobi", "multigrid"}
-
-    Returns
-    -------
-    solve : callable (g, known, heat, y, limit) -> iterations, bound
-        Finds y, in place, with C (known - y) / g + (heat received at y) = 0 up to an error whose root mean square,
-        weighted by capacity, is at most `limit`, K, or the rounding of the temperatures if that is more. The sum of
-        the residuals over each cluster of particles, which would be heat lost, is zero to rounding. The bound on that
-        error, K, is from the residual as recomputed, or where that is too large from a last correction. Raises
-        RuntimeError if it does not get there.
-    """
+    """A function that solves one implicit stage."""
     free = system.capacity > 0
     total = float(system.capacity.sum())
     cluster = _clusters(system)

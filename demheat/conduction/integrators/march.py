@@ -26,61 +26,20 @@ LINK = 5e-10
 
 
 def linear_tolerance(accuracy, steps=1):
-    """Error that an implicit solve may leave, in units of the temperature span.
-
-    Parameters
-    ----------
-    accuracy : float
-        Of the temperature span.
-    steps : int
-        That loads ask for at least.
-
-    Returns
-    -------
-    float
-    """
+    """Error that an implicit solve may leave, in units of the temperature span."""
     return LINEAR * accuracy * min(1.0, math.sqrt(accuracy / control.USUAL), FEW / max(steps, 1))
 
 
 class State(NamedTuple):
-    """Temperatures at an asked time.
+    """Temperatures at an asked time."""
 
-    Attributes
-    ----------
-    time : float, s
-    temperature : (n,) float array, K
-    stats : dict
-        See `integrate`.
-    """
-
-    time: float
-    temperature: np.ndarray
-    stats: dict
+    time: float  # s
+    temperature: np.ndarray  # (n,) float array, K
+    stats: dict  # See `integrate`
 
 
 def check_request(times, integrator, accuracy, step):
-    """Check what is asked of a march.
-
-    Parameters
-    ----------
-    times : sequence of float, s
-        Increasing, >= 0.
-    integrator : str
-        One of `choose.INTEGRATORS`.
-    accuracy : float
-        Of the temperature span, between 1e-9 and 0.1.
-    step : float, s, or None
-
-    Returns
-    -------
-    (k,) float array, s
-        The times.
-
-    Raises
-    ------
-    ValueError
-        If one of them is not as described.
-    """
+    """Check what is asked of a march."""
     array = _numbers(times)
     if array is None or not all(map(moderate, array)) or array[0] < 0 or np.any(np.diff(array) <= 0):
         raise ValueError(f"times = {times!r}: must be increasing numbers, 0 or from {LEAST:g} to {MOST:g} s")
@@ -132,57 +91,13 @@ def integrate(
     step: float | None = None,
     pace: Pace = ANY,
 ):
-    """March a system from time 0 to the asked times.
-
-    Parameters
-    ----------
-    system : System
-    temperature : (n,) float array, K
-        At time 0.
-    times : sequence of float, s
-    integrator : {"auto", "euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid"}
-    accuracy : float
-        Of the temperature span (the range met so far): steps are chosen so that the temporal error, rms over the heat
-        capacity, stays about below it. Explicit Euler, as in the papers, takes its largest stable step instead.
-    step : float, s, optional
-        Equal steps of at most this size instead.
-    pace : Pace
-        Times at which steps end as well, where loads jump, and the longest steps; equal steps heed the former only.
-
-    Yields
-    ------
-    State
-        With stats integrator, order, unknowns, steps, rejected, stages, iterations, residual (the largest error that a
-        linear solve left, by its recomputed residual, over the span), step (the last), step_limit (largest stable step
-        of explicit Euler), positivity_limit, spectral_radius, spectral_ratio (to the mean row), heat_change (J),
-        heat_in (J by side and "sources") and energy_error: heat change minus heat in, over the heat that came in, went
-        out or moved.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, or `step` is above the stable limit of explicit Euler.
-    NotImplementedError
-        If walls radiate and the integrator is implicit.
-    RuntimeError
-        If steps or linear solves do not converge.
-    """
+    """March a system from time 0 to the asked times."""
     times = check_request(times, integrator, accuracy, step)
     return march(system, temperature, times, integrator=integrator, accuracy=accuracy, step=step, pace=pace)
 
 
 def march(system, temperature, times, *, integrator="auto", accuracy=1e-3, step=None, pace=ANY):
-    """The same as `integrate` of a request that was checked before.
-
-    Parameters
-    ----------
-    system, temperature, times, integrator, accuracy, step, pace
-        As in `integrate`; times as `check_request` gives them.
-
-    Returns
-    -------
-    iterator of State
-    """
+    """The same as `integrate` of a request that was checked before."""
     accuracy, step = float(accuracy), None if step is None else float(step)
     if system.radiation is not None:
         choose.check_linear(integrator)

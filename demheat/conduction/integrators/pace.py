@@ -49,16 +49,7 @@ class Pace(NamedTuple):
         return float(np.min(np.maximum(self.start - now, self.longest)[ahead], initial=math.inf))
 
     def least(self, now, end):
-        """Longest step that suits all windows between two times.
-
-        Parameters
-        ----------
-        now, end : float, s
-
-        Returns
-        -------
-        float, s
-        """
+        """Longest step that suits all windows between two times."""
         met = (self.stop > now) & (self.start < end)
         return float(np.min(self.longest[met], initial=math.inf))
 
@@ -79,21 +70,7 @@ ANY = Pace()
 
 
 def pace_of(functions, transits, end, accuracy):
-    """What functions of time and moving sources ask of steps.
-
-    Parameters
-    ----------
-    functions : sequence of callable (time, s) -> float
-    transits : sequence of (start, s, stop, s, crossing, s)
-        When each source meets and leaves the body, and the time in which it crosses its own diameter.
-    end : float, s
-        Of the run, from time 0.
-    accuracy : float
-
-    Returns
-    -------
-    Pace
-    """
+    """What functions of time and moving sources ask of steps."""
     breaks, windows = [], []
     for start, stop, crossing in transits:
         breaks += [start, stop]

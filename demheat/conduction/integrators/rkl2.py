@@ -21,20 +21,7 @@ MOST = 100_000
 
 
 def stages_of(step, radius, least=LEAST):
-    """Least odd number of stages s that is stable: step <= (s^2 + s - 2) / (2 radius); odd ones damp more.
-
-    Parameters
-    ----------
-    step : float, s
-    radius : float, 1/s
-        Spectral radius.
-    least : int
-        Never fewer than this.
-
-    Returns
-    -------
-    int
-    """
+    """Least odd number of stages s that is stable: step <= (s^2 + s - 2) / (2 radius); odd ones damp more."""
     s = math.ceil(0.5 * (math.sqrt(9.0 + 8.0 * step * radius) - 1.0) - 1e-12)
     return max(least, s + 1 - s % 2)
 
@@ -45,18 +32,7 @@ def largest_step(spectrum):
 
 
 def stepper(system, spectrum):
-    """Super-steps on a system, each with as few stages as are stable.
-
-    Parameters
-    ----------
-    system : System
-    spectrum : Spectrum
-
-    Returns
-    -------
-    callable (x, time, step, memory, estimate) -> Step
-        As that of `euler.stepper`.
-    """
+    """Super-steps on a system, each with as few stages as are stable."""
 
     def advance(x, time, step, memory, estimate):
         s = stages_of(step, spectrum.radius, LEAST_ESTIMATED if estimate else LEAST)

@@ -50,18 +50,7 @@ class Spectrum(NamedTuple):
 
 
 def spectrum(system, *, tolerance=1e-3):
-    """Upper bound of the spectral radius of a system.
-
-    Parameters
-    ----------
-    system : System
-    tolerance : float
-        Stop when the last passes have brought the bound down by less than this part of it. It is a bound in any case.
-
-    Returns
-    -------
-    Spectrum
-    """
+    """Upper bound of the spectral radius of a system."""
     own = system.diagonal * system.inverse
     between = system.diagonal - np.bincount(system.ties.row, system.ties.conductance, minlength=len(own))
     rows = float(np.max((system.diagonal + between) * system.inverse))

@@ -68,17 +68,7 @@ class System(NamedTuple):
     bound: "System | None" = None
 
     def heat(self, x, time):
-        """Heat flow into each node that no link brings, of a state at a time: of `heat_at`, and what walls radiate.
-
-        Parameters
-        ----------
-        x : (N,) float array, K
-        time : float, s
-
-        Returns
-        -------
-        (N,) and (8,) float arrays, W
-        """
+        """Heat flow into each node that no link brings, of a state at a time: of `heat_at`, and what walls radiate."""
         heat, totals = self.heat_at(time)
         if self.radiation is None:
             return heat, totals
@@ -86,59 +76,18 @@ class System(NamedTuple):
         return heat + more, totals + by_side
 
     def hold(self, x, time):
-        """Set held nodes to their temperatures at a time.
-
-        Parameters
-        ----------
-        x : (N,) float array, K, in and out
-        time : float, s
-        """
+        """Set held nodes to their temperatures at a time."""
         x[self.held] = self.held_at(time)
 
     def inflow(self, x, totals):
-        """Heat flow into the free particles.
-
-        Parameters
-        ----------
-        x : (N,) float array, K
-        totals : (8,) float array, W
-            Those of `heat_at`.
-
-        Returns
-        -------
-        (8,) float array, W
-            By side, sources last.
-        """
+        """Heat flow into the free particles."""
         out = totals.copy()
         kernels.received(self.ties, x, out)
         return out
 
 
 def semi_discrete(network, scene, capacity, *, power=None, held_centers=None, level=0.0):
-    """Balance of a network under a scene's loads.
-
-    Parameters
-    ----------
-    network : Network
-    scene : Scene
-        Its walls only; loads may be functions of time.
-    capacity : (n,) float array, J/K
-    power : callable (time, s) -> (n,) float array, W, optional
-        Heat sources.
-    held_centers : (n,) bool array, optional
-        Particles held at the temperature of the wall that they touch (the papers' way), where that is imposed.
-    level : float
-        Temperatures are solved for relative to it.
-
-    Returns
-    -------
-    System
-
-    Raises
-    ------
-    ValueError
-        If a capacity is not finite and positive.
-    """
+    """Balance of a network under a scene's loads."""
     n = len(capacity)
     if not np.all(np.isfinite(capacity) & (capacity > 0)):
         raise ValueError(f"capacity: {np.sum(~(capacity > 0))} of {n} are not > 0; all must be finite and > 0 J/K")
@@ -192,20 +141,7 @@ def _radiation(walls, system):
 
 
 def initial_state(system, temperature, time):
-    """State of a system.
-
-    Parameters
-    ----------
-    system : System
-    temperature : (n,) float array, K
-        Of the particles.
-    time : float, s
-
-    Returns
-    -------
-    (N,) float array, K
-        Relative to the level; held nodes have their temperatures at that time.
-    """
+    """State of a system."""
     x = np.zeros(len(system.capacity))
     x[: system.particles] = temperature - system.level
     system.hold(x, time)

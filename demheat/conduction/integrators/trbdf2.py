@@ -37,22 +37,7 @@ def largest_step(spectrum):
 
 
 def stepper(system, spectrum, *, limit, preconditioner="jacobi"):
-    """Implicit steps on a system.
-
-    Parameters
-    ----------
-    system : System
-    spectrum : Spectrum
-        Not needed: no step is too large.
-    limit : callable () -> float, K
-        Error that each implicit solve may leave.
-    preconditioner : {"jacobi", "multigrid"}
-
-    Returns
-    -------
-    callable (x, time, step, memory, estimate) -> Step
-        As that of `euler.stepper`.
-    """
+    """Implicit steps on a system."""
     solve = solver(system, preconditioner)
 
     def advance(x, time, step, memory, estimate):

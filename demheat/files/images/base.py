@@ -17,13 +17,7 @@ FACTOR = 4
 
 
 def check_there(path: Path, *, folder: bool = False) -> None:
-    """Raise ValueError unless there is a regular file, or a folder.
-
-    Parameters
-    ----------
-    path : Path
-    folder : bool
-    """
+    """Raise ValueError unless there is a regular file, or a folder."""
     if path.is_dir() if folder else path.is_file():
         return
     if not path.exists():
@@ -34,14 +28,7 @@ def check_there(path: Path, *, folder: bool = False) -> None:
 
 @contextmanager
 def told_in_one_line(path: Path, kind: str):
-    """What libraries and their decoders happen to raise, as one ValueError of the file.
-
-    Parameters
-    ----------
-    path : Path
-    kind : str
-        Of the file, for the message.
-    """
+    """What libraries and their decoders happen to raise, as one ValueError of the file."""
     try:
         yield
     except OSError:
@@ -59,16 +46,7 @@ def most_of(needed: int) -> int:
 
 
 def mapped(path: Path, shape, *, dtype, offset: int) -> np.ndarray:
-    """Raw bytes, x fastest, as an array; they must all be there.
-
-    Parameters
-    ----------
-    path : Path
-    shape : sequence of int
-    dtype : data type
-    offset : int
-        Bytes before them.
-    """
+    """Raw bytes, x fastest, as an array; they must all be there."""
     needed, there = offset + math.prod(shape) * np.dtype(dtype).itemsize, path.stat().st_size
     if needed > there or offset < 0:
         sides = " x ".join(map(str, shape))

@@ -19,20 +19,7 @@ INFLATION = 1032
 
 
 def unpacked(path: Path, stream, kind: str, needed: int) -> np.ndarray:
-    """Unpack so many bytes, not one more or less.
-
-    Parameters
-    ----------
-    path : Path
-        For the message.
-    stream : binary stream
-    kind : {"gzip", "zlib", "bz2", "lzma"}
-    needed : int
-
-    Returns
-    -------
-    (needed,) uint8 array
-    """
+    """Unpack so many bytes, not one more or less."""
     content, end = np.empty(needed, np.uint8), 0
     for piece in _bounded(path, stream, kind, needed):
         content[end : end + len(piece)] = np.frombuffer(piece, np.uint8)
@@ -43,29 +30,13 @@ def unpacked(path: Path, stream, kind: str, needed: int) -> np.ndarray:
 
 
 def check_expansion(path: Path, stream, kind: str, most: int) -> None:
-    """Raise ValueError if a stream unpacks to more bytes; nothing is kept.
-
-    Parameters
-    ----------
-    path : Path
-        For the message.
-    stream : binary stream
-    kind : str
-        As those of `unpacked`.
-    most : int
-    """
+    """Raise ValueError if a stream unpacks to more bytes; nothing is kept."""
     for _ in _bounded(path, stream, kind, most):
         pass
 
 
 def beyond(path: Path, most: int) -> ValueError:
-    """The error to raise for what would unpack to more bytes.
-
-    Parameters
-    ----------
-    path : Path
-    most : int
-    """
+    """The error to raise for what would unpack to more bytes."""
     return ValueError(f"{path}: packed data that expand to more than {most} bytes, which is all that its header tells")
 
 

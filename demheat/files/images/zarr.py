@@ -31,26 +31,15 @@ HEAD = 32
 
 
 class Layout(NamedTuple):
-    """What metadata tell of an array.
+    """What metadata tell of an array."""
 
-    Attributes
-    ----------
-    version : {2, 3}
-    shape, chunks : tuple of int
-    dtype : data type
-    codecs : tuple of str
-        In the order in which they pack.
-    prefix, mark : str
-        Names of files: before the numbers of a chunk, and between them.
-    """
-
-    version: int
-    shape: tuple[int, ...]
-    chunks: tuple[int, ...]
-    dtype: np.dtype
-    codecs: tuple[str, ...]
-    prefix: str
-    mark: str
+    version: int  # {2, 3}
+    shape: tuple[int, ...]  # tuple of int
+    chunks: tuple[int, ...]  # tuple of int
+    dtype: np.dtype  # data type
+    codecs: tuple[str, ...]  # tuple of str: In the order in which they pack
+    prefix: str  # Names of files: before the numbers of a chunk, and between them
+    mark: str  # Names of files: before the numbers of a chunk, and between them
 
 
 class Chunks:
@@ -85,12 +74,7 @@ def read(path):
 
 
 def layout_of(path: Path) -> Layout:
-    """What the metadata in a folder tell, or a ValueError; nothing of it is decoded.
-
-    Parameters
-    ----------
-    path : Path
-    """
+    """What the metadata in a folder tell, or a ValueError; nothing of it is decoded."""
     with told_in_one_line(path, "zarr array"):
         version = 3 if (path / "zarr.json").is_file() else 2
         file = path / ("zarr.json" if version == 3 else ".zarray")
@@ -109,13 +93,7 @@ def layout_of(path: Path) -> Layout:
 
 
 def check_chunks(path: Path, layout: Layout) -> None:
-    """Raise ValueError if a chunk expands to more than its shape takes; missing ones are of one value.
-
-    Parameters
-    ----------
-    path : Path
-    layout : Layout
-    """
+    """Raise ValueError if a chunk expands to more than its shape takes; missing ones are of one value."""
     needed = math.prod(layout.chunks) * layout.dtype.itemsize
     packer = next((each for each in layout.codecs if each in PACKERS[layout.version - 2]), None)
     counts = (range(-(-n // chunk)) for n, chunk in zip(layout.shape, layout.chunks, strict=True))

@@ -17,18 +17,7 @@ NAMES = ("centers", "radii", "size", "periodic", "provenance", "domain")
 
 
 def write(packing: Packing, stream) -> None:
-    """Write a packing; its provenance as JSON.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : binary stream
-
-    Raises
-    ------
-    ValueError
-        If the provenance is not what JSON can hold.
-    """
+    """Write a packing; its provenance as JSON."""
     try:
         provenance = json.dumps(packing.provenance, default=_plain)
     except TypeError as error:

@@ -18,13 +18,7 @@ TRUE, FALSE = ("T", "TRUE", "1"), ("F", "FALSE", "0")
 
 
 def write(packing: Packing, stream) -> None:
-    """Write a packing: species X, ids from 1; the key `domain` is ours, readers pass over it.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : text stream
-    """
+    """Write a packing: species X, ids from 1; the key `domain` is ours, readers pass over it."""
     lattice = numerals(np.diag(packing.size))
     stream.write(
         f'{packing.number}\nLattice="{lattice}" Origin="0.0 0.0 0.0" Properties=species:S:1:pos:R:3:radius:R:1:id:I:1 '
@@ -35,23 +29,7 @@ def write(packing: Packing, stream) -> None:
 
 
 def read(lines: Lines, step: int | None) -> Found:
-    """Read one frame.
-
-    Parameters
-    ----------
-    lines : Lines
-    step : int or None
-        Number of the frame, from 0; the last one if None
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    ValueError
-        For the first line that is not as the format wants it.
-    """
+    """Read one frame."""
     last, frame = None, 0
     while (line := lines.take()) is not None:
         if not line and frame:

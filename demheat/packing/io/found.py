@@ -43,25 +43,7 @@ class Found(NamedTuple):
 
 
 def to_packing(found: Found, path, *, size, periodic, domain, order) -> Packing:
-    """Check what was found and make the packing of it.
-
-    Parameters
-    ----------
-    found : Found
-    path : path
-        For the messages.
-    size, periodic, domain, order
-        As in `demheat.packing.io.read`.
-
-    Returns
-    -------
-    Packing
-
-    Raises
-    ------
-    ValueError
-        If what was found and what was given do not make one; the message names the sphere's line.
-    """
+    """Check what was found and make the packing of it."""
     _check_spheres(found, path)
     origin, sides, flags, source = _box(found, path, size, periodic)
     centers = _centers(found, path, origin, sides, flags)
@@ -129,19 +111,7 @@ def _centers(found, path, origin, sides, flags):
 
 
 def rank_of(found, path):
-    """Order of the spheres by their ids, which must be different integers.
-
-    Parameters
-    ----------
-    found : Found
-        With ids.
-    path : path
-        For the messages.
-
-    Returns
-    -------
-    (n,) int array
-    """
+    """Order of the spheres by their ids, which must be different integers."""
     bad = found.ids != np.round(found.ids)
     if bad.any() or not np.all(np.isfinite(found.ids)):
         k = int(np.argmax(bad))

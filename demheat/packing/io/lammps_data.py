@@ -16,13 +16,7 @@ STYLES = ("sphere", "granular")
 
 
 def write(packing: Packing, stream) -> None:
-    """Write a packing: one type, density 1, ids from 1; the first line says what the format cannot hold.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : text stream
-    """
+    """Write a packing: one type, density 1, ids from 1; the first line says what the format cannot hold."""
     stream.write(f"LAMMPS data file, {mark(packing)}\n\n{packing.number} atoms\n1 atom types\n\n")
     for axis, side in zip("xyz", packing.size, strict=True):
         stream.write(f"{numerals([0.0, side])} {axis}lo {axis}hi\n")
@@ -32,23 +26,7 @@ def write(packing: Packing, stream) -> None:
 
 
 def read(lines: Lines, step: None) -> Found:
-    """Read the Atoms section; all other sections are passed over.
-
-    Parameters
-    ----------
-    lines : Lines
-    step : None
-        There is one packing only
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    ValueError
-        For the first line that is not as the format wants it.
-    """
+    """Read the Atoms section; all other sections are passed over."""
     own = marked(lines.take() or "")
     count, bounds = _header(lines)
     values, numbers = read_table(lines, lines.take_rows(count), WANTED, COLUMNS, extra=IMAGES)

@@ -13,13 +13,7 @@ KINDS = ("", "u", "s", "su")
 
 
 def write(packing: Packing, stream) -> None:
-    """Write a packing as one timestep, 0, with ids from 1; the domain is lost.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : text stream
-    """
+    """Write a packing as one timestep, 0, with ids from 1; the domain is lost."""
     ends = flags(packing.periodic, "pp", "ff")
     stream.write(f"ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n{packing.number}\nITEM: BOX BOUNDS {ends}\n")
     stream.write("".join(f"{numerals([0.0, side])}\n" for side in packing.size))
@@ -29,23 +23,7 @@ def write(packing: Packing, stream) -> None:
 
 
 def read(lines: Lines, step: int | None) -> Found:
-    """Read one timestep.
-
-    Parameters
-    ----------
-    lines : Lines
-    step : int or None
-        The last one if None
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    ValueError
-        For the first line that is not as the format wants it.
-    """
+    """Read one timestep."""
     last, seen = None, []
     while (header := _header(lines)) is not None:
         rows = lines.take_rows(header["NUMBER OF ATOMS"])

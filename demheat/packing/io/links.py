@@ -14,46 +14,17 @@ NEEDED = ("centers", "indptr", "indices", "image", "conductance")
 
 
 class Drawn(NamedTuple):
-    """What is drawn of a network and of temperatures.
+    """What is drawn of a network and of temperatures."""
 
-    Attributes
-    ----------
-    ends : (m, 2) int array
-        Particles p < q of each line.
-    conductance : (m,) float array, W/K
-    heat_flow : (m,) float array, W, or None
-        H (T_q - T_p).
-    cut : int
-        Number of links to periodic images, not drawn.
-    temperature : (n,) float array or None
-    """
-
-    ends: np.ndarray
-    conductance: np.ndarray
-    heat_flow: np.ndarray | None
-    cut: int
-    temperature: np.ndarray | None
+    ends: np.ndarray  # (m, 2) int array: Particles p < q of each line
+    conductance: np.ndarray  # (m,) float array, W/K
+    heat_flow: np.ndarray | None  # (m,) float array, W, or None: H (T_q - T_p)
+    cut: int  # Number of links to periodic images, not drawn
+    temperature: np.ndarray | None  # (n,) float array or None
 
 
 def drawn(packing, network, temperature) -> Drawn | None:
-    """Check what `demheat.packing.io.write` was given and choose the lines.
-
-    Parameters
-    ----------
-    packing : Packing
-    network : Network or None
-    temperature : (n,) array_like, K or degrees Celsius, or None
-
-    Returns
-    -------
-    Drawn or None
-        None without a network and temperatures.
-
-    Raises
-    ------
-    ValueError
-        If they are not those of this packing.
-    """
+    """Check what `demheat.packing.io.write` was given and choose the lines."""
     if temperature is not None:
         temperature = _temperatures(temperature, packing.number)
     if network is None:

@@ -20,37 +20,13 @@ HEADER, DEPTH = 20_000, 100
 
 
 def save(stream, arrays: dict) -> None:
-    """Write arrays with a checksum over all of them.
-
-    Parameters
-    ----------
-    stream : binary stream
-    arrays : dict of str to array_like
-    """
+    """Write arrays with a checksum over all of them."""
     arrays = {name: np.asanyarray(array) for name, array in arrays.items()}
     np.savez(stream, **arrays, **{CHECKSUM: _checksum(arrays)})
 
 
 def load(path, names) -> dict:
-    """Read arrays; the checksum is held against them if there is one.
-
-    Parameters
-    ----------
-    path : path
-    names : sequence of str
-        Of the arrays that are wanted.
-
-    Returns
-    -------
-    dict of str to array
-
-    Raises
-    ------
-    ValueError
-        If the file is no archive, is not whole, was changed, or is made to take more than packings do.
-    OSError
-        If it cannot be read.
-    """
+    """Read arrays; the checksum is held against them if there is one."""
     left = most_of(length_of(path))
     try:
         with zipfile.ZipFile(path) as archive:
@@ -106,17 +82,7 @@ def _checksum(arrays):
 
 
 def parsed(text: str) -> dict:
-    """A provenance out of JSON.
-
-    Parameters
-    ----------
-    text : str
-
-    Raises
-    ------
-    ValueError
-        If it is not an object in JSON, or one too deep.
-    """
+    """A provenance out of JSON."""
     try:
         found = json.loads(text)
         level, depth = [found], 0

@@ -16,15 +16,7 @@ MOST_EXPANSION = 100
 
 
 def length_of(path) -> int:
-    """Length of a regular file in bytes.
-
-    Raises
-    ------
-    ValueError
-        If it is anything else, which might never end or never begin, or does not fit into memory.
-    OSError
-        If there is none.
-    """
+    """Length of a regular file in bytes."""
     path = Path(path)
     status = path.stat()
     if not stat.S_ISREG(status.st_mode):
@@ -39,13 +31,7 @@ def most_of(length: int) -> int:
 
 
 def text_of(path) -> io.TextIOWrapper:
-    """Text of a regular file, unpacked if it ends in .gz.
-
-    Raises
-    ------
-    ValueError
-        As `length_of`; and on reading, if it expands beyond what packings do.
-    """
+    """Text of a regular file, unpacked if it ends in .gz."""
     length = length_of(path)
     # Does not wait if the file has just become a pipe.
     raw = open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0)))

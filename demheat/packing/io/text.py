@@ -36,18 +36,7 @@ class Rows(NamedTuple):
 
 
 class Lines:
-    """A text file (packed too, if it ends in .gz) as lines counted from 1.
-
-    Parameters
-    ----------
-    path : path
-
-    Attributes
-    ----------
-    path : Path
-    number : int
-        Number of the line last taken.
-    """
+    """A text file (packed too, if it ends in .gz) as lines counted from 1."""
 
     def __init__(self, path):
         self.path, self.number = Path(path), 0
@@ -96,52 +85,20 @@ class Lines:
             raise self.broken(f"a line of {LONGEST_LINE} characters or more", "a shorter one", number=number)
 
     def broken(self, found, expected, *, number=None) -> ValueError:
-        """The error to raise for a line.
-
-        Parameters
-        ----------
-        found : str or None
-            None is found at the end of the file.
-        expected : str
-        number : int, optional
-            Of the line, by default the one last taken.
-        """
+        """The error to raise for a line."""
         if found is None:
             return broken(self.path, self.number + 1, "the end of the file", expected)
         return broken(self.path, number or self.number, found, expected)
 
 
 def broken(path, number, found, expected) -> ValueError:
-    """The one form of error of a broken file.
-
-    Parameters
-    ----------
-    path : path
-    number : int
-        Of the line.
-    found, expected : str
-    """
+    """The one form of error of a broken file."""
     found = found if len(found) <= 100 else found[:100] + "..."
     return ValueError(f"{path}, line {number}: found {found}; expected {expected}")
 
 
 def floats(lines, words, count, expected):
-    """Cast the first words of the line last taken, or raise the error of a broken file.
-
-    Parameters
-    ----------
-    lines : Lines
-    words : sequence of str
-    count : int
-        How many of them.
-    expected : str
-        For the message.
-
-    Returns
-    -------
-    (count,) float array
-        Finite.
-    """
+    """Cast the first words of the line last taken, or raise the error of a broken file."""
     try:
         values = np.array([float(word) for word in words[:count]])
     except ValueError:
@@ -152,16 +109,7 @@ def floats(lines, words, count, expected):
 
 
 def whole(lines, word, expected, *, least=None) -> int:
-    """Cast a word of the line last taken to an integer, or raise the error of a broken file.
-
-    Parameters
-    ----------
-    lines : Lines
-    word : str
-    expected : str
-        For the message.
-    least : int, optional
-    """
+    """Cast a word of the line last taken to an integer, or raise the error of a broken file."""
     try:
         value = int(word)
     except (TypeError, ValueError):
@@ -174,32 +122,7 @@ def whole(lines, word, expected, *, least=None) -> int:
 
 
 def read_table(lines, rows, columns, names, *, extra=()):
-    """Read rows of numbers.
-
-    Parameters
-    ----------
-    lines : Lines
-        Where they come from.
-    rows : Rows
-        Blank ones and comments are left out if any number of rows will do.
-    columns : mapping of str to int
-        Which columns to return, under which names.
-    names : sequence of str
-        Names of all columns of a row, for the count and the message.
-    extra : sequence of str
-        Columns that may follow, on all rows or none.
-
-    Returns
-    -------
-    values : dict of str to (n,) float array
-    numbers : sequence of int
-        Line number of each row.
-
-    Raises
-    ------
-    ValueError
-        For the first line that is not such a row.
-    """
+    """Read rows of numbers."""
     texts, first, count = rows
     numbers = range(first, first + len(texts))
     if any("#" in text for text in texts):
@@ -217,15 +140,7 @@ def read_table(lines, rows, columns, names, *, extra=()):
 
 
 def write_rows(stream, template, *columns):
-    """Write one line per row.
-
-    Parameters
-    ----------
-    stream : text stream
-    template : str
-        Of a line, with % for each column; %r gives the shortest exact floats.
-    columns : (n,) arrays
-    """
+    """Write one line per row."""
     for start in range(0, len(columns[0]), CHUNK):
         rows = zip(*(column[start : start + CHUNK].tolist() for column in columns), strict=True)
         stream.write("".join([template % row for row in rows]))
@@ -237,13 +152,7 @@ def numerals(values) -> str:
 
 
 def flags(periodic, true="T", false="F") -> str:
-    """Periodic and walled axes as words.
-
-    Parameters
-    ----------
-    periodic : (3,) bool array
-    true, false : str
-    """
+    """Periodic and walled axes as words."""
     return " ".join(true if flag else false for flag in periodic)
 
 

@@ -13,14 +13,7 @@ from demheat.vtk import Blocks, put_down
 
 
 def write(packing: Packing, stream, drawn: Drawn | None) -> None:
-    """Write a packing and what is drawn of its network.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : binary stream
-    drawn : Drawn or None
-    """
+    """Write a packing and what is drawn of its network."""
     blocks = Blocks()
     field = blocks.add("size", packing.size, tuples=3) + blocks.add("periodic", _bytes(packing.periodic), tuples=3)
     point = blocks.add("radius", packing.radii)

@@ -77,14 +77,7 @@ class _File:
             raise ValueError(f"found the compressor {self.packed}; expected none or vtkZLibDataCompressor")
 
     def array(self, element, count=None):
-        """Values of a DataArray, (count,) float array.
-
-        Parameters
-        ----------
-        element : xml.etree.ElementTree.Element
-        count : int, optional
-            How many there must be.
-        """
+        """Values of a DataArray, (count,) float array."""
         name, kind, format = element.get("Name"), element.get("type"), element.get("format")
         if kind not in TYPES:
             raise ValueError(f"found the array {name} of type {kind}; expected one of {', '.join(TYPES)}")

@@ -18,35 +18,13 @@ LAYOUTS = {
 
 
 def write(packing: Packing, stream) -> None:
-    """Write a packing; a comment that YADE passes over holds the box.
-
-    Parameters
-    ----------
-    packing : Packing
-    stream : text stream
-    """
+    """Write a packing; a comment that YADE passes over holds the box."""
     stream.write(f"#format x_y_z_r\n# {mark(packing)}\n")
     write_rows(stream, "%r\t%r\t%r\t%r\n", *packing.centers.T, packing.radii)
 
 
 def read(lines: Lines, step: None) -> Found:
-    """Read spheres; the box is known only where `write` has noted it.
-
-    Parameters
-    ----------
-    lines : Lines
-    step : None
-        There is one packing only
-
-    Returns
-    -------
-    Found
-
-    Raises
-    ------
-    ValueError
-        For the first line that is not as the format wants it.
-    """
+    """Read spheres; the box is known only where `write` has noted it."""
     layout, own, extra = "x_y_z_r", None, ()
     while (line := lines.take()) is not None and (not line or line.startswith("#")):
         own = own or marked(line)

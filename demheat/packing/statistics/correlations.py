@@ -94,21 +94,6 @@ def radial_distribution(
     In a periodic packing all centres are origins and the density is (n - 1)/V, so that g of random points is 1 at any
     number. With walls only the centres farther than the longest distance counted from all walls are origins, so that
     every shell is whole, and the density is theirs: origins over the volume where origins can lie.
-
-    Parameters
-    ----------
-    packing : Packing
-    r_max : float
-        Largest r. The longest distance (with `scaled` that of two largest spheres) must fit into half of each period.
-    bins : int
-    scaled : bool
-        Count over the distance divided by r_i + r_j instead: contact is then at 1 for all pairs of a polydisperse
-        packing. Divided by what the same radii at random places would give.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, there is one particle only, or walls leave no origin.
     """
     check_packing(packing)
     _check_count("bins", bins, 1)
@@ -158,33 +143,6 @@ def two_point(
 
     Overlapping spheres count once (union of the chords): S2(0) is then less than `phi` and the slope less steep than
     `exact_slope`. For the voids S2 is 1 - 2 S2(0) + S2(r).
-
-    Parameters
-    ----------
-    packing : Packing
-    along : (k, 3) array_like
-        Directions of any length; by default the axes and the four body diagonals.
-    r_max : float
-        In mean diameters; at most half of each period.
-    points : int
-        Number of distances, equally spaced from 0 to r_max.
-    lines : int
-        Lines per direction.
-    margin : float
-        Lines keep this many mean radii away from walls. In a cylinder or ball they fill the largest box that fits into
-        the core. Lines start at random where they fit, so the ends of a walled box have less weight than its middle,
-        and `phi` and `exact_slope`, of the whole box, are exact for periodic packings only.
-    seed : int
-
-    Returns
-    -------
-    TwoPoint
-        Same bits for the same arguments, whatever the number of threads.
-
-    Raises
-    ------
-    ValueError
-        If an argument is not as described, or a period is shorter than twice the largest diameter.
     """
     check_packing(packing)
     mean = 2 * float(np.mean(packing.radii))

@@ -18,32 +18,16 @@ from demheat.scene.inputs import chosen, finite
 
 
 class Coordination(NamedTuple):
-    """Contact numbers of a packing; walls do not count as contacts.
-
-    Attributes
-    ----------
-    mean : float
-    least : int
-    histogram : (most + 1,) int array
-        Number of counted particles with 0, 1, 2, ... contacts.
-    under_2, under_4 : float
-        Parts of the counted particles with fewer than 2 and 4 contacts.
-    counted : int
-        Particles at least `margin` from walls.
-    islands : int
-        Connected parts of the whole network; a particle without contacts is one.
-    largest : float
-        Part of all particles that is in the largest island.
-    """
+    """Contact numbers of a packing; walls do not count as contacts."""
 
     mean: float
     least: int
-    histogram: np.ndarray
-    under_2: float
-    under_4: float
-    counted: int
-    islands: int
-    largest: float
+    histogram: np.ndarray  # (most + 1,) int array: Number of counted particles with 0, 1, 2, ... contacts.
+    under_2: float  # Parts of the counted particles with fewer than 2 and 4 contacts
+    under_4: float  # Parts of the counted particles with fewer than 2 and 4 contacts
+    counted: int  # Particles at least `margin` from walls
+    islands: int  # Connected parts of the whole network; a particle without contacts is one
+    largest: float  # Part of all particles that is in the largest island
 
 
 class Backbone(NamedTuple):
@@ -163,25 +147,6 @@ def backbone(
     """Take out rattlers, particles that their contacts cannot hold, until none is left.
 
     Walls hold as contacts do. The result does not depend on the order of removal.
-
-    Parameters
-    ----------
-    packing : Packing
-    indptr, indices : arrays
-        As in `coordination`. Contacts of a jammed packing need a gap between what its pressure leaves and the first
-        near contacts (some 1e-6), not that of a wanted coordination number.
-    gap : float
-        A sphere touches a wall when its centre is within (1 + gap) radii; give the gap of the rows.
-    rule : {"count", "half-space"}
-        "count": fewer than four contacts hold no particle (the usual definition). "half-space": nor do any contacts
-        that all lie in one closed half-space; exact for frictionless particles at rest, but where contacts are
-        missing or carry no force (a relaxed packing, Lubachevsky-Stillinger at growth .02 and wide radii, which is not
-        quite at rest) one hole unravels the network, and nothing left is the right answer.
-
-    Raises
-    ------
-    ValueError
-        If the rows are not as described, two linked centres coincide, gap is not > -1, or rule is unknown.
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
     finite("gap", gap, "a finite part of the radius > -1", lambda v: v > -1)
@@ -243,23 +208,7 @@ def fabric(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, margin:
 def directions(
     packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, bins: int = 72, margin: float = 0.0
 ) -> Directions:
-    """Histogram of the directions of the links, projected on the three coordinate planes.
-
-    Parameters
-    ----------
-    packing : Packing
-    indptr, indices : arrays
-        As in `coordination`.
-    bins : int
-        Even, >= 4; the axes lie in the middles of bins if it is a multiple of 4, their bisectors if of 8.
-    margin : float
-        As in `fabric`.
-
-    Raises
-    ------
-    ValueError
-        If bins is not as described, or as in `fabric`.
-    """
+    """Histogram of the directions of the links, projected on the three coordinate planes."""
     if not isinstance(bins, int | np.integer) or isinstance(bins, bool) or bins < 4 or bins % 2:
         raise ValueError(f"bins = {bins!r}: must be an even integer >= 4")
     vectors, weights = _links(packing, indptr, indices, margin)

@@ -21,22 +21,6 @@ def packing_fraction(packing: Packing, *, margin: float = 0.0) -> float:
 
     The core of a walled packing is what compares with a periodic one: walls push spheres apart. Spheres are cut by the
     faces of the core exactly (box, ball), or by Gauss-Legendre quadrature with 32 nodes along the axis (cylinder).
-
-    Parameters
-    ----------
-    packing : Packing
-    margin : float
-        In mean radii; 0 is the whole domain. A periodic packing is core throughout.
-
-    Returns
-    -------
-    float
-        Overlaps count twice, parts beyond a wall do not count.
-
-    Raises
-    ------
-    ValueError
-        If margin is negative, or leaves no core.
     """
     depth = check_margin(packing, margin)
     core = packing.size - 2 * depth * ~packing.periodic
@@ -54,47 +38,18 @@ def packing_fraction(packing: Packing, *, margin: float = 0.0) -> float:
 
 
 def core_volume(packing, depth):
-    """Volume of the domain at least so far away from every wall, m^3: the same shape, smaller.
-
-    Parameters
-    ----------
-    packing : Packing
-    depth : float, m
-    """
+    """Volume of the domain at least so far away from every wall, m^3: the same shape, smaller."""
     return packing._replace(size=packing.size - 2 * depth * ~packing.periodic).volume
 
 
 def core_bounds(packing, depth):
-    """Bounds of the core's box.
-
-    Parameters
-    ----------
-    packing : Packing
-    depth : float, m
-        Of the core below the walls.
-
-    Returns
-    -------
-    low, high : (3,) float arrays, m
-        Infinite along periodic axes.
-    """
+    """Bounds of the core's box."""
     low = np.where(packing.periodic, -np.inf, depth)
     return low, np.where(packing.periodic, np.inf, packing.size - depth)
 
 
 def inscribed_box(packing, depth):
-    """Bounds of the largest box (along the axes, square across round ones) in the core.
-
-    Parameters
-    ----------
-    packing : Packing
-    depth : float, m
-        Of the core below the walls.
-
-    Returns
-    -------
-    low, high : (3,) float arrays, m
-    """
+    """Bounds of the largest box (along the axes, square across round ones) in the core."""
     axes = list(ROUND_AXES[packing.domain])
     half = packing.size / 2 - depth * ~packing.periodic
     if axes:
@@ -103,21 +58,7 @@ def inscribed_box(packing, depth):
 
 
 def spheres_in_box(centers, radii, low, high):
-    """Volume and surface of spheres inside a box along the axes, exactly.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-    radii : (n,) float array, m
-    low, high : (3,) float arrays, m
-        May be infinite.
-
-    Returns
-    -------
-    volumes : (n,) float array, m^3
-    surfaces : (n,) float array, m^2
-        Of the spherical part only, not of the cuts.
-    """
+    """Volume and surface of spheres inside a box along the axes, exactly."""
     lower, upper = (np.clip((bound - centers) / radii[:, None], -1.0, 1.0) for bound in (low, high))
     cut = np.any((lower > -1) | (upper < 1), axis=1)
     share = np.repeat([[4 / 3 * np.pi], [4 * np.pi]], len(radii), axis=1)

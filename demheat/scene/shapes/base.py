@@ -332,24 +332,12 @@ class Shape(ABC):
 
 
 def check_resistance(shape: Shape) -> None:
-    """Check and cast the resistance of a shape's surface, m2 K/W, or raise ValueError.
-
-    Parameters
-    ----------
-    shape : Shape
-        With a field `resistance`.
-    """
+    """Check and cast the resistance of a shape's surface, m2 K/W, or raise ValueError."""
     number(shape, "resistance", f"a finite number >= 0 m2 K/W{WITHIN}", lambda v: v >= 0 and moderate(v))
 
 
 def shifts(shape: Shape, period: np.ndarray | None) -> list[np.ndarray]:
-    """By what the images beside a shape are moved, m: along axes along which it ends; none without a period.
-
-    Parameters
-    ----------
-    shape : Shape
-    period : (3,) float array, m, or None
-    """
+    """By what the images beside a shape are moved, m: along axes along which it ends; none without a period."""
     if period is None:
         return []
     steps = product(*((-1, 0, 1) if end else (0,) for end in np.isfinite(shape.bounds()[0])))
@@ -357,16 +345,5 @@ def shifts(shape: Shape, period: np.ndarray | None) -> list[np.ndarray]:
 
 
 def nearest(offsets: np.ndarray, period: np.ndarray | None) -> np.ndarray:
-    """Offsets to the nearest periodic image.
-
-    Parameters
-    ----------
-    offsets : (n, 3) float array, m
-    period : (3,) float array, m, or None
-        The offsets themselves without one.
-
-    Returns
-    -------
-    (n, 3) float array, m
-    """
+    """Offsets to the nearest periodic image."""
     return offsets if period is None else offsets - period * np.round(offsets / period)

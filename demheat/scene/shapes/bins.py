@@ -18,42 +18,18 @@ SLACK = 1e-9
 
 
 class BallBins(NamedTuple):
-    """Cells of a box, one grid for each size level of the balls; plain arrays, so that kernels can read them.
+    """Cells of a box, one grid for each size level of the balls; plain arrays, so that kernels can read them."""
 
-    Attributes
-    ----------
-    dims : (levels, 3) int array
-        Cells along each axis.
-    first : (levels,) int array
-        Number of the first cell of each level; z runs fastest.
-    start : (cells + 1,) int array
-        First entry of each cell.
-    balls : (entries,) int array
-        The balls that reach into each cell, ascending.
-    size : (3,) float array, m
-    periodic : bool
-    """
-
-    dims: np.ndarray
-    first: np.ndarray
-    start: np.ndarray
-    balls: np.ndarray
-    size: np.ndarray
+    dims: np.ndarray  # (levels, 3) int array: Cells along each axis
+    first: np.ndarray  # (levels,) int array: Number of the first cell of each level; z runs fastest
+    start: np.ndarray  # (cells + 1,) int array: First entry of each cell
+    balls: np.ndarray  # (entries,) int array: The balls that reach into each cell, ascending
+    size: np.ndarray  # (3,) float array, m
     periodic: bool
 
 
 def ball_bins(centers, radii, size, *, periodic) -> BallBins:
-    """File balls under the cells that they reach into, in time and memory in proportion to their number.
-
-    Parameters
-    ----------
-    centers : (n, 3) float array, m
-        Anywhere; in a periodic box all images count.
-    radii : (n,) float array, m
-    size : (3,) float array, m
-    periodic : bool
-        In a box with walls its outer cells serve what lies beyond.
-    """
+    """File balls under the cells that they reach into, in time and memory in proportion to their number."""
     size, level = np.asarray(size, dtype=float), _levels(radii)
     dims, first, keys, balls = np.empty((level.max(initial=-1) + 1, 3), np.int64), [0], [], []
     for number in range(len(dims)):
@@ -75,13 +51,7 @@ def ball_bins(centers, radii, size, *, periodic) -> BallBins:
 
 
 def candidates(bins: BallBins, points) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of points and balls that may hold them, as two int arrays: every ball that does, and few others.
-
-    Parameters
-    ----------
-    bins : BallBins
-    points : (m, 3) float array, m
-    """
+    """Pairs of points and balls that may hold them, as two int arrays: every ball that does, and few others."""
     part = points / bins.size
     part = part - np.floor(part) if bins.periodic else part
     point, ball = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
@@ -95,12 +65,7 @@ def candidates(bins: BallBins, points) -> tuple[np.ndarray, np.ndarray]:
 
 
 def runs(start, count):
-    """Numbers start, start + 1, ... of each run, one after the other, as an int array.
-
-    Parameters
-    ----------
-    start, count : (k,) int arrays
-    """
+    """Numbers start, start + 1, ... of each run, one after the other, as an int array."""
     first = np.concatenate([[0], np.cumsum(count)])
     return np.repeat(start - first[:-1], count) + np.arange(first[-1])
 

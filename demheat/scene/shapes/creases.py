@@ -24,12 +24,7 @@ ASIDE = np.array([0.48, 0.6, 0.64]) / 2
 
 @singledispatch
 def faces(shape: Shape) -> list[Shape]:
-    """Convex shapes with smooth surfaces whose common part a member of a union is; empty for what cannot be one.
-
-    Parameters
-    ----------
-    shape : Shape
-    """
+    """Convex shapes with smooth surfaces whose common part a member of a union is; empty for what cannot be one."""
     return []
 
 
@@ -58,17 +53,7 @@ def _(shape: Box):
 
 
 def crease(points: np.ndarray, one: Shape, other: Shape) -> np.ndarray:
-    """Where the surfaces of two faces cross, nearest to points or nearly so; anywhere if none is found.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, m
-    one, other : Shape
-
-    Returns
-    -------
-    (n, 3) float array, m
-    """
+    """Where the surfaces of two faces cross, nearest to points or nearly so; anywhere if none is found."""
     here = points
     for _ in range(ROUNDS):
         (d, n), (e, m) = one.surface(here), other.surface(here)

@@ -13,19 +13,7 @@ ROUNDING = 1e-14
 
 
 def unit(name: str, value) -> tuple[float, float, float]:
-    """A direction as a vector of length 1, which is left as it is if it has that already.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : (3,) sequence of float
-
-    Raises
-    ------
-    ValueError
-        If the value is no direction.
-    """
+    """A direction as a vector of length 1, which is left as it is if it has that already."""
     found = np.array(vector(name, value))
     largest = np.abs(found).max()
     if largest == 0:
@@ -40,24 +28,12 @@ def unit(name: str, value) -> tuple[float, float, float]:
 
 
 def across(direction: np.ndarray) -> np.ndarray:
-    """Two directions at right angles to another and to each other, the rows of a (2, 3) float array.
-
-    Parameters
-    ----------
-    direction : (3,) float array
-        Of length 1.
-    """
+    """Two directions at right angles to another and to each other, the rows of a (2, 3) float array."""
     one = np.cross(direction, np.eye(3)[np.argmin(np.abs(direction))])
     one = one / np.linalg.norm(one)
     return np.stack([one, np.cross(direction, one)])
 
 
 def corners(columns: np.ndarray) -> np.ndarray:
-    """The eight sums of three vectors with all signs, (8, 3) float array.
-
-    Parameters
-    ----------
-    columns : (3, 3) float array
-        The vectors as columns.
-    """
+    """The eight sums of three vectors with all signs, (8, 3) float array."""
     return np.array(list(product((-1.0, 1.0), repeat=3))) @ columns.T

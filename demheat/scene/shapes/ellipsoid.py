@@ -173,14 +173,7 @@ class Ellipsoid(Solid):
 
 
 def lengths(name: str, value) -> tuple[float, float, float]:
-    """Three lengths above 0, or a ValueError.
-
-    Parameters
-    ----------
-    name : str
-        Of the argument, for the message.
-    value : (3,) sequence of float, m
-    """
+    """Three lengths above 0, or a ValueError."""
     found = vector(name, value)
     if min(found) <= 0 or not all(map(moderate, found)):
         raise ValueError(f"{name} = {value!r}: must be three lengths > 0 m")

@@ -14,15 +14,7 @@ BLOCK = 16384
 
 
 class Holders:
-    """The shapes of a box, asked which of them hold points; the cost does not grow with their number.
-
-    Parameters
-    ----------
-    shapes : sequence of Shape
-    size : (3,) sequence of float, m
-    periodic : bool
-        Whether images count.
-    """
+    """The shapes of a box, asked which of them hold points; the cost does not grow with their number."""
 
     def __init__(self, shapes: Sequence[Shape], size: Sequence[float], *, periodic: bool):
         self.shapes, self.period = shapes, np.array(size) if periodic else None
@@ -36,17 +28,7 @@ class Holders:
         self._bins = ball_bins(self.centers[ends], wide, size, periodic=periodic)
 
     def pairs(self, points: np.ndarray):
-        """All pairs of a point and a shape that holds it, block by block of points.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-
-        Yields
-        ------
-        point, shape : int arrays
-            Numbers of both, in any order.
-        """
+        """All pairs of a point and a shape that holds it, block by block of points."""
         for start in range(0, len(points), BLOCK):
             block = points[start : start + BLOCK]
             point, ball = candidates(self._bins, block)

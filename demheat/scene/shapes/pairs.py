@@ -33,19 +33,6 @@ def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: boo
     balls or corners around the other; of what is not convex, those whose bounds are apart or in the other; of
     unions each member for itself. What it
     takes is certain, what it refuses may only be too near to tell.
-
-    Parameters
-    ----------
-    shapes : sequence of Shape
-        In painting order.
-    size : (3,) sequence of float, m
-    periodic : bool
-        Whether images count.
-
-    Raises
-    ------
-    ValueError
-        For the first pair that is neither; the message has the numbers of both.
     """
     box = np.array(size)
     cell = _Cell(box, box if periodic else None, TOUCH * box.max())

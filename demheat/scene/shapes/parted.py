@@ -20,14 +20,6 @@ def parted(one: Shape, other: Shape, box, period, tolerance: float) -> bool:
     """Whether planes are found that part a shape from all images of another; they may touch.
 
     Shapes that touch, or nearly do, where neither has a corner or a face may be missed.
-
-    Parameters
-    ----------
-    one, other : Shape
-    box : (3,) float array, m, or None
-        With walls: what lies beyond does not count.
-    period : (3,) float array, m, or None
-    tolerance : float, m
     """
     if not (one.convex and other.convex):
         return False
@@ -36,14 +28,7 @@ def parted(one: Shape, other: Shape, box, period, tolerance: float) -> bool:
 
 
 def nested(outer: Shape, inner: Shape, box, period, tolerance: float) -> bool:
-    """Whether a convex shape surely holds another, by the planes of the one or by balls or corners around the other.
-
-    Parameters
-    ----------
-    outer, inner : Shape
-    box, period, tolerance
-        As those of `parted`.
-    """
+    """Whether a convex shape surely holds another, by the planes of the one or by balls or corners around the other."""
     if not outer.convex:
         return False
     size = period if box is None else box

@@ -18,21 +18,7 @@ CELLS = 48
 
 
 def cells_on(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarray]:
-    """Cells of a box that the surface of a shape may cut.
-
-    Parameters
-    ----------
-    shape : Shape
-    low, high : (3,) float arrays, m
-        Corners of the box.
-    pitch : float, m
-        Cells are no wider.
-
-    Returns
-    -------
-    centers : (n, 3) float array, m
-    sides : (3,) float array, m
-    """
+    """Cells of a box that the surface of a shape may cut."""
     span = np.asarray(high, dtype=float) - low
     counts = np.maximum(1, np.ceil(span / span.max() * min(FIRST, np.ceil(span.max() / pitch)))).astype(int)
     sides = span / counts
@@ -49,21 +35,7 @@ def cells_on(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarray]:
 
 
 def surface_points(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points on the surface of a shape, in a box, and the area of each.
-
-    Parameters
-    ----------
-    shape : Shape
-    low, high : (3,) float arrays, m
-        Corners of the box.
-    pitch : float, m
-        Of the cells that have a point each.
-
-    Returns
-    -------
-    points : (n, 3) float array, m
-    areas : (n,) float array, m2
-    """
+    """Points on the surface of a shape, in a box, and the area of each."""
     centers, sides = cells_on(shape, low, high, pitch)
     found = [(np.empty((0, 3)), np.empty(0))]
     for block in _blocks(centers):
@@ -75,14 +47,7 @@ def surface_points(shape, low, high, pitch: float) -> tuple[np.ndarray, np.ndarr
 
 
 def volume_by_cells(shape, low, high) -> float:
-    """Volume of what of a shape lies in a box, m3: in cells that its surface cuts by planes, of two sizes.
-
-    Parameters
-    ----------
-    shape : Shape
-    low, high : (3,) float arrays, m
-        Corners of the box.
-    """
+    """Volume of what of a shape lies in a box, m3: in cells that its surface cuts by planes, of two sizes."""
     fine, coarse = (_volume(shape, low, high, cells) for cells in (CELLS, CELLS // 2))
     # What planes lack of a bent surface is of second order.
     return fine + (fine - coarse) / 3

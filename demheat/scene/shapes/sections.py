@@ -12,20 +12,6 @@ def below(normals: np.ndarray, heights: np.ndarray, sides: np.ndarray) -> tuple[
     """Part of boxes that lies behind planes, and the area of the planes within; exact.
 
     Source: Scardovelli and Zaleski, J. Comput. Phys. 164 (2000) 228-237.
-
-    Parameters
-    ----------
-    normals : (n, 3) float array
-        Unit vectors of the planes.
-    heights : (n,) float array, m
-        Of the boxes' centres above the planes, along the normals.
-    sides : (3,) float array, m
-        Of all boxes, along the axes.
-
-    Returns
-    -------
-    part : (n,) float array
-    area : (n,) float array, m2
     """
     widths = np.abs(normals) * sides
     total = widths.sum(axis=1)

@@ -32,43 +32,22 @@ WRONG = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Traced:
-    """Distances to a surface at the nodes of a grid, and between them.
+    """Distances to a surface at the nodes of a grid, and between them."""
 
-    Attributes
-    ----------
-    low : (3,) float array, m
-        The first node.
-    pitch : float, m
-    spline : (nx, ny, nz) float array, m
-        Coefficients of cubic splines.
-    slopes : tuple of three (nx, ny, nz) float arrays
-        Gradient at the nodes.
-    """
-
-    low: np.ndarray
-    pitch: float
-    spline: np.ndarray
-    slopes: tuple[np.ndarray, np.ndarray, np.ndarray]
+    low: np.ndarray  # (3,) float array, m: The first node
+    pitch: float  # m
+    spline: np.ndarray  # (nx, ny, nz) float array, m: Coefficients of cubic splines
+    slopes: tuple[np.ndarray, np.ndarray, np.ndarray]  # tuple of three (nx, ny, nz) float arrays: Gradient at the nodes
 
     def distance(self, points):
-        """Distance to the surface, negative inside, (n,) float array, m.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        """
+        """Distance to the surface, negative inside, (n,) float array, m."""
         from scipy.ndimage import map_coordinates
 
         place, beyond = self._places(points)
         return map_coordinates(self.spline, place, order=3, prefilter=False, mode="mirror") + beyond
 
     def normal(self, points):
-        """Gradient of the distance, of length 1, (n, 3) float array.
-
-        Parameters
-        ----------
-        points : (n, 3) float array, m
-        """
+        """Gradient of the distance, of length 1, (n, 3) float array."""
         from scipy.ndimage import map_coordinates
 
         place, _ = self._places(points)
@@ -91,16 +70,7 @@ class Traced:
 
 
 def leads(onto: Callable, inside: Callable, low, high) -> bool:
-    """Whether Newton's steps along a function's gradient find its surface.
-
-    Parameters
-    ----------
-    onto : callable (n, 3) float array, m -> (n, 3) float array, m
-        Where they end.
-    inside : callable (n, 3) float array, m -> (n,) bool array
-    low, high : (3,) float arrays, m
-        Limits of the set.
-    """
+    """Whether Newton's steps along a function's gradient find its surface."""
     from scipy.spatial import cKDTree
 
     nodes, pitch, solid = _grid(low, high, TRIED, 0, inside)
@@ -118,14 +88,7 @@ def leads(onto: Callable, inside: Callable, low, high) -> bool:
 
 
 def traced(inside: Callable, low, high) -> Traced | None:
-    """The surface of a set, or None if it is too rough for a grid.
-
-    Parameters
-    ----------
-    inside : callable (n, 3) float array, m -> (n,) bool array
-    low, high : (3,) float arrays, m
-        Of a box that holds it.
-    """
+    """The surface of a set, or None if it is too rough for a grid."""
     from scipy.ndimage import distance_transform_edt, spline_filter
     from scipy.spatial import cKDTree
 

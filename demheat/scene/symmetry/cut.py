@@ -20,23 +20,12 @@ from demheat.scene.symmetry.maps import SAME, mirrors
 
 
 class Reduced(NamedTuple):
-    """A part of a body between mirror planes, and what it is a part of.
+    """A part of a body between mirror planes, and what it is a part of."""
 
-    Attributes
-    ----------
-    scene : Scene
-        The part, its corner of least coordinates at the origin; the whole where nothing was cut.
-    whole : Scene
-    factors : (3,) tuple of int
-        1, or 2 where it was cut, along each axis.
-    origin : (3,) tuple of float, m
-        Where the part begins in the whole.
-    """
-
-    scene: Scene
+    scene: Scene  # The part, its corner of least coordinates at the origin; the whole where nothing was cut
     whole: Scene
-    factors: tuple[int, int, int]
-    origin: tuple[float, float, float]
+    factors: tuple[int, int, int]  # (3,) tuple of int: 1, or 2 where it was cut, along each axis
+    origin: tuple[float, float, float]  # (3,) tuple of float, m: Where the part begins in the whole
 
 
 class Unfolded(NamedTuple):

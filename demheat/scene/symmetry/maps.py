@@ -24,27 +24,13 @@ SAME = 1e-12
 
 
 class _Body(NamedTuple):
-    """The inclusions of a scene as arrays.
+    """The inclusions of a scene as arrays."""
 
-    Attributes
-    ----------
-    center : (n, 3) float array, m
-        Of a layer its middle along its normal, else 0.
-    radius : (n,) float array, m
-        Of a layer half its thickness.
-    material : (n,) int array
-        Equal numbers for equal materials and equal resistances of the surface.
-    normal : (n,) int array
-        Of a layer; -1 for a sphere.
-    size : (3,) float array, m
-    periodic : bool
-    """
-
-    center: np.ndarray
-    radius: np.ndarray
-    material: np.ndarray
-    normal: np.ndarray
-    size: np.ndarray
+    center: np.ndarray  # (n, 3) float array, m: Of a layer its middle along its normal, else 0
+    radius: np.ndarray  # (n,) float array, m: Of a layer half its thickness
+    material: np.ndarray  # (n,) int array: Equal numbers for equal materials and equal resistances of the surface
+    normal: np.ndarray  # (n,) int array: Of a layer; -1 for a sphere
+    size: np.ndarray  # (3,) float array, m
     periodic: bool
 
     @property

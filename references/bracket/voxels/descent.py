@@ -15,40 +15,16 @@ NOTHING, BLURRED = 1e-28, 1e-13
 
 
 class Found(NamedTuple):
-    """Where the descent stopped.
+    """Where the descent stopped."""
 
-    Attributes
-    ----------
-    field : float array
-    iterations : int
-    """
-
-    field: np.ndarray
+    field: np.ndarray  # float array
     iterations: int
 
 
 def descend(
     slope: Callable, inverse: Callable, start: np.ndarray, *, loaded: tuple, tolerance: float, most: int, done: Callable
 ) -> Found:
-    """Lower a quadratic energy from a field on, by what an inverse takes its slope to.
-
-    Parameters
-    ----------
-    slope : callable (field) -> float array
-        Half the slope of the energy, but for the load's part.
-    inverse : callable (slope) -> float array
-        Linear, symmetric and non-negative; into the space in which fields may change, a new array.
-    start : float array
-        Becomes the result.
-    loaded : (float array, float)
-        Half the slope at the start with the load's part, and the energy, times the number of voxels.
-    tolerance : float
-        Of the energy: what the last iterations, an eighth of them, took off it together when enough is found.
-    most : int
-        Iterations.
-    done : callable (share)
-        Told of the progress.
-    """
+    """Lower a quadratic energy from a field on, by what an inverse takes its slope to."""
     field, residual, energy = start, -loaded[0], loaded[1]
     direction, before, decreases = None, 0.0, []
     while len(decreases) < most:

@@ -15,26 +15,7 @@ from references.threads import Team
 
 
 def flux(cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team) -> tuple[np.ndarray, dict]:
-    """A balanced flux, up to rounding, of nearly least energy for what it is along a direction; free across that.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of resistivities.
-    spacing : (3,) float array
-    gradient : (3,) float array
-        Of length 1.
-    tolerance, most
-        Of the descent, see `descend`.
-    team : Team
-
-    Returns
-    -------
-    flux : (3, nx, ny, nz) float array
-        Normal parts on the lower faces of each voxel.
-    stats : dict
-        `unknowns` and `iterations`.
-    """
+    """A balanced flux, up to rounding, of nearly least energy for what it is along a direction; free across that."""
     start = np.empty((3, *cells.scalar.shape))
     start[:] = gradient[:, None, None, None]
     first = _slope(cells, start, team)
@@ -59,21 +40,6 @@ def least(cells: Cells, spacing, fluxes, *, team: Team) -> tuple[np.ndarray, flo
     unbalanced, d in each voxel, a flux of energy at most rho |d|^2 / s^2 would balance, where rho is the largest
     resistivity and s^2 the least eigenvalue of the grid's Laplacian; that is added, since for any t > 0
     (a + b)^2 <= (1 + t) a^2 + (1 + 1 / t) b^2.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of resistivities.
-    spacing : (3,) float array
-    fluxes : sequence of l (3, nx, ny, nz) float arrays
-    team : Team
-
-    Returns
-    -------
-    bound : (3, 3) float array
-        L, in the unit of the conductivities.
-    unbalanced : float
-        The energy that was added, over the least of any combination of the fluxes.
     """
     slopes = [_slope(cells, each, team) for each in fluxes]
     means = np.array([each.mean(axis=(1, 2, 3)) for each in fluxes])

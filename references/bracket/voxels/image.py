@@ -23,13 +23,7 @@ ITERATIONS = 2000
 
 
 class Effort(NamedTuple):
-    """How far the two energies are lowered.
-
-    Attributes
-    ----------
-    tolerance : float
-    threads : int
-    """
+    """How far the two energies are lowered."""
 
     tolerance: float
     threads: int
@@ -102,45 +96,22 @@ def upper_bound(
     tolerance: float = 1e-6,
     threads: int | None = 2,
 ) -> float:
-    """The upper of the two `bounds`, W/(m K); conductivities may be 0.
-
-    Parameters
-    ----------
-    conductivity, spacing, gradient, refine, tolerance, threads
-        As those of `bounds`.
-    """
+    """The upper of the two `bounds`, W/(m K); conductivities may be 0."""
     values, load = checked_image(conductivity, spacing, gradient, refine, BYTES["upper"])
     effort = checked_effort(tolerance, threads)
     return _upper(conducting(values), load, effort)[0]
 
 
 class Load(NamedTuple):
-    """Units that make the longest side and the greatest conductivity about 1, and the load.
+    """Units that make the longest side and the greatest conductivity about 1, and the load."""
 
-    Attributes
-    ----------
-    unit : float, W/(m K)
-    spacing : (3,) float array
-    gradient : (3,) float array
-        Of length 1.
-    """
-
-    unit: float
-    spacing: np.ndarray
-    gradient: np.ndarray
+    unit: float  # W/(m K)
+    spacing: np.ndarray  # (3,) float array
+    gradient: np.ndarray  # (3,) float array: Of length 1
 
 
 def scaled_load(conductivity: np.ndarray, shape: Sequence[int], spacing, gradient: Sequence[float]) -> Load:
-    """The load of a grid.
-
-    Parameters
-    ----------
-    conductivity : float array, W/(m K)
-    shape : (3,) sequence of int
-        Voxels along each side.
-    spacing : (3,) float array, m
-    gradient : (3,) sequence of float
-    """
+    """The load of a grid."""
     # A power of two: no conductivity is rounded.
     unit = 2.0 ** np.ceil(np.log2(conductivity.max())) if conductivity.any() else 1.0
     gradient = np.array(gradient, dtype=float)
@@ -159,15 +130,7 @@ def resisting(values: np.ndarray) -> Cells:
 
 
 def bracketed(above: Cells, below: Cells, load: Load, effort: Effort) -> Bracket:
-    """Both bounds.
-
-    Parameters
-    ----------
-    above, below : Cells
-        Conductivities, and resistivities, nowhere less than the true ones; in the load's unit.
-    load : Load
-    effort : Effort
-    """
+    """Both bounds."""
     begin = time.process_time()
     lower, said = _lower(below, load, effort)
     middle = time.process_time()
@@ -188,21 +151,7 @@ def _lower(cells, load, effort):
 
 
 def greatest_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.ndarray, dict]:
-    """Upper bounds of all combinations of some loads.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of conductivities.
-    spacing : (3,) float array
-    gradients : sequence of l (3,) float arrays
-    effort : Effort
-
-    Returns
-    -------
-    (l, l) float array, and `stats` of the last load
-        See `references.bracket.voxels.temperatures.greatest`.
-    """
+    """Upper bounds of all combinations of some loads."""
     knobs = {"tolerance": effort.tolerance, "most": ITERATIONS}
     with one_blas_thread(), Team(effort.threads) as team:
         found = [temperatures.temperature(cells, spacing, each, team=team, **knobs) for each in gradients]
@@ -211,21 +160,7 @@ def greatest_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.
 
 
 def least_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.ndarray, dict]:
-    """Lower bounds of the conductivity by fluxes along some directions.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of resistivities.
-    spacing : (3,) float array
-    gradients : sequence of (3,) float arrays
-    effort : Effort
-
-    Returns
-    -------
-    (3, 3) float array, and `stats` of the last flux, with what is `unbalanced`
-        See `references.bracket.voxels.fluxes.least`.
-    """
+    """Lower bounds of the conductivity by fluxes along some directions."""
     knobs = {"tolerance": effort.tolerance, "most": ITERATIONS}
     with one_blas_thread(), Team(effort.threads) as team:
         found = [fluxes.flux(cells, spacing, each, team=team, **knobs) for each in gradients]
@@ -234,27 +169,13 @@ def least_form(cells: Cells, spacing, gradients, effort: Effort) -> tuple[np.nda
 
 
 def checked_effort(tolerance: float, threads: int | None) -> Effort:
-    """The knobs of the iterations; raises what `bounds` does.
-
-    Parameters
-    ----------
-    tolerance, threads
-        As those of `bounds`.
-    """
+    """The knobs of the iterations; raises what `bounds` does."""
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     return Effort(float(tolerance), thread_count(threads))
 
 
 def checked_image(conductivity, spacing, gradient, refine: int, bytes_each: int) -> tuple[np.ndarray, Load]:
-    """Conductivities of the finest grid in units of the load, and the load; raises what `bounds` does.
-
-    Parameters
-    ----------
-    conductivity, spacing, gradient, refine
-        As those of `bounds`.
-    bytes_each : int
-        That a voxel of the finest grid takes.
-    """
+    """Conductivities of the finest grid in units of the load, and the load; raises what `bounds` does."""
     values = reals("conductivity", conductivity, "(nx, ny, nz) numbers >= 0, W/(m K)")
     sizes = (values == 0) | ((values >= LEAST) & (values <= MOST))
     if values.ndim != 3 or not values.size or not np.all(sizes):

@@ -26,45 +26,21 @@ GRAIN = 1e-12
 
 
 class Painted(NamedTuple):
-    """Voxels of a scene.
+    """Voxels of a scene."""
 
-    Attributes
-    ----------
-    conducting : Cells
-        Of conductivities, nowhere less than the scene's.
-    resisting : Cells
-        Of resistivities, nowhere less than the scene's.
-    """
-
-    conducting: Cells
-    resisting: Cells
+    conducting: Cells  # Of conductivities, nowhere less than the scene's
+    resisting: Cells  # Of resistivities, nowhere less than the scene's
 
 
 class Boxes(NamedTuple):
-    """Boxes by their corners along each axis, of shapes that broadcast against one another.
+    """Boxes by their corners along each axis, of shapes that broadcast against one another."""
 
-    Attributes
-    ----------
-    low, high : tuple of three float arrays, m
-    """
-
-    low: tuple
-    high: tuple
+    low: tuple  # tuple of three float arrays, m
+    high: tuple  # tuple of three float arrays, m
 
 
 def painted(conductivity: np.ndarray, images: Sequence[tuple[int, Shape]], shape, spacing) -> Painted:
-    """Put shapes on a grid.
-
-    Parameters
-    ----------
-    conductivity : (phases,) float array
-        Of the matrix and each inclusion; above 0.
-    images : sequence of (phase number, Shape)
-        Spheres and layers as they meet the box, in painting order.
-    shape : (3,) tuple of int
-        Voxels along each side.
-    spacing : (3,) float array, m
-    """
+    """Put shapes on a grid."""
     edges = [np.arange(n + 1) * h for n, h in zip(shape, spacing, strict=True)]
     grain = GRAIN * max(edge[-1] for edge in edges)
     least, greatest = _coarse(conductivity, images, edges, grain)
@@ -192,13 +168,6 @@ def mirrored(images: Sequence[tuple[int, Shape]], size, doubled: Sequence[bool])
     """Shapes of a box and of its mirror images across the far faces of some axes, in painting order.
 
     Nothing of a shape that reaches out of the box is where another phase is: its mirror image covers that.
-
-    Parameters
-    ----------
-    images : sequence of (phase number, Shape)
-    size : (3,) sequence of float, m
-        Of the box.
-    doubled : (3,) sequence of bool
     """
     found = list(images)
     for axis in np.flatnonzero(doubled):

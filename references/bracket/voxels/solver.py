@@ -85,23 +85,7 @@ def solve(
 
 
 def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Cells, Cells, Load, float]:
-    """A scene as a periodic grid; raises what `solve` does.
-
-    Parameters
-    ----------
-    scene, voxels, tolerance
-        As those of `solve`.
-    bytes_each : int
-        That a voxel takes.
-
-    Returns
-    -------
-    above, below : Cells
-        Conductivities, and resistivities, nowhere less than the scene's; in the load's unit.
-    load : Load
-    slack : float
-        Part of the bounds by which what counts as rounding may move them.
-    """
+    """A scene as a periodic grid; raises what `solve` does."""
     check(scene, tolerance, takes=("image",))
     scene.require(PAIR, walls="one isothermal pair", takes=("image",))
     scene.require(PORES, pores=False, takes=("image",))

@@ -18,25 +18,7 @@ from references.threads import Team
 
 
 def temperature(cells: Cells, spacing, gradient, *, tolerance: float, most: int, team: Team) -> tuple[np.ndarray, dict]:
-    """A temperature that fits the load, of nearly least energy.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of conductivities.
-    spacing : (3,) float array
-    gradient : (3,) float array
-    tolerance, most
-        Of the descent, see `descend`.
-    team : Team
-
-    Returns
-    -------
-    theta : (nx, ny, nz) float array
-        At the lower corner of each voxel, less the linear part.
-    stats : dict
-        `unknowns` and `iterations`.
-    """
+    """A temperature that fits the load, of nearly least energy."""
     shape = cells.scalar.shape
     theta = np.zeros(shape)
     first, energy = _slope(cells, spacing, theta, gradient, team)
@@ -55,22 +37,7 @@ def temperature(cells: Cells, spacing, gradient, *, tolerance: float, most: int,
 
 
 def greatest(cells: Cells, spacing, thetas, gradients, *, team: Team) -> np.ndarray:
-    """What temperatures prove: by Dirichlet's principle c . E c is no less than the conductivity along sum c_i g_i.
-
-    Parameters
-    ----------
-    cells : Cells
-        Of conductivities.
-    spacing : (3,) float array
-    thetas : sequence of l (nx, ny, nz) float arrays
-    gradients : (l, 3) float array
-    team : Team
-
-    Returns
-    -------
-    (l, l) float array
-        E, in the unit of the conductivities.
-    """
+    """What temperatures prove: by Dirichlet's principle c . E c is no less than the conductivity along sum c_i g_i."""
     count = len(thetas)
 
     def energy(theta, gradient):

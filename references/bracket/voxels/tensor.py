@@ -33,13 +33,7 @@ def bounds_tensor(
     tolerance: float = 1e-6,
     threads: int | None = 2,
 ) -> Tensor:
-    """Bound the conductivity tensor of a periodic image.
-
-    Parameters
-    ----------
-    conductivity, spacing, refine, tolerance, threads
-        As those of `references.bracket.voxels.bounds`, which also says what is raised.
-    """
+    """Bound the conductivity tensor of a periodic image."""
     values, load = checked_image(conductivity, spacing, (1.0, 0.0, 0.0), refine, BYTES_OF_THREE)
     effort = checked_effort(tolerance, threads)
     check_pores(values)
@@ -50,15 +44,7 @@ def bounds_tensor(
 def solve_tensor(
     scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
 ) -> Tensor:
-    """Bound the conductivity tensor of a periodic cell on voxels.
-
-    Parameters
-    ----------
-    scene : Scene
-        Its gradient does not matter.
-    voxels, tolerance, threads
-        As those of `references.bracket.voxels.solve`, which also says what is raised.
-    """
+    """Bound the conductivity tensor of a periodic cell on voxels."""
     effort = checked_effort(tolerance, threads)
     above, below, load, slack = on_grid(scene, voxels, BYTES_OF_THREE, tolerance)
     if not scene.periodic:

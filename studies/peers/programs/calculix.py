@@ -55,15 +55,7 @@ def version():
 
 
 def solve(scene, *, size, order=1):
-    """Solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-    """
+    """Solve a body."""
     mesh = meshes.conforming(scene, size=size, order=order)
     with tempfile.TemporaryDirectory() as folder:
         meshes.write_inp(Path(folder) / "mesh.inp", mesh)
@@ -76,13 +68,7 @@ def solve(scene, *, size, order=1):
 
 
 def script(scene, mesh) -> str:
-    """What it is told.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    """
+    """What it is told."""
     step = STEP.format(
         hot=meshes.FACES["x-"][1].upper(),
         cold=meshes.FACES["x+"][1].upper(),
@@ -106,12 +92,7 @@ def own():
 
 
 def entering(results) -> float:
-    """Sum of the positive reactions of the nodes in a file of results.
-
-    Parameters
-    ----------
-    results : str
-    """
+    """Sum of the positive reactions of the nodes in a file of results."""
     table = results.partition("heat generation for set")[2].partition(" for set")[0]
     rows = [line.split() for line in table.splitlines()[1:]]
     return sum(max(float(row[1]), 0.0) for row in rows if len(row) == 2 and row[0].isdigit())

@@ -47,20 +47,7 @@ def version():
 
 
 def solve(scene, *, n):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-
-    Returns
-    -------
-    Found
-        Cost from the grid on.
-    """
+    """Solve the image of a body."""
     return packages.found_on_image("fipy", scene, n)
 
 

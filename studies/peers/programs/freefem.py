@@ -49,15 +49,7 @@ def version():
 
 
 def solve(scene, *, size, order=1):
-    """Solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-    """
+    """Solve a body."""
     mesh = meshes.conforming(scene, size=size, order=order)
     with tempfile.TemporaryDirectory() as folder:
         meshes.write_medit(Path(folder) / "body.mesh", meshes.corners(mesh))
@@ -70,14 +62,7 @@ def solve(scene, *, size, order=1):
 
 
 def script(scene, mesh, order) -> str:
-    """What it is told.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    order : {1, 2}
-    """
+    """What it is told."""
     values = meshes.phases(mesh, scene)
     return SCRIPT.format(
         order=order,
@@ -91,10 +76,5 @@ def script(scene, mesh, order) -> str:
 
 
 def said(printed, word) -> float:
-    """The number after a word at the start of a line.
-
-    Parameters
-    ----------
-    printed, word : str
-    """
+    """The number after a word at the start of a line."""
     return float(re.search(rf"^{word} (\S+)", printed, re.M)[1])

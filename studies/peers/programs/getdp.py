@@ -66,15 +66,7 @@ def version():
 
 
 def solve(scene, *, size, order=1):
-    """Solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-    """
+    """Solve a body."""
     mesh = meshes.conforming(scene, size=size, order=order)
     command = ["getdp", "body.pro", "-msh", "body.msh", "-solve", "Solve", "-pos", "Found", "-v", "4"]
     with tempfile.TemporaryDirectory() as folder:
@@ -90,13 +82,7 @@ def solve(scene, *, size, order=1):
 
 
 def script(scene, mesh) -> str:
-    """What it is told.
-
-    Parameters
-    ----------
-    scene : Scene
-    mesh : Mesh
-    """
+    """What it is told."""
     values = meshes.phases(mesh, scene)
     return SCRIPT.format(
         phases=", ".join(map(str, values)),

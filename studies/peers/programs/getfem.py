@@ -28,13 +28,5 @@ def version():
 
 
 def solve(scene, *, size, order=1):
-    """Solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-    """
+    """Solve a body."""
     return solved("getfem", scene, size=size, order=order)

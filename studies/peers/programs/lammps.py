@@ -64,17 +64,7 @@ def version() -> str:
 
 
 def solve(scene, *, n=None, mixed=False) -> Found:
-    """Conductivity of a bed by contacts of Hertz's radius or area, as the scene's law says; radius by default.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of `studies.peers.beds`.
-    n : int, optional
-        Layers of grains along x.
-    mixed : bool
-        LAMMPS itself mixes the conductivities of types.
-    """
+    """Conductivity of a bed by contacts of Hertz's radius or area, as the scene's law says; radius by default."""
     if not isinstance(scene, beds.Scene):
         raise NotImplementedError("LAMMPS conducts between grains that touch: no body, no matrix")
     bed = scene.drawn(n)

@@ -57,15 +57,7 @@ def version() -> str:
 
 
 def solve(scene, *, n=None) -> Found:
-    """Conductivity of a bed by its contacts; the law that a scene names is what it is held against.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of `studies.peers.beds`.
-    n : int, optional
-        Layers of grains along x.
-    """
+    """Conductivity of a bed by its contacts; the law that a scene names is what it is held against."""
     if not isinstance(scene, beds.Scene):
         raise NotImplementedError("LIGGGHTS conducts between grains that touch: no body, no matrix")
     bed = scene.drawn(n)._replace(law=LAW)

@@ -46,20 +46,5 @@ def version():
 
 
 def solve(scene, *, n, order=1):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    order : int
-        Of the elements.
-
-    Returns
-    -------
-    Found
-        Cost from the mesh on.
-    """
+    """Solve the image of a body."""
     return packages.found_on_image("mfem", scene, n, order=order)

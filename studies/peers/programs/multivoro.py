@@ -48,17 +48,7 @@ def version() -> str:
 
 
 def solve(scene, *, particles, conforming=True) -> Found:
-    """Conductivity by a network on cells of Voro++.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box between walls.
-    particles : int
-        Before twins are added.
-    conforming : bool
-        With twins at interfaces.
-    """
+    """Conductivity by a network on cells of Voro++."""
     from demheat.packing.cache import relaxed
     from demheat.packing.conforming import conform
 
@@ -79,13 +69,7 @@ def solve(scene, *, particles, conforming=True) -> Found:
 
 
 def cells(packing):
-    """Cells of Voro++ as Facets, and what they cost.
-
-    Parameters
-    ----------
-    packing : Packing
-        In a box between walls.
-    """
+    """Cells of Voro++ as Facets, and what they cost."""
     with tempfile.TemporaryDirectory() as folder:
         limits = np.array([np.zeros(3), packing.size])
         np.savez(Path(folder, "given.npz"), centers=packing.centers, radii=packing.radii, limits=limits)
@@ -95,19 +79,7 @@ def cells(packing):
 
 
 def facets_of(packing, raw):
-    """Facets of cells that are given by their faces.
-
-    Parameters
-    ----------
-    packing : Packing
-    raw : dict of arrays
-        owner, neighbour, length : (f,) int arrays
-            Whose face, who is beyond (-1 to -6: walls x-, x+, ..., z+), and how many corners it has.
-        corner : (sum of lengths,) int array
-            Corners of the faces, in order.
-        point : (v, 3) float array, m
-            Where corners are.
-    """
+    """Facets of cells that are given by their faces."""
     from demheat.network.base import Facets
 
     n, owner, neighbour = packing.number, raw["owner"].astype(int), raw["neighbour"].astype(int)

@@ -52,27 +52,7 @@ def version():
 
 
 def solve(scene, *, size, order=2):
-    """Draw, mesh and solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    size : float, m
-        Longest edge that is asked for.
-    order : int
-        Of the polynomials and of the curved elements.
-
-    Returns
-    -------
-    Found
-        Cost from the drawing on.
-
-    Raises
-    ------
-    NotImplementedError
-        For shapes other than spheres and layers.
-    """
+    """Draw, mesh and solve a body."""
     note = "{elements} tetrahedra in {meshed[cpu_s]:.2f} s, {folded} folded"
     return packages.found("ngsolve", asked_for(scene) | {"size": size, "order": order}, note=note)
 

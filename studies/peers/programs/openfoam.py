@@ -99,20 +99,7 @@ def version():
 
 
 def solve(scene, *, n=None, size=None, scheme="harmonic", gradient="leastSquares"):
-    """Solve an image of a body, or a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    n : int, optional
-        Voxels along each edge.
-    size : float, m, optional
-        Longest edge of tetrahedra.
-    scheme : {"harmonic", "linear"}
-        Of a face between two cells.
-    gradient : {"leastSquares", "Gauss linear"}
-        Along faces of tetrahedra; those of voxels need none.
-    """
+    """Solve an image of a body, or a body."""
     if (n is None) == (size is None):
         raise ValueError(f"n = {n}, size = {size}: must be one of them, of voxels or of tetrahedra")
     for name, value, known in (("scheme", scheme, SCHEMES), ("gradient", gradient, GRADIENTS)):

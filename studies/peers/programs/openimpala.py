@@ -56,21 +56,7 @@ def version():
 
 
 def solve(scene, *, n, solver="mlmg"):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    solver : {"mlmg", "pcg"}
-
-    Returns
-    -------
-    Found
-        Cost from its own image on.
-    """
+    """Solve the image of a body."""
     if solver == "mlmg" and sum(k > 0 for k in set(scene.conductivities)) > 1:
         raise NotImplementedError("OpenImpala's MLMG: one conducting phase only")
     return packages.found_on_image("openimpala", scene, n, solver=solver)

@@ -52,22 +52,7 @@ def version():
 
 
 def solve(scene, *, n, by="boundary pores"):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    by : {"boundary pores", "pores", "tortuosity_fd"}
-        Where a network has its walls; or PoreSpy's own way.
-
-    Returns
-    -------
-    Found
-        Cost from the network on.
-    """
+    """Solve the image of a body."""
     if by == "tortuosity_fd" and sum(k > 0 for k in set(scene.conductivities)) > 1:
         raise NotImplementedError("PoreSpy's tortuosity_fd: one conducting phase only")
     return packages.found_on_image("openpnm", scene, n, by=by)

@@ -31,20 +31,7 @@ def version():
 
 
 def solve(scene, *, particles, solver="cg"):
-    """Solve our network of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    particles : int
-    solver : {"cg", "amg"}
-
-    Returns
-    -------
-    Found
-        Cost of the whole call.
-    """
+    """Solve our network of a body."""
     from demheat.conduction.steady import solve_steady
     from studies.harness.cost import measured
 

@@ -30,18 +30,5 @@ def version():
 
 
 def solve(scene, *, particles, solver="gamg"):
-    """Solve our network of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    particles : int
-    solver : {"gamg", "boomeramg"}
-
-    Returns
-    -------
-    Found
-        Cost of set-up and solve.
-    """
+    """Solve our network of a body."""
     return networks.solved_by("petsc", scene, particles=particles, solver=solver, module="petsc4py")

@@ -59,37 +59,14 @@ def version():
 
 
 def solve(scene, *, n, by="fv", unit=UNIT):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    by : {"fv", "fe"}
-        Its finite volumes, or its bricks on the periodic body.
-    unit : float, W/(m K)
-        In which it is given conductivities.
-
-    Returns
-    -------
-    Found
-        Cost from its workspace on.
-    """
+    """Solve the image of a body."""
     if by == "fe" and not mirrored(scene):
         raise NotImplementedError("PuMA's bricks: a periodic body only, or one that mirrors itself")
     return packages.found_on_image("pumapy", scene, n, by=by, unit=unit)
 
 
 def mirrored(scene, points=16):
-    """Whether a body looks the same from either wall, and from either side, seen at points^3 places.
-
-    Parameters
-    ----------
-    scene : Scene
-    points : int
-    """
+    """Whether a body looks the same from either wall, and from either side, seen at points^3 places."""
     from studies.peers.given import image
 
     labels = image(scene, points).labels

@@ -27,18 +27,5 @@ def version():
 
 
 def solve(scene, *, particles, solver="ruge_stuben"):
-    """Solve our network of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    particles : int
-    solver : {"ruge_stuben", "smoothed_aggregation"}
-
-    Returns
-    -------
-    Found
-        Cost of set-up and solve.
-    """
+    """Solve our network of a body."""
     return networks.solved_by("pyamg", scene, particles=particles, solver=solver)

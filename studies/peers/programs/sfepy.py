@@ -27,13 +27,5 @@ def version():
 
 
 def solve(scene, *, size, order=1):
-    """Solve a body.
-
-    Parameters
-    ----------
-    scene : Scene
-    size : float, m
-        Longest edge.
-    order : {1, 2}
-    """
+    """Solve a body."""
     return solved("sfepy", scene, size=size, order=order)

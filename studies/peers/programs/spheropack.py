@@ -44,21 +44,7 @@ def version() -> str:
 
 
 def solve(scene, *, particles, conforming, density=DENSITY, seed=0) -> Found:
-    """Conductivity by our network on a packing of spheropack.
-
-    Parameters
-    ----------
-    scene : Scene
-        A box between walls.
-    particles : int
-        Before twins are added.
-    conforming : bool
-        With twins at interfaces.
-    density : float or "max"
-        Packing fraction.
-    seed : int
-        Of radii and packing.
-    """
+    """Conductivity by our network on a packing of spheropack."""
     from demheat import dem
     from demheat.packing import Gaussian, make_packing
 
@@ -74,16 +60,7 @@ def solve(scene, *, particles, conforming, density=DENSITY, seed=0) -> Found:
 
 
 def packed(radii, size, density, seed) -> dict:
-    """A packing between walls, as the script tells it.
-
-    Parameters
-    ----------
-    radii : (n,) float array
-        Only ratios count.
-    size : sequence of float, m
-    density : float or "max"
-    seed : int
-    """
+    """A packing between walls, as the script tells it."""
     # As fractions are reached by growing, any small scale is as good as another.
     start = 0.2 * np.min(size) * radii / radii.sum()
     given = {"radii": start.tolist(), "size": list(size), "density": density, "growth": GROWTH, "seed": seed}
@@ -107,13 +84,7 @@ def _grown(radii, size, density, seed):
 
 
 def own():
-    """Fraction at which 1000 equal spheres jam in a periodic cube at the default growth rate.
-
-    Returns
-    -------
-    found, documented : float
-    source : str
-    """
+    """Fraction at which 1000 equal spheres jam in a periodic cube at the default growth rate."""
     code = "import spheropack as s; print(s.pack(n=1000, density='max', seed=1).density)"
     printed, _ = ran([python_of("spheropack"), "-c", code])
     return float(printed.split()[-1]), 0.64, "help of spheropack.pack, growth_rate"

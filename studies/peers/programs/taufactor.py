@@ -56,21 +56,7 @@ def version():
 
 
 def solve(scene, *, n, solver="MultiPhaseSolver"):
-    """Solve the image of a body.
-
-    Parameters
-    ----------
-    scene : Scene
-        Between walls across x.
-    n : int
-        Voxels along each edge.
-    solver : {"MultiPhaseSolver", "Solver"}
-
-    Returns
-    -------
-    Found
-        Cost from its own image on.
-    """
+    """Solve the image of a body."""
     if solver == "Solver" and sum(k > 0 for k in set(scene.conductivities)) > 1:
         raise NotImplementedError("TauFactor's Solver: one conducting phase only")
     tolerance = next((value for most, value in TOLERANCES if n <= most), BEYOND)

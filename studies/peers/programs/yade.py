@@ -66,15 +66,7 @@ def version() -> str:
 
 
 def solve(scene, *, n=None) -> Found:
-    """Conductivity of a bed by its contacts; of whole grains, unless the scene's law is the cylinder's.
-
-    Parameters
-    ----------
-    scene : Scene
-        Of `studies.peers.beds`.
-    n : int, optional
-        Layers of grains along x.
-    """
+    """Conductivity of a bed by its contacts; of whole grains, unless the scene's law is the cylinder's."""
     if not isinstance(scene, beds.Scene):
         raise NotImplementedError("Yade conducts between grains that touch and through pores: no body, no matrix")
     bed = scene.drawn(n)
@@ -104,15 +96,7 @@ def _given(bed, step, count):
 
 
 def stepped(given: dict, *, script: str = "yade_bed.py") -> dict:
-    """What a script of Yade finds.
-
-    Parameters
-    ----------
-    given : dict
-        Written as bed.json where it runs.
-    script : str
-        One that leaves found.json.
-    """
+    """What a script of Yade finds."""
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "bed.json").write_text(json.dumps({**given, "scripts": str(SCRIPTS)}))
         ran([*COMMAND, SCRIPTS / script], folder=folder)
@@ -120,14 +104,7 @@ def stepped(given: dict, *, script: str = "yade_bed.py") -> dict:
 
 
 def own():
-    """Temperature of a grain of the rod in Yade's example on heat, and what the Fourier series in it gives.
-
-    Returns
-    -------
-    found, documented : float, K
-        At 0.2 m after 10 000 s.
-    source : str
-    """
+    """Temperature of a grain of the rod in Yade's example on heat, and what the Fourier series in it gives."""
     step, count = 1.0, 10_000
     found = stepped({"step": step, "count": count}, script="yade_rod.py")
     x, warmth = np.array(found["x"]), np.array(found["warmth"])

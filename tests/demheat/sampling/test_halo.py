@@ -177,7 +177,9 @@ def made(scene, points, volumes, flux, mean_radius=0.05):
     """A field with just these samples."""
     samples = Samples(points, volumes, np.zeros(len(points)), scene.phase_at(points), flux)
     stats = {"mean_radius": mean_radius}
-    return Field(scene, np.zeros(3), np.ones(1), lambda: samples, lambda p: p, lambda p: p, stats=stats)
+    # The mean one that the scene must have, whatever the samples are.
+    mean = np.zeros(3) if scene.gradient is None else -np.array(scene.gradient)
+    return Field(scene, mean, np.ones(1), lambda: samples, lambda p: p, lambda p: p, stats=stats)
 
 
 @pytest.mark.parametrize("load", [None, 7.0])

@@ -10,13 +10,7 @@ from spent import Spent
 
 
 def read(points, cells):
-    """Its mesh.
-
-    Parameters
-    ----------
-    points : (n, 3) float array, m
-    cells : (m, 4) int array
-    """
+    """Its mesh."""
     mesh, editor = dolfin.Mesh(), dolfin.MeshEditor()
     editor.open(mesh, "tetrahedron", 3, 3)
     editor.init_vertices(len(points))
@@ -30,16 +24,7 @@ def read(points, cells):
 
 
 def solve(mesh, conductivity, given):
-    """Energy (W K), heat through the hot wall (W), and unknowns.
-
-    Parameters
-    ----------
-    mesh : dolfin.Mesh
-    conductivity : (m,) float array, W/(m K)
-        Of each element.
-    given : dict
-        `order`, `length`, `high` and `low`.
-    """
+    """Energy (W K), heat through the hot wall (W), and unknowns."""
     space, per_cell = dolfin.FunctionSpace(mesh, "P", given["order"]), dolfin.FunctionSpace(mesh, "DG", 0)
     k = dolfin.Function(per_cell)
     values = k.vector().get_local()

@@ -18,15 +18,7 @@ TOLERANCE = 1e-12
 
 
 def body(mesh, given):
-    """The problem, and its material.
-
-    Parameters
-    ----------
-    mesh : NpzFile
-        `points`, `cells`, `groups`.
-    given : dict
-        `order`, `phases`, `length`, `high` and `low`.
-    """
+    """The problem, and its material."""
     parts = Mesh.from_data("body", mesh["points"], None, [mesh["cells"]], [mesh["groups"]], ["3_4"])
     domain = FEDomain("domain", parts)
     omega = domain.create_region("Omega", "all")
