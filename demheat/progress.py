@@ -34,7 +34,7 @@ class Report(NamedTuple):
     share: float  # Done of it, 0 to 1; NaN if the stage does not know
     elapsed: float  # s
     left: float  # s: Estimated from the share done; NaN while that is 0 or not known
-    within: tuple[str, ...] = ()  # tuple of str: The stages that this one is a part of, outermost first
+    within: tuple[str, ...] = ()  # The stages that this one is a part of, outermost first
 
 
 class _Open:

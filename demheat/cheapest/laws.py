@@ -38,30 +38,52 @@ LEAST = 1e-3
 
 
 class Law(NamedTuple):
-    """Law of one method."""
+    """Law of one method.
 
-    method: str  # The method's name, and the keyword that refines it
-    knob: str  # The method's name, and the keyword that refines it
-    coarsest: float  # Values of it that were fitted; lengths in edges of the box
-    finest: float  # Values of it that were fitted; lengths in edges of the box
-    error: float  # A, p, a, b, c and d
-    refinement: float  # A, p, a, b, c and d
-    strength: float  # A, p, a, b, c and d
-    contrast: float  # A, p, a, b, c and d
-    fraction: float  # A, p, a, b, c and d
-    gap: float  # A, p, a, b, c and d
-    error_within: float  # Factor within which nine of ten fitted errors are
-    bulk: float  # u, v and w
-    surface: float  # u, v and w
-    each: float  # u, v and w
-    cost: float  # B in seconds, q and r
-    unknowns: float  # B in seconds, q and r
-    stiffness: float  # B in seconds, q and r
+    Attributes
+    ----------
+    method, knob : str
+        The method's name, and the keyword that refines it.
+    coarsest, finest : float
+        Values of it that were fitted; lengths in edges of the box.
+    error, refinement, strength, contrast, fraction, gap : float
+        A, p, a, b, c and d.
+    error_within : float
+        Factor within which nine of ten fitted errors are.
+    bulk, surface, each : float
+        u, v and w.
+    cost, unknowns, stiffness : float
+        B in seconds, q and r.
+    cost_within : float
+    bytes : float
+        For each unknown, at the peak.
+    bytes_within : float
+    rows, scenes : int
+        Rows and scenes that the law was fitted to.
+    """
+
+    method: str
+    knob: str
+    coarsest: float
+    finest: float
+    error: float
+    refinement: float
+    strength: float
+    contrast: float
+    fraction: float
+    gap: float
+    error_within: float
+    bulk: float
+    surface: float
+    each: float
+    cost: float
+    unknowns: float
+    stiffness: float
     cost_within: float
-    bytes: float  # For each unknown, at the peak
+    bytes: float
     bytes_within: float
-    rows: int  # Rows and scenes that the law was fitted to
-    scenes: int  # Rows and scenes that the law was fitted to
+    rows: int
+    scenes: int
 
 
 class Predicted(NamedTuple):

@@ -43,7 +43,7 @@ class Way(NamedTuple):
     """One way to an accuracy."""
 
     method: str
-    knobs: Mapping  # mapping: To begin with
+    knobs: Mapping  # To begin with
     error: float = math.nan  # Relative, that is to be expected
     cpu_s: float = math.nan  # s: All loads and the coarser runs for the interval; NaN if unknown
     bytes: float = math.nan  # At the peak; NaN if unknown

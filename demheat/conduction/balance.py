@@ -21,7 +21,7 @@ class System(NamedTuple):
     ties: np.ndarray  # (w,) float array, W/K: Conductance to held walls and surroundings
     held: np.ndarray  # (w,) float array, K: Their temperature above the level
     level: float  # K: Temperatures are solved for relative to it, which spares digits
-    films: Films | None = None  # Films
+    films: Films | None = None
 
 
 def system_of(network, scene, reached, films=None):

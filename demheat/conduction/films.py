@@ -122,15 +122,26 @@ def loaded_areas(network, scene, name):
 
 
 class Radiating(NamedTuple):
-    """A wall that radiates, in time."""
+    """A wall that radiates, in time.
+
+    Attributes
+    ----------
+    name : str
+    load : Radiation
+    side : int
+    facet, particle : (v,) int arrays
+        Those facets that conduct, among all, and their particles.
+    own, black : (v,) float arrays, W/K and W/K4
+        As in `radiating_surface`.
+    """
 
     name: str
     load: Radiation
     side: int
-    facet: np.ndarray  # (v,) int arrays: Those facets that conduct, among all, and their particles
-    particle: np.ndarray  # (v,) int arrays: Those facets that conduct, among all, and their particles
-    own: np.ndarray  # (v,) float arrays, W/K and W/K4: As in `radiating_surface`
-    black: np.ndarray  # (v,) float arrays, W/K and W/K4: As in `radiating_surface`
+    facet: np.ndarray
+    particle: np.ndarray
+    own: np.ndarray
+    black: np.ndarray
 
     def heat(self, temperature, time):
         """Heat that enters through each facet."""

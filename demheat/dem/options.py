@@ -37,7 +37,7 @@ class Particles:
 
     particles: int
     seed: int
-    packing: Packing | None = None  # Packing
+    packing: Packing | None = None
     replicas: int | None = None  # Along the shortest side of the box
     allow_few: bool = False
 

@@ -19,8 +19,8 @@ class SceneFile(NamedTuple):
 
     path: Path
     scene: Scene
-    methods: Mapping[str, dict]  # mapping of str to dict: Knobs of the methods of [solve], by their names
-    accuracy: float | None  # float or None
+    methods: Mapping[str, dict]  # Knobs of the methods of [solve], by their names
+    accuracy: float | None
     source: Source  # For messages: `source.error(("solve", "fft", "voxels"), ": ...")`
 
 

@@ -35,7 +35,7 @@ class Quantity(NamedTuple):
     """What a number is of."""
 
     unit: str  # SI unit, empty for a plain number
-    suffixes: dict[str, str]  # mapping of str to str: Ends of keys, and the unit each stands for
+    suffixes: dict[str, str]  # Ends of keys, and the unit each stands for
 
 
 PLAIN = Quantity("", {})

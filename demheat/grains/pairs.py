@@ -77,15 +77,29 @@ class Contacts(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Pairs of grains that exchange heat."""
+    """Pairs of grains that exchange heat.
 
-    first: np.ndarray  # (m,) int arrays: Numbers of the grains
-    second: np.ndarray  # (m,) int arrays: Numbers of the grains
-    image: np.ndarray  # (m,) uint8 array: Which periodic image of the second one, see `demheat.network.base.Facets`
-    gap: np.ndarray  # (m,) float array, m: Between the surfaces; negative where spheres overlap
-    radius: np.ndarray  # (m,) float array, m: Of the contact; 0 where there is a gap
-    contact: np.ndarray  # (m,) float arrays, W/K: Conductances of the contact, and of the medium beside it
-    medium: np.ndarray  # (m,) float arrays, W/K: Conductances of the contact, and of the medium beside it
+    Attributes
+    ----------
+    first, second : (m,) int arrays
+        Numbers of the grains.
+    image : (m,) uint8 array
+        Which periodic image of the second one, see `demheat.network.base.Facets`.
+    gap : (m,) float array, m
+        Between the surfaces; negative where spheres overlap.
+    radius : (m,) float array, m
+        Of the contact; 0 where there is a gap.
+    contact, medium : (m,) float arrays, W/K
+        Conductances of the contact, and of the medium beside it.
+    """
+
+    first: np.ndarray
+    second: np.ndarray
+    image: np.ndarray
+    gap: np.ndarray
+    radius: np.ndarray
+    contact: np.ndarray
+    medium: np.ndarray
 
     @property
     def conductance(self) -> np.ndarray:

@@ -36,7 +36,7 @@ BLOCK = 2**20
 class Negligible(NamedTuple):
     """Inclusions that may be left out."""
 
-    inclusions: tuple[int, ...]  # tuple of int: Their places in `Scene.inclusions`
+    inclusions: tuple[int, ...]  # Their places in `Scene.inclusions`
     bound: float  # Relative change of the conductivity, at most, if all of them are left out
     scene: Scene  # Without them; the scene itself if there are none
 

@@ -85,8 +85,8 @@ class Parts(NamedTuple):
 
     scene: Scene
     store: Store
-    cuts: list[Slabs]  # list of Slabs: Each slab's view of all of them
-    own: list[int]  # list of int: How many particles each slab owns
+    cuts: list[Slabs]  # Each slab's view of all of them
+    own: list[int]  # How many particles each slab owns
 
     @property
     def first(self) -> np.ndarray:

@@ -19,14 +19,26 @@ PHI = 0.64
 
 
 class Slabs(NamedTuple):
-    """Slabs of equal thickness across the longest side of a box."""
+    """Slabs of equal thickness across the longest side of a box.
+
+    Attributes
+    ----------
+    axis : int
+    length : float, m
+        Of that side.
+    ranks, rank : int
+        How many slabs, and which is ours; where they are worked on one after the other, whose turn it is.
+    periodic : bool
+    unit : float, m
+        Radius that equal spheres would have.
+    """
 
     axis: int
-    length: float  # m: Of that side
-    ranks: int  # How many slabs, and which is ours; where they are worked on one after the other, whose turn it is
-    rank: int  # How many slabs, and which is ours; where they are worked on one after the other, whose turn it is
+    length: float
+    ranks: int
+    rank: int
     periodic: bool
-    unit: float  # m: Radius that equal spheres would have
+    unit: float
 
     @property
     def ends(self) -> tuple[float, float]:

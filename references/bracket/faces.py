@@ -47,11 +47,19 @@ def _unique(sides, count):
 
 
 class Interfaces(NamedTuple):
-    """Faces between two phases."""
+    """Faces between two phases.
 
-    nodes: np.ndarray  # (t, 6) int array: Corners, then the middles of the edges 01, 12, 02
-    inner: np.ndarray  # (t,) int array: Phases: that painted later, and the other
-    outer: np.ndarray  # (t,) int array: Phases: that painted later, and the other
+    Attributes
+    ----------
+    nodes : (t, 6) int array
+        Corners, then the middles of the edges 01, 12, 02.
+    inner, outer : (t,) int array
+        Phases: that painted later, and the other.
+    """
+
+    nodes: np.ndarray
+    inner: np.ndarray
+    outer: np.ndarray
 
 
 def interfaces(mesh: Mesh) -> Interfaces:

@@ -33,22 +33,34 @@ KNOWN = (
 class Body(NamedTuple):
     """One homogeneous body under constant loads."""
 
-    conductivity: float  # W/(m K)
+    conductivity: float  # float, W/(m K)
     diffusivity: float  # m2/s
     initial: float  # K
     heating: float  # K/s: Rate at which the sources heat the body where nothing is conducted
 
 
 class Solved(NamedTuple):
-    """A solution at one time."""
+    """A solution at one time.
 
-    form: str  # {"slab", "sphere"}
-    fourier: float  # Diffusivity times time over the squared length or radius
-    mean_flux: np.ndarray  # (3,) float array, W/m2
-    wall_temperature: dict  # dict of str to float, K and W: Of every wall that could be loaded
-    heat: dict  # dict of str to float, K and W: Of every wall that could be loaded
-    temperature: Callable  # callable (n, 3) float array, m -> (n,) float array, K
-    flux: Callable  # callable (n, 3) float array, m -> (n, 3) float array, W/m2
+    Attributes
+    ----------
+    form : {"slab", "sphere"}
+    fourier : float
+        Diffusivity times time over the squared length or radius.
+    mean_flux : (3,) float array, W/m2
+    wall_temperature, heat : dict of str to float, K and W
+        Of every wall that could be loaded.
+    temperature : callable (n, 3) float array, m -> (n,) float array, K
+    flux : callable (n, 3) float array, m -> (n, 3) float array, W/m2
+    """
+
+    form: str
+    fourier: float
+    mean_flux: np.ndarray
+    wall_temperature: dict
+    heat: dict
+    temperature: Callable
+    flux: Callable
 
 
 def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -> Iterator[Field]:

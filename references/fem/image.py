@@ -43,7 +43,7 @@ class Grid(NamedTuple):
     cells: np.ndarray  # (m, 8) int array
     phase: np.ndarray  # (m,) int array
     pairs: np.ndarray  # (p, 2) int array: A node on an upper face of a periodic cell, and the one for which it stands
-    walls: dict  # dict of str to Wall
+    walls: dict
 
     @property
     def shape(self):

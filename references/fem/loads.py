@@ -17,8 +17,8 @@ class Loading(NamedTuple):
     temperature: np.ndarray  # (k,) float array, K: Of the held nodes, from the level of the run
     heat: np.ndarray  # (n,) float array, W: Into each node
     powers: np.ndarray  # (m,) float array, W: Of each of `Loads.names`; 0 for held walls
-    wall_temperature: dict[str, float]  # dict of str to float, K: Of held walls
-    outside: dict[str, float]  # dict of str to float, K: Of the surroundings of walls that exchange heat
+    wall_temperature: dict[str, float]  # K: Of held walls
+    outside: dict[str, float]  # K: Of the surroundings of walls that exchange heat
 
 
 class Loads:

@@ -19,7 +19,7 @@ class Share(NamedTuple):
     rows: np.ndarray  # (k,) int array: All rows, those of the first rank first
     own: np.ndarray  # (m,) int array: The rank's own
     numbers: np.ndarray  # (n,) int32 array: Of the unknowns in that order; -1 where a temperature is known
-    comm: object  # mpi4py.MPI.Comm
+    comm: object
 
     @property
     def free(self) -> np.ndarray:

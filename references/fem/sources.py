@@ -21,11 +21,19 @@ LEAST_RINGS, MOST_RINGS = 8, 128
 
 
 class Deposit(NamedTuple):
-    """What a source gives."""
+    """What a source gives.
 
-    heat: np.ndarray  # (n,) float array, W: Into each node
-    power: float  # W: Inside of the body and outside
-    lost: float  # W: Inside of the body and outside
+    Attributes
+    ----------
+    heat : (n,) float array, W
+        Into each node.
+    power, lost : float, W
+        Inside of the body and outside.
+    """
+
+    heat: np.ndarray
+    power: float
+    lost: float
 
 
 def check_sources(scene, last):

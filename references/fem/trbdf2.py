@@ -49,7 +49,7 @@ class Problem(NamedTuple):
     """Equations, loads and solver."""
 
     loads: Loads
-    solver: object  # Shifted
+    solver: object
     free: np.ndarray  # (m,) int array: Nodes that no wall holds
 
 

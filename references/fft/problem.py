@@ -18,10 +18,10 @@ class Problem(NamedTuple):
     """One load on one grid, in units that make the largest conductivity, length and gradient about 1."""
 
     voxels: Voxels  # In units of the largest conductivity and of the longest side
-    links: Links | None  # Links, or None: Conductivities of the links, for the scalar scheme's rule "links"
+    links: Links | None  # Conductivities of the links, for the scalar scheme's rule "links"
     gradient: np.ndarray  # (3,) float array: Of length 1; along the first axis if there are walls
     walls: bool  # Two isothermal walls across the first axis and four insulated ones; else a periodic cell
-    dtype: type  # numpy float type
+    dtype: type
     team: Team
     tolerance: float
     max_iterations: int

@@ -22,13 +22,24 @@ from references.voxels.paint import Voxels, voxelise
 
 
 class Slab(NamedTuple):
-    """Planes of a grid that a rank has."""
+    """Planes of a grid that a rank has.
 
-    low: int  # First and end of its own nodes' planes, and of the voxels' beside or below them
-    high: int  # First and end of its own nodes' planes, and of the voxels' beside or below them
-    shape: tuple  # (3,) tuple of int: Voxels of the whole grid
-    walls: bool  # Across the first axis
-    comm: object  # mpi4py.MPI.Comm
+    Attributes
+    ----------
+    low, high : int
+        First and end of its own nodes' planes, and of the voxels' beside or below them.
+    shape : (3,) tuple of int
+        Voxels of the whole grid.
+    walls : bool
+        Across the first axis.
+    comm : mpi4py.MPI.Comm
+    """
+
+    low: int
+    high: int
+    shape: tuple
+    walls: bool
+    comm: object
 
     @property
     def nodes(self) -> slice:

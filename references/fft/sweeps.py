@@ -33,7 +33,7 @@ class Plans(NamedTuple):
 class Worker(NamedTuple):
     """What one thread needs for itself."""
 
-    planes: dict  # dict of int to Plans: By the number of planes in a block: callables (values, modes) and back
+    planes: dict  # By the number of planes in a block: callables (values, modes) and back
     buffer: np.ndarray  # (components, columns, mx) complex or float array
     columns: Plans  # Callables () that transform each component of the buffer along its last axis
 

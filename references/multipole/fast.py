@@ -39,13 +39,25 @@ ABOVE, FASTER = 60.0, 1.06
 
 
 class Plan(NamedTuple):
-    """How to divide a periodic cell."""
+    """How to divide a periodic cell.
 
-    shape: np.ndarray  # (3,) int array: Numbers of cells
-    degree: int  # Highest degree of the cells' multipoles
-    precision: float  # Relative error of what spheres make at each other
-    product: float  # s: Estimated cost of one product with all translations and of the far sums
-    setup: float  # s: Estimated cost of one product with all translations and of the far sums
+    Attributes
+    ----------
+    shape : (3,) int array
+        Numbers of cells.
+    degree : int
+        Highest degree of the cells' multipoles.
+    precision : float
+        Relative error of what spheres make at each other.
+    product, setup : float, s
+        Estimated cost of one product with all translations and of the far sums.
+    """
+
+    shape: np.ndarray
+    degree: int
+    precision: float
+    product: float
+    setup: float
 
 
 def plan(spheres, order, precision) -> Plan:

@@ -24,14 +24,26 @@ MOST_ITERATIONS = 400
 
 
 class Solved(NamedTuple):
-    """Multipoles of one order."""
+    """Multipoles of one order.
+
+    Attributes
+    ----------
+    order : int
+    source, local : (2, n, entries) float arrays, K
+        b and c of all spheres.
+    mean_flux : (3,) float array, K/length
+        Over the conductivity of the matrix.
+    iterations : int
+    residual : float
+        Relative, recomputed.
+    """
 
     order: int
-    source: np.ndarray  # (2, n, entries) float arrays, K: b and c of all spheres
-    local: np.ndarray  # (2, n, entries) float arrays, K: b and c of all spheres
-    mean_flux: np.ndarray  # (3,) float array, K/length: Over the conductivity of the matrix
+    source: np.ndarray
+    local: np.ndarray
+    mean_flux: np.ndarray
     iterations: int
-    residual: float  # Relative, recomputed
+    residual: float
 
 
 def mirror_signs(spheres, gradient, order):

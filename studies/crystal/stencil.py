@@ -19,8 +19,8 @@ class Grid(NamedTuple):
     edge: float  # m
     k: np.ndarray  # (nx, ny, nz) float array, W/(m K)
     capacity: np.ndarray  # (nx, ny, nz) float array, J/K
-    held: dict  # dict of str to float, K: Temperatures of walls "x-", "x+", ...; other walls are insulated
-    fluxes: dict  # dict of str to float, W/m2: Into the body
+    held: dict  # K: Temperatures of walls "x-", "x+", ...; other walls are insulated
+    fluxes: dict  # W/m2: Into the body
 
 
 def links(grid):

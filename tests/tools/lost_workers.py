@@ -30,7 +30,7 @@ PAUSE = 0.05
 class Run(NamedTuple):
     """One run of a study's quick rows."""
 
-    rows: dict  # dict of str to dict: By their cases
+    rows: dict  # By their cases
     seconds: float
     status: int
     said: str  # On its error stream

@@ -31,15 +31,26 @@ HEAD = 32
 
 
 class Layout(NamedTuple):
-    """What metadata tell of an array."""
+    """What metadata tell of an array.
 
-    version: int  # {2, 3}
-    shape: tuple[int, ...]  # tuple of int
-    chunks: tuple[int, ...]  # tuple of int
-    dtype: np.dtype  # data type
-    codecs: tuple[str, ...]  # tuple of str: In the order in which they pack
-    prefix: str  # Names of files: before the numbers of a chunk, and between them
-    mark: str  # Names of files: before the numbers of a chunk, and between them
+    Attributes
+    ----------
+    version : {2, 3}
+    shape, chunks : tuple of int
+    dtype : data type
+    codecs : tuple of str
+        In the order in which they pack.
+    prefix, mark : str
+        Names of files: before the numbers of a chunk, and between them.
+    """
+
+    version: int
+    shape: tuple[int, ...]
+    chunks: tuple[int, ...]
+    dtype: np.dtype
+    codecs: tuple[str, ...]
+    prefix: str
+    mark: str
 
 
 class Chunks:

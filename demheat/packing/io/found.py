@@ -12,34 +12,16 @@ from demheat.packing.io.text import broken
 
 
 class Found(NamedTuple):
-    """What a reader found in a file.
+    """What a reader found in a file."""
 
-    Attributes
-    ----------
-    spheres : (n, 4) float array, m
-        Centre, in the coordinates of the file, and radius.
-    size : (3,) float array, m, or None
-        None if the file has no box.
-    periodic : (3,) bool array or None
-        None if the file does not say.
-    origin : (3,) float array, m
-        Corner of the box.
-    domain : str or None
-    ids : (n,) float array or None
-    numbers : sequence of int or None
-        Line number of each sphere; None in files that have no lines.
-    provenance : dict
-        What of it is known; `read` adds the file and the format.
-    """
-
-    spheres: np.ndarray
-    size: np.ndarray | None = None
-    periodic: np.ndarray | None = None
-    origin: np.ndarray | tuple = (0.0, 0.0, 0.0)
+    spheres: np.ndarray  # (n, 4) float array, m: Centre, in the coordinates of the file, and radius
+    size: np.ndarray | None = None  # (3,) float array, m, or None: None if the file has no box
+    periodic: np.ndarray | None = None  # (3,) bool array or None: None if the file does not say
+    origin: np.ndarray | tuple = (0.0, 0.0, 0.0)  # (3,) float array, m: Corner of the box
     domain: str | None = None
-    ids: np.ndarray | None = None
-    numbers: Sequence[int] | None = None
-    provenance: dict | None = None
+    ids: np.ndarray | None = None  # (n,) float array or None
+    numbers: Sequence[int] | None = None  # Line number of each sphere; None in files that have no lines
+    provenance: dict | None = None  # What of it is known; `read` adds the file and the format
 
 
 def to_packing(found: Found, path, *, size, periodic, domain, order) -> Packing:

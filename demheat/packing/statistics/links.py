@@ -18,16 +18,32 @@ from demheat.scene.inputs import chosen, finite
 
 
 class Coordination(NamedTuple):
-    """Contact numbers of a packing; walls do not count as contacts."""
+    """Contact numbers of a packing; walls do not count as contacts.
+
+    Attributes
+    ----------
+    mean : float
+    least : int
+    histogram : (most + 1,) int array
+        Number of counted particles with 0, 1, 2, ... contacts.
+    under_2, under_4 : float
+        Parts of the counted particles with fewer than 2 and 4 contacts.
+    counted : int
+        Particles at least `margin` from walls.
+    islands : int
+        Connected parts of the whole network; a particle without contacts is one.
+    largest : float
+        Part of all particles that is in the largest island.
+    """
 
     mean: float
     least: int
-    histogram: np.ndarray  # (most + 1,) int array: Number of counted particles with 0, 1, 2, ... contacts.
-    under_2: float  # Parts of the counted particles with fewer than 2 and 4 contacts
-    under_4: float  # Parts of the counted particles with fewer than 2 and 4 contacts
-    counted: int  # Particles at least `margin` from walls
-    islands: int  # Connected parts of the whole network; a particle without contacts is one
-    largest: float  # Part of all particles that is in the largest island
+    histogram: np.ndarray
+    under_2: float
+    under_4: float
+    counted: int
+    islands: int
+    largest: float
 
 
 class Backbone(NamedTuple):

@@ -105,7 +105,7 @@ def upper_bound(
 class Load(NamedTuple):
     """Units that make the longest side and the greatest conductivity about 1, and the load."""
 
-    unit: float  # W/(m K)
+    unit: float  # float, W/(m K)
     spacing: np.ndarray  # (3,) float array
     gradient: np.ndarray  # (3,) float array: Of length 1
 
