@@ -4,12 +4,16 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 `evolve`.
 """
 
-import warnings
+from typing import TYPE_CHECKING
 
 from demheat import terminal  # noqa: F401 - first, so that a command is interrupted without a traceback from here on
 from demheat.deadline import budget
 from demheat.field import Field, Samples
+from demheat.io.fields import write as _write
 from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.lazy import lazy_names
+from demheat.pictures import plot_field as _plot_field
+from demheat.pictures import plot_scene as _plot_scene
 from demheat.progress import on_progress
 from demheat.scene import (
     Box,
@@ -31,6 +35,12 @@ from demheat.scene import (
     Union,
     orthotropic,
 )
+from demheat.version import __version__ as __version__
+
+if TYPE_CHECKING:
+    from demheat.cheapest import effective, recommend
+    from demheat.dem import evolve, solve
+    from demheat.sweeps import sweep
 
 __all__ = [
     "Box",
@@ -64,24 +74,13 @@ __all__ = [
     "solve",
     "sweep",
 ]
-__version__ = "0.2.0"
-RENAMED = {"Heating": "UniformSource"}
+HOMES = {
+    "demheat.cheapest": ("effective", "recommend"),
+    "demheat.dem": ("evolve", "solve"),
+    "demheat.sweeps": ("sweep",),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)
 
-
-def __getattr__(name):
-    if name in ("evolve", "solve"):
-        from demheat import dem
-
-        return getattr(dem, name)
-    if name in ("effective", "recommend"):
-        from demheat import cheapest
-
-        return getattr(cheapest, name)
-    if name == "sweep":
-        from demheat.sweeps import sweep
-
-        return sweep
-    if name in RENAMED:
-        warnings.warn(f"demheat.{name} is now demheat.{RENAMED[name]}", DeprecationWarning, stacklevel=2)
-        return globals()[RENAMED[name]]
-    raise AttributeError(f"module 'demheat' has no attribute {name!r}")
+# What is solved knows nothing of those who store and draw it: it is given them here.
+Field.plot, Field.write, Scene.plot = _plot_field, _write, _plot_scene

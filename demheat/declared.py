@@ -42,11 +42,11 @@ def path_of(method: str) -> str:
     return next((path for path in paths if method and find_spec(path)), "")
 
 
-def load(method: str):
-    """Module of a method by its name, as "fem"."""
+def load(method: str, part: str = ""):
+    """Module of a method by its name, as "fem"; or a part of it, as "ranks"."""
     if not path_of(method):
         raise ValueError(f"method = {method!r}: must be a module of {' or '.join(HOMES)}")
-    return import_module(path_of(method))
+    return import_module(f"{path_of(method)}.{part}" if part else path_of(method))
 
 
 def _declares(path):

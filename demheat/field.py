@@ -14,8 +14,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib import import_module
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -136,6 +135,9 @@ class Field:
     estimator: Callable[[Field], Estimate] | None = None
     elements: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
     slack: tuple[float, float] = (0.0, 0.0)
+    # Given by the package's front: a field knows nothing of those who store and draw it.
+    write: ClassVar[Callable[..., None]]
+    plot: ClassVar[Callable[..., object]]
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.
@@ -239,32 +241,6 @@ class Field:
         if high == low:
             raise ValueError("Field.conductivity: the two walls have the same temperature, no conductivity follows")
         return float(-self.mean_flux[axis] * self.scene.size[axis] / (high - low)) + 0.0
-
-    def write(self, path, *, cells: int = 64) -> None:
-        """Write into a file for ParaView (.vtp, .vti, .vtu) or NumPy (.npz), see `demheat.files.fields`.
-
-        Parameters
-        ----------
-        path : path
-        cells : int
-            Of a .vti, along the longest side, where the field has no voxels of its own.
-        """
-        # By name, here and below: what is solved knows nothing of those who store and draw it.
-        import_module("demheat.files.fields").write(self, path, cells=cells)
-
-    def plot(self, *, axis: int | None = None, at: float | None = None, pixels: int = 241):
-        """Temperature and size of the flux over a plane, as a matplotlib Figure.
-
-        Parameters
-        ----------
-        axis : {0, 1, 2}, optional
-            The plane lies across it; by default one along the load.
-        at : float, m, optional
-            Where; by default in the middle.
-        pixels : int
-            Along the longer side.
-        """
-        return import_module("demheat.pictures").of_field(self, axis=axis, at=at, pixels=pixels)
 
     def __repr__(self):
         return f"Field({', '.join(f'{name}: {value}' for name, value in self._told().items())})"

@@ -1,17 +1,21 @@
 """Pictures of scenes, fields and comparisons, as matplotlib's figures: `figure.savefig("x.png")`.
 
-Loaded by name from `Scene.plot` and `Field.plot`. Figures are made without pyplot: nothing stays open and no display is
-needed.
+`Scene.plot` and `Field.plot` are these. Figures are made without pyplot: nothing stays open and no display is needed.
 """
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 
-from demheat.field import check_field
-from demheat.scene import check_scene
+from demheat.field import Field, check_field
+from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import axis_number, finite, whole
 from demheat.slices import filled, on_plane, plane
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 AXES = "xyz"
 # Pixels along the longer side.
@@ -22,8 +26,14 @@ COLOURS = ("#d9d9d9", "#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d
 POINT, BARS = "#0072b2", ("#f0f0f0", "#dadada")
 
 
-def of_scene(scene, *, pixels: int = PIXELS):
-    """Three slices through the middle of a scene, across x, y and z, coloured by conductivity."""
+def plot_scene(scene: Scene, *, pixels: int = PIXELS) -> Figure:
+    """Three slices through the middle, coloured by conductivity, as a matplotlib Figure.
+
+    Parameters
+    ----------
+    pixels : int
+        Along the longer side.
+    """
     check_scene(scene)
     whole("pixels", pixels, "an integer >= 1", lambda v: v >= 1)
     figure, panels = _figure(3)
@@ -42,8 +52,18 @@ def of_scene(scene, *, pixels: int = PIXELS):
     return figure
 
 
-def of_field(field, *, axis: int | None = None, at: float | None = None, pixels: int = PIXELS):
-    """Temperature and size of the flux of a field over a plane."""
+def plot_field(field: Field, *, axis: int | None = None, at: float | None = None, pixels: int = PIXELS) -> Figure:
+    """Temperature and size of the flux over a plane, as a matplotlib Figure.
+
+    Parameters
+    ----------
+    axis : {0, 1, 2}, optional
+        The plane lies across it; by default one along the load.
+    at : float, m, optional
+        Where; by default in the middle.
+    pixels : int
+        Along the longer side.
+    """
     check_field(field)
     scene = field.scene
     axis = across_of(scene) if axis is None else axis_number(axis)
@@ -63,7 +83,7 @@ def of_field(field, *, axis: int | None = None, at: float | None = None, pixels:
     return figure
 
 
-def of_comparison(scene, entries, bounds, temperature=None):
+def plot_comparison(scene, entries, bounds, temperature=None):
     """Conductivities with their intervals, bounds behind them, and a slice of temperature beside them."""
     figure, panels = _figure(1 if temperature is None else 2)
     panel = panels[0]

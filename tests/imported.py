@@ -1,6 +1,7 @@
-"""What each module imports, read off its source, imports inside functions included; the homes of libraries."""
+"""What each module imports, read off its source, in functions and by name included; the homes of libraries."""
 
 import ast
+import re
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
@@ -53,10 +54,27 @@ def below(name, prefix):
     return name == prefix or name.startswith(prefix + ".")
 
 
+# What imports a module that it is told by its name; `lazy_names` is that of `demheat.lazy`.
+BY_NAME = ("import_module", "__import__", "run_module", "resolve_name", "lazy_names")
+# Those who load what declares itself to them, by names that no source holds: what that is, they say here.
+DECLARING = tuple(
+    name for name, path in MODULES.items() if "\nMETHODS = (\n    Method(" in path.read_text(encoding="utf-8")
+)
+FINDERS = {
+    "demheat.lazy": (),  # what those who call it name
+    "demheat.ranks": ("mpi4py",),
+    "demheat.declared": (*DECLARING, *(name for name in MODULES if re.fullmatch(r"references\.\w+\.ranks", name))),
+    # They know no study: a study is what has the entries that they ask for.
+    "studies.harness.runner": (),
+    "studies.harness.forked": (),
+    "studies.sphere_benchmark.ways": (),  # a method of one's own
+}
+
+
 def imports(name, source, modules=MODULES, is_package=False):
     """Absolute names of the modules that a source imports; `from a import b` counts as a.b where that is a module."""
-    found = set()
-    for node in ast.walk(ast.parse(source)):
+    found, tree = set(FINDERS.get(name, ())), ast.parse(source)
+    for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
@@ -66,4 +84,24 @@ def imports(name, source, modules=MODULES, is_package=False):
                 base = ".".join([*package[: len(package) - node.level + 1], *filter(None, [base])])
             # A name that is no module of ours is a thing defined in the package's __init__.
             found |= {f"{base}.{alias.name}" if f"{base}.{alias.name}" in modules else base for alias in node.names}
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).rpartition(".")[2] in BY_NAME:
+            told = _told(node, modules)
+            if not told and name not in FINDERS:
+                # By what a table holds, or a variable: all that the file names.
+                told = {each for each in _told(tree, modules) if "." in each}
+                if not told:
+                    raise ValueError(f"{name}, line {node.lineno}: what is imported cannot be read; see FINDERS")
+            found |= told
+    return found
+
+
+def _told(node, modules):
+    """Modules that texts in a piece of source name; a text that others complete, `f"a.b.{c}"`, names all below it."""
+    found = set()
+    for each in ast.walk(node):
+        if isinstance(each, ast.JoinedStr) and isinstance(each.values[0], ast.Constant):
+            folder = each.values[0].value.rpartition(".")[0]
+            found |= {module for module in modules if folder and module.startswith(folder + ".")}
+        elif isinstance(each, ast.Constant) and isinstance(each.value, str):
+            found |= {each.value} if each.value in modules or each.value.split(".")[0] in HOMES else set()
     return found

@@ -1,5 +1,6 @@
 """The rooms of the house, and what each may import."""
 
+from rooms_above import ABOVE
 from rooms_beside import BESIDE
 
 # The rooms of the house from the ground up, and what each may import of ours: itself and rooms that stand before it.
@@ -81,12 +82,15 @@ ENGINE = {
     "demheat.machine": (),
     "demheat.fresh": (),
     "demheat.cluster": (),
+    "demheat.version": (),
+    "demheat.lazy": (),
     "demheat.compiled": ("demheat.progress",),
     "demheat.method": (),
     "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.limits"),
-    # Nouns know nothing of those who draw them: `plot` loads this by its name.
+    # Nouns know nothing of those who draw and store them: the front gives them `plot` and `write`.
     "demheat.pictures": ("demheat.scene", "demheat.field", "demheat.slices"),
+    "demheat.io": ("demheat.scene", "demheat.field", "demheat.limits", "demheat.paths", "demheat.vtk"),
     "demheat.packing": (
         "demheat.powers",
         "demheat.addition",
@@ -184,10 +188,12 @@ ENGINE = {
         "demheat.build",
         "demheat.error",
         "demheat.method",
+        "demheat.lazy",
         "demheat.dem",
     ),
     "demheat.damage": (
         "demheat.deadline",
+        "demheat.lazy",
         "demheat.scene",
         "demheat.field",
         "demheat.laws",
@@ -200,43 +206,6 @@ ENGINE = {
         "demheat.dem",
         "demheat.damage",
     ),
-    # What methods cost and how far they are off, and the cheapest of them: it loads a method by its name alone.
-    "demheat.cheapest": (
-        "demheat.scene",
-        "demheat.deadline",
-        "demheat.tensor",
-        "demheat.limits",
-        "demheat.method",
-        "demheat.process_state",
-        "demheat.cheapest",
-    ),
-    # One function over many cases: of what it returns it knows a Field and the tensor of `effective`.
-    "demheat.sweeps": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.paths",
-        "demheat.progress",
-        "demheat.machine",
-        "demheat.process_state",
-        "demheat.fresh",
-        "demheat.cluster",
-        "demheat.cheapest.effective",
-        "demheat.sweeps",
-    ),
-    # Finds methods where they are declared: by name alone, as the cheapest does.
-    "demheat.declared": ("demheat.method",),
-    "demheat.files": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.vtk",
-        "demheat.paths",
-        "demheat.laws",
-        "demheat.limits",
-        "demheat.method",
-        "demheat.packing.io",
-        "demheat.declared",
-        "demheat.files",
-    ),
     # A model of its own, by the engine's packings and solver: beds of grains out of files.
     "demheat.grains": (
         "demheat.paths",
@@ -246,23 +215,6 @@ ENGINE = {
         "demheat.conduction.steady",
         "demheat.sampling.fluxes",
         "demheat.grains",
-    ),
-    # The commands of the terminal, on top of all.
-    "demheat.commands": (
-        "demheat.scene",
-        "demheat.deadline",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.method",
-        "demheat.slices",
-        "demheat.paths",
-        "demheat.pictures",
-        "demheat.process_state",
-        "demheat.cheapest",
-        "demheat.declared",
-        "demheat.files",
-        "demheat.terminal",
-        "demheat.commands",
     ),
     # Parts of a body that are made by themselves, for those who work on several, or on one after the other.
     "demheat.tiles": (
@@ -291,6 +243,7 @@ ENGINE = {
         "demheat.build",
         "demheat.dem",
         "demheat.tiles",
+        "demheat.lazy",
         "demheat.streamed",
     ),
     # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
@@ -309,33 +262,11 @@ ENGINE = {
         "demheat.ranks",
         "demheat.petsc",
         "demheat.tiles",
+        "demheat.lazy",
         "demheat.mpi",
-    ),
-    # Other methods on ranks are found by their names.
-    "demheat.mpi.__main__": (
-        "demheat.declared",
-        "demheat.files",
-        "demheat.commands.options",
-        "demheat.ranks",
-        "demheat.mpi",
-    ),
-    "demheat.__main__": ("demheat.commands",),
-    # The old place of what lies in a folder now.
-    "demheat.halo": ("demheat.sampling.halo",),
-    # The front of the package and nothing else.
-    "demheat": (
-        "demheat.scene",
-        "demheat.deadline",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.progress",
-        "demheat.dem",
-        "demheat.cheapest",
-        "demheat.sweeps",
-        "demheat.terminal",
     ),
 }
 
-LAYERS = ENGINE | BESIDE
+LAYERS = ENGINE | BESIDE | ABOVE
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references", "benchmark")

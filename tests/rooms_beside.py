@@ -1,4 +1,4 @@
-"""Rooms that stand beside the engine: witnesses, the benchmark and studies, as `rooms.LAYERS` has them."""
+"""Rooms that stand beside the engine: witnesses, as `rooms.LAYERS` has them."""
 
 BESIDE = {
     # Witnesses know the engine's nouns and not the engine.
@@ -16,6 +16,7 @@ BESIDE = {
     ),
     "references.exact": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.error",
         "demheat.field",
         "demheat.tensor",
@@ -24,9 +25,10 @@ BESIDE = {
         "references.midpoints",
         "references.exact",
     ),
-    "references.bounds": ("demheat.scene", "demheat.method", "references.exact", "references.bounds"),
+    "references.bounds": ("demheat.scene", "demheat.lazy", "demheat.method", "references.exact", "references.bounds"),
     "references.multipole": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.deadline",
         "demheat.error",
         "demheat.field",
@@ -41,6 +43,7 @@ BESIDE = {
     ),
     "references.fem": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.deadline",
         "demheat.error",
         "demheat.field",
@@ -57,6 +60,7 @@ BESIDE = {
     ),
     "references.bracket": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.deadline",
         "demheat.gate",
         "demheat.limits",
@@ -68,6 +72,7 @@ BESIDE = {
     ),
     "references.fft": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.deadline",
         "demheat.error",
         "demheat.field",
@@ -83,6 +88,7 @@ BESIDE = {
     ),
     "references.bracket.voxels": (
         "demheat.scene",
+        "demheat.lazy",
         "demheat.deadline",
         "demheat.gate",
         "demheat.limits",
@@ -93,30 +99,8 @@ BESIDE = {
         "references.fft",
         "references.bracket",
     ),
-    # Old names of what lies in folders now.
+    # Short names of what lies in folders.
     "references.series": ("references.exact.series",),
     "references.zeta": ("references.fft.zeta",),
     "references": (),
-    # Scenes with known answers: what reads them knows the nouns, what made them the witnesses.
-    "benchmark.parts": ("demheat.scene", "demheat.files"),
-    "benchmark.schema": (),
-    "benchmark": ("demheat.scene", "benchmark.parts"),
-    "benchmark.recipes": (
-        "demheat.scene",
-        "demheat.addition",
-        "demheat.gallery",
-        "demheat.referee",
-        "references",
-        "benchmark",
-        "benchmark.recipes",
-    ),
-    "benchmark.make": ("benchmark",),
-    "studies.harness": ("demheat", "references", "studies.harness"),
-    # Headlines are among what a change is shown by.
-    "studies.contents": (),
-    "studies.harness.accept": ("studies.contents", "studies.harness"),
-    "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
-    # And every study itself, if it is a folder.
-    "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("demheat.fresh", "demheat.terminal", "studies"),
 }

@@ -1,5 +1,6 @@
 """No circle of modules that import each other, nor of folders."""
 
+import pytest
 from imported import MODULES, imports
 
 
@@ -25,13 +26,18 @@ def circle(pairs):
 
 
 def side_by_side(pairs):
-    """For every folder the arrows between its members, modules and folders: those of all that lies in them."""
+    """For every folder the arrows between its members, modules and folders: those of all that lies in them.
+
+    The packages are one house, under "": witnesses stand on the engine's nouns, and what chooses among them on both.
+    """
     found = {}
     for name, target in pairs:
         a, b = name.split("."), target.split(".")
+        if a[:2] != b[:2]:
+            found.setdefault("", set()).add((".".join(a[:2]), ".".join(b[:2])))
         same = next((k for k, (x, y) in enumerate(zip(a, b, strict=False)) if x != y), None)
         # A front imports what it shows: that is no arrow between members.
-        if same is not None:
+        if same:
             members = ".".join(a[: same + 1]), ".".join(b[: same + 1])
             found.setdefault(".".join(a[:same]), set()).add(members)
     return found
@@ -40,6 +46,28 @@ def side_by_side(pairs):
 def test_no_circle_of_modules_or_folders():
     assert circle(edges()) == []
     assert {folder: circle(pairs) for folder, pairs in side_by_side(edges()).items() if circle(pairs)} == {}
+
+
+@pytest.mark.parametrize(
+    "source",
+    [
+        "def f():\n    from demheat.pictures import plot_field",
+        "import_module('demheat.pictures').plot_field",
+        "importlib.import_module(name='demheat.pictures')",
+        "__import__('demheat.pictures')",
+        "lazy_names(__name__, {'demheat.pictures': ('plot_field',)})",
+        "HOMES = {'picture': 'demheat.pictures'}\ndef f(kind):\n    return import_module(HOMES[kind])",
+        "import_module(f'demheat.pictures.{name}')",
+    ],
+)
+def test_imports_are_seen_in_functions_and_by_name(source):
+    modules = MODULES | {"demheat.pictures.part": None}
+    assert {name.removesuffix(".part") for name in imports("demheat.field", source, modules)} == {"demheat.pictures"}
+
+
+def test_what_cannot_be_read_is_refused():
+    with pytest.raises(ValueError, match="demheat.field, line 1: what is imported cannot be read"):
+        imports("demheat.field", "import_module(name)")
 
 
 def test_a_circle_is_seen():

@@ -1,16 +1,13 @@
 """What `import demheat` loads, and the modules that declare methods: numpy, and nothing that takes long."""
 
-import re
 import subprocess
 import sys
 
 import pytest
-from imported import MODULES, ROOT
+from imported import DECLARING, ROOT
 
 HEAVY = ("numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy", "tifffile", "nrrd")
 HEAVY += ("dask", "distributed", "cloudpickle", "zarr")
-# Modules that declare methods: whoever looks for methods imports them all.
-DECLARING = [name for name, path in MODULES.items() if re.search(r"^METHODS = \(\n    Method", path.read_text(), re.M)]
 
 
 @pytest.mark.parametrize(

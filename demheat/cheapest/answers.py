@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.cheapest.loads import Loads
-from demheat.cheapest.ways import KNOBS, Way, module_of
+from demheat.cheapest.ways import HOMES, KNOBS, Way
 from demheat.tensor import conductivity_tensor
+from references import bracket
 
 # Elements along the longest side of the first mesh for certain bounds; how many meshes, and their edges from one to the
 # next: by what is missing, but neither more nor less.
@@ -26,7 +27,7 @@ class Answer(NamedTuple):
 
 def answer(way: Way, loads: Loads) -> Answer:
     """Tensor and half intervals by one method."""
-    module, cut = module_of(way.method), way.method in KNOBS
+    module, cut = HOMES[way.method], way.method in KNOBS
     scenes = loads.parts if cut else loads.wholes
     if loads.together if cut else len(scenes) == 3:
         fields = dict(enumerate(module.solve_axes(scenes[0], **way.knobs)))
@@ -52,7 +53,6 @@ def excess(found: Answer, accuracy: float) -> float:
 
 def certain(loads: Loads, accuracy: float) -> tuple[Answer, dict]:
     """Certain bounds, their middle and half of what is between them, and with which knobs."""
-    bracket = module_of("bracket")
     if loads.diagonal:
         found = {axis: bracket.solve(part, width=2 * accuracy) for axis, part in loads.parts.items()}
         middle = np.diag([(found[axis].lower + found[axis].upper) / 2 for axis in loads.alike])

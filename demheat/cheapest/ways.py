@@ -4,22 +4,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from importlib import import_module
 from typing import NamedTuple
 
+from demheat import dem
 from demheat.cheapest.laws import ON_SPHERE, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
 from demheat.scene.inputs import one_line
+from references import bracket, exact, fem, fft, multipole
 
 # Modules, by the names that their methods have in `METHODS`; in the order of preference where nothing is known.
 HOMES = {
-    "exact": "references.exact",
-    "multipole": "references.multipole",
-    "fem": "references.fem",
-    "fft": "references.fft",
-    "dem": "demheat.dem",
-    "bracket": "references.bracket",
+    "exact": exact,
+    "multipole": multipole,
+    "fem": fem,
+    "fft": fft,
+    "dem": dem,
+    "bracket": bracket,
 }
 # Knobs that refine each, and what stands for an element's edge in them: value ~ edge^power.
 KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.0)}
@@ -82,15 +83,10 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     return way._replace(knobs=knobs, cpu_s=_all(cost, loads), bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
 
 
-def module_of(method: str):
-    """Module of a method, loaded when it is needed."""
-    return import_module(HOMES[method])
-
-
 def _exact(loads, accuracy):
     """Closed forms cost next to nothing: they are found by trying."""
     try:
-        digits = min(module_of("exact").solve(whole).stats["digits"] for whole in loads.wholes.values())
+        digits = min(exact.solve(whole).stats["digits"] for whole in loads.wholes.values())
     except NotImplementedError as error:
         return Way("exact", {}, refused=one_line(error))
     if 10.0**-digits > accuracy:
@@ -99,7 +95,8 @@ def _exact(loads, accuracy):
 
 
 def _multipole(loads, accuracy, memory):
-    arrange = import_module("references.multipole.arrangement").arrange
+    # Loads what is heavy, as do the rules of the FFT.
+    from references.multipole.arrangement import arrange
 
     try:
         for whole in loads.wholes.values():
@@ -136,7 +133,9 @@ def _law(method, loads):
     """Name of a method's law, of the FFT that of the rule which its solver takes by itself, and what it is asked of."""
     part = max(loads.parts.values(), key=lambda each: each.volume)
     if method == "fft":
-        rule = import_module("references.fft.rules").automatic("cg", part, ENOUGH)
+        from references.fft.rules import automatic
+
+        rule = automatic("cg", part, ENOUGH)
         method = "fft" if rule == "laminate" else f"fft-{rule}"
     return method, measures(part)
 

@@ -12,6 +12,7 @@ from importlib import import_module
 from demheat.commands.options import parser
 from demheat.files import read_file
 from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
+from demheat.version import __version__
 
 DONE, WITHOUT = 0, 1
 
@@ -52,7 +53,7 @@ def main(words=None) -> int:
 
 def _done(words):
     try:
-        options = parser(version()).parse_args(words)
+        options = parser(__version__).parse_args(words)
         command = import_module(f"demheat.commands.{options.command}")
         return command.run(read_file(options.scene), options)
     except (NotImplementedError, RuntimeError, MemoryError, ImportError, TimeoutError) as error:
@@ -67,11 +68,6 @@ def _done(words):
             file=sys.stderr,
         )
         return INTERRUPTED
-
-
-def version() -> str:
-    """Version of the package."""
-    return import_module("demheat").__version__
 
 
 def _said(error, status):

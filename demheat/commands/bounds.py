@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from importlib import import_module
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.scene import Sphere
+from references import bounds as formulas
+from references.bracket import voxels
 
 # Of an image whose voxels are bounded themselves: some ten times as dear as a solution.
 MOST_VOXELS = 64**3
@@ -36,11 +37,13 @@ def bounds_of(scene) -> list[Bound]:
     """
     if scene.resistances.any() or scene.anisotropic or scene.varies:
         return []
-    formulas = import_module("references.bounds")
+    # Loads what is heavy.
+    from references.exact.solver import fractions as fractions_of
+
     if scene.image is not None:
-        return _of_image(scene, formulas)
+        return _of_image(scene)
     try:
-        fractions = import_module("references.exact.solver").fractions(scene)
+        fractions = fractions_of(scene)
     except NotImplementedError:
         return []
     k = scene.conductivities
@@ -53,7 +56,7 @@ def bounds_of(scene) -> list[Bound]:
     return found
 
 
-def _of_image(scene, formulas):
+def _of_image(scene):
     """Those of the fractions of its voxels, and, of an image that is no trouble, those of its voxels themselves."""
     k, fractions = scene.conductivities, scene.image.fractions
     low, high = formulas.reuss(k, fractions), formulas.voigt(k, fractions)
@@ -64,7 +67,7 @@ def _of_image(scene, formulas):
         found.append(Bound("Hashin-Shtrikman", float(low), float(high), "isotropic bodies of two phases"))
     if math.prod(scene.image.shape) <= MOST_VOXELS:
         try:
-            bracket = import_module("references.bracket.voxels").solve(scene)
+            bracket = voxels.solve(scene)
         except (NotImplementedError, ValueError):
             return found
         found.append(Bound("voxels, certain", bracket.lower, bracket.upper, "this image"))

@@ -119,7 +119,7 @@ def picture(scene, made, bounds, path: Path) -> Path:
     good = [row for row in made if row["status"] == "ok" and row["conductivity"]]
     entries = [(row["method"], *(_float(row[name]) for name in ("conductivity", "lower", "upper"))) for row in good]
     say = partial(print, file=sys.stderr)
-    figure = pictures.of_comparison(scene, entries, bounds, _slice(path, text_of_scene(scene), say))
+    figure = pictures.plot_comparison(scene, entries, bounds, _slice(path, text_of_scene(scene), say))
     drawn = path.with_suffix(".png")
     with replaced(drawn) as part:
         figure.savefig(part, dpi=120)

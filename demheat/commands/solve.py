@@ -10,7 +10,7 @@ from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
 from demheat.deadline import budget
-from demheat.files.fields import check_target
+from demheat.io.fields import check_target
 from demheat.method import SIZE
 from demheat.paths import replaced
 

@@ -1,20 +1,22 @@
 """Damage: inclusions that have come off, links that are gone, insulated cracks."""
 
-from importlib import import_module
+from typing import TYPE_CHECKING
 
-# What is heavy loads with the first call.
-_HOMES = {
-    "Disc": "cracks",
-    "Rectangle": "cracks",
-    "cracked": "cracks",
-    "debonded": "inclusions",
-    "solve": "solver",
-    "without_links": "links",
+from demheat.lazy import lazy_names
+
+if TYPE_CHECKING:
+    from demheat.damage.cracks import Disc, Rectangle, cracked
+    from demheat.damage.inclusions import debonded
+    from demheat.damage.links import without_links
+    from demheat.damage.solver import solve
+
+__all__ = ["Disc", "Rectangle", "cracked", "debonded", "solve", "without_links"]
+
+HOMES = {
+    "demheat.damage.cracks": ("Disc", "Rectangle", "cracked"),
+    "demheat.damage.inclusions": ("debonded",),
+    "demheat.damage.links": ("without_links",),
+    "demheat.damage.solver": ("solve",),
 }
-__all__ = list(_HOMES)  # noqa: PLE0605, found by `__getattr__`
-
-
-def __getattr__(name):
-    if name in _HOMES:
-        return getattr(import_module(f"demheat.damage.{_HOMES[name]}"), name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

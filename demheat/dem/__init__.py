@@ -1,8 +1,14 @@
 """The discrete element method: a packing, its network of conductances, and the field they give."""
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import CUT, PARTICLES, UNTURNED, Errors, Method, Orders
 
-__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
+if TYPE_CHECKING:
+    from demheat.dem.solver import evolve, solve, solve_axes
+
+__all__ = ["evolve", "solve", "solve_axes"]
 
 REBUILT = {"samples": "the flux of a particle is rebuilt from the heat of its links"}
 MEAN = {
@@ -87,19 +93,5 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from demheat.dem.solver import solve
-
-        return solve
-    if name == "solve_axes":
-        from demheat.dem.solver import solve_axes
-
-        return solve_axes
-    if name == "evolve":
-        from demheat.dem.solver import evolve
-
-        return evolve
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, {"demheat.dem.solver": ("evolve", "solve", "solve_axes")})

@@ -5,13 +5,14 @@ rank makes its slab of the body and nothing else: particles, twins, cells, rows.
 manual.
 """
 
-__all__ = ["solve"]  # noqa: F822, found by `__getattr__`
+from typing import TYPE_CHECKING
 
+from demheat.lazy import lazy_names
 
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from demheat.mpi.solver import solve
+if TYPE_CHECKING:
+    from demheat.mpi.solver import solve
 
-        return solve
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = ["solve"]
+
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, {"demheat.mpi.solver": ("solve",)})

@@ -11,14 +11,13 @@ import inspect
 import sys
 import traceback
 import warnings
-from importlib import import_module
 from importlib.util import find_spec
 
 import numpy as np
 
 from demheat import ranks
 from demheat.commands.options import Parser
-from demheat.declared import found, path_of
+from demheat.declared import found, load, path_of
 from demheat.files import read
 from demheat.files.source import nearest
 from demheat.mpi.engines import world
@@ -77,12 +76,14 @@ def _run(options, comm):
 def _solver(name):
     """The module that solves by a method on ranks, and the knobs that the method fixes."""
     if name == "dem":
-        return import_module("demheat.mpi.solver"), {}
+        from demheat.mpi import solver
+
+        return solver, {}
     if name not in found():
         raise ValueError(f"--method {name}: no such method{nearest(name, found()) or f'; on ranks are {_on_ranks()}'}")
     if not _has_ranks(name):
         raise NotImplementedError(f"--method {name}: not on ranks, as are {_on_ranks()}; demheat solve runs it")
-    return import_module(f"{path_of(found()[name].module)}.ranks"), dict(found()[name].knobs)
+    return load(found()[name].module, "ranks"), dict(found()[name].knobs)
 
 
 def _has_ranks(name):

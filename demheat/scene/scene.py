@@ -9,7 +9,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from importlib import import_module
+from typing import ClassVar
 
 import numpy as np
 
@@ -99,6 +99,8 @@ class Scene:
     sources: tuple[UniformSource | MovingCylinder, ...] = ()
     domain: str = "box"
     image: Image | None = None
+    # Given by the package's front: a scene knows nothing of those who draw it.
+    plot: ClassVar[Callable[..., object]]
 
     def __post_init__(self):
         size = vector("Scene.size", self.size)
@@ -298,17 +300,6 @@ class Scene:
             return self
         walls = {name: driven(load, load_at(name, load, time)) for name, load in self.walls.items()}
         return replace(self, walls=walls)
-
-    def plot(self, *, pixels: int = 241):
-        """Three slices through the middle, coloured by conductivity, as a matplotlib Figure.
-
-        Parameters
-        ----------
-        pixels : int
-            Along the longer side.
-        """
-        # By name: what is described knows nothing of those who draw it.
-        return import_module("demheat.pictures").of_scene(self, pixels=pixels)
 
     def _repr_html_(self) -> str:
         """A short table for notebooks."""

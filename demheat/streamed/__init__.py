@@ -4,13 +4,14 @@
 memory; networks go into a folder, and the matrix is mapped from it while its equations are solved.
 """
 
-__all__ = ["solve"]  # noqa: F822, found by `__getattr__`
+from typing import TYPE_CHECKING
 
+from demheat.lazy import lazy_names
 
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from demheat.streamed.solver import solve
+if TYPE_CHECKING:
+    from demheat.streamed.solver import solve
 
-        return solve
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = ["solve"]
+
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, {"demheat.streamed.solver": ("solve",)})

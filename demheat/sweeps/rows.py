@@ -6,7 +6,6 @@ import time
 from collections.abc import Callable, Mapping
 from datetime import datetime, timezone
 from functools import singledispatch
-from importlib import import_module
 from numbers import Real
 
 import numpy as np
@@ -16,6 +15,7 @@ from demheat.field import Field
 from demheat.machine import host, machine
 from demheat.process_state import cpu_seconds
 from demheat.scene.inputs import one_line, shown
+from demheat.version import __version__
 
 # Column of a file that finds a row again; what every row ends with.
 CASE = "case"
@@ -43,7 +43,7 @@ def failed(case: Mapping, error: str) -> dict:
 def origin() -> dict:
     """When, where and by which version of the package a row is made."""
     now = datetime.now(timezone.utc).isoformat(timespec="seconds")
-    return {"when": now, "machine": machine(), "host": host(), "version": import_module("demheat").__version__}
+    return {"when": now, "machine": machine(), "host": host(), "version": __version__}
 
 
 @singledispatch

@@ -4,6 +4,9 @@ Two-phase functions take (k_matrix, k_inclusion, fraction), fraction that of the
 any unit of conductivity.
 """
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import Errors, Method
 from references.bounds.formulas import (
     agari_uno,
@@ -20,6 +23,9 @@ from references.bounds.formulas import (
     zeta2_hard_spheres,
 )
 
+if TYPE_CHECKING:
+    from references.bounds.scenes import estimate
+
 __all__ = [
     "agari_uno",
     "bruggeman",
@@ -34,7 +40,7 @@ __all__ = [
     "torquato",
     "voigt",
     "zeta2_hard_spheres",
-]  # noqa: F822, found by `__getattr__`
+]
 
 FORMULA = {
     "role": "beside",
@@ -61,11 +67,5 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "estimate":
-        from references.bounds.scenes import estimate
-
-        return estimate
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, {"references.bounds.scenes": ("estimate",)})

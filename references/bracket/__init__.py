@@ -5,17 +5,20 @@ Thomson's the energy of any balanced flux bounds it from below. Both are worked 
 are pushed to that side of the true ones which keeps the bound.
 """
 
-from importlib import import_module
+from typing import TYPE_CHECKING
 
-__all__ = ["Bracket", "Tensor", "solve", "solve_tensor", "voxels"]  # noqa: F822, found by `__getattr__`
+from demheat.lazy import lazy_names
+from references.bracket import voxels
 
+if TYPE_CHECKING:
+    from references.bracket.solver import Bracket, solve
+    from references.bracket.tensor import Tensor, solve_tensor
 
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "voxels":
-        return import_module("references.bracket.voxels")
-    if name in __all__:
-        from references.bracket import solver, tensor
+__all__ = ["Bracket", "Tensor", "solve", "solve_tensor", "voxels"]
 
-        return getattr(tensor if "ensor" in name else solver, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+HOMES = {
+    "references.bracket.solver": ("Bracket", "solve"),
+    "references.bracket.tensor": ("Tensor", "solve_tensor"),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

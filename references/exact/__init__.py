@@ -1,8 +1,15 @@
 """Exact solutions: closed forms, cubic arrays by Rayleigh's method, series in time."""
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import Method
 
-__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
+if TYPE_CHECKING:
+    from references.exact.series import evolve
+    from references.exact.solver import solve, solve_axes
+
+__all__ = ["evolve", "solve", "solve_axes"]
 
 METHODS = (
     Method(
@@ -19,19 +26,9 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from references.exact.solver import solve
-
-        return solve
-    if name == "solve_axes":
-        from references.exact.solver import solve_axes
-
-        return solve_axes
-    if name == "evolve":
-        from references.exact.series import evolve
-
-        return evolve
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+HOMES = {
+    "references.exact.solver": ("solve", "solve_axes"),
+    "references.exact.series": ("evolve",),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

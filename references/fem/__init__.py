@@ -4,9 +4,16 @@ The only home of scikit-fem. The mesh is gmsh's, the equations are assembled in 
 that of the matrix) and solved by conjugate gradients with a multigrid preconditioner.
 """
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import OVERSHOOT, SIZE, UNTURNED, Errors, Method, Orders
 
-__all__ = ["evolve", "solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
+if TYPE_CHECKING:
+    from references.fem.solver import solve, solve_axes
+    from references.fem.transient import evolve
+
+__all__ = ["evolve", "solve", "solve_axes"]
 
 SIZED = {"resolution": SIZE, "small": 1 / 4, "tight": {"tolerance": 1e-11}, "exceptions": UNTURNED | OVERSHOOT}
 # Elements: conductivity is an energy, twice the flux's order p; temperature p + 1. From a tenth of the cube on elements
@@ -70,19 +77,9 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from references.fem.solver import solve
-
-        return solve
-    if name == "solve_axes":
-        from references.fem.solver import solve_axes
-
-        return solve_axes
-    if name == "evolve":
-        from references.fem.transient import evolve
-
-        return evolve
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+HOMES = {
+    "references.fem.solver": ("solve", "solve_axes"),
+    "references.fem.transient": ("evolve",),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

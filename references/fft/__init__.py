@@ -3,9 +3,15 @@
 The only home of pyFFTW.
 """
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import CUT, OVERSHOOT, VOXELS, Errors, Method, Orders
 
-__all__ = ["solve", "solve_axes"]  # noqa: F822, found by `__getattr__`
+if TYPE_CHECKING:
+    from references.fft.solver import solve, solve_axes
+
+__all__ = ["solve", "solve_axes"]
 
 SIZED = {"resolution": VOXELS, "small": 16, "coarse": 24, "tight": {"tolerance": 1e-9, "threads": 1}}
 SERIES = {"potential": "its temperature is a truncated Fourier series"}
@@ -83,15 +89,5 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from references.fft.solver import solve
-
-        return solve
-    if name == "solve_axes":
-        from references.fft.solver import solve_axes
-
-        return solve_axes
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, {"references.fft.solver": ("solve", "solve_axes")})

@@ -1,8 +1,15 @@
 """Rayleigh's multipole method for any number of disjoint spheres in a periodic cell or between isothermal walls."""
 
+from typing import TYPE_CHECKING
+
+from demheat.lazy import lazy_names
 from demheat.method import DEGREE, Errors, Method, Orders
 
-__all__ = ["solve", "solve_axes", "zeta2"]  # noqa: F822, found by `__getattr__`
+if TYPE_CHECKING:
+    from references.multipole.solver import solve, solve_axes
+    from references.multipole.third_order import zeta2
+
+__all__ = ["solve", "solve_axes", "zeta2"]
 
 METHODS = (
     Method(
@@ -26,19 +33,9 @@ METHODS = (
     ),
 )
 
-
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name == "solve":
-        from references.multipole.solver import solve
-
-        return solve
-    if name == "solve_axes":
-        from references.multipole.solver import solve_axes
-
-        return solve_axes
-    if name == "zeta2":
-        from references.multipole.third_order import zeta2
-
-        return zeta2
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+HOMES = {
+    "references.multipole.solver": ("solve", "solve_axes"),
+    "references.multipole.third_order": ("zeta2",),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

@@ -1,8 +1,5 @@
 """Old names that users have met still work, and say what they are called now."""
 
-import importlib
-import sys
-
 import pytest
 
 import demheat
@@ -25,17 +22,8 @@ def test_an_old_keyword_beside_its_new_one_is_refused():
 
 
 def test_old_classes_and_functions():
-    with pytest.warns(DeprecationWarning, match="demheat.Heating is now demheat.UniformSource"):
-        assert demheat.Heating is demheat.UniformSource
     with pytest.warns(DeprecationWarning, match="tile is now replicate"):
         assert domain.tile is domain.replicate
-
-
-def test_old_modules():
-    sys.modules.pop("demheat.halo", None)
-    with pytest.warns(DeprecationWarning, match="demheat.halo is now demheat.sampling.halo"):
-        old = importlib.import_module("demheat.halo")
-    assert old.halo_flux is importlib.import_module("demheat.sampling.halo").halo_flux
 
 
 def test_unknown_names_are_no_attributes():

@@ -41,6 +41,7 @@ NO_ROWS = {
     "demheat/scene/edges.py": REFUSED,
     "demheat/commands": READ,
     "demheat/files": READ,
+    "demheat/io": READ,
     "demheat/packing/io": READ,
     "demheat/grains/contact_files.py": READ,
     "demheat/terminal.py": READ,

@@ -8,14 +8,21 @@ sides with trigonometric polynomials; those are spread over the whole cell and r
 these are exact voxel by voxel and fall wherever voxels do.
 """
 
-__all__ = ["bounds", "bounds_tensor", "solve", "solve_tensor", "upper_bound"]  # noqa: F822, found by `__getattr__`
+from typing import TYPE_CHECKING
 
+from demheat.lazy import lazy_names
 
-def __getattr__(name):
-    # What is heavy loads with the first call.
-    if name in __all__:
-        from references.bracket.voxels import image, solver, tensor
+if TYPE_CHECKING:
+    from references.bracket.voxels.image import bounds, upper_bound
+    from references.bracket.voxels.solver import solve
+    from references.bracket.voxels.tensor import bounds_tensor, solve_tensor
 
-        home = tensor if "tensor" in name else solver if name == "solve" else image
-        return getattr(home, name)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+__all__ = ["bounds", "bounds_tensor", "solve", "solve_tensor", "upper_bound"]
+
+HOMES = {
+    "references.bracket.voxels.image": ("bounds", "upper_bound"),
+    "references.bracket.voxels.solver": ("solve",),
+    "references.bracket.voxels.tensor": ("bounds_tensor", "solve_tensor"),
+}
+# What is heavy loads with the first use.
+__getattr__ = lazy_names(__name__, HOMES)

@@ -34,7 +34,16 @@ BYTES = 120
 
 
 def write(field: Field, path, *, cells: int = 64) -> None:
-    """Write a field into a file; an interrupted write leaves no file, and an old one as it was."""
+    """Write into a file for ParaView (.vtp, .vti, .vtu) or NumPy (.npz), see `demheat.io.fields`.
+
+    An interrupted write leaves no file, and an old one as it was.
+
+    Parameters
+    ----------
+    path : path
+    cells : int
+        Of a .vti, along the longest side, where the field has no voxels of its own.
+    """
     check_field(field)
     path = check_target(path, mesh=getattr(field, "elements", None) is not None)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
