@@ -38,7 +38,7 @@ from demheat.scene import (
 from demheat.version import __version__ as __version__
 
 if TYPE_CHECKING:
-    from demheat.cheapest import effective, recommend
+    from demheat.cheapest.effective import effective, recommend
     from demheat.dem import evolve, solve
     from demheat.sweeps import sweep
 
