@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from demheat.field import Field, check_field
+from demheat.field import Field
 from demheat.gate import check_tensor
 from demheat.scene import Scene, check_scene
 
@@ -93,7 +93,8 @@ def conductivity_tensor(fields: Sequence[Field]) -> np.ndarray:
     if not isinstance(fields, Sequence) or len(fields) != 3:
         raise ValueError(f"fields = {fields!r}: must be three, under loads along x, y and z")
     for number, field in enumerate(fields):
-        check_field(field, f"fields[{number}]")
+        if not isinstance(field, Field):
+            raise ValueError(f"fields[{number}] = {field!r}: must be a Field, as methods return it")
         if not _is_load(field.scene, fields[0].scene, number):
             raise ValueError(
                 f"fields[{number}]: must be of the body of fields[0], under a load along {'xyz'[number]} alone, as "
@@ -104,8 +105,7 @@ def conductivity_tensor(fields: Sequence[Field]) -> np.ndarray:
     # The sum takes the sign off a zero.
     found = np.stack([-field.mean_flux / field.scene.gradient[j] for j, field in enumerate(fields)], axis=1) + 0.0
     first = fields[0]
-    if isinstance(first, Field):
-        check_tensor(first.scene, found, first.fractions, first.stats, first.slack)
+    check_tensor(first.scene, found, first.fractions, first.stats, first.slack)
     return found
 
 

@@ -110,6 +110,7 @@ ENGINE = {
         "demheat.scene",
         "demheat.limits",
         "demheat.packing.dispersion",
+        "demheat.gallery",
     ),
     "demheat.network": (
         "demheat.scene",

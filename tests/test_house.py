@@ -19,6 +19,20 @@ TREES = {
 KERNELS = {path: tree for path, tree in TREES.items() if path.stem.endswith("kernels")}
 OTHERS = {path: tree for path, tree in TREES.items() if path not in KERNELS}
 MOST_ARGUMENTS, MOST_LINES = 8, 410
+# Functions whose keywords are not spelled yet.
+STILL_HIDDEN = {
+    "demheat/damage/solver.py: solve",
+    "demheat/dem/solver.py: evolve",
+    "demheat/dem/solver.py: solve",
+    "demheat/dem/solver.py: solve_axes",
+    "demheat/laws.py: short",
+    "demheat/packing/cache.py: grown",
+    "demheat/packing/cache.py: relaxed",
+    "demheat/packing/dispersion.py: dispersion",
+    "demheat/packing/dispersion.py: dispersion_scene",
+    "demheat/packing/lsa.py: lsa",
+    "demheat/packing/relax.py: relax",
+}
 
 
 def compiled(function):
@@ -35,9 +49,10 @@ def public(tree):
 
 
 def arguments(function):
+    """What a caller must think of: all but knobs, which are asked for by name and have a default."""
     parts = function.args
-    names = [each.arg for each in (*parts.posonlyargs, *parts.args, *parts.kwonlyargs)]
-    return [name for name in names if name not in ("self", "cls")]
+    must = [each for each, default in zip(parts.kwonlyargs, parts.kw_defaults, strict=True) if default is None]
+    return [each.arg for each in (*parts.posonlyargs, *parts.args, *must) if each.arg not in ("self", "cls")]
 
 
 def twins():
@@ -98,6 +113,18 @@ def test_python_calls_no_kernel_that_has_no_way_in():
 def test_few_arguments(path):
     functions = (node for node in ast.walk(OTHERS[path]) if isinstance(node, ast.FunctionDef))
     assert [f.name for f in functions if len(arguments(f)) > MOST_ARGUMENTS] == []
+
+
+def test_knobs_are_spelled():
+    """A reader, an editor and a type checker see what a function takes: none takes keywords to pass them on."""
+    hidden = {
+        f"{path}: {function.name}"
+        for path, tree in TREES.items()
+        for function in public(tree)
+        # The keywords of a study's `run` are those of its cases.
+        if function.args.kwarg and path.parts[0] != "studies"
+    }
+    assert hidden == STILL_HIDDEN
 
 
 def shown_by_the_manual():

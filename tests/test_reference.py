@@ -41,11 +41,7 @@ def test_what_is_public_is_in_it():
 @pytest.mark.parametrize("home", ["demheat.gallery", "references.bounds"])
 def test_all_of_a_module_is_in_it(home):
     module = importlib.import_module(home)
-    public = getattr(module, "__all__", None) or [
-        name
-        for name, thing in vars(module).items()
-        if callable(thing) and getattr(thing, "__module__", "") == home and not name.startswith("_")
-    ]
+    public = [name for name in module.__all__ if callable(getattr(module, name))]
     assert {f"{home}.{name}" for name in public} <= set(ENTRIES)
 
 

@@ -21,12 +21,23 @@ def capacities(network, scene):
     return per_volume[network.phase] * network.volumes
 
 
-def evolve(network, scene, times, *, power=None, transits=(), held_centers=None, accuracy=1e-3, **knobs):
+def evolve(
+    network,
+    scene,
+    times,
+    *,
+    power=None,
+    transits=(),
+    held_centers=None,
+    integrator="auto",
+    accuracy=1e-3,
+    step=None,
+):
     """Temperatures, wall temperatures and wall heat of a network at the asked times."""
     start, capacity = initial_at(scene, network.centers), capacities(network, scene)
     system = semi_discrete(network, scene, capacity, power=power, held_centers=held_centers, level=float(start.mean()))
     pace = pace_of(changing_loads(scene), transits, float(times[-1]), accuracy)
-    for state in march(system, start, times, accuracy=accuracy, pace=pace, **knobs):
+    for state in march(system, start, times, integrator=integrator, accuracy=accuracy, step=step, pace=pace):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
 
 

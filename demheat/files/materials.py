@@ -25,7 +25,7 @@ def made_material(table: Table) -> Material:
     conductivity = _conductivity(table)
     numbers = {name: table.number(name, MATERIAL[name]) for name in ("density", "heat_capacity")}
     dependence = table.rows("dependence", (TEMPERATURE, PLAIN), "pairs [temperature, factor], as [[20, 1], [100, 0.8]]")
-    return table.made(Material, conductivity=conductivity, dependence=dependence, **numbers)
+    return table.made(Material, {"conductivity": conductivity, "dependence": dependence} | numbers)
 
 
 def _conductivity(table):

@@ -251,7 +251,7 @@ def _parts(table, key, kinds, materials, material=None):
         values["material"] = _material(table, "material", materials)
     if kinds is MEMBERS:
         values["material"] = material
-    return table.made(kind, **values)
+    return table.made(kind, values)
 
 
 def _axis(table, name):
@@ -289,7 +289,7 @@ def _load(table):
         return _flux(table, values["flux"])
     if kind is Radiation:
         _check_kelvin(table)
-    return table.made(kind, **values)
+    return table.made(kind, values)
 
 
 def _check_kelvin(table):

@@ -116,8 +116,8 @@ class Table:
         below = () if key is None else key if isinstance(key, tuple) else (key,)
         return self.source.error((*self.path, *below), what)
 
-    def made(self, kind, **arguments):
-        """Make an object of what was read; what it refuses is said of the key that it comes from."""
+    def made(self, kind, arguments: Mapping):
+        """Make an object by its keywords that were read; what it refuses is said of the key that it comes from."""
         try:
             return kind(**{name: value for name, value in arguments.items() if value is not None})
         except ValueError as error:

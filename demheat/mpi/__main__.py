@@ -56,7 +56,8 @@ def _run(options, comm):
     knobs = knobs | _asked(options, solver)
     scene = read(options.scene)
     say = print if comm.rank == 0 else _silent
-    say(f"{options.scene}: {solver.outlook(scene, **knobs)}", flush=True)
+    size = {name: knobs[name] for name in inspect.signature(solver.outlook).parameters if name in knobs}
+    say(f"{options.scene}: {solver.outlook(scene, **size)}", flush=True)
     field = solver.solve(scene, **knobs)
     _say_answer(field, say)
     if options.at:

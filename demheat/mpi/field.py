@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 
 import numpy as np
@@ -16,7 +17,9 @@ from demheat.tiles.slabs import Slabs
 from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
-def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, **more) -> Field:
+def field_of(
+    scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, *, estimator: Callable, stats: dict
+) -> Field:
     """The Field of a distributed solution: every rank must ask for the same at the same time."""
     network, own = own_of(cells, solution)
     sums = Sums(*(_sum(comm, each) for each in sums_of(scene, network, own)))
@@ -29,7 +32,8 @@ def field_of(scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm,
         temperature_at=lambda points: _at(points, lambda: at()[0], slope=solution.mean_gradient, **where),
         flux_at=lambda points: _at(points, lambda: at()[1], slope=None, **where),
         through=lambda axis, position: float(_sum(comm, heat_through(network, own, axis, position))),
-        **more,
+        estimator=estimator,
+        stats=stats,
     )
 
 

@@ -58,7 +58,7 @@ def solve(
         return _answer(scene, law, wanted, comm, tolerance=tolerance, options=options)
 
 
-def outlook(scene: Scene, *, particles: int = 1_000_000, **_) -> str:
+def outlook(scene: Scene, *, particles: int = 1_000_000) -> str:
     """What a solve will take on this machine, in words."""
     return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
 

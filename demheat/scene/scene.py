@@ -122,14 +122,22 @@ class Scene:
         check_dependence(self)
 
     @classmethod
-    def of_image(cls, image: Image, **load: object) -> Scene:
+    def of_image(
+        cls,
+        image: Image,
+        *,
+        gradient: tuple[float, float, float] | None = None,
+        walls: Mapping[str, float | Callable[[float], float] | Flux | Convection | Radiation] | None = None,
+        initial: float | Callable | None = None,
+        sources: tuple[UniformSource | MovingCylinder, ...] = (),
+    ) -> Scene:
         """The scene of an image.
 
         Parameters
         ----------
         image : Image
-        **load
-            `gradient`, `walls`, `initial` or `sources`, as those of `Scene`.
+        gradient, walls, initial, sources
+            As those of `Scene`.
 
         Raises
         ------
@@ -138,6 +146,7 @@ class Scene:
         """
         if not isinstance(image, Image):
             raise ValueError(f"image of type {type(image).__name__}: must be an Image")
+        load = {"gradient": gradient, "walls": walls, "initial": initial, "sources": sources}
         return cls(image.size, image.phases[0], image=image, **load)
 
     @property

@@ -17,7 +17,7 @@ from demheat.tiles.places import NOBODY
 from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
-def field_of(parts: Parts, solution: Solution, **more) -> Field:
+def field_of(parts: Parts, solution: Solution, *, estimator: Callable, stats: dict) -> Field:
     """The Field of a body in slabs."""
     solved = Solved(parts, solution)
     sums = [sums_of(parts.scene, *own_of(*each)) for each in solved]
@@ -28,7 +28,8 @@ def field_of(parts: Parts, solution: Solution, **more) -> Field:
         temperature_at=lambda points: solved.at(points, 0, slope=solution.mean_gradient),
         flux_at=lambda points: solved.at(points, 1),
         through=solved.heat_through,
-        **more,
+        estimator=estimator,
+        stats=stats,
     )
 
 

@@ -24,11 +24,12 @@ def checked_phases(conductivities, fractions):
     return k, p
 
 
-def checked_pair(k_matrix, k_inclusion, fraction, **more):
+def checked_pair(k_matrix, k_inclusion, fraction, *, zeta2=None):
     """Arguments of a two-phase function as arrays, or ValueError."""
     given = {name: _conductivity(name, k) for name, k in (("k_matrix", k_matrix), ("k_inclusion", k_inclusion))}
     given["fraction"] = checked_fraction("fraction", fraction)
-    given |= {name: checked_fraction(name, value) for name, value in more.items()}
+    if zeta2 is not None:
+        given["zeta2"] = checked_fraction("zeta2", zeta2)
     return _alike(given)
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.gate import check_bracket
 from demheat.limits import free_memory
 from demheat.process_state import cpu_seconds, one_blas_thread
@@ -64,8 +64,14 @@ class Bracket:
         return 0.0 if self.upper == 0 else math.inf
 
 
-@timed
-def solve(scene: Scene, *, size: float | None = None, width: float | None = None, tolerance: float = 1e-10) -> Bracket:
+def solve(
+    scene: Scene,
+    *,
+    size: float | None = None,
+    width: float | None = None,
+    tolerance: float = 1e-10,
+    seconds: float | None = None,
+) -> Bracket:
     """Bound the conductivity of a scene along its load from both sides.
 
     The temperature is quadratic, the flux linear in each element, which lets both bounds close in like the third to
@@ -83,6 +89,8 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
     tolerance : float
         Largest relative residual of both systems of equations, scaled to a unit diagonal. What it leaves of the
         flux unbalanced is counted against the lower bound.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -107,15 +115,16 @@ def solve(scene: Scene, *, size: float | None = None, width: float | None = None
     >>> found.lower < 42.6403 < found.upper, found.width < 0.02
     (True, True)
     """
-    if width is not None:
-        finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
-    check(scene, tolerance)
-    scene, drop, power = _unit_load(scene)
-    # The order of BLAS's sums, and so the last bits, is that of its threads.
-    with one_blas_thread():
-        found = _narrowed(scene, size, width, tolerance, drop, power)
-    check_bracket(scene, found.lower, found.upper)
-    return found
+    with budget(seconds):
+        if width is not None:
+            finite("width", width, "a number > 0, as 1e-3", lambda v: v > 0)
+        check(scene, tolerance)
+        scene, drop, power = _unit_load(scene)
+        # The order of BLAS's sums, and so the last bits, is that of its threads.
+        with one_blas_thread():
+            found = _narrowed(scene, size, width, tolerance, drop, power)
+        check_bracket(scene, found.lower, found.upper)
+        return found
 
 
 def check(scene: Scene, tolerance: float, *, takes: tuple[str, ...] = ()) -> None:

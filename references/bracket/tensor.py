@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene
 from references.bracket.energies import flux_energies, temperature_energies
@@ -59,8 +59,9 @@ class Tensor:
         return self.middle + self.radius
 
 
-@timed
-def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 1e-10) -> Tensor:
+def solve_tensor(
+    scene: Scene, *, size: float | None = None, tolerance: float = 1e-10, seconds: float | None = None
+) -> Tensor:
     """Bound the conductivity tensor of a periodic cell.
 
     Parameters
@@ -69,6 +70,8 @@ def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 
         Spheres and layers in a periodic cell; its gradient does not matter.
     size, tolerance
         As those of `solve`.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -91,15 +94,18 @@ def solve_tensor(scene: Scene, *, size: float | None = None, tolerance: float = 
     >>> found.middle.diagonal().round(6), found.radius.max() < 1e-6
     (array([98.999981, 54.999981, 98.999981]), np.False_)
     """
-    check(scene, tolerance)
-    if not scene.periodic:
-        raise ValueError(f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead")
-    with one_blas_thread():
-        mesh = make(scene, size=size)
-        loads = [replace(scene, gradient=tuple(unit)) for unit in np.eye(3)]
-        least, greatest = _least(loads, mesh, tolerance), _greatest(loads, mesh, tolerance)
-    stats = {"size": mesh.stats["size"], "elements": len(mesh.cells)}
-    return Tensor(least * (1 - ROUNDING), greatest * (1 + ROUNDING), stats)
+    with budget(seconds):
+        check(scene, tolerance)
+        if not scene.periodic:
+            raise ValueError(
+                f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead"
+            )
+        with one_blas_thread():
+            mesh = make(scene, size=size)
+            loads = [replace(scene, gradient=tuple(unit)) for unit in np.eye(3)]
+            least, greatest = _least(loads, mesh, tolerance), _greatest(loads, mesh, tolerance)
+        stats = {"size": mesh.stats["size"], "elements": len(mesh.cells)}
+        return Tensor(least * (1 - ROUNDING), greatest * (1 + ROUNDING), stats)
 
 
 def _greatest(loads, mesh, tolerance):

@@ -60,7 +60,7 @@ def world():
     return _both()[0].COMM_WORLD
 
 
-def outlook(scene: Scene, *, order: int = 2, size: float | None = None, **_) -> str:
+def outlook(scene: Scene, *, order: int = 2, size: float | None = None) -> str:
     """What a solve will take on this machine, in words."""
     tetrahedra, bytes_needed = _tetrahedra(scene, size, order), needed(scene, order=order, size=size)
     return f"{tetrahedra:.2g} tetrahedra or more, {ranks.outlook(bytes_needed, world())}"

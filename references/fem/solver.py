@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.field import Field
 from demheat.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
@@ -30,9 +30,14 @@ ROUNDED, APART = 1e6, 1e-3
 GAP, FINE, STRONG = 2.0, 6.0, 12.0
 
 
-@timed
 def solve(
-    scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
+    scene: Scene,
+    *,
+    order: int = 2,
+    size: float | None = None,
+    curved: bool = True,
+    tolerance: float = 1e-9,
+    seconds: float | None = None,
 ) -> Field:
     """Solve a scene by finite elements.
 
@@ -52,6 +57,8 @@ def solve(
         Quadratic elements that follow the spheres; straight ones lose volume there.
     tolerance : float
         Largest relative residual of the equations, scaled to a unit diagonal.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -85,20 +92,27 @@ def solve(
     >>> print(f"{fem.solve(gallery.sphere_in_cube(5.0), size=0.012).conductivity:.2f}")  # exactly 42.640
     42.66
     """
-    check_scene(scene)
-    return _solved([scene], order, size, curved, tolerance)[0]
+    with budget(seconds):
+        check_scene(scene)
+        return _solved([scene], order, size, curved, tolerance)[0]
 
 
-@timed
 def solve_axes(
-    scene: Scene, *, order: int = 2, size: float | None = None, curved: bool = True, tolerance: float = 1e-9
+    scene: Scene,
+    *,
+    order: int = 2,
+    size: float | None = None,
+    curved: bool = True,
+    tolerance: float = 1e-9,
+    seconds: float | None = None,
 ) -> tuple[Field, Field, Field]:
     """Solve a scene by finite elements for loads along x, y and z: on one mesh, with one matrix where there is no pore.
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`; multigrid is set up once in
     a periodic cell, and between walls for each load, which holds other nodes.
     """
-    return tuple(_solved(axis_loads(scene), order, size, curved, tolerance))
+    with budget(seconds):
+        return tuple(_solved(axis_loads(scene), order, size, curved, tolerance))
 
 
 def _solved(scenes, order, size, curved, tolerance):
@@ -130,7 +144,7 @@ def warn_of_gaps(scene, size) -> None:
         warnings.warn(
             f"gaps beside inclusions {near[:8]}{' and more' if len(near) > 8 else ''} have an element or so across at "
             f"edges of {size:.3g} m: linear ones may be off by a tenth; use smaller ones or order=2",
-            stacklevel=5,
+            stacklevel=4,
         )
 
 

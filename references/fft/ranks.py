@@ -78,7 +78,7 @@ def world():
     return ranks.found("mpi4py_fft", instead="fft.solve")[0].COMM_WORLD
 
 
-def outlook(scene: Scene, *, voxels=None, **_) -> str:
+def outlook(scene: Scene, *, voxels=None) -> str:
     """What a solve will take on this machine, in words."""
     grid = grid_shape(scene, voxels, USUAL)
     return f"{' x '.join(map(str, grid))} voxels, {ranks.outlook(needed(scene, grid), world())}"

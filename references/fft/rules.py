@@ -90,14 +90,14 @@ def warn_of_thin(scene, rule, shape) -> None:
         warnings.warn(
             f"inclusions {_listed(thin)} are coats thinner than a voxel of "
             f"{voxel:.3g} m, down to {left[thin].min():.3g} m: {what}; use more voxels",
-            stacklevel=5,
+            stacklevel=4,
         )
     small = smaller(scene, rule, shape)
     if len(small):
         warnings.warn(
             f"inclusions {_listed(small)} are smaller than a voxel of {voxel:.3g} m: rule {rule!r} may "
             f"{MISSED[rule]}; use more voxels",
-            stacklevel=5,
+            stacklevel=4,
         )
     _warn_of_gaps(scene, rule, shape, voxel)
 
@@ -129,7 +129,7 @@ def _warn_of_gaps(scene, rule, shape, voxel):
         warnings.warn(
             f"gaps beside inclusions {_listed(np.flatnonzero(near))} are not wide for voxels of {voxel:.3g} m: between "
             "good conductors, or bad ones, errors may be tens of percents; use more voxels",
-            stacklevel=6,
+            stacklevel=5,
         )
 
 

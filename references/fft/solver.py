@@ -8,7 +8,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.field import Field
 from demheat.limits import check_memory
 from demheat.progress import announced
@@ -35,7 +35,6 @@ UNSAID = ("max_iterations", "threads")
 SOLVERS = {"cg": cg.solve, "eyre-milton": eyre_milton.solve}
 
 
-@timed
 def solve(
     scene: Scene,
     *,
@@ -46,6 +45,7 @@ def solve(
     threads: int | None = 2,
     tolerance: float | None = None,
     max_iterations: int = 5000,
+    seconds: float | None = None,
 ) -> Field:
     """Solve a periodic cell, or a box between two opposite isothermal walls with four insulated sides.
 
@@ -75,6 +75,8 @@ def solve(
         From the rounding of the precision, 2.2e-16 or 1.2e-7, up; near it nothing may converge.
         The conductivity is then within 1e-6 of the grid's own limit; for that alone 1e-3 suffices with "cg".
     max_iterations : int
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -105,12 +107,12 @@ def solve(
     >>> print(f"{fft.solve(gallery.sphere_in_cube(5.0), voxels=32).conductivity:.2f}")  # exactly 42.640
     42.65
     """
-    knobs = checked(scheme, rule, precision, tolerance, max_iterations, threads)
-    check_load(scene)
-    return _solved([scene], voxels, knobs)[0]
+    with budget(seconds):
+        knobs = checked(scheme, rule, precision, tolerance, max_iterations, threads)
+        check_load(scene)
+        return _solved([scene], voxels, knobs)[0]
 
 
-@timed
 def solve_axes(
     scene: Scene,
     *,
@@ -121,16 +123,18 @@ def solve_axes(
     threads: int | None = 2,
     tolerance: float | None = None,
     max_iterations: int = 5000,
+    seconds: float | None = None,
 ) -> tuple[Field, Field, Field]:
     """Solve a scene on voxels for loads along x, y and z: painted once, and in a periodic cell planned once.
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, between walls to the rounding
     of the voxels' laminates.
     """
-    knobs = checked(scheme, rule, precision, tolerance, max_iterations, threads)
-    loads = axis_loads(scene)
-    check_load(scene)
-    return tuple(_solved(loads, voxels, knobs))
+    with budget(seconds):
+        knobs = checked(scheme, rule, precision, tolerance, max_iterations, threads)
+        loads = axis_loads(scene)
+        check_load(scene)
+        return tuple(_solved(loads, voxels, knobs))
 
 
 def _solved(scenes, voxels, knobs):

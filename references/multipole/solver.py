@@ -14,7 +14,7 @@ import math
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.error import known
 from demheat.field import Field, Samples
 from demheat.process_state import one_blas_thread
@@ -30,7 +30,6 @@ from references.multipole.truncation import converged, field_truncation, truncat
 from references.threads import MOST_THREADS
 
 
-@timed
 def solve(
     scene: Scene,
     *,
@@ -39,6 +38,7 @@ def solve(
     tolerance: float | None = None,
     points_per_axis: int = 24,
     threads: int = 1,
+    seconds: float | None = None,
 ) -> Field:
     """Solve a scene of disjoint spheres: a periodic cell, or a box between two isothermal walls, else insulated.
 
@@ -57,6 +57,8 @@ def solve(
     points_per_axis : int
         The samples are the midpoints of so many equal cells along each axis.
     threads : int
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -83,14 +85,14 @@ def solve(
     >>> print(f"{multipole.solve(gallery.sphere_in_cube(5.0)).conductivity:.3f}")  # exactly 42.640
     42.640
     """
-    _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
-    check_scene(scene)
-    scene.require(steady=True, takes=("resistance",))
-    wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
-    return _solved(scene, points_per_axis, wanted)
+    with budget(seconds):
+        _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
+        check_scene(scene)
+        scene.require(steady=True, takes=("resistance",))
+        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
+        return _solved(scene, points_per_axis, wanted)
 
 
-@timed
 def solve_axes(
     scene: Scene,
     *,
@@ -99,15 +101,17 @@ def solve_axes(
     tolerance: float | None = None,
     points_per_axis: int = 24,
     threads: int = 1,
+    seconds: float | None = None,
 ) -> tuple[Field, Field, Field]:
     """Solve a scene of disjoint spheres for loads along x, y and z; what they make at each other is summed once.
 
     The fields are those that `solve` finds for the scenes of `demheat.tensor.axis_loads`, to the residual of the linear
     system: sums for a higher degree than one load needs are those of all.
     """
-    _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
-    wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads, "kept": {}}
-    return tuple(_solved(load, points_per_axis, wanted) for load in axis_loads(scene))
+    with budget(seconds):
+        _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
+        wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads, "kept": {}}
+        return tuple(_solved(load, points_per_axis, wanted) for load in axis_loads(scene))
 
 
 def _solved(scene, points_per_axis, wanted):

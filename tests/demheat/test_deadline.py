@@ -1,6 +1,5 @@
 """Budgets of time: who looks at the clock, where, and what is left when one is over."""
 
-import inspect
 import threading
 import time
 from importlib import import_module
@@ -83,16 +82,6 @@ def test_seconds_of_every_solve(name):
     with pytest.raises(ValueError, match="seconds = -1.0: must be a finite number > 0, or None"):
         TIMED[name](-1.0)
     TIMED[name](1000.0)
-
-
-def test_a_timed_function_keeps_its_name_and_says_what_it_takes():
-    signature = inspect.signature(fft.solve)
-    assert fft.solve.__name__ == "solve" and list(signature.parameters)[-1] == "seconds"
-    assert list(inspect.signature(solve_axes).parameters)[-2:] == ["seconds", "knobs"]
-    for each in (fft.solve, solve_axes, bracket.solve):
-        # Once, and among the parameters.
-        before, _, after = inspect.getdoc(each).partition("seconds : float, s, optional\n    That it may take")
-        assert "Parameters\n---" in before and after.index("Returns\n---") < 100
 
 
 def test_a_warning_of_a_timed_function_is_of_the_line_that_called_it():

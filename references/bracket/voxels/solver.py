@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.gate import check_bracket
 from demheat.limits import check_memory
 from demheat.progress import stage
@@ -33,9 +33,13 @@ PAIR = "bounds on voxels know one pair of isothermal walls"
 PORES = "Fourier modes of a balanced flux fill pores; references.bracket.solve takes them"
 
 
-@timed
 def solve(
-    scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
+    scene: Scene,
+    *,
+    voxels: int | Sequence[int] | None = None,
+    tolerance: float = 1e-6,
+    threads: int | None = 2,
+    seconds: float | None = None,
 ) -> Bracket:
     """Bound the conductivity of a scene along its load from both sides, on voxels.
 
@@ -55,6 +59,8 @@ def solve(
         Of the energies at which iterations stop; it costs width, never certainty.
     threads : int or None
         None takes one per processor.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -76,12 +82,13 @@ def solve(
     >>> bool(found.lower < 42.6403 < found.upper)
     True
     """
-    effort = checked_effort(tolerance, threads)
-    above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
-    found = bracketed(above, below, load, effort)
-    stats = found.stats | {"cut": len(above.table)}
-    check_bracket(scene, found.lower, found.upper)
-    return Bracket(found.lower * max(1 - slack, 0.0), found.upper * (1 + slack), stats)
+    with budget(seconds):
+        effort = checked_effort(tolerance, threads)
+        above, below, load, slack = on_grid(scene, voxels, BYTES["lower"], tolerance)
+        found = bracketed(above, below, load, effort)
+        stats = found.stats | {"cut": len(above.table)}
+        check_bracket(scene, found.lower, found.upper)
+        return Bracket(found.lower * max(1 - slack, 0.0), found.upper * (1 + slack), stats)
 
 
 def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Cells, Cells, Load, float]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.scene import Scene
 from references.bracket.solver import ROUNDING
 from references.bracket.tensor import Tensor
@@ -40,16 +40,23 @@ def bounds_tensor(
     return _tensor(conducting(values), resisting(values), load, effort)
 
 
-@timed
 def solve_tensor(
-    scene: Scene, *, voxels: int | Sequence[int] | None = None, tolerance: float = 1e-6, threads: int | None = 2
+    scene: Scene,
+    *,
+    voxels: int | Sequence[int] | None = None,
+    tolerance: float = 1e-6,
+    threads: int | None = 2,
+    seconds: float | None = None,
 ) -> Tensor:
     """Bound the conductivity tensor of a periodic cell on voxels."""
-    effort = checked_effort(tolerance, threads)
-    above, below, load, slack = on_grid(scene, voxels, BYTES_OF_THREE, tolerance)
-    if not scene.periodic:
-        raise ValueError(f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead")
-    return _tensor(above, below, load, effort, slack)
+    with budget(seconds):
+        effort = checked_effort(tolerance, threads)
+        above, below, load, slack = on_grid(scene, voxels, BYTES_OF_THREE, tolerance)
+        if not scene.periodic:
+            raise ValueError(
+                f"Scene.walls = {scene.walls}: a tensor is that of a periodic cell; give a gradient instead"
+            )
+        return _tensor(above, below, load, effort, slack)
 
 
 def _tensor(above, below, load, effort, slack=0.0):

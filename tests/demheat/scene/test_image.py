@@ -128,7 +128,7 @@ LOAD = {"gradient": (1.0, 0.0, 0.0)}
         (lambda: Scene(IMAGE.size, Material(7.0), image=IMAGE, **LOAD), "must be those of the image"),
         (lambda: Scene(IMAGE.size, POOR, [Layer(0, 0, 0.5, GOOD)], image=IMAGE, **LOAD), "Scene.inclusions: with an"),
         (
-            lambda: Scene.of_image(CUBE, walls={"x-": 1.0}, initial=0.0, domain="sphere"),
+            lambda: Scene(CUBE.size, CUBE.phases[0], image=CUBE, walls={"x-": 1.0}, initial=0.0, domain="sphere"),
             "domain = 'sphere': with",
         ),
         (lambda: Scene.of_image(IMAGE), "neither given"),
