@@ -202,7 +202,7 @@ class Calibrated(_Contacts):
         to have particles away from walls.
     sparse : {"nearest", "keep", "drop"}
         Particles with fewer than 2 links: join each to its 2 nearest neighbours by surface distance; leave them (those
-        that touch nobody become islands without heat); or take out, again and again until none is left, particles with
+        that touch nobody are isolated, without heat); or take out, again and again until none is left, particles with
         fewer than 2 links (walls count as one) and all clusters but the largest.
     wall : {"center", "surface"}
         Where a wall temperature acts: in the centres of the particles that touch the wall, a radius inside the body, as

@@ -6,13 +6,13 @@ import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import steady_kernels as kernels
-from demheat.conduction.films import Films, films_of
+from demheat.conduction.robin import RobinWalls, robin_of
 from demheat.network.base import SIDES, Network
 from demheat.network.links_kernels import links_of, places_of
 
 
 class System(NamedTuple):
-    """A x = heat with A = diag(diagonal) - conductance; rows of islands are empty."""
+    """A x = heat with A = diag(diagonal) - conductance; rows of isolated components are empty."""
 
     network: Network
     diagonal: np.ndarray  # (n,) float array, W/K
@@ -21,10 +21,10 @@ class System(NamedTuple):
     ties: np.ndarray  # (w,) float array, W/K: Conductance to held walls and surroundings
     held: np.ndarray  # (w,) float array, K: Their temperature above the level
     level: float  # K: Temperatures are solved for relative to it, which spares digits
-    films: Films | None = None
+    robin: RobinWalls | None = None
 
 
-def system_of(network, scene, reached, films=None):
+def system_of(network, scene, reached, robin=None):
     """The equations of a network under a steady load."""
     n = len(network.volumes)
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
@@ -33,10 +33,10 @@ def system_of(network, scene, reached, films=None):
         received = np.empty(n)
         kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
         return System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
-    films = films_of(network, scene) if films is None else films
-    ties = films.ties(network.wall_conductance)
+    robin = robin_of(network, scene) if robin is None else robin
+    ties = robin.ties(network.wall_conductance)
     level = level_of(scene)
-    held = np.nan_to_num(films.outside - level)
+    held = np.nan_to_num(robin.outside - level)
     heat = np.bincount(network.wall_particle, ties * held + _imposed(network, scene), minlength=n)
     diagonal += np.bincount(network.wall_particle, ties, minlength=n)
     cut_off = np.count_nonzero(heat[~reached])
@@ -46,7 +46,7 @@ def system_of(network, scene, reached, films=None):
             "no steady state exists"
         )
     diagonal[~reached] = 0.0
-    return System(network, diagonal, heat, gradient, ties, held, level, films)
+    return System(network, diagonal, heat, gradient, ties, held, level, robin)
 
 
 def level_of(scene):
@@ -79,7 +79,7 @@ def _imposed(network, scene):
 
 
 def residual(system, x):
-    """Heat that each particle receives in excess, (n,) float array, W; none on islands, which have no equation."""
+    """Heat that each particle receives in excess, (n,) float array, W; components without an equation get none."""
     r = np.empty_like(x)
     kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
     r[system.diagonal == 0.0] = 0.0
@@ -103,7 +103,7 @@ def at_walls(system, scene, x):
     network, inside = system.network, x[system.network.wall_particle]
     imposed, conductance = _imposed(network, scene), network.wall_conductance
     rise = np.divide(imposed, conductance, out=np.zeros_like(conductance), where=conductance > 0)
-    is_held = np.isfinite(system.films.outside)
-    temperature = np.where(is_held, system.films.surface(conductance, inside), inside + rise)
+    is_held = np.isfinite(system.robin.outside)
+    temperature = np.where(is_held, system.robin.surface(conductance, inside), inside + rise)
     heat = np.where(is_held, system.ties * (system.held - (inside - system.level)), imposed)
     return temperature, np.where(np.isnan(heat), 0.0, heat)

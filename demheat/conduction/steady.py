@@ -7,13 +7,13 @@ import numpy as np
 from scipy import sparse
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.conduction import islands
+from demheat.conduction import components
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.balance import at_walls, conducted, level_of, linear_start, residual, system_of, throughput
-from demheat.conduction.films import COLDEST, films_of, hottest, radiated
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
 from demheat.conduction.preconditioned import preconditioned
+from demheat.conduction.robin import COLDEST, hottest, radiated, robin_of
 from demheat.network.base import SIDES, without_links
 from demheat.network.links_kernels import links_of
 from demheat.process_state import one_blas_thread
@@ -33,7 +33,7 @@ HIGH_CONTRAST, LOOSER = 1e7, 1e-6
 HIGHER_FOR_MULTIGRID, MOST_MULTIGRID = 1e6, 300
 # Radiation is linearised anew so often at most; each set of equations is solved to this part of what the last one left.
 ROUNDS, FURTHER = 40, 1e-3
-# A multigrid serves while films change the diagonal by less than this factor.
+# A multigrid serves while Robin's condition changes the diagonal by less than this factor.
 SERVES = 3.0
 
 
@@ -47,8 +47,8 @@ class Solution(NamedTuple):
     Attributes
     ----------
     temperature : (n,) float array, K
-        Of each particle, less the linear field of the mean gradient; NaN in pores and on islands that no wall
-        temperature reaches.
+        Of each particle, less the linear field of the mean gradient; NaN in pores and on components that no
+        wall temperature reaches.
     mean_gradient : (3,) float array, K/m
         Of a periodic cell; zero with walls.
     wall_temperature : (w,) float array, K
@@ -58,7 +58,7 @@ class Solution(NamedTuple):
     stats : dict
         unknowns, iterations, residual, solver, islands; with radiation its rounds, as it was linearised so often.
     still : (n,) bool array, optional
-        Particles that no heat passes, see `demheat.conduction.islands`; None if everything conducts.
+        Particles that no heat passes, see `demheat.conduction.components`; None if everything conducts.
     """
 
     temperature: np.ndarray
@@ -78,7 +78,7 @@ def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iteration
 
 def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None, start=None):
     """The same as `solve_steady` of arguments that were checked before."""
-    bodies = islands.bodies(network, scene)
+    bodies = components.bodies(network, scene)
     network = network if bodies is None else without_links(network, bodies.still)
     reached = _reached(network, scene)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
@@ -103,7 +103,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, k
     x = np.where(reached, x + system.level, np.nan)
     if bodies is not None:
         if scene.periodic:
-            islands.level_off(x, np.where(bodies.still, -1, bodies.label), network.volumes)
+            components.level_off(x, np.where(bodies.still, -1, bodies.label), network.volumes)
         x = np.where(bodies.still, bodies.temperature, x)
     stats = {
         "unknowns": int(reached.sum()),
@@ -128,7 +128,7 @@ def imbalance(network, scene, solution) -> float:
     x = np.where(reached, np.nan_to_num(solution.temperature) - level_of(scene), 0.0)
     if scene.radiates:
         surface = np.maximum(np.nan_to_num(solution.wall_temperature), COLDEST * hottest(network, scene))
-        system = system_of(network, scene, reached, films_of(network, scene, surface))
+        system = system_of(network, scene, reached, robin_of(network, scene, surface))
         return _radiation_left(system, scene, x)[1]
     return _relative(system_of(network, scene, reached), x)[0]
 
@@ -151,8 +151,8 @@ def _radiating(network, scene, reached, first, how):
     surface, x, aim = np.full(len(network.wall_side), top), first, FURTHER
     how, rounds, total, size = how | {"kept": {"serves": SERVES}}, 0, 0, math.inf
     while rounds < ROUNDS and total < how["most"] and not size <= how["tolerance"]:
-        films = films_of(network, scene, np.maximum(surface, COLDEST * top))
-        system = system_of(network, scene, reached, films)
+        robin = robin_of(network, scene, np.maximum(surface, COLDEST * top))
+        system = system_of(network, scene, reached, robin)
         x, count, _ = _iterate(system, x, **how | {"tolerance": aim, "most": how["most"] - total})
         surface, size = _radiation_left(system, scene, x)
         rounds, total = rounds + 1, total + count
@@ -162,12 +162,12 @@ def _radiating(network, scene, reached, first, how):
 
 def _radiation_left(system, scene, x):
     """Surfaces as tangents have them, and the residual with the fourth powers themselves, of the heat that passes."""
-    network, films = system.network, system.films
+    network, robin = system.network, system.robin
     inside = system.level + x[network.wall_particle]
-    surface = films.surface(network.wall_conductance, inside)
+    surface = robin.surface(network.wall_conductance, inside)
     black = [SIDES.index(name) for name in scene.wall_exchanges if isinstance(scene.walls[name], Radiation)]
     tied = np.isin(network.wall_side, black) & (system.ties > 0)
-    by_tangents = films.conductance[tied] * (films.outside - surface)[tied]
+    by_tangents = robin.conductance[tied] * (robin.outside - surface)[tied]
     missing = radiated(network, scene, surface)[tied] - by_tangents
     r = residual(system, x) + np.bincount(network.wall_particle[tied], missing, minlength=len(x))
     norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)

@@ -4,10 +4,10 @@ from functools import partial
 
 import numpy as np
 
-from demheat.conduction.films import loaded_areas, radiating_walls, with_convection
 from demheat.conduction.integrators.march import march
 from demheat.conduction.integrators.pace import pace_of
 from demheat.conduction.integrators.system import semi_discrete
+from demheat.conduction.robin import loaded_areas, radiating_walls, with_convection
 from demheat.conduction.steady import Solution
 from demheat.network.base import SIDES
 from demheat.scene import Convection, Flux, Radiation

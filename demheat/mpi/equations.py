@@ -14,7 +14,7 @@ from scipy import sparse
 from demheat.conduction import multigrid_kernels, steady_kernels
 from demheat.conduction.balance import System, residual, throughput
 from demheat.conduction.multigrid import aggregated, cycle
-from demheat.mpi.numbers import Halo
+from demheat.mpi.numbers import Ghosts
 from demheat.network.links_kernels import Links
 from demheat.petsc import PREFIX, conjugate_gradients, know
 
@@ -25,15 +25,15 @@ ROUNDS, MOST = 10, 20_000
 class Equations:
     """The rows of a rank's own particles and what solves those of all; `free` gives its memory back."""
 
-    def __init__(self, system: System, halo: Halo, options, petsc, comm):
-        self.petsc, self.comm, self.own = petsc, comm, halo.own
+    def __init__(self, system: System, ghosts: Ghosts, options, petsc, comm):
+        self.petsc, self.comm, self.own = petsc, comm, ghosts.own
         know(options, petsc)
         rows = own_rows(system, self.own)
         sizes = ((self.own, None), (self.own, None))
-        self.matrix = petsc.Mat().createPython(sizes, _Balance(*rows, halo), comm=comm)
+        self.matrix = petsc.Mat().createPython(sizes, _Balance(*rows, ghosts), comm=comm)
         self.matrix.setUp()
         self.below = _Below(petsc, comm, constant=bool(system.network.periodic.any()))
-        self.cycle = _Cycle(preconditioner(*rows, halo, self.below, comm))
+        self.cycle = _Cycle(preconditioner(*rows, ghosts, self.below, comm))
         if self.below.constant:
             self.matrix.setNullSpace(petsc.NullSpace().create(constant=True, comm=comm))
         self.solver = _solver(self.matrix, self.cycle, petsc, comm)
@@ -64,14 +64,14 @@ def own_rows(system: System, own: int):
     return Links(network.indptr[: own + 1], network.indices[:end], network.conductance[:end]), system.diagonal[:own]
 
 
-def preconditioner(links: Links, diagonal: np.ndarray, halo, below, comm):
+def preconditioner(links: Links, diagonal: np.ndarray, ghosts, below, comm):
     """One symmetric cycle for the equations of all ranks: as in one process, aggregates end at slabs' ends."""
     own, scale = len(diagonal), 1.0 / max(comm.allgather(float(diagonal.max())))
     aggregates = aggregated(links, own)
     count = len(aggregates.start) - 1
     first = comm.scan(count) - count
     # Aggregates of others come after the rank's own.
-    theirs = halo.filled(np.where(aggregates.owner < 0, np.nan, aggregates.owner + float(first)))[own:]
+    theirs = ghosts.filled(np.where(aggregates.owner < 0, np.nan, aggregates.owner + float(first)))[own:]
     known = np.isfinite(theirs)
     numbers, place = np.unique(theirs[known].astype(np.int64), return_inverse=True)
     owner = np.full(own + len(theirs), -1, np.int32)
@@ -79,14 +79,14 @@ def preconditioner(links: Links, diagonal: np.ndarray, halo, below, comm):
     owner[own:][known] = count + place
     pointers, columns, values = multigrid_kernels.galerkin(links, diagonal, scale, aggregates._replace(owner=owner))
     below.takes(pointers, np.concatenate([first + np.arange(count), numbers])[columns], values)
-    return cycle(links, diagonal, scale, aggregates, below.solve, seen=len(owner), beside=halo.update)
+    return cycle(links, diagonal, scale, aggregates, below.solve, seen=len(owner), beside=ghosts.update)
 
 
-def solved(equations: Equations, system: System, halo: Halo, x: np.ndarray, tolerance: float):
+def solved(equations: Equations, system: System, ghosts: Ghosts, x: np.ndarray, tolerance: float):
     """Temperatures above the level that leave no more than a part of the heat that passes."""
     total = 0
     for _ in range(ROUNDS):
-        size, r, unit = _left(system, halo, x, equations)
+        size, r, unit = _left(system, ghosts, x, equations)
         if size <= tolerance or total >= MOST:
             break
         change, count = equations.correction(r, 0.9 * tolerance * unit, MOST - total)
@@ -98,9 +98,9 @@ def solved(equations: Equations, system: System, halo: Halo, x: np.ndarray, tole
     return x, total, size
 
 
-def _left(system, halo, x, equations):
+def _left(system, ghosts, x, equations):
     """Norm of the residual over that of the heat that passes, our part of the residual, and the latter norm."""
-    seen, own = halo.filled(x), equations.own
+    seen, own = ghosts.filled(x), equations.own
     r, through = residual(system, seen)[:own], throughput(system, seen)[:own]
     norm, passing = (math.sqrt(equations.comm.allreduce(float(np.sum(each**2)))) for each in (r, through))
     return (norm / passing, r, passing) if passing > 0 else (float(norm > 0), r, norm)
@@ -109,13 +109,13 @@ def _left(system, halo, x, equations):
 class _Balance:
     """The product of all ranks' matrix with a vector, as PETSc asks for it."""
 
-    def __init__(self, links, diagonal, halo):
-        self.links, self.diagonal, self.halo, self.seen = links, diagonal, halo, np.zeros(halo.size)
+    def __init__(self, links, diagonal, ghosts):
+        self.links, self.diagonal, self.ghosts, self.seen = links, diagonal, ghosts, np.zeros(ghosts.size)
 
     def mult(self, _, x, y):
         """PETSc's name for y = A x."""
-        self.seen[: self.halo.own] = x.array_r
-        self.halo.update(self.seen)
+        self.seen[: self.ghosts.own] = x.array_r
+        self.ghosts.update(self.seen)
         steady_kernels.apply(self.links, self.diagonal, self.seen, y.array)
 
 

@@ -18,7 +18,7 @@ from demheat.tiles.sums import Sums, own_of, sums_of, told
 
 
 def field_of(
-    scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, *, estimator: Callable, stats: dict
+    scene: Scene, cells: Cells, solution: Solution, slabs: Slabs, comm, *, estimator: Callable | None = None
 ) -> Field:
     """The Field of a distributed solution: every rank must ask for the same at the same time."""
     network, own = own_of(cells, solution)
@@ -33,7 +33,6 @@ def field_of(
         flux_at=lambda points: _at(points, lambda: at()[1], slope=None, **where),
         through=lambda axis, position: float(_sum(comm, heat_through(network, own, axis, position))),
         estimator=estimator,
-        stats=stats,
     )
 
 

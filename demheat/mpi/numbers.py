@@ -34,7 +34,7 @@ def linked(network, own: int) -> np.ndarray:
     return found
 
 
-class Halo:
+class Ghosts:
     """What a rank sees of a quantity of which each rank has its own part."""
 
     def __init__(self, numbers, own, petsc, comm):

@@ -18,7 +18,7 @@ from demheat.mpi.cells import cells_of, check_unknowns, part_of
 from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
-from demheat.mpi.numbers import Halo, linked, numbers_of
+from demheat.mpi.numbers import Ghosts, linked, numbers_of
 from demheat.ranks import Costs, check_fits, cores, give_back, here
 from demheat.scene import Scene
 from demheat.threads import limited
@@ -76,7 +76,7 @@ def _answer(scene, law, wanted, comm, **how):
     stats = {"law": law.name, "calibration": 1.0, "packing": cells.packing, "ranks": comm.size, "solver": "petsc"}
     with costs.of("field"):
         estimator = estimator_of(law, wanted, lambda law, wanted: _coarser(scene, law, wanted, comm, **how))
-        field = field_of(scene, cells, solution, slabs, comm, estimator=estimator, stats={})
+        field = field_of(scene, cells, solution, slabs, comm, estimator=estimator)
     mean = comm.allreduce(float(cells.network.radii[: cells.own].sum())) / unknowns
     stats |= solution.stats | {"unknowns": unknowns, "mean_radius": mean} | costs.told()
     if comm.rank == 0 and np.any(field.fractions == 0):
@@ -92,16 +92,16 @@ def _solved(scene, cells, slabs, comm, *, tolerance, options):
     numbers = numbers_of(network, own, slabs, comm)
     system = system_of(network, scene, reached)
     # Iterations need what own rows link to, a third of what is seen of the neighbours or less.
-    beside = Halo(np.where(linked(network, own), numbers, NOBODY), own, engine, comm)
+    beside = Ghosts(np.where(linked(network, own), numbers, NOBODY), own, engine, comm)
     equations = Equations(system, beside, options, engine, comm)
     first = linear_start(network, scene, reached)[:own]
     x, iterations, size = solved(equations, system, beside, first, tolerance)
     equations.free()
     give_back()
-    halo = Halo(numbers, own, engine, comm)
+    ghosts = Ghosts(numbers, own, engine, comm)
     if scene.periodic:
         x -= comm.allreduce(float(x @ network.volumes[:own])) / comm.allreduce(float(network.volumes[:own].sum()))
-    temperature = halo.filled(x) + system.level
+    temperature = ghosts.filled(x) + system.level
     stats = {"iterations": iterations, "residual": size}
     return Solution(temperature, system.gradient, *at_walls(system, scene, temperature), stats)
 

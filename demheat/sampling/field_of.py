@@ -46,7 +46,7 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None, slac
 
 
 def _wall_mean(temperature, area):
-    """Area-averaged temperature of a wall, where it has one: not on pores and islands."""
+    """Area-averaged temperature of a wall, where it has one: not on pores and isolated components."""
     known = np.isfinite(temperature) & (area > 0)
     return float(np.average(temperature[known], weights=area[known])) if known.any() else float("nan")
 

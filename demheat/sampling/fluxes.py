@@ -51,5 +51,5 @@ def cell_fluxes(network, solution):
 
 
 def filled(solution):
-    """Fluctuations with islands, which exchange no heat, set to zero, (n,) float array, K."""
+    """Fluctuations, those of isolated components, which exchange no heat, set to zero, (n,) float array, K."""
     return np.nan_to_num(solution.temperature)

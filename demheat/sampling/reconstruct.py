@@ -42,7 +42,7 @@ class Reconstruction:
         self.tree = cKDTree(lifted, boxsize=np.append(np.where(self.periodic, network.size, 0.0), 0.0))
 
     def temperature_at(self, points):
-        """Temperature, (m, 3) float array, m -> (m,) float array, K; NaN on islands."""
+        """Temperature, (m, 3) float array, m -> (m,) float array, K; NaN on isolated components."""
         return self._at(points)[0]
 
     def flux_at(self, points):

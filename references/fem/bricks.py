@@ -14,7 +14,7 @@ from demheat.field import Samples
 from demheat.limits import check_memory
 from demheat.scene import WALLS, Layer, Scene
 from demheat.scene.inputs import finite
-from references.fem.films import Surface
+from references.fem.robin import Surface
 from references.fem.separable import MASS, STIFFNESS, separable
 from references.fem.space import Space, WallNodes, capacities
 

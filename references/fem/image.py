@@ -2,7 +2,7 @@
 
 The unknown is what the temperature differs by from a known part, the mean gradient or the walls' temperatures. Bricks
 join where they share a node, so a heat path may lead over an edge or a corner. Pores, and bodies that no heat can pass,
-are left out of the equations, see `islands`.
+are left out of the equations, see `components`.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from scipy.sparse.csgraph import connected_components
 
 from demheat.field import Field
 from demheat.progress import stage
-from references.fem import islands
+from references.fem import components
 from references.fem.bricks import Bricks, bricks, nodes_of, stiffness, wall_nodes
 from references.fem.multigrid import conjugate_gradients, multigrid
 from references.fem.system import known_part
@@ -29,7 +29,7 @@ BALANCED = 1e-8
 
 
 class Wall(NamedTuple):
-    """Rectangles of a wall, as `islands` asks for them."""
+    """Rectangles of a wall, as `components` asks for them."""
 
     triangles: np.ndarray  # (m, 4) int array: Their nodes
     owners: np.ndarray  # (m,) int array: Bricks behind them
@@ -126,7 +126,7 @@ def _solved(scene, grid, tolerance, kept):
     begun = time.perf_counter()
     conductivity, found = scene.conductivities[grid.phase], None
     if conductivity.min() == 0:
-        found = islands.find(scene, grid)
+        found = components.find(scene, grid)
         conductivity = np.where(found.still, 0.0, conductivity)
     lift, level, nodes, shares = known_part(scene, grid)
     imposed = _imposed(scene, grid, scene.conductivities[grid.phase] > 0)

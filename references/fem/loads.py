@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import UniformSource
-from references.fem.films import Films
+from references.fem.robin import RobinWalls
 from references.fem.sources import deposit
 
 
@@ -35,8 +35,8 @@ class Loads:
         steady = sum(source.power_density for source in scene.sources if isinstance(source, UniformSource))
         self.heating = steady * space.volumes
         walls = {name: (load, space.walls[name].surface()) for name, load in scene.wall_exchanges.items()}
-        self.films = Films(walls, len(space.points))
-        self.stiffness = (space.stiffness + self.films.stiffness()).tocsr() if walls else space.stiffness
+        self.robin = RobinWalls(walls, len(space.points))
+        self.stiffness = (space.stiffness + self.robin.stiffness()).tocsr() if walls else space.stiffness
         self.moving = [source for source in scene.sources if not isinstance(source, UniformSource)]
         self._known = {}
 
@@ -61,7 +61,7 @@ class Loads:
             heat += entering
             powers[name] = entering.sum()
         outside = {name: load.temperature for name, load in now.wall_exchanges.items()}
-        heat += self.films.constant(outside, self.level)
+        heat += self.robin.constant(outside, self.level)
         powers["sources"] = self.heating.sum()
         for source in self.moving:
             made = deposit(self.scene, self.space, source, time)
@@ -72,12 +72,12 @@ class Loads:
 
     def radiated(self, y, loading):
         """What walls radiate into each node, (n,) float array, W, or 0."""
-        return self.films.radiated(loading.outside, y + self.level) if self.films.radiates else 0.0
+        return self.robin.radiated(loading.outside, y + self.level) if self.robin.radiates else 0.0
 
     def rates(self, entering, y, loading):
         """Heat of each of the names, as `shares` has it, and what is exchanged with surroundings."""
         powers = self.shares(entering, loading)
-        for name, heat in self.films.entering(loading.outside, y + self.level).items():
+        for name, heat in self.robin.entering(loading.outside, y + self.level).items():
             powers[self.names.index(name)] = heat
         return powers
 

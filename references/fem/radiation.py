@@ -11,12 +11,12 @@ from references.fem.multigrid import renewed, solve_free
 ROUNDS, FURTHER = 40, 1e-3
 
 
-def hottest(scene, films) -> float:
+def hottest(scene, robin) -> float:
     """A temperature that no radiating wall exceeds, K: all imposed fluxes left by radiation alone."""
     size = np.array(scene.size)
     across = {name: float(np.prod(np.delete(size, "xyz".index(name[0])))) for name in scene.walls}
     entering = sum(max(value, 0.0) * across[name] for name, value in scene.wall_fluxes.items())
-    black = [(load, float(s.areas.sum())) for load, s in films.walls.values() if isinstance(load, Radiation)]
+    black = [(load, float(s.areas.sum())) for load, s in robin.walls.values() if isinstance(load, Radiation)]
     leaving = sum(load.emissivity * STEFAN_BOLTZMANN * area for load, area in black)
     around = max(load.temperature for load, _ in black)
     alone = (around**4 + entering / leaving) ** 0.25 if leaving > 0 else 0.0
@@ -25,14 +25,14 @@ def hottest(scene, films) -> float:
 
 def radiating(mesh, matrix, load, fixed, dof, tolerance, *, known, body):
     """Correction to a known temperature at which conduction and radiation balance, at the free nodes."""
-    scene, films, unit = body
+    scene, robin, unit = body
     outside, free = scene.imposed_temperatures, ~fixed & (matrix.diagonal() > 0)
-    correction = np.where(free, hottest(scene, films) - known, 0.0)
+    correction = np.where(free, hottest(scene, robin) - known, 0.0)
     kept, iterations, largest, size, stats = {}, 0, 0.0, np.inf, {"unknowns": int(free.sum())}
     for rounds in range(ROUNDS + 1):
         temperature = known + correction
-        b = load + films.radiated(outside, temperature) / unit
-        whole = (matrix + films.tangent(temperature) / unit).tocsr()
+        b = load + robin.radiated(outside, temperature) / unit
+        whole = (matrix + robin.tangent(temperature) / unit).tocsr()
         left, root = (b - matrix @ correction)[free], np.sqrt(whole.diagonal()[free])
         size = float(np.linalg.norm(left / root))
         largest = max(largest, size, float(np.linalg.norm(b[free] / root)))

@@ -14,9 +14,9 @@ from skfem.refdom import RefTet
 
 from references.fem import interfaces
 from references.fem.elements import BLOCK, assemble, gradients, shapes, wall_weights
-from references.fem.films import on_triangles
 from references.fem.lookup import LOST, NodalField
 from references.fem.multigrid import prolongation
+from references.fem.robin import on_triangles
 
 # A quadratic boundary leaves a point of the true surface this far, in local coordinates, outside: an edge as long as
 # the radius has a sagitta of 1/8, and the quadratic arc misses the circle by under a tenth of that.

@@ -2,8 +2,8 @@
 
 The temperature is a known part, the mean gradient or the wall temperatures, plus a correction that vanishes where the
 known part is the answer. Elements without conductivity (pores) are left out, and so are the bodies that no heat passes,
-whose temperature needs no solving, see `islands`. Afterwards nodes in pores get a temperature, for elements there may
-reach past an interface: that in the limit of a vanishing conductivity.
+whose temperature needs no solving, see `components`. Afterwards nodes in pores get a temperature, for elements there
+may reach past an interface: that in the limit of a vanishing conductivity.
 """
 
 from __future__ import annotations
@@ -15,12 +15,12 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from references.fem import interfaces, islands
+from references.fem import components, interfaces
 from references.fem.elements import assemble, assemble_loads, wall_weights
-from references.fem.films import Films, on_triangles
 from references.fem.medium import Medium
 from references.fem.multigrid import solve_free
 from references.fem.radiation import radiating
+from references.fem.robin import RobinWalls, on_triangles
 from references.fem.varying import converged, improved
 from references.mesh import twins
 
@@ -38,7 +38,7 @@ class Solved(NamedTuple):
     wall_heat : dict of str to float, W
         Heat into the body by the reactions at the nodes: sums to zero to the solver's residual.
     stats : dict
-    bodies : islands.Bodies, or None
+    bodies : components.Bodies, or None
         That pores leave; None if all phases conduct.
     """
 
@@ -46,7 +46,7 @@ class Solved(NamedTuple):
     wall_temperature: dict[str, float]
     wall_heat: dict[str, float]
     stats: dict[str, object]
-    bodies: islands.Bodies | None = None
+    bodies: components.Bodies | None = None
 
 
 class Given(NamedTuple):
@@ -67,7 +67,7 @@ class _Assembled(NamedTuple):
     unit: float
     passing: np.ndarray
     pores: np.ndarray
-    found: islands.Bodies | None
+    found: components.Bodies | None
     assembly_s: float
 
 
@@ -114,7 +114,7 @@ def _solve_linear(scenes, mesh, tolerance, kept, start=None):
     dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
     if pores.any():
-        found = islands.find(scenes[0], mesh)
+        found = components.find(scenes[0], mesh)
         conductivity = np.where(found.still, 0.0, conductivity)
     unit = conductivity.max()
     if unit == 0:
@@ -146,22 +146,22 @@ def _solved(scene, given, load, mesh, system, tolerance, kept, start):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
     begin = time.perf_counter()
     matrix, dof, unit, passing, pores, found, assembly_s = system
-    films, outside = _films(scene, mesh, passing), scene.imposed_temperatures
-    matrix = (matrix + films.stiffness() / unit).tocsr() if films.walls else matrix
-    tied = films.tangent(np.ones(len(load))).diagonal() + films.stiffness().diagonal() > 0
+    robin, outside = _robin(scene, mesh, passing), scene.imposed_temperatures
+    matrix = (matrix + robin.stiffness() / unit).tocsr() if robin.walls else matrix
+    tied = robin.tangent(np.ones(len(load))).diagonal() + robin.stiffness().diagonal() > 0
     bodies = _bodies(matrix, (given.shares > 0) | tied, pores=found is not None)
     imposed = np.zeros(len(load))
     for name, value in scene.wall_fluxes.items():
         imposed += value / unit * given.weights[name]
     _check_loose(mesh, imposed, bodies)
-    if films.walls:
-        # The known part lies on walls that films may meet at an edge.
-        imposed += (films.constant(outside, given.level) - films.stiffness() @ given.lift) / unit
+    if robin.walls:
+        # The known part lies on walls that others with surroundings may meet at an edge.
+        imposed += (robin.constant(outside, given.level) - robin.stiffness() @ given.lift) / unit
     load += imposed
     fixed = given.shares > 0
     fixed[bodies.pins] = True
-    if films.radiates:
-        body, known = (scene, films, unit), given.lift + given.level
+    if robin.radiates:
+        body, known = (scene, robin, unit), given.lift + given.level
         correction, stats = radiating(mesh, matrix, load, fixed, dof, tolerance, known=known, body=body)
     elif start is not None:
         before = start - given.level - given.lift
@@ -170,36 +170,36 @@ def _solved(scene, given, load, mesh, system, tolerance, kept, start):
         correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
     temperature = given.lift + correction[dof]
     temperature += given.level
-    heat = unit * (matrix @ correction - load) - films.radiated(outside, temperature)
+    heat = unit * (matrix @ correction - load) - robin.radiated(outside, temperature)
     stats |= {"islands": 0 if found is None else int(np.count_nonzero(~found.passing))}
     if found is not None:
-        islands.settle(found, scene, mesh, temperature)
+        components.settle(found, scene, mesh, temperature)
         shift, more = _pore_shift(mesh, pores, temperature - given.level, dof, given, found)
         temperature += shift
         stats["iterations"] += more["iterations"]
         stats["residual"] = max(stats["residual"], more["residual"])
     stats |= {"assembly_s": assembly_s, "solve_s": time.perf_counter() - begin}
-    shown = temperature if found is None else islands.reached(found, scene, temperature)
-    return Solved(temperature, *at_walls(scene, given, shown, heat, films.entering(outside, temperature)), stats, found)
+    shown = temperature if found is None else components.reached(found, scene, temperature)
+    return Solved(temperature, *at_walls(scene, given, shown, heat, robin.entering(outside, temperature)), stats, found)
 
 
-def _films(scene, mesh, passing):
-    """Films of walls with surroundings, on what passes heat behind them."""
+def _robin(scene, mesh, passing):
+    """Robin's condition at walls with surroundings, on what passes heat behind them."""
     walls = {}
     for name, load in scene.wall_exchanges.items():
         triangles, owners = mesh.walls[name]
         walls[name] = load, on_triangles(mesh, triangles[passing[owners]])
-    return Films(walls, len(mesh.points))
+    return RobinWalls(walls, len(mesh.points))
 
 
 def _at_rest(scene, mesh, given, found):
     """The solution where pores let no heat pass: exactly none, without a system."""
     temperature = given.lift + given.level
-    islands.settle(found, scene, mesh, temperature)
-    islands.extend(found, mesh, temperature)
+    components.settle(found, scene, mesh, temperature)
+    components.extend(found, mesh, temperature)
     stats = {"unknowns": 0, "iterations": 0, "residual": 0.0, "islands": len(found.passing)}
     stats |= {"assembly_s": 0.0, "solve_s": 0.0}
-    shown = islands.reached(found, scene, temperature)
+    shown = components.reached(found, scene, temperature)
     still = dict.fromkeys(scene.wall_exchanges, 0.0)
     return Solved(temperature, *at_walls(scene, given, shown, np.zeros(len(shown)), still), stats, found)
 

@@ -135,8 +135,8 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
     loads = Loads(scene, space, level=level)
     free = np.setdiff1d(np.arange(len(initial)), loads.held)
     blocks = (matrix[free][:, free] for matrix in (space.mass, loads.stiffness))
-    # Films make the equations of the axes more than sums of products.
-    inverse = space.separable(free) if space.separable and len(free) and not loads.films.walls else None
+    # Robin's condition makes the equations of the axes more than sums of products.
+    inverse = space.separable(free) if space.separable and len(free) and not loads.robin.walls else None
     solver = Shifted(*blocks, space.quadratic(free), tolerance, inverse)
     problem = Problem(loads, solver, free)
     ticks, begun = Clock(problem, accuracy, step), clock.perf_counter()

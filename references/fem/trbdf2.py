@@ -77,7 +77,7 @@ def begin(problem, temperature, time, hint) -> State:
 def advance(problem, state, step, *, estimate):
     """One step."""
     y, tau = state.temperature, DIAGONAL * step
-    if problem.loads.films.radiates:
+    if problem.loads.robin.radiates:
         problem.solver.stiffen(_tangent(problem, y))
     half = y + tau * state.rate
     middle = _stage(problem, state, state.time + GAMMA * step, tau, half, half + tau * state.rate)
@@ -96,7 +96,7 @@ def advance(problem, state, step, *, estimate):
 
 def _tangent(problem, y):
     """What radiation adds to the stiffness of the free nodes."""
-    tangent = problem.loads.films.tangent(y + problem.loads.level)
+    tangent = problem.loads.robin.tangent(y + problem.loads.level)
     return tangent[problem.free][:, problem.free]
 
 
@@ -115,7 +115,7 @@ def _stage(problem, state, time, tau, start, guess):
         change = problem.solver.solve(tau, load[free], scale=scale[free], level=y[free])
         y[free] += change
         # Without radiation once is enough; with it the tangents of the step's start are mostly near.
-        if not loads.films.radiates or np.abs(change).max(initial=0.0) <= largest:
+        if not loads.robin.radiates or np.abs(change).max(initial=0.0) <= largest:
             break
         if rounds == ROUNDS:
             raise RuntimeError(f"finite elements: radiation not met in {ROUNDS} rounds at {time:.6g} s")

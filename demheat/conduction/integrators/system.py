@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 
 import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.conduction.films import loaded_areas, radiating_walls, with_convection
 from demheat.conduction.integrators import transient_kernels as kernels
+from demheat.conduction.robin import loaded_areas, radiating_walls, with_convection
 from demheat.network.base import SIDES, row_numbers
 from demheat.network.links_kernels import Links
 from demheat.scene import Radiation

@@ -62,22 +62,22 @@ class Exactly:
 
 
 def made(scene, ranks, then):
-    """What a function of a rank's links, diagonal, halo, cycle and system returns on each rank."""
+    """What a function of a rank's links, diagonal, ghosts, cycle and system returns on each rank."""
 
     def work(comm):
         slabs, law = slabs_of(scene, PARTICLES.particles, comm.size, comm.rank), Laguerre()
         cells = cells_of(scene, law, part_of(scene, law, PARTICLES, slabs, comm), slabs, comm)
         numbers = numbers_of(cells.network, cells.own, slabs, comm)
-        halo, below = Beside(numbers, cells.own, comm), Exactly(comm, 1e-6 if scene.periodic else 0.0)
+        ghosts, below = Beside(numbers, cells.own, comm), Exactly(comm, 1e-6 if scene.periodic else 0.0)
         system = system_of(cells.network, scene, np.ones(len(numbers), dtype=bool))
         rows = own_rows(system, cells.own)
-        return then(comm, system, rows, halo, preconditioner(*rows, halo, below, comm), below)
+        return then(comm, system, rows, ghosts, preconditioner(*rows, ghosts, below, comm), below)
 
     return on_ranks(ranks, work)
 
 
-def product(rows, halo, x):
-    seen, q = halo.filled(x), np.empty(halo.own)
+def product(rows, ghosts, x):
+    seen, q = ghosts.filled(x), np.empty(ghosts.own)
     steady_kernels.apply(*rows, seen, q)
     return q
 
@@ -85,22 +85,22 @@ def product(rows, halo, x):
 def iterations(scene, ranks):
     """Of conjugate gradients to 1e-8 of the first residual."""
 
-    def then(comm, system, rows, halo, cycle, _):
+    def then(comm, system, rows, ghosts, cycle, _):
         def dot(a, b):
             return comm.allreduce(float(a @ b))
 
-        x, z = np.zeros(halo.own), np.empty(halo.own)
-        r = residual(system, halo.filled(x))[: halo.own]
+        x, z = np.zeros(ghosts.own), np.empty(ghosts.own)
+        r = residual(system, ghosts.filled(x))[: ghosts.own]
         first = dot(r, r) ** 0.5
         p, rz, count = np.zeros_like(r), 1.0, 0
         while dot(r, r) ** 0.5 > 1e-8 * first and count < 100:
             cycle(r, first, z)
             rz, before = dot(r, z), rz
             p = z + (rz / before if count else 0.0) * p
-            q = product(rows, halo, p)
+            q = product(rows, ghosts, p)
             step = rz / dot(p, q)
             x, r, count = x + step * p, r - step * q, count + 1
-        left = system.heat[: halo.own] - product(rows, halo, x)
+        left = system.heat[: ghosts.own] - product(rows, ghosts, x)
         return count, dot(left, left) ** 0.5 / first
 
     ((count, left), *others) = made(scene, ranks, then)
@@ -119,9 +119,9 @@ def test_slabs_take_as_many_iterations_as_the_whole(scene):
 
 
 def test_the_cycle_of_two_ranks_is_symmetric():
-    def then(comm, _, rows, halo, cycle, __):
+    def then(comm, _, rows, ghosts, cycle, __):
         rng = np.random.default_rng(comm.rank)
-        a, b = rng.standard_normal((2, halo.own))
+        a, b = rng.standard_normal((2, ghosts.own))
         ma, mb = np.empty_like(a), np.empty_like(a)
         cycle(a, 1.0, ma), cycle(b, 1.0, mb)
         return [comm.allreduce(float(u @ v)) for u, v in ((a, mb), (b, ma), (a, ma))]
@@ -135,10 +135,10 @@ def test_the_cycle_of_two_ranks_is_symmetric():
 def test_the_rows_of_the_aggregates_are_those_of_the_matrix():
     """Sums of all rows of a pair of aggregates: by a product with ones on one aggregate of each rank."""
 
-    def then(comm, system, rows, halo, _, below):
-        ones = np.ones(halo.own)
+    def then(comm, system, rows, ghosts, _, below):
+        ones = np.ones(ghosts.own)
         # What all aggregates together give is what all particles together give, up to the scale.
-        total = comm.allreduce(float(product(rows, halo, ones).sum()))
+        total = comm.allreduce(float(product(rows, ghosts, ones).sum()))
         return total, below.matrix.sum(), max(comm.allgather(float(rows[1].max()))), below.matrix.shape[0]
 
     (total, coarse, largest, count) = made(WALLS, 2, then)[0]

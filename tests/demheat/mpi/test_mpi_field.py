@@ -31,7 +31,7 @@ def test_sums_and_points_of_all_ranks_are_those_of_one():
         temperature = whole.samples.temperature[nearest.query(cells.network.centers)[1]]
         system = system_of(cells.network, SCENE, np.ones(len(temperature), bool))
         solution = Solution(temperature, np.zeros(3), *at_walls(system, SCENE, temperature), {})
-        field = field_of(SCENE, cells, solution, slabs, comm, stats={})
+        field = field_of(SCENE, cells, solution, slabs, comm)
         at = field.temperature_at(points), field.flux_at(points), field.heat_through(0, 1.0)
         return field.conductivity, dict(field.wall_heat), dict(field.wall_temperature), field.fractions, *at
 

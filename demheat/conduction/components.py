@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.conduction import islands_kernels as kernels
+from demheat.conduction import components_kernels as kernels
 from demheat.network.base import SIDES
 from demheat.network.links_kernels import links_of
 from demheat.progress import stage
@@ -75,7 +75,7 @@ def _gathered(network, solid, jump):
         climbs=np.zeros(n, bool),
         queue=np.empty(n, np.uint32),
     )
-    with stage("islands") as done:
+    with stage("components") as done:
         while kernels.gather(links_of(network), network.image, jump, found, state, BLOCK):
             done(state[0] / n)
     return found, int(state[3])

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
 from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, referee, solve
-from demheat.conduction.films import Films, in_series, radiating_surface
+from demheat.conduction.robin import RobinWalls, in_series, radiating_surface
 from demheat.sampling.halo import halo_flux
 from demheat.scene import STEFAN_BOLTZMANN, Layer
 from references.exact.benchmarks import convecting_plate
@@ -168,10 +168,10 @@ def test_the_error_of_such_a_field():
 
 def test_films_in_series():
     own, film = np.array([2.0, 2.0, 0.0, 2.0, 0.0]), np.array([np.inf, 6.0, 6.0, 0.0, np.inf])
-    films = Films(film, np.array([10.0, 10.0, 10.0, np.nan, 10.0]))
-    assert_allclose(films.ties(own), [2.0, 1.5, 0.0, 0.0, 0.0])
-    assert_allclose(films.surface(own, np.full(5, 2.0)), [10.0, 8.0, 2.0, 2.0, 10.0])
-    assert_allclose(in_series(film, own), films.ties(own))
+    robin = RobinWalls(film, np.array([10.0, 10.0, 10.0, np.nan, 10.0]))
+    assert_allclose(robin.ties(own), [2.0, 1.5, 0.0, 0.0, 0.0])
+    assert_allclose(robin.surface(own, np.full(5, 2.0)), [10.0, 8.0, 2.0, 2.0, 10.0])
+    assert_allclose(in_series(film, own), robin.ties(own))
 
 
 def test_surfaces_that_radiate():

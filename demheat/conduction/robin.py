@@ -1,4 +1,4 @@
-"""What walls with surroundings do: a film between these and the surface, in series with each facet's own conductance.
+"""Robin's condition at walls with surroundings: a film between these and the surface, in series with the facet's own.
 
 Convection lets in h A (T_a - T_s). Radiation, e sigma A (T_a^4 - T_s^4), is the same to first order about a surface
 temperature T: with h = 4 e sigma T^3 and surroundings at T + (T_a^4 - T^4) / (4 T^3), as Newton's method takes it.
@@ -20,7 +20,7 @@ COLDEST = 1e-4
 STEPS, SAME = 60, 1e-14
 
 
-class Films(NamedTuple):
+class RobinWalls(NamedTuple):
     """Between surroundings and the surfaces of wall facets.
 
     Attributes
@@ -54,8 +54,8 @@ def in_series(one, other):
     return np.where(np.isinf(one), other, part * other)
 
 
-def films_of(network, scene, surface=None) -> Films:
-    """Films of all wall facets at loads that do not depend on time."""
+def robin_of(network, scene, surface=None) -> RobinWalls:
+    """What lies outside of all wall facets, at loads that do not depend on time."""
     film, outside = np.zeros(len(network.wall_side)), np.full(len(network.wall_side), np.nan)
     for name, value in scene.imposed_temperatures.items():
         here, load = network.wall_side == SIDES.index(name), scene.walls[name]
@@ -66,7 +66,7 @@ def films_of(network, scene, surface=None) -> Films:
             at = surface[here]
             film[here] = 4.0 * load.emissivity * STEFAN_BOLTZMANN * at**3 * loaded_areas(network, scene, name)
             outside[here] = 0.75 * at + 0.25 * value**4 / at**3
-    return Films(film, outside)
+    return RobinWalls(film, outside)
 
 
 def radiated(network, scene, surface):
@@ -166,7 +166,7 @@ def radiating_walls(network, scene) -> list[Radiating]:
 
 
 def with_convection(network, scene):
-    """The network with the films of convection in the conductances of its wall facets."""
+    """The network with convection in series with the conductances of its wall facets."""
     conductance = network.wall_conductance.copy()
     for name, load in scene.wall_exchanges.items():
         if isinstance(load, Convection):

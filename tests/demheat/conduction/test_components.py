@@ -10,8 +10,8 @@ from random_links import each_link, random_links
 
 import demheat
 from demheat import Flux, Layer, Material, Scene
-from demheat.conduction import islands
-from demheat.conduction import islands_kernels as kernels
+from demheat.conduction import components
+from demheat.conduction import components_kernels as kernels
 from demheat.network.base import Network, image_shifts, without_links
 
 PORE, ONE = Material(0.0), Material(1.0)
@@ -56,9 +56,9 @@ def test_means_of_bodies_are_taken_off():
         mean = np.average(before[here], weights=volumes[here]) if body >= 0 and here.any() else 0.0
         assert_allclose(after[here], before[here] - mean, atol=1e-14)  # rounding of sums
     again, nothing = before.copy(), np.full(200, -1, np.int32)
-    islands.level_off(again, label, volumes)
+    components.level_off(again, label, volumes)
     assert_array_equal(again, after)
-    islands.level_off(again, nothing, volumes)
+    components.level_off(again, nothing, volumes)
     assert_array_equal(again, after)
 
 
@@ -70,7 +70,7 @@ def layers(**load):
 def test_nothing_is_looked_for_where_all_conducts(monkeypatch):
     monkeypatch.setattr(kernels, "gather", None)
     scene = Scene((1, 1, 1), ONE, [Layer(1, 0.2, 0.5, Material(1e-30))], gradient=(1.0, 0.0, 0.0))
-    assert islands.bodies(SimpleNamespace(whole=True), scene) is None
+    assert components.bodies(SimpleNamespace(whole=True), scene) is None
 
 
 def test_a_solution_has_bodies_at_their_levels():

@@ -12,7 +12,7 @@ from demheat import Convection, Flux, Layer, Material, Radiation, Sphere, refere
 from demheat.scene import STEFAN_BOLTZMANN
 from references import fem, mesh, series
 from references.fem.bricks import hexahedra
-from references.fem.films import Films, on_triangles
+from references.fem.robin import RobinWalls, on_triangles
 
 COARSE = 0.4
 POINTS = np.random.default_rng(3).random((40, 3))
@@ -120,14 +120,14 @@ def test_integrals_over_a_wall():
 
 def test_the_tangent_of_radiation():
     for surface, points in surfaces():
-        films = Films({"y+": (Radiation(0.7, 300.0), surface)}, len(points))
+        robin = RobinWalls({"y+": (Radiation(0.7, 300.0), surface)}, len(points))
         warm, change = 500.0 + 100.0 * points[:, 0], np.random.default_rng(0).random(len(points))
-        up, down = (films.radiated({"y+": 300.0}, warm + sign * 0.1 * change) for sign in (1, -1))
-        found = -(films.tangent(warm) @ change)
+        up, down = (robin.radiated({"y+": 300.0}, warm + sign * 0.1 * change) for sign in (1, -1))
+        found = -(robin.tangent(warm) @ change)
         # Central differences of a fourth power: (0.1/500)^2.
         assert_allclose((up - down) / 0.2, found, rtol=1e-6, atol=1e-9 * np.abs(found).max())
         assert_allclose(
-            films.radiated({"y+": 300.0}, warm).sum(), films.entering({"y+": 300.0}, warm)["y+"], rtol=1e-12
+            robin.radiated({"y+": 300.0}, warm).sum(), robin.entering({"y+": 300.0}, warm)["y+"], rtol=1e-12
         )
 
 

@@ -53,7 +53,7 @@ def on_triangles(mesh, triangles) -> Surface:
     return Surface(triangles.astype(np.int64), values, areas, len(mesh.points))
 
 
-class Films:
+class RobinWalls:
     """All walls of a scene that exchange heat."""
 
     def __init__(self, walls, count):
