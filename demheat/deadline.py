@@ -6,13 +6,9 @@ Nothing is killed. Between two looks is a block of compiled loops, an iteration 
 
 from __future__ import annotations
 
-import inspect
-import re
 import time
-from collections.abc import Callable
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
-from functools import wraps
 from typing import NamedTuple
 
 from demheat.scene.inputs import finite
@@ -25,12 +21,6 @@ class _Deadline(NamedTuple):
     end: float
 
 
-# What the docstring of a function with a budget says before what it returns.
-_SAID = r"""
-\1seconds : float, s, optional
-\1    That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
-
-\1"""
 # Of what computes in this thread; threads that are started begin without.
 _now: ContextVar[_Deadline | None] = ContextVar("deadline", default=None)
 
@@ -84,24 +74,6 @@ def _until(seconds, begun):
         yield
     finally:
         _now.reset(before)
-
-
-def timed(function: Callable) -> Callable:
-    """Give a function the keyword `seconds`, the budget of a call, and its docstring a line on it."""
-
-    # One frame more between a warning and who is warned.
-    @wraps(function)
-    def within(*arguments, seconds=None, **knobs):
-        with budget(seconds):
-            return function(*arguments, **knobs)
-
-    signature = inspect.signature(function)
-    knob = inspect.Parameter("seconds", inspect.Parameter.KEYWORD_ONLY, default=None, annotation="float | None")
-    parameters = sorted([*signature.parameters.values(), knob], key=lambda each: each.kind)
-    within.__signature__ = signature.replace(parameters=parameters)
-    # Docstrings are without the indentation of their functions from Python 3.13 on.
-    within.__doc__ = re.sub(r"\n\n( *)(?=Returns\n)", _SAID, function.__doc__, count=1)
-    return within
 
 
 def look(doing: str) -> None:

@@ -5,6 +5,7 @@ They are declared here and at work in `demheat.build`, so that naming a law load
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
@@ -18,11 +19,9 @@ WALL_RULES = ("center", "surface")
 # With offsets of a quarter of a gap and points at most 0.8 spacings away, the twins of the other side come nearer to an
 # interface than its own beyond 1 / (sqrt(2) 0.8) of its width.
 WIDEST = 0.88
-# Short forms give the choices of all laws: those of the contact laws at these values ask nothing of another law.
 ON_FACETS = "only law 'laguerre' with conforming=True and interface='harmonic' has facets on the interfaces"
 # Where a conductivity is a tensor, heat crosses a facet by temperatures beside the link, too.
 TWO_POINTS = "two particles tell the flux through their facet only where its normal is a principal axis of the tensor"
-UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": None}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -62,6 +61,8 @@ class Laguerre:
     cells: ClassVar[bool] = True
     factor: ClassVar[float] = 1.0
     holds_centers: ClassVar[bool] = False
+    # Choices of other laws that ask nothing of this one.
+    unasked: ClassVar[Mapping] = {"sparse": "nearest", "wall": "center"}
 
     def __post_init__(self):
         flag("conforming", self.conforming)
@@ -78,33 +79,6 @@ class Laguerre:
         """What few laws know, of `Scene.require`: facets on surfaces may resist, and have temperatures of their own."""
         on_facets = self.conforming and self.interface == "harmonic"
         return ("exchange", "image", "resistance", "dependence") if on_facets else ("exchange", "image")
-
-    @classmethod
-    def short(cls, *, conforming: bool | None = None, **others: object) -> Laguerre:
-        """The law from the keywords of `demheat.solve`, where None stands for the default.
-
-        Parameters
-        ----------
-        conforming
-            As in `Laguerre`.
-        **others
-            Others of `Laguerre`; or what only other laws have, refused unless it is their default.
-
-        Raises
-        ------
-        ValueError
-            If a choice is not valid, or is one that only other laws have.
-        TypeError
-            If no law knows a keyword.
-        """
-        odd = [f"{name} = {value!r}" for name, value in others.items() if value != UNASKED.get(name, value)]
-        if odd:
-            raise ValueError(
-                f"{', '.join(odd)} with law = 'laguerre': only the laws 'calibrated' and 'platonic' have these choices"
-            )
-        own = {name: value for name, value in others.items() if name not in UNASKED}
-        _known(cls, own)
-        return cls(conforming=True if conforming is None else conforming, **own)
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
@@ -127,6 +101,7 @@ class _Contacts:
 
     cells: ClassVar[bool] = False
     conforming: ClassVar[bool] = False
+    unasked: ClassVar[Mapping] = {"conforming": False}
     # Facets on interfaces, where a resistance would be.
     takes: ClassVar[tuple[str, ...]] = ("exchange", "image")
 
@@ -149,26 +124,6 @@ class _Contacts:
     def holds_centers(self) -> bool:
         """Whether centres of particles at a wall with a temperature are held at it, as in the papers."""
         return self.wall == "center"
-
-    @classmethod
-    def short(cls, *, conforming: bool | None = None, **knobs: object) -> _Contacts:
-        """The law from the keywords of `demheat.solve`.
-
-        Raises
-        ------
-        ValueError
-            If a choice is not valid, or conforming is True.
-        TypeError
-            If the law does not know a keyword.
-        """
-        if conforming is not None:
-            flag("conforming", conforming)
-        if conforming:
-            raise ValueError(
-                f"conforming = True with law = {cls.name!r}: twins need not touch; must be False, or law 'laguerre'"
-            )
-        _known(cls, knobs)
-        return cls(**knobs)
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
@@ -287,15 +242,51 @@ def check_numbers(scene: Scene) -> None:
 
 
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}
+Law = Laguerre | Calibrated | Platonic
+
+
+@dataclass(frozen=True, kw_only=True)
+class Choices:
+    """What `solve` and `evolve` may be asked of a law that is given by its name; None is the law's own default."""
+
+    conforming: bool | None = None
+    interface: str | None = None
+    gap_spacing: float | None = None
+    sparse: str | None = None
+    wall: str | None = None
+    coordination: float | None = None
+    gap: float | None = None
+
+    def law(self, law: str | Law) -> Law:
+        """The law of a name; or a law itself, of which nothing else may be asked."""
+        given = {name: value for name, value in vars(self).items() if value is not None}
+        if isinstance(law, Law):
+            if given:
+                raise ValueError(f"{', '.join(given)} beside law = {law!r}: must be given to the law itself")
+            return law
+        if not isinstance(law, str) or law not in LAWS:
+            raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}, or a law such as Laguerre()")
+        if self.conforming is not None:
+            flag("conforming", self.conforming)
+        kind = LAWS[law]
+        given = {name: value for name, value in given.items() if value != kind.unasked.get(name)}
+        _check_own(kind, given)
+        return kind(**given)
+
+
+def _check_own(kind, given):
+    """Refuse choices that a law does not have."""
+    odd = {name: value for name, value in given.items() if name not in {field.name for field in fields(kind)}}
+    if "conforming" in odd:
+        raise ValueError(
+            f"conforming = True with law = {kind.name!r}: twins need not touch; must be False, or law 'laguerre'"
+        )
+    if odd:
+        told = ", ".join(f"{name} = {value!r}" for name, value in odd.items())
+        others = "laws 'calibrated' and 'platonic' have" if kind is Laguerre else "law 'laguerre' has"
+        raise ValueError(f"{told} with law = {kind.name!r}: only the {others} such a choice")
 
 
 def _keep(law, name, valid, *, above):
     """Check a number of a law, and keep it as a float."""
     object.__setattr__(law, name, finite(name, getattr(law, name), valid, lambda v: v > above))
-
-
-def _known(kind, knobs):
-    own = [field.name for field in fields(kind)]
-    odd = [name for name in knobs if name not in own]
-    if odd:
-        raise TypeError(f"{', '.join(odd)}: no keyword of solve and evolve, nor of law {kind.name!r}; it has {own}")

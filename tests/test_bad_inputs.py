@@ -306,7 +306,7 @@ def test_the_table_is_whole():
     public |= {
         name
         for name, made in vars(gallery).items()
-        if getattr(made, "__module__", "") == gallery.__name__ and name[0] != "_"
+        if getattr(made, "__module__", "").startswith(f"{gallery.__name__}.") and name[0] != "_"
     }
     for module in (exact, fem, fft, multipole, bounds, bracket):
         names = [name for name in getattr(module, "__all__", ()) if not name.isupper()]

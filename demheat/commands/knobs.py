@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import inspect
-from dataclasses import fields
 from typing import NamedTuple
 
 from demheat.declared import found, load
 from demheat.files.source import nearest
 from demheat.files.units import LENGTH, read_quantity
-from demheat.laws import LAWS
 from demheat.method import Method
 
-# Keywords that a method takes by `**knobs`, besides those of laws.
-BESIDES = ("replicas", "allow_few")
+# Keywords that no text can give.
+OBJECTS = {"packing"}
 WORDS = {"true": True, "false": False, "none": None}
 
 
@@ -48,10 +46,7 @@ def asked(file, names, words, *, default) -> list[Asked]:
 def known(method: Method) -> set[str]:
     """Keywords of a method that are free: what it fixes is not."""
     parameters = inspect.signature(getattr(load(method.module), method.call)).parameters.values()
-    names = {each.name for each in parameters if each.kind is each.KEYWORD_ONLY}
-    if any(each.kind is each.VAR_KEYWORD for each in parameters):
-        names |= {field.name for law in LAWS.values() for field in fields(law)} | set(BESIDES)
-    return names - set(method.knobs)
+    return {each.name for each in parameters if each.kind is each.KEYWORD_ONLY} - OBJECTS - set(method.knobs)
 
 
 def _add(knobs, word):

@@ -10,17 +10,17 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
-from demheat.deadline import timed
-from demheat.dem.options import asked
+from demheat.deadline import budget
+from demheat.dem.options import Particles, check_fits
 from demheat.field import Field
-from demheat.laws import Calibrated, Laguerre, Platonic
+from demheat.laws import Calibrated, Choices, Laguerre, Platonic
+from demheat.packing.base import Packing
 from demheat.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import whole
 
 
-@timed
 def solve(
     scene: Scene,
     *,
@@ -29,7 +29,20 @@ def solve(
     cracks: Sequence[Disc | Rectangle] = (),
     law: str | Laguerre | Calibrated | Platonic = "laguerre",
     particles: int = 100_000,
-    **knobs: object,
+    seed: int = 0,
+    solver: str = "auto",
+    tolerance: float = 1e-8,
+    seconds: float | None = None,
+    conforming: bool | None = None,
+    interface: str | None = None,
+    gap_spacing: float | None = None,
+    sparse: str | None = None,
+    wall: str | None = None,
+    coordination: float | None = None,
+    gap: float | None = None,
+    packing: Packing | None = None,
+    replicas: int | None = None,
+    allow_few: bool = False,
 ) -> Field:
     """Steady conduction in a scene some of whose links are gone, or that has insulated cracks.
 
@@ -44,8 +57,10 @@ def solve(
     cracks : sequence of Disc and Rectangle
         In a periodic cell their images count. With facets on interfaces, law "laguerre", particles are mirrored in
         their planes; in any case links that cross them conduct nothing.
-    law, particles, **knobs
-        As those of `demheat.solve`, with its seed, solver and tolerance.
+    law, particles, seed, solver, tolerance, seconds
+        As those of `demheat.solve`.
+    conforming, interface, gap_spacing, sparse, wall, coordination, gap, packing, replicas, allow_few : optional
+        As those of `demheat.solve`.
 
     Returns
     -------
@@ -55,7 +70,7 @@ def solve(
 
     Raises
     ------
-    ValueError, TypeError, NotImplementedError, RuntimeError
+    ValueError, NotImplementedError, RuntimeError
         As `demheat.solve`; ValueError also if the damage is not as described, before any heavy work.
 
     Warns
@@ -74,24 +89,40 @@ def solve(
     0.88 0.89
     """
     check_scene(scene)
-    how = {"solver": knobs.pop("solver", "auto"), "tolerance": knobs.pop("tolerance", 1e-8)}
-    check_solver(**how)
+    check_solver(solver, tolerance)
     cracks = check_cracks(cracks)
     drawn(0, removed, whole("draw", draw, "an integer >= 0", lambda v: v >= 0), "removed")
-    law, wanted = asked(law, particles, knobs.pop("seed", 0), knobs)
+    choices = Choices(
+        conforming=conforming,
+        interface=interface,
+        gap_spacing=gap_spacing,
+        sparse=sparse,
+        wall=wall,
+        coordination=coordination,
+        gap=gap,
+    )
+    wanted = Particles(particles=particles, seed=seed, packing=packing, replicas=replicas, allow_few=allow_few)
+    law = choices.law(law)
+    check_fits(wanted, law)
     scene.require(steady=True, takes=("resistance", "exchange"))
     law.check(scene)
+    with budget(seconds):
+        network, spent = _network(scene, law, wanted, cracks)
+        network = without_links(network, removed, seed=draw)
+        begun = time.perf_counter()
+        solution = solve_checked(network, scene, solver=solver, tolerance=tolerance)
+        spent["solve_s"] = time.perf_counter() - begun
+        with stage("field"):
+            # What is broken may conduct as little as it likes.
+            return field_of(scene, network, solution, stats=spent, slack=(1.0, 0.0))
+
+
+def _network(scene, law, wanted, cracks):
+    """The network of a body with cracks, and what its packing took."""
     begun = time.perf_counter()
     packing = wanted.packed(scene, wanted.counts(scene, law))
     spent = {"packing_s": time.perf_counter() - begun}
     warn_of_small(packing, cracks)
     if cracks and law.conforming:
         packing = seamed(packing, cracks)
-    network = cracked(network_of(scene, packing, law, seed=wanted.seed), cracks)
-    network = without_links(network, removed, seed=draw)
-    begun = time.perf_counter()
-    solution = solve_checked(network, scene, **how)
-    spent["solve_s"] = time.perf_counter() - begun
-    with stage("field"):
-        # What is broken may conduct as little as it likes.
-        return field_of(scene, network, solution, stats=spent, slack=(1.0, 0.0))
+    return cracked(network_of(scene, packing, law, seed=wanted.seed), cracks), spent

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import copy
-import difflib
 import warnings
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 import numpy as np
 
-from demheat.laws import LAWS, Calibrated, Laguerre, Platonic
+from demheat.laws import Calibrated, Laguerre, Law, Platonic
 from demheat.limits import check_memory
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
@@ -20,10 +19,6 @@ from demheat.packing.relax import FEWEST
 from demheat.scene import Scene
 from demheat.scene.inputs import flag, whole
 
-# Old keywords of `solve` and `evolve`.
-RENAMED = {"poor": "sparse", "tiles": "replicas"}
-# Keywords of the two besides those of `Particles` and of laws, for suggestions.
-OTHERS = ("law", "solver", "tolerance", "integrator", "accuracy", "step")
 # Packing fraction below which a packing that is given is called loose: crystals of equal spheres begin at .34, diamond.
 LOOSE = 0.3
 # Least bytes that a particle takes, found from 560 to 800 where they are many.
@@ -78,39 +73,11 @@ class Particles:
         return relaxed(self.particles, allow_few=self.allow_few, **body, **domain)
 
 
-def asked(law, particles, seed, knobs) -> tuple[Laguerre | Calibrated | Platonic, Particles]:
-    """The law and the packing that are asked for."""
-    for old in RENAMED.keys() & knobs.keys():
-        if RENAMED[old] in knobs:
-            raise ValueError(f"{old} = {knobs[old]!r} beside {RENAMED[old]}, its new name: must be given once")
-        warnings.warn(f"{old}= is now {RENAMED[old]}=", DeprecationWarning, stacklevel=3)
-    knobs = {RENAMED.get(name, name): value for name, value in knobs.items()}
-    own = {field.name for field in fields(Particles)}
-    wanted = Particles(particles=particles, seed=seed, **{name: knobs[name] for name in own & knobs.keys()})
+def check_fits(wanted: Particles, law: Law) -> None:
+    """Refuse more particles than the memory holds."""
     if wanted.packing is None:
-        remedy = STREAMED if law == "laguerre" or isinstance(law, Laguerre) else ""
+        remedy = STREAMED if isinstance(law, Laguerre) else ""
         check_memory("particles", wanted.particles, BYTES * int(wanted.particles), remedy=remedy)
-    return _law(law, {name: value for name, value in knobs.items() if name not in own}), wanted
-
-
-def _law(law, knobs):
-    if isinstance(law, tuple(LAWS.values())):
-        if knobs:
-            raise ValueError(f"{', '.join(knobs)} beside law = {law!r}: must be given to the law itself")
-        return law
-    if not isinstance(law, str) or law not in LAWS:
-        raise ValueError(f"law = {law!r}: must be one of {', '.join(LAWS)}, or a law such as Laguerre()")
-    try:
-        return LAWS[law].short(**knobs)
-    except TypeError as error:
-        raise TypeError(f"{error}{_nearest(knobs, law)}") from None
-
-
-def _nearest(knobs, law):
-    """A suggestion for the first knob that nobody knows; empty if none is near."""
-    known = [*(field.name for kind in (Particles, LAWS[law]) for field in fields(kind)), *OTHERS]
-    near = (difflib.get_close_matches(name, known, n=1) for name in knobs if name not in known)
-    return next((f"; did you mean {found[0]!r}?" for found in near if found), "")
 
 
 def _own(packing):

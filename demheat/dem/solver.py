@@ -16,13 +16,14 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
-from demheat.deadline import budget, timed
+from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, expected, unknowns
-from demheat.dem.options import asked
+from demheat.dem.options import Particles, check_fits
 from demheat.dem.trial import check_contrast
 from demheat.field import Field
-from demheat.laws import TWO_POINTS, Calibrated, Laguerre, Platonic
+from demheat.laws import TWO_POINTS, Calibrated, Choices, Laguerre, Platonic
+from demheat.packing.base import Packing
 from demheat.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
@@ -39,7 +40,16 @@ def solve(
     solver: str = "auto",
     tolerance: float = 1e-8,
     seconds: float | None = None,
-    **knobs: object,
+    conforming: bool | None = None,
+    interface: str | None = None,
+    gap_spacing: float | None = None,
+    sparse: str | None = None,
+    wall: str | None = None,
+    coordination: float | None = None,
+    gap: float | None = None,
+    packing: Packing | None = None,
+    replicas: int | None = None,
+    allow_few: bool = False,
 ) -> Field:
     """Steady conduction in a scene by the discrete element method.
 
@@ -64,8 +74,8 @@ def solve(
     seconds : float, s, optional
         That it may take, see `demheat.budget`; `Field.error` is not in it.
     conforming, interface, gap_spacing, sparse, wall, coordination, gap : bool, str, float, str, str, float, float
-        Choices of a law that is given by its name, with the defaults of `demheat.Laguerre`, `demheat.Calibrated` and
-        `demheat.Platonic`.
+        Choices of a law that is given by its name; None is its own default, see `demheat.Laguerre`,
+        `demheat.Calibrated` and `demheat.Platonic`.
     packing : Packing, optional
         Used instead of a relaxed one; must have the scene's box and periodicity. A copy is taken.
     replicas : int, optional
@@ -83,8 +93,6 @@ def solve(
     ------
     ValueError
         If an argument is not as described, before any heavy work.
-    TypeError
-        If neither `solve` nor the law knows a keyword.
     NotImplementedError
         For temperatures on walls that meet, or heat exchanged with surroundings, with wall "center" and a law other
         than "laguerre"; for replicas between walls with such a law; for surfaces with a resistance, unless facets lie
@@ -112,7 +120,18 @@ def solve(
     """
     check_scene(scene)
     check_solver(solver, tolerance)
-    law, wanted = asked(law, particles, seed, knobs)
+    choices = Choices(
+        conforming=conforming,
+        interface=interface,
+        gap_spacing=gap_spacing,
+        sparse=sparse,
+        wall=wall,
+        coordination=coordination,
+        gap=gap,
+    )
+    wanted = Particles(particles=particles, seed=seed, packing=packing, replicas=replicas, allow_few=allow_few)
+    law = choices.law(law)
+    check_fits(wanted, law)
     scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image"))
     law.check(scene)
     with budget(seconds):
@@ -120,7 +139,6 @@ def solve(
         return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
 
 
-@timed
 def solve_axes(
     scene: Scene,
     *,
@@ -129,7 +147,17 @@ def solve_axes(
     seed: int = 0,
     solver: str = "auto",
     tolerance: float = 1e-8,
-    **knobs: object,
+    seconds: float | None = None,
+    conforming: bool | None = None,
+    interface: str | None = None,
+    gap_spacing: float | None = None,
+    sparse: str | None = None,
+    wall: str | None = None,
+    coordination: float | None = None,
+    gap: float | None = None,
+    packing: Packing | None = None,
+    replicas: int | None = None,
+    allow_few: bool = False,
 ) -> tuple[Field, Field, Field]:
     """Steady conduction along x, y and z in one body, for its conductivity tensor: packed and tessellated once.
 
@@ -140,8 +168,10 @@ def solve_axes(
     ----------
     scene : Scene
         A periodic cell, or a box between two isothermal walls with four insulated faces.
-    law, particles, seed, solver, tolerance, **knobs
+    law, particles, seed, solver, tolerance, seconds
         As those of `solve`, which also says what is raised and warned of.
+    conforming, interface, gap_spacing, sparse, wall, coordination, gap, packing, replicas, allow_few : optional
+        As those of `solve`.
 
     Returns
     -------
@@ -163,14 +193,26 @@ def solve_axes(
     """
     loads = axis_loads(scene)
     check_solver(solver, tolerance)
-    law, wanted = asked(law, particles, seed, knobs)
+    choices = Choices(
+        conforming=conforming,
+        interface=interface,
+        gap_spacing=gap_spacing,
+        sparse=sparse,
+        wall=wall,
+        coordination=coordination,
+        gap=gap,
+    )
+    wanted = Particles(particles=particles, seed=seed, packing=packing, replicas=replicas, allow_few=allow_few)
+    law = choices.law(law)
+    check_fits(wanted, law)
     law.check(scene)
-    check_contrast(scene, wanted, tolerance, partial(_answers, loads, law, solver=solver))
-    return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
+    with budget(seconds):
+        check_contrast(scene, wanted, tolerance, partial(_answers, loads, law, solver=solver))
+        return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
 
 
-def _answers(scenes, law, wanted, **knobs):
-    """Solve scenes that differ in their loads only, as they were checked; `knobs` are those of the linear solver."""
+def _answers(scenes, law, wanted, *, solver, tolerance):
+    """Solve scenes that differ in their loads only, as they were checked."""
     counts = wanted.counts(scenes[0], law)
     begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
     with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
@@ -181,27 +223,27 @@ def _answers(scenes, law, wanted, **knobs):
         del packing  # twins may have been added to a copy
         helper.join()
     with announced("DEM", needed):
-        return _fields(scenes, networks, law, wanted, spent, **knobs)
+        return _fields(scenes, networks, law, wanted, spent, solver=solver, tolerance=tolerance)
 
 
-def _fields(scenes, networks, law, wanted, spent, **knobs):
+def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance):
     """Solve networks; `spent` is of the fields' stats."""
     fields, kept = [], {}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
         if scene.varies:
-            network, solution = solve_varying(network, scene, **knobs)
+            network, solution = solve_varying(network, scene, solver=solver, tolerance=tolerance)
         else:
-            solution = solve_checked(network, scene, kept=kept, **knobs)
+            solution = solve_checked(network, scene, solver=solver, tolerance=tolerance, kept=kept)
         took = spent | {"solve_s": time.perf_counter() - connected}
-        estimator = estimator_of(law, wanted, partial(_answer, scene, **knobs))
+        estimator = estimator_of(law, wanted, partial(_answer, scene, solver=solver, tolerance=tolerance))
         with stage("field"):
             fields.append(field_of(scene, network, solution, stats=took, estimator=estimator))
     return fields
 
 
-def _answer(scene, law, wanted, **knobs):
-    return _answers([scene], law, wanted, **knobs)[0]
+def _answer(scene, law, wanted, *, solver, tolerance):
+    return _answers([scene], law, wanted, solver=solver, tolerance=tolerance)[0]
 
 
 def evolve(
@@ -214,7 +256,16 @@ def evolve(
     integrator: str = "auto",
     accuracy: float = 1e-3,
     step: float | None = None,
-    **knobs: object,
+    conforming: bool | None = None,
+    interface: str | None = None,
+    gap_spacing: float | None = None,
+    sparse: str | None = None,
+    wall: str | None = None,
+    coordination: float | None = None,
+    gap: float | None = None,
+    packing: Packing | None = None,
+    replicas: int | None = None,
+    allow_few: bool = False,
 ) -> Iterator[Field]:
     """Conduction in time by the discrete element method, from the scene's initial temperature at time 0.
 
@@ -261,8 +312,6 @@ def evolve(
     ------
     ValueError
         If an argument is not as described, before any heavy work; an unstable step once its limit is known.
-    TypeError
-        If neither `evolve` nor the law knows a keyword.
     NotImplementedError
         For contact laws with wall "surface" where the round wall of a cylinder is loaded, and for conforming packings
         of inclusions in round bodies; for implicit integrators where a wall radiates.
@@ -281,7 +330,18 @@ def evolve(
     """
     check_scene(scene)
     times = check_request(times, integrator, accuracy, step)
-    law, wanted = asked(law, particles, seed, knobs)
+    choices = Choices(
+        conforming=conforming,
+        interface=interface,
+        gap_spacing=gap_spacing,
+        sparse=sparse,
+        wall=wall,
+        coordination=coordination,
+        gap=gap,
+    )
+    wanted = Particles(particles=particles, seed=seed, packing=packing, replicas=replicas, allow_few=allow_few)
+    law = choices.law(law)
+    check_fits(wanted, law)
     scene.require(steady=False, takes=("resistance", "exchange", "image"))
     if scene.radiates:
         check_linear(integrator)

@@ -10,7 +10,7 @@ import numpy as np
 from demheat import dem
 from demheat.build import warn_of_twins
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
-from demheat.deadline import timed
+from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, unknowns
 from demheat.dem.options import Particles
@@ -33,7 +33,6 @@ KNOWS = "demheat.streamed solves steady conduction in boxes without pores, by th
 USUAL = 4
 
 
-@timed
 def solve(
     scene: Scene,
     *,
@@ -44,6 +43,7 @@ def solve(
     seed: int = 0,
     tolerance: float = 1e-8,
     replicas: int | None = None,
+    seconds: float | None = None,
 ) -> Field:
     """Steady conduction in a scene by the discrete element method, for more particles than fit into memory as a whole.
 
@@ -64,6 +64,8 @@ def solve(
         Default: 4, or as many as the particles allow; more take less memory for the cells and more time.
     seed, tolerance, replicas
         As those of `demheat.solve`.
+    seconds : float, s, optional
+        That it may take, see `demheat.budget`; then TimeoutError. What is asked of the result is not in it.
 
     Returns
     -------
@@ -89,6 +91,11 @@ def solve(
     ...     print(f"{field.conductivity:.1f} W/(m K)")  # exactly 42.640
     42.6 W/(m K)
     """
+    with budget(seconds):
+        return _solved(scene, folder, law, particles, slabs, seed, tolerance, replicas)
+
+
+def _solved(scene, folder, law, particles, slabs, seed, tolerance, replicas):
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas)
     check(scene, law, wanted, tolerance, knows=KNOWS)
@@ -129,7 +136,7 @@ def _answer(scene, law, wanted, parts, tolerance, needed):
         field = field_of(parts, solution, estimator=estimator, stats=stats)
     if np.any(field.fractions == 0):
         lost = np.flatnonzero(field.fractions == 0) - 1
-        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=3)
+        warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=4)
     return field
 
 
