@@ -5,7 +5,6 @@ They are declared here and at work in `demheat.build`, so that naming a law load
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
@@ -61,8 +60,6 @@ class Laguerre:
     cells: ClassVar[bool] = True
     factor: ClassVar[float] = 1.0
     holds_centers: ClassVar[bool] = False
-    # Choices of other laws that ask nothing of this one.
-    unasked: ClassVar[Mapping] = {"sparse": "nearest", "wall": "center"}
 
     def __post_init__(self):
         flag("conforming", self.conforming)
@@ -101,7 +98,6 @@ class _Contacts:
 
     cells: ClassVar[bool] = False
     conforming: ClassVar[bool] = False
-    unasked: ClassVar[Mapping] = {"conforming": False}
     # Facets on interfaces, where a resistance would be.
     takes: ClassVar[tuple[str, ...]] = ("exchange", "image")
 
@@ -269,9 +265,17 @@ class Choices:
         if self.conforming is not None:
             flag("conforming", self.conforming)
         kind = LAWS[law]
-        given = {name: value for name, value in given.items() if value != kind.unasked.get(name)}
+        if kind is Laguerre:
+            given = {name: value for name, value in given.items() if not _asks_nothing(name, value)}
+        elif not self.conforming:
+            given.pop("conforming", None)
         _check_own(kind, given)
         return kind(**given)
+
+
+def _asks_nothing(name, value):
+    """Whether a choice that only the contact laws have is their default."""
+    return isinstance(value, str) and value == {"sparse": _Contacts.sparse, "wall": _Contacts.wall}.get(name)
 
 
 def _check_own(kind, given):

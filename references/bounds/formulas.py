@@ -17,6 +17,7 @@ from references.bounds.mixing import (
     checked_pair,
     checked_phases,
     checked_positive,
+    checked_third_order,
     contrast,
     dispersed,
     mixed,
@@ -288,7 +289,7 @@ def third_order(
     -------
     lower, upper : (...) float arrays, W/(m K)
     """
-    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2=zeta2)
+    k1, k2, p2, z2 = checked_third_order(k_matrix, k_inclusion, fraction, zeta2)
     weighted = np.stack([1 - z2, z2], axis=-1)
     stacked = np.stack([k1, k2], axis=-1)
     return mixed(k1, k2, p2, 2 * reuss(stacked, weighted)), mixed(k1, k2, p2, 2 * voigt(stacked, weighted))
@@ -317,7 +318,7 @@ def torquato(k_matrix: ArrayLike, k_inclusion: ArrayLike, fraction: ArrayLike, z
     ValueError
         As for all functions here; and for zeta2 above 1/2, where the estimate lies above that bound.
     """
-    k1, k2, p2, z2 = checked_pair(k_matrix, k_inclusion, fraction, zeta2=zeta2)
+    k1, k2, p2, z2 = checked_third_order(k_matrix, k_inclusion, fraction, zeta2)
     if np.any(z2 > 0.5):
         raise ValueError(f"zeta2 = {zeta2!r}: must be <= 1/2, beyond which the estimate passes the upper bound")
     beta = contrast(k1, k2, 2.0)

@@ -24,13 +24,20 @@ def checked_phases(conductivities, fractions):
     return k, p
 
 
-def checked_pair(k_matrix, k_inclusion, fraction, *, zeta2=None):
+def checked_pair(k_matrix, k_inclusion, fraction):
     """Arguments of a two-phase function as arrays, or ValueError."""
+    return _alike(_pair(k_matrix, k_inclusion, fraction))
+
+
+def checked_third_order(k_matrix, k_inclusion, fraction, zeta2):
+    """Those of a function of the third order, or ValueError."""
+    return _alike(_pair(k_matrix, k_inclusion, fraction) | {"zeta2": checked_fraction("zeta2", zeta2)})
+
+
+def _pair(k_matrix, k_inclusion, fraction):
     given = {name: _conductivity(name, k) for name, k in (("k_matrix", k_matrix), ("k_inclusion", k_inclusion))}
     given["fraction"] = checked_fraction("fraction", fraction)
-    if zeta2 is not None:
-        given["zeta2"] = checked_fraction("zeta2", zeta2)
-    return _alike(given)
+    return given
 
 
 def _alike(given):
