@@ -87,10 +87,20 @@ def test_verdicts_of_hard_cases_are_compared_without_their_words():
     assert columns_moved("verdicts", cells[0], worse, hard_cases) == ["verdicts"]
 
 
-@pytest.mark.parametrize("origin", [{"machine": "another"}, {"versions": "others"}])
-def test_a_row_from_elsewhere_is_held_to_less(origin):
-    assert columns_moved("k_ratio", "1.0", 1.004, **origin) == []
-    assert columns_moved("k_ratio", "1.0", 1.02, **origin) == ["k_ratio"]
+@pytest.mark.parametrize(
+    "method, origin, near, far",
+    [
+        ("dem", {"machine": "another"}, 5e-5, 5e-4),
+        ("fem", {"machine": "another"}, 4e-3, 2e-2),
+        ("fem", {}, 5e-9, 5e-8),
+        ("dem", {"versions": "others"}, 4e-3, 2e-2),
+        ("dem", {"machine": "", "versions": ""}, 4e-3, 2e-2),
+    ],
+)
+def test_a_row_from_elsewhere_is_held_to_less(method, origin, near, far):
+    for value, differs in ((1.0 + near, False), (1.0 + far, True)):
+        row, stored = {"status": "ok", "k_ratio": value}, STORED | {"k_ratio": "1.0"} | origin
+        assert bool(moved("mine", study(), CASE | {"method": method}, stored, row)) == differs
 
 
 def test_a_status_that_changes_is_named_with_its_note():
