@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import hashlib
 import os
 import platform
@@ -75,26 +76,40 @@ def versions():
 
 def commit(file=""):
     """Short hash of the checked-out commit; "+" and a digest of what differs from it follow where the packages do."""
-    file = Path(file)
-    strange = file.name and not any(file.is_relative_to(ROOT / name) for name in PACKAGES)
-    changed = _differences() + (file.read_bytes() if strange else b"")
+    changed = _differences() + (Path(file).read_bytes() if _strange(file) else b"")
     return _head() + (f"+{hashlib.sha256(changed).hexdigest()[:6]}" if changed else "")
 
 
 def of_this_code(stored, file=""):
-    """Whether a commit that stands in a row has the packages' present source: rows made by it are this code's."""
-    here = commit(file)
-    return bool(stored) and (stored == here or ("+" not in stored + here and _alike(stored)))
+    """Whether the packages' present source does what that of a commit in a row did: rows made by it are this code's."""
+    return bool(stored) and (stored == commit(file) or ("+" not in stored and not _strange(file) and _alike(stored)))
+
+
+def _strange(file):
+    """Whether a study's file is none of the packages'."""
+    return bool(Path(file).name) and not any(Path(file).is_relative_to(ROOT / name) for name in PACKAGES)
 
 
 @cache
 def _alike(stored):
-    """Whether nothing in the packages has changed since a commit; not if it is unknown here."""
+    """Whether nothing but comments and docstrings of the packages has changed since a commit; not if it is unknown."""
     try:
-        _git("diff", "--quiet", stored, "HEAD", "--", *PACKAGES)
-    except (OSError, subprocess.CalledProcessError):
+        told = _git("diff", "--name-status", "--no-renames", "-z", stored, "--", *PACKAGES).decode().split("\0")
+        changed = dict(zip(told[1::2], told[::2], strict=False))
+        if _untracked() or any(how != "M" or not path.endswith(".py") for path, how in changed.items()):
+            return False
+        return all(_work(_git("show", f"{stored}:{path}")) == _work((ROOT / path).read_bytes()) for path in changed)
+    except (OSError, subprocess.CalledProcessError, SyntaxError):
         return False
-    return True
+
+
+def _work(source):
+    """A module without its comments and docstrings."""
+    tree = ast.parse(source)
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
+            del node.body[0]
+    return ast.dump(tree)
 
 
 @cache
@@ -111,13 +126,18 @@ def _differences():
     """What in the packages is at no commit, as bytes: of one process, which has loaded its modules once."""
     try:
         found = _git("diff", "HEAD", "--", *PACKAGES)
-        for name in sorted(_git("ls-files", "--others", "--exclude-standard", "-z", "--", *PACKAGES).split(b"\0")):
-            found += name + ((ROOT / name.decode()).read_bytes() if name else b"")
+        for name in _untracked():
+            found += name + (ROOT / name.decode()).read_bytes()
         return found
     except (OSError, subprocess.CalledProcessError):
         # Outside a repository the source itself must tell.
         files = sorted(path for name in PACKAGES for path in (ROOT / name).rglob("*.py"))
         return b"".join(path.read_bytes() for path in files)
+
+
+def _untracked():
+    names = _git("ls-files", "--others", "--exclude-standard", "-z", "--", *PACKAGES).split(b"\0")
+    return sorted(filter(None, names))
 
 
 def _git(*words):

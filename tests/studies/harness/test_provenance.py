@@ -58,6 +58,59 @@ def test_a_commit_that_changes_no_code_is_the_same_code(repository):
     assert not provenance.of_this_code("0123456789") and not provenance.of_this_code("")
 
 
+@pytest.mark.parametrize("committed", [True, False])
+@pytest.mark.parametrize(
+    "text, same",
+    [
+        ("# A word.\nA = 1  # another\n", True),
+        ('"""Text."""\n\nA = 1\n', True),
+        ("A = 1\nB = 2\n", False),
+        ('A = "1"\n', False),
+        ('A = 1\n"""Text."""\n', False),
+        ("A =\n", False),
+    ],
+)
+def test_comments_and_docstrings_do_no_work(repository, text, same, committed):
+    root, git = repository
+    first = provenance.commit()
+    (root / "demheat" / "dem.py").write_text(text)
+    git(*(("commit", "-qam", "two") if committed else ("status",)))
+    assert provenance.commit() != first and provenance.of_this_code(first) == same
+    # Of a study that is not ours nothing says what it was then.
+    strange = root.parent / "mine.py"
+    strange.write_text("X = 1\n")
+    assert not provenance.of_this_code(first, strange)
+
+
+def test_docstrings_of_classes_and_functions_do_no_work(repository):
+    root, git = repository
+    path = root / "demheat" / "dem.py"
+    path.write_text('class A:\n    """A."""\n\n    def b(self):\n        """B."""\n        return 1\n')
+    git("commit", "-qam", "two")
+    first = provenance.commit()
+    path.write_text('class A:\n    """C."""\n\n    def b(self):\n        return 1\n')
+    git("status")
+    assert provenance.of_this_code(first)
+    path.write_text('class A:\n    """C."""\n\n    def b(self):\n        return 2\n')
+    git("status")
+    assert not provenance.of_this_code(first)
+
+
+@pytest.mark.parametrize("how", ["gone", "new", "new and unknown", "a table"])
+def test_files_that_come_or_go_do_work(repository, how):
+    root, git = repository
+    (root / "demheat" / "table.csv").write_text("1\n")
+    git("add", ".")
+    git("commit", "-qm", "a table")
+    first = provenance.commit()
+    if how == "gone":
+        (root / "demheat" / "dem.py").unlink()
+    else:
+        (root / "demheat" / ("table.csv" if how == "a table" else "new.py")).write_text("# Words.\n1\n")
+    git(*(("add", ".") if how == "new" else ("status",)))
+    assert not provenance.of_this_code(first)
+
+
 def test_outside_a_repository_the_source_tells(tmp_path, repository, monkeypatch):
     root, git = repository
     (root / ".git").rename(root / "gone")
