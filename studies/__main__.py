@@ -162,7 +162,7 @@ def _run(arguments):
         knobs |= {"compute": alone, "spread": spread}
         for number, name in enumerate(chosen):
             if not (spread or arguments.method) and arguments.force is not True:
-                replay.bear_out(name, arguments.out, quick=arguments.quick, say=_say)
+                replay.bear_out({name: runner.load(name)}, arguments.out, quick=arguments.quick, say=_say)
             if len(chosen) > 1:
                 _say(f"study {number + 1} of {len(chosen)}: {_to_run(chosen[number:], arguments)} left")
             status |= _show(name, runner.run_study(name, arguments.out, **knobs))
@@ -272,7 +272,7 @@ def _replay(arguments):
     for name, study, path in _stored(arguments):
         cases = replay.stored_cases(study, path, quick=not arguments.all, unproved=arguments.old)
         tasks += [(name, study, case) for case in cases]
-    wrong = [each for _, found in replay.replayed(tasks, arguments.out, _say) for each in found]
+    wrong = [each for _, found, _ in replay.replayed(tasks, arguments.out, _say) for each in found]
     print(*wrong, sep="\n", end="\n" if wrong else "")
     rows = len({(each.study, each.case) for each in wrong})
     print(f"{arguments.out}: {len(tasks)} rows made again, {rows} of them with values that moved")

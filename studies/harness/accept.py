@@ -1,19 +1,25 @@
 """A change of code accepted: rows whose values it moves are made again, old and new side by side.
 
-Rows of a group (`replay.group_of`) whose replay has moved get new values; their costs stay, as those of the commit and
-the day on which they were measured. Rows that did not move are left alone.
+Rows of a group (`groups.group_of`) whose replay has moved get new values; their costs stay, as those of the commit and
+the day on which they were measured. Rows that did not move are left alone. Of a group whose cheapest row takes long the
+cheaper rows tell that the same code makes; all rows are looked at by `replay --all`.
 """
 
 from __future__ import annotations
 
 import math
+from itertools import chain
 
 from studies import contents
 from studies.harness import replay, runner
 from studies.harness.claims import judged
+from studies.harness.groups import group_of
 from studies.harness.store import TAIL, VALUES, add_rows, case_key, read_rows
 from studies.harness.table import markdown, read_frame
 from studies.harness.tolerance import COUNTED, moved, value_columns
+
+# Seconds above which the cheapest row of a group is not looked at, where another's tells.
+DEAR = 3.0
 
 
 def accept(names, out, say):
@@ -21,15 +27,15 @@ def accept(names, out, say):
     studies = {name: runner.load(name) for name in names if runner.csv_of(name, out).exists()}
     before = {name: _now(study, runner.csv_of(name, out)) for name, study in studies.items()}
     with replay.side_by_side() as compute:
-        groups = _moved_groups(studies, out, say, compute)
+        groups, made = replay.bear_out(studies, out, dear=DEAR, say=say, compute=compute)
         todo = [
             (name, study, case)
             for name, study in studies.items()
             for case in replay.stored_cases(study, runner.csv_of(name, out), unproved=True)
-            if (name, replay.group_of(case)) in groups
+            if (name, group_of(case)) in groups
         ]
         say(f"{len(groups)} groups moved; {len(todo)} rows are made again")
-        fresh, failed = _made_again(todo, out, say, compute)
+        fresh, failed = _made_again(todo, made, out, say, compute)
     touched = [name for name in studies if any(task[0] == name for task in todo)]
     for name in touched:
         say(compared(name, studies[name], *before[name], out, fresh))
@@ -41,22 +47,13 @@ def _now(study, path):
     return judged(study, read_frame(study, path)), read_rows(path)
 
 
-def _moved_groups(studies, out, say, compute):
-    """Pairs of a study's name and a group whose cheapest row, made again, is not what is stored."""
-    tasks = []
-    for name, study in studies.items():
-        path = runner.csv_of(name, out)
-        cases = replay.stored_cases(study, path, unproved=True)
-        tasks += [(name, study, case) for case in replay.cheapest(read_rows(path), cases).values()]
-    say(f"{len(tasks)} rows are made again, one of each group")
-    found = replay.replayed(tasks, out, say, compute=compute)
-    return {(task[0], replay.group_of(task[2])) for task, wrong in found if wrong}
-
-
-def _made_again(tasks, out, say, compute):
+def _made_again(tasks, made, out, say, compute):
     """Put new values into stored rows as they come; the rows as made, by study and case, and those that were not."""
     fresh, failed = {}, []
-    for number, (task, row) in enumerate(zip(tasks, compute(tasks), strict=True), start=1):
+    left = [task for task in tasks if (task[0], case_key(task[2])) not in made]
+    have = [task for task in tasks if task not in left]
+    rows = chain((made[task[0], case_key(task[2])] for task in have), compute(left))
+    for number, (task, row) in enumerate(zip([*have, *left], rows, strict=True), start=1):
         name, study, case = task
         path, key = runner.csv_of(name, out), case_key(case)
         if row["status"] not in runner.KEPT or replay.absent(row):
@@ -119,30 +116,31 @@ def _claims(name, before, now):
 
 
 def _groups(name, study, rows, fresh):
-    """Errors and costs of each group, old and new; seconds of new rows are of two side by side, without a warm-up."""
+    """Errors and costs of each group, old and new; seconds of new rows are of two side by side, without a warm-up.
+
+    Rows that are made for their values alone have none.
+    """
     import pandas as pd
 
     lines = {}
     for case in study.CASES:
         row = fresh.get((name, case_key(case)))
         if row is not None:
-            group = ", ".join(str(value) for _, value in replay.group_of(case))
+            group = ", ".join(str(value) for _, value in group_of(case))
             lines.setdefault(group, []).append((rows[case_key(case)], row))
     table = []
     for group, pairs in lines.items():
-        old, new = ([_number(row.get("error_percent")) for row in side] for side in zip(*pairs, strict=True))
+        errors, seconds = (
+            [[_number(row.get(name)) for row in side] for side in zip(*pairs, strict=True)]
+            for name in ("error_percent", "cpu_s")
+        )
         table.append(
             {
                 "rows": group,
                 "number": len(pairs),
-                "worst |error|, %": _arrow(max(map(abs, old)), max(map(abs, new))),
-                "median |error|, %": _arrow(_median(old), _median(new)),
-                "CPU-s, measured -> beside others": _arrow(
-                    *(
-                        math.fsum(filter(math.isfinite, (_number(row.get("cpu_s")) for row in side)))
-                        for side in zip(*pairs, strict=True)
-                    )
-                ),
+                "worst |error|, %": _arrow(*(max(map(abs, side)) for side in errors)),
+                "median |error|, %": _arrow(*map(_median, errors)),
+                "CPU-s, measured -> beside others": _arrow(*map(sum, seconds)),
             }
         )
     return markdown(pd.DataFrame(table))

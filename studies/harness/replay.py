@@ -1,7 +1,8 @@
 """Stored rows made again: what they hold must come back, within each column's tolerance.
 
 Rows of one study that share a method, a law and the like stand or fall together: a change of code that moves one of
-them moves the others. So an older row is borne out by the cheapest of its group, made again.
+them moves the others. So an older row is borne out by the cheapest of its group, made again; where even that one takes
+long and only a look is wanted, by those of groups that the same code makes (`groups.followed`).
 """
 
 from __future__ import annotations
@@ -14,36 +15,18 @@ from queue import SimpleQueue
 
 from studies.harness import provenance, runner
 from studies.harness.forked import forking
+from studies.harness.groups import cheapest, cost, followed, group_of
+from studies.harness.provenance import of_this_code
 from studies.harness.sound import held, proved
-from studies.harness.store import MADE, add_rows, case_key, check_writable, read_rows
+from studies.harness.store import add_rows, case_key, check_writable, read_rows
 from studies.harness.tolerance import moved
 
-# Parameters of a case that say which code makes its row, and not how much of it.
-KINDS = ("part", "name", "method", "law", "integrator", "scheme", "rule", "packing", "held", "family")
 # Words of a row that wants a program which is not here.
-ABSENT = re.compile(r"not installed|no mpiexec here")
+ABSENT = re.compile(r"not installed|no mpiexec here|no Python (here has|with) ")
+# Studies that are named.
+MOST = 3
 # Rows that are made side by side: their values count, not their costs.
 WORKERS = 2
-
-
-def group_of(case):
-    """What a row stands or falls with, in its study."""
-    return tuple((kind, case[kind]) for kind in KINDS if case.get(kind) is not None)
-
-
-def cheapest(rows, cases):
-    """Of each group the case whose stored row took least."""
-    found = {}
-    for case in sorted(cases, key=lambda case: _cost(rows.get(case_key(case), {}))):
-        found.setdefault(group_of(case), case)
-    return found
-
-
-def _cost(row):
-    try:
-        return float(row.get("wall_s") or row.get(MADE) or math.inf)
-    except ValueError:
-        return math.inf
 
 
 @contextmanager
@@ -75,8 +58,7 @@ def side_by_side(workers=WORKERS):
 
 
 def replayed(tasks, out, say, *, compute=None):
-    """Make stored rows again and note in them when they came out the same."""
-    found = []
+    """Make stored rows again and note in them when they came out the same; task, what moved, and row, as they come."""
     check_writable(out)
     with ExitStack() as stack:
         compute = compute or stack.enter_context(side_by_side())
@@ -91,9 +73,8 @@ def replayed(tasks, out, say, *, compute=None):
             if not wrong:
                 stamp = {"replayed_commit": row["commit"], "replayed_when": row["when"]}
                 add_rows(path, {key: stored | stamp}, keys_of(study, path))
-            found.append((task, wrong))
             say(f"[{number}/{len(tasks)}] {name} {key}: {told(wrong)}")
-    return found
+            yield task, wrong, row
 
 
 def absent(row):
@@ -111,21 +92,74 @@ def keys_of(study, path):
     return list(dict.fromkeys([*map(case_key, study.CASES), *read_rows(path)]))
 
 
-def bear_out(name, out, *, quick=False, say=print, compute=None):
-    """Replay, of the rows that other code has made, the cheapest of each group; note in a group that is borne out."""
-    study, path = runner.load(name), runner.csv_of(name, out)
-    rows = read_rows(path)
-    cases = [case for case in stored_cases(study, path, quick=quick) if rows[case_key(case)]["status"] in runner.KEPT]
-    older = [case for case in cases if not held(study, rows[case_key(case)])]
-    if not older:
-        return
-    chosen = cheapest(rows, older)
-    say(f"{name}: {len(older)} rows of other code; one of each of {len(chosen)} groups is made again")
-    tasks = [(name, study, case) for case in chosen.values()]
-    same = {group_of(task[2]) for task, wrong in replayed(tasks, out, say, compute=compute) if not wrong}
+def bear_out(studies, out, *, quick=False, dear=math.inf, say=print, compute=None):
+    """Replay, of the rows that other code has made, the cheapest of each group; note in a group that is borne out.
+
+    Groups whose cheapest row took more than `dear` seconds follow others. Returns those that moved, as pairs of a
+    study's name and a group, and the rows that were made of them, by study and key.
+    """
+    groups = _grouped(studies, out, quick)
+    older = {each: task for each, (task, _, _) in groups.items() if task}
+    told_of = {each: seconds for each, (task, seconds, before) in groups.items() if task or before is not None}
+    following = {each: leaders for each, leaders in followed(told_of, dear).items() if each in older}
+    tasks = [older[each] for each in sorted(older, key=told_of.get) if each not in following]
+    if older:
+        say(f"{len(older)} groups have rows of other code; one row of each of {len(tasks)} is made again")
+    for (name, group), leaders in following.items():
+        kinds, others = case_key(dict(group)), sorted({other for other, _ in leaders})
+        more = f" and {len(others) - MOST} more" if len(others) > MOST else ""
+        say(f"    {name} {kinds} takes long: follows {', '.join(others[:MOST])}{more}")
+    gone, made = {each: before for each, (task, _, before) in groups.items() if not task}, {}
+    for task, wrong, row in replayed(tasks, out, say, compute=compute):
+        name, group = each = task[0], group_of(task[2])
+        gone[each] = bool(wrong)
+        if wrong:
+            made[name, case_key(task[2])] = row
+        else:
+            _mark(studies[name], runner.csv_of(name, out), group)
+    for (name, group), leaders in following.items():
+        # A leader that is not here says nothing.
+        found = [gone[each] for each in leaders if gone.get(each) is not None]
+        gone[name, group] = any(found)
+        if found and not any(found):
+            _mark(studies[name], runner.csv_of(name, out), group)
+    return {each for each in older if gone.get(each)}, made
+
+
+def _grouped(studies, out, quick):
+    """Of each group its cheapest row of other code, if any, as a task; its least seconds; whether it moved before."""
+    found = {}
+    for name, study in studies.items():
+        rows, groups = read_rows(runner.csv_of(name, out)), {}
+        for case in stored_cases(study, runner.csv_of(name, out), quick=quick):
+            if rows[case_key(case)]["status"] in runner.KEPT:
+                groups.setdefault(group_of(case), []).append(case)
+        for group, cases in groups.items():
+            here = [rows[case_key(case)] for case in cases]
+            older = [case for case in cases if not held(study, rows[case_key(case)])]
+            task = (name, study, cheapest(rows, older)[group]) if older else None
+            found[name, group] = task, min(map(cost, here)), _moved_before(study, here)
+    return found
+
+
+def _moved_before(study, rows):
+    """Whether a replay by this code, that was killed since, found a group moved; None if there was none."""
+
+    def here(*names):
+        return any(of_this_code(str(row.get(name) or ""), study.__file__) for row in rows for name in names)
+
+    if here("values_commit"):
+        return True
+    return False if here("replayed_commit", "borne_commit") and not here("commit") else None
+
+
+def _mark(study, path, group):
+    """Note in the rows of a group that other code has made that they are borne out."""
     rows, mark = read_rows(path), {"borne_commit": provenance.commit(study.__file__)}
-    found = {case_key(case): rows[case_key(case)] | mark for case in older if group_of(case) in same}
-    add_rows(path, found, keys_of(study, path))
+    keys = [case_key(case) for case in study.CASES if group_of(case) == group]
+    found = {key: rows[key] | mark for key in keys if key in rows and not held(study, rows[key])}
+    if found:
+        add_rows(path, found, keys_of(study, path))
 
 
 def stored_cases(study, path, *, quick=False, unproved=False):

@@ -1,10 +1,13 @@
 """What the study of programs makes of its rows."""
 
+import shutil
+
 import pandas as pd
 import pytest
 
 from studies import peers
-from studies.peers import cases, figure, means, tables
+from studies.harness import replay
+from studies.peers import cases, figure, means, packages, python_elements, tables
 
 HERTZ = [case for case in peers.CASES if case["name"] == "grains" and case["scene"].endswith("Hertz radius")]
 
@@ -18,6 +21,17 @@ def rows(*found):
 def test_our_beds_warm_up(case):
     """A bed at random has no layers to choose; a row whose warm-up raises has failed."""
     peers.warm_up(**case)
+
+
+@pytest.mark.parametrize("name", peers.PROGRAMS)
+def test_a_program_that_is_not_here_says_nothing_of_stored_rows(name, monkeypatch):
+    """Else `accept` would put its absence in the place of what it gave where it was."""
+    program = peers.program(name)
+    monkeypatch.setattr(shutil, "which", lambda command: None)
+    for module in (program, packages, python_elements):
+        monkeypatch.setattr(module, "python_of", lambda *names: None, raising=False)
+    note = program.missing()
+    assert note is None or replay.absent({"status": "unsupported", "note": note}), note
 
 
 def test_a_row_that_another_beats_in_both_is_not_drawn():
