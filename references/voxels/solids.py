@@ -32,10 +32,11 @@ BLOCK = 2**18
 def window(shape: Shape, counts, spacing, *, clipped: bool) -> tuple[np.ndarray, np.ndarray]:
     """First voxel of a shape's bounds along each axis, and the one after the last, two (3,) int arrays."""
     low, high = shape.bounds()
+    first, last = np.floor(low / spacing), np.ceil(high / spacing)
     ends = np.isfinite(low) & ~clipped
-    first = np.where(ends, low, np.clip(low, 0.0, counts * spacing)) / spacing
-    last = np.where(ends, high, np.clip(high, 0.0, counts * spacing)) / spacing
-    return np.floor(first).astype(int), np.ceil(last).astype(int)
+    # In voxels, not in metres: so many times a spacing over the spacing may be a bit more than so many.
+    first, last = (np.where(ends, each, np.clip(each, 0, counts)) for each in (first, last))
+    return first.astype(int), last.astype(int)
 
 
 def cut_voxels(shape: Shape, counts, spacing) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

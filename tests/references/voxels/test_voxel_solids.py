@@ -74,6 +74,15 @@ def test_level_planes_are_layers():
             assert_allclose(a, b, rtol=1e-12)
 
 
+def test_what_goes_on_beyond_the_box_ends_with_its_voxels():
+    """Seven sevenths of .035 m are a bit more than that, and there is no eighth voxel."""
+    size = (0.035, 0.035, 0.035)
+    assert 7 * (size[0] / 7) / (size[0] / 7) > 7
+    half = HalfSpace((0.02, 0.0, 0.0), (1, 0, 0), OTHER)
+    scene = Scene(size, MATRIX, [half], walls={"x-": 0.0, "x+": 1.0})
+    assert_allclose(voxelise(scene, (7, 7, 7), laminate=False).fractions, [3 / 7, 4 / 7])
+
+
 def test_inclined_planes_cut_exactly():
     plane = HalfSpace((0.5, 0.3, 0.2), (1, 2, 3), OTHER)
     grid = voxelise(scene(plane, walls=True), SHAPE, laminate=True)
