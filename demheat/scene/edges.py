@@ -29,9 +29,12 @@ def edge_order(scene) -> float:
     boxes = [part for shape in scene.inclusions for part in shape.parts if isinstance(part, Box)]
     if not boxes or scene.anisotropic:
         return 1.0
-    around = np.concatenate([_around(box, scene.size) for box in boxes])
+    around, size = np.concatenate([_around(box, scene.size) for box in boxes]), np.array(scene.size)
     if not scene.periodic:
-        around = around[np.all((around > 0) & (around < scene.size), axis=(1, 2))]
+        # Walls are mirrors: what touches one with an edge meets its image there.
+        within = size / 2 - np.abs(around - size / 2)
+        around = np.where(within < 0, np.where(around < 0, -around, 2 * size - around), around)
+        around = around[np.all(within > -4 * BESIDE * size.max(), axis=(1, 2))]
     k = scene.mean_conductivities[scene.phase_at(around.reshape(-1, 3))].reshape(-1, 4)
     return min((min(1.0, 2 * power(four)) for four in np.unique(k, axis=0)), default=1.0)
 

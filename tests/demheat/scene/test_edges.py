@@ -47,6 +47,23 @@ def test_boxes_that_keep_apart_or_share_a_face_are_as_all_others():
     assert edge_order(Scene(inclusions=[Union(turned, good)], **cell)) < 0.1
 
 
+def on_edge(contrast, place=0.5):
+    """A box on its edge, which reaches from wall to wall: a board, with what walls mirror."""
+    side = math.sqrt(0.5)
+    box = Box((0.5, place, 0.1), (side, side, 0.2), Material(contrast), rotation=(0, 0, math.pi / 4))
+    return Scene((1.0, 1.0, 0.2), Material(1.0), [box], walls={"x-": 0.0, "x+": 1.0})
+
+
+def test_an_edge_at_a_wall_meets_its_image():
+    assert_allclose(edge_order(on_edge(10.0)), edge_order(board(10.0)), atol=1 / 1000)
+    # Wherever it touches; a side along the wall has none.
+    assert edge_order(on_edge(10.0, place=0.2)) == edge_order(on_edge(10.0))
+    flat = Box((0.25, 0.5, 0.1), (0.5, 1.0, 0.2), Material(1000.0))
+    assert edge_order(Scene((1.0, 1.0, 0.2), Material(1.0), [flat], walls={"x-": 0.0, "x+": 1.0})) == 1.0
+    with pytest.raises(NotImplementedError, match="edges of boxes meet"):
+        fft.solve(on_edge(1000.0), voxels=8)
+
+
 @pytest.mark.parametrize("method", [fft.solve, solve])
 @pytest.mark.parametrize("contrast", [30.0, 1000.0])
 def test_boards_of_high_contrast_are_refused(method, contrast):
