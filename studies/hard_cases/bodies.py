@@ -8,9 +8,10 @@ import numpy as np
 
 from demheat import referee
 from demheat.scene import Flux, Material, Scene
+from studies.common.answers import answer
 from studies.hard_cases.rows import row_of
 from studies.hard_cases.scenes import LOW
-from studies.hard_cases.verdicts import Verdict, answer, refused
+from studies.hard_cases.verdicts import Verdict, refused
 from studies.hard_cases.ways import DECLARED, ways
 from studies.harness import methods
 

@@ -12,8 +12,8 @@ import numpy as np
 from demheat.method import DEGREE
 from demheat.referee import value_error
 from demheat.scene import Layer, Material, Scene, Sphere
+from studies.common.answers import answer
 from studies.hard_cases.scenes import in_units
-from studies.hard_cases.verdicts import answer
 from studies.hard_cases.ways import SOLVED, allowed
 from studies.harness import methods
 

@@ -6,9 +6,10 @@ import json
 from collections import Counter
 
 from demheat.referee import value_error
+from studies.common.answers import answer
 from studies.hard_cases.changes import relations
 from studies.hard_cases.scenes import rng_of, scene_of
-from studies.hard_cases.verdicts import OUTCOMES, Truth, answer, judged, refused, truth
+from studies.hard_cases.verdicts import OUTCOMES, Truth, judged, refused, truth
 from studies.hard_cases.ways import allowed, ways
 from studies.harness import methods
 

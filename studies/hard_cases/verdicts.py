@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import warnings
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -13,7 +12,6 @@ from demheat.referee import value_error
 from demheat.scene import Scene, Sphere
 
 OUTCOMES = ("verified", "refused", "warned", "wrong", "open")
-REFUSALS = (ValueError, NotImplementedError, RuntimeError)
 # A bracket is narrowed to the first width, if a mesh of so many elements does; a wider one than the second judges none.
 NARROW, WIDE = 0.02, 0.10
 # Edges of the bracket's elements over the mesher's usual ones, coarse to fine.
@@ -83,19 +81,6 @@ def _shrunk(scene):
         replace(each, radius=each.radius - less) if isinstance(each, Sphere) else each for each in scene.inclusions
     ]
     return replace(scene, inclusions=inclusions)
-
-
-def answer(call):
-    """What a call returns, what it warns of and what it refuses: (answer, warnings, refusal), or the last one alone."""
-    with warnings.catch_warnings(record=True) as caught:
-        warnings.simplefilter("always")
-        try:
-            found, refusal = call(), None
-        except REFUSALS as error:
-            found, refusal = None, error
-    # Of the numbers, not of caches, nor of overflows on the way.
-    said = [str(each.message) for each in caught if each.category is UserWarning and "cache" not in str(each.message)]
-    return found, list(dict.fromkeys(said)), refusal
 
 
 def refused(name: str, error: Exception) -> Verdict:

@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 from demheat import Layer, Material, Scene, Sphere
 from references import exact
 from studies import hard_cases
+from studies.common.answers import answer
 from studies.hard_cases import bodies, changes, means, rows, scenes, tables, verdicts, ways
 
 CELL = {"size": (1.0, 1.0, 1.0), "gradient": (1.0, 0.0, 0.0)}
@@ -86,13 +87,13 @@ def test_heat_that_is_stopped():
     ],
 )
 def test_a_refusal_says_why(words, outcome):
-    _, said, error = verdicts.answer(lambda: exec("raise NotImplementedError(words)", {"words": words}))
+    _, said, error = answer(lambda: exec("raise NotImplementedError(words)", {"words": words}))
     assert said == [] and verdicts.refused("fft", error).outcome == outcome
 
 
 def test_what_is_no_refusal_is_raised():
     with pytest.raises(ZeroDivisionError):
-        verdicts.answer(lambda: 1 / 0)
+        answer(lambda: 1 / 0)
 
 
 @pytest.mark.parametrize("family", scenes.FAMILIES)

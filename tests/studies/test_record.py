@@ -28,9 +28,7 @@ REFUSED = "says no, or ends what takes too long: tests of its own"
 READ = "read, written or asked in a terminal: compared to the letter or the bit by tests of its own"
 DRAWN = "drawn"
 LARGE = "several processes or less memory: compared with the plain way by tests of its own"
-BODIES = (
-    "unions, and sets known by their inside alone, are in no study: beside bodies told otherwise by tests of their own"
-)
+BODIES = "unions, and sets known by their inside alone, are in no quick row: beside bodies told otherwise, by own tests"
 FORMS = "no study asks for it: held against limits and other forms by tests of its own"
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
