@@ -1,8 +1,8 @@
 """What a method declares of itself: studies, figures and the suites of tests find it here and nowhere else.
 
-A method is a module with `solve(scene, **knobs) -> Field` or `evolve(scene, times, **knobs)`, or one that knows the
-effective conductivity alone, `estimate(scene, **knobs) -> float`. What it is and is worth stands in a tuple `METHODS`
-of that module: one entry for each way of fixing its knobs that studies tell apart.
+A method is a module with `solve(scene, *, ...) -> Field` or `evolve(scene, times, *, ...)`, its knobs spelled, or one
+that knows the effective conductivity alone, `estimate(scene) -> float`. What it is and is worth stands in a tuple
+`METHODS` of that module: one entry for each way of fixing its knobs that studies tell apart.
 """
 
 from __future__ import annotations
