@@ -41,6 +41,14 @@ BESIDE = {
         "references.exact",
         "references.multipole",
     ),
+    "references.walkers": (
+        "demheat.scene",
+        "demheat.lazy",
+        "demheat.deadline",
+        "demheat.process_state",
+        "demheat.progress",
+        "references.walkers",
+    ),
     "references.fem": (
         "demheat.scene",
         "demheat.lazy",

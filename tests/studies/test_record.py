@@ -30,6 +30,7 @@ DRAWN = "drawn"
 LARGE = "several processes or less memory: compared with the plain way by tests of its own"
 BODIES = "unions, and sets known by their inside alone, are in no quick row: beside bodies told otherwise, by own tests"
 FORMS = "no study asks for it: held against limits and other forms by tests of its own"
+WALKS = "no study asks for it yet: held against exact values by tests of its own"
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
 CLAIMS = "claims extrapolate rows by it; no row does"
@@ -73,6 +74,7 @@ NO_ROWS = {
     "references/mesh/size_table.py": CROWDS,
     "references/mesh/turns.py": CROWDS,
     "references/richardson.py": CLAIMS,
+    "references/walkers": WALKS,
 }
 
 
