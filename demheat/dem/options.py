@@ -16,6 +16,7 @@ from demheat.packing.domain import replica_counts
 from demheat.packing.gate import check_packing
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
+from demheat.packing.tile import fits, tiled
 from demheat.scene import Scene
 from demheat.scene.inputs import flag, whole
 
@@ -54,6 +55,8 @@ class Particles:
         if self.packing is not None:
             _check_body(self.packing, scene)
             return np.ones(3, dtype=int)
+        if self.tiles(scene, law):
+            return np.ones(3, dtype=int)
         if scene.domain == "box" and (scene.periodic or law.cells):
             return replica_counts(self.particles, scene.size, self.replicas)
         if self.replicas is not None and self.replicas != 1:
@@ -62,11 +65,18 @@ class Particles:
             )
         return np.ones(3, dtype=int)
 
-    def packed(self, scene: Scene, counts) -> Packing:
-        """The packing that was given, or a relaxed one in the scene's body, or replicas of one."""
+    def tiles(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> bool:
+        """Whether particles need not be packed: cells with twins in boxes."""
+        ours = law.conforming and scene.domain == "box" and self.packing is None and self.replicas is None
+        return ours and fits(self.particles, scene.size, scene.periodic)
+
+    def packed(self, scene: Scene, counts, law: Laguerre | Calibrated | Platonic) -> Packing:
+        """The packing that was given, or tiles, or a relaxed one in the scene's body, or replicas of one."""
         if self.packing is not None:
             return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
+        if self.tiles(scene, law):
+            return tiled(self.particles, **body)
         if counts.prod() > 1:
             return replicated(self.particles, counts, **body)
         domain = {} if scene.domain == "box" else {"domain": scene.domain}

@@ -216,7 +216,7 @@ def _answers(scenes, law, wanted, *, solver, tolerance):
     counts = wanted.counts(scenes[0], law)
     begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
     with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
-        packing = wanted.packed(scenes[0], counts)
+        packing = wanted.packed(scenes[0], counts, law)
         spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
         networks = networks_of(scenes, packing, law, seed=wanted.seed)
@@ -356,7 +356,7 @@ def evolve(
 def _march(scene, times, law, wanted, **how):
     """Fields at times of what was checked; `how` are the knobs of the integrator."""
     with Helper(parts_of(law, wanted.particles, steady_state=False)) as helper:
-        packing = wanted.packed(scene, wanted.counts(scene, law))
+        packing = wanted.packed(scene, wanted.counts(scene, law), law)
         helper.join()
     network = network_of(scene, packing, law, seed=wanted.seed)
     loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}

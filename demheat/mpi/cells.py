@@ -18,7 +18,7 @@ def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) 
     # One makes what all read.
     for turn in (0, 1):
         if turn == min(comm.rank, 1):
-            packing, radii = tiles.packed(scene, wanted, counts, slabs)
+            packing, radii = tiles.packed(scene, law, wanted, counts, slabs)
         comm.Barrier()
     packing = tiles.conformed(packing, radii, scene, law, wanted, slabs)
     if law.conforming and comm.rank == 0:

@@ -38,6 +38,12 @@ class Interfaces:
         depths = np.append(self.spheres.radii, [other.depth for other in self.others])
         return depths[own]
 
+    def bend(self, points, normals, own, step):
+        """Sum of the principal curvatures at points of surfaces, (n,) float array, 1/m; its sign is of no meaning."""
+        if len(own) and own[0] >= len(self.spheres):
+            return self.others[own[0] - len(self.spheres)].bend(points, normals, step)
+        return 2.0 / self.spheres.radii[own]
+
     def widest_spacing(self, own):
         """Spacing at which an even pattern on each surface has the fewest points that it may have, (n,), m."""
         area = 4 * np.pi * self.spheres.radii**2

@@ -139,6 +139,10 @@ class PlaneSurface(NamedTuple):
         normals[:, self.axis] = 1.0
         return points, normals
 
+    def bend(self, points, normals, step):
+        """Of a plane there is none, (k,) float array."""
+        return np.zeros(len(points))
+
     def touched(self, points, normals):
         """The points themselves: a plane is its own tangent."""
         return points

@@ -65,6 +65,16 @@ class SolidSurface:
         """The points moved onto planes that keep the volume, (k, 3) float array, m."""
         return self.moved(self.shape, self.scene, points, normals) if len(points) else points
 
+    def bend(self, points, normals, step):
+        """Sum of the principal curvatures at points, from normals beside them, (k,) float array, 1/m."""
+        bend = np.zeros(len(points))
+        first = np.cross(normals, np.eye(3)[np.argmin(np.abs(normals), axis=1)])
+        first /= np.linalg.norm(first, axis=1)[:, None]
+        for along in (first, np.cross(normals, first)):
+            ahead, behind = (self.shape.normal(points + sign * step * along) for sign in (1.0, -1.0))
+            bend += np.einsum("ij,ij->i", ahead - behind, along) / (2.0 * step)
+        return bend
+
     def gap(self, points, *, skip_self=False):
         """Distance of points to the surface, its periodic images included, (n,) float array, m."""
         if not skip_self:

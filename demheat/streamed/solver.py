@@ -104,7 +104,8 @@ def _solved(scene, folder, law, particles, slabs, seed, tolerance, replicas):
     # The packing may be in the cache: what it would take is said, not asked for.
     check_memory("particles", wanted.particles, expected(number, cuts[0]))
     check_room("folder", path, on_disk(number, cuts[0]))
-    needed = expected(number, cuts[0], wanted.particles / wanted.counts(scene, law).prod())
+    packed_at_once = 0 if wanted.tiles(scene, law) else wanted.particles / wanted.counts(scene, law).prod()
+    needed = expected(number, cuts[0], packed_at_once)
     with announced("DEM in slabs", needed):
         return _answer(scene, law, wanted, Parts(scene, Store(path), cuts, []), tolerance, needed)
 
@@ -147,7 +148,7 @@ def _cut(law, wanted, parts):
     with stage("slabs") as done:
         for slabs in parts.cuts:
             done(slabs.rank / len(parts.cuts))
-            packing, radii = packed(scene, wanted, counts, slabs)
+            packing, radii = packed(scene, law, wanted, counts, slabs)
             packing = conformed(packing, radii, scene, law, wanted, slabs)
             if law.conforming and slabs.rank == 0:
                 warn_of_twins(packing, wanted.particles)

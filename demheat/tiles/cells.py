@@ -19,6 +19,7 @@ from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.packing.base import Packing, wrap
 from demheat.packing.cache import relaxed, replica, replicated
 from demheat.packing.conforming import Part, conform
+from demheat.packing.tile import tiled
 from demheat.scene import Scene
 from demheat.scene.resistances import between
 from demheat.tiles.slabs import Slabs
@@ -48,9 +49,12 @@ class Cells(NamedTuple):
     packing: dict
 
 
-def packed(scene: Scene, wanted: Particles, counts, slabs: Slabs) -> tuple[Packing, np.ndarray]:
+def packed(scene: Scene, law: Laguerre, wanted: Particles, counts, slabs: Slabs) -> tuple[Packing, np.ndarray]:
     """A slab's part of the packing, and the radii of all of it or of one of its replicas."""
     body = {"size": scene.size, "seed": wanted.seed}
+    if wanted.tiles(scene, law):
+        part = tiled(wanted.particles, periodic=scene.periodic, keep=slabs.near, **body)
+        return part, part.radii[:1]
     if counts.prod() > 1:
         part = replicated(wanted.particles, counts, periodic=scene.periodic, keep=slabs.near, **body)
         return part, replica(wanted.particles, counts, **body).radii

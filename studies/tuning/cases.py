@@ -10,30 +10,29 @@ SCENES = {2_000: 3, 8_000: 3, 30_000: 2, 100_000: 1}
 GROUPS = {"unseen": (200, 203)}
 # Factors of each constant: of the five that shape every layer of twins some at more particles too.
 MAIN = {
-    "OFFSET": (0.5, 0.7, 0.85, 1.4),
-    "CURVATURE": (0.5, 1.0),
-    "SPACING": (0.5, 0.7, 1.4),
+    "OFFSET": (0.7, 0.85, 1.4),
+    "BEND": (0.0, 0.7, 1.4),
+    "SPACING": (0.7, 1.4),
     "MARGIN": (0.372, 1.4, 2.0),  # the first is that with the other sign of EXCESS
-    "CLEARANCE": (0.5, 2.0),
+    "NARROW": (0.7, 0.85, 1.2),
 }
 OTHERS = {
     "EXCESS": (0.7, 1.4),
-    "ROOM": (0.7, 1.4),
+    "LESS": (0.0, 2.0),
     "GAP_SPACING": (0.5,),
     "THINNING": (0.7, 1.3),
     "LEAST_OFFSET": (0.5, 2.0),
 }
-FINE = {8_000: (0.7, 1.0, 1.4), 30_000: (0.85, 1.0), 100_000: (0.85, 1.0)}
-WON = {8_000: (("CURVATURE", 0.5),), 30_000: (("CURVATURE", 0.5),)}
+FINE = {8_000: (0.0, 0.7, 0.85, 1.2, 1.4), 30_000: (0.0, 0.7, 0.85, 1.2, 1.4), 100_000: (0.7, 0.85, 1.2)}
 # Elements know these families to some 1e-5: too little beside the finest packings.
 MOST_MESHED = 8_000
 # Of the order: packings of each number of particles, and what is varied.
 PACKINGS = {1_000: 8, 2_000: 8, 4_000: 8, 8_000: 8, 16_000: 6, 32_000: 4, 100_000: 3}
 COARSE = (1_000, 4_000, 16_000)
 SPHERE = {"shape": "sphere", "contrast": 10.0, "constant": None, "factor": 1.0}
-BENT = SPHERE | {"constant": "CURVATURE", "factor": 1.0}
+UNBENT = SPHERE | {"constant": "BEND", "factor": 0.0}
 NEARER, OTHER_SIGN = ({"constant": "OFFSET", "factor": 0.7}, {"constant": "MARGIN", "factor": 0.372})
-PROBES = (SPHERE, BENT, *(SPHERE | {"contrast": contrast} for contrast in (0.01, 1.01)))
+PROBES = (SPHERE, UNBENT, *(SPHERE | {"contrast": contrast} for contrast in (0.01, 1.01)))
 PROBES = (*PROBES, SPHERE | NEARER, SPHERE | OTHER_SIGN)
 
 
@@ -56,9 +55,7 @@ def cases():
         yield _varied(None, 1.0, particles)
         for constant, factors in (MAIN if particles in FINE else MAIN | OTHERS).items():
             allowed = FINE.get(particles, factors)
-            # Where another value wins it stays.
-            few = [factor for factor in factors if factor in allowed or (constant, factor) in WON.get(particles, ())]
-            yield from (_varied(constant, factor, particles) for factor in few)
+            yield from (_varied(constant, factor, particles) for factor in factors if factor in allowed)
     for probe in PROBES:
         for particles in PACKINGS if probe == SPHERE else COARSE:
             yield {"part": "order", **probe, "particles": particles, "method": "dem"}

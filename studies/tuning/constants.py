@@ -8,9 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import contextmanager
 from typing import NamedTuple
-from unittest.mock import patch
-
-import numpy as np
 
 from demheat.laws import Laguerre
 from demheat.packing import conforming, gaps, interfaces, patterns
@@ -22,7 +19,7 @@ class Constant(NamedTuple):
     """One constant, lengths in mean radii of the packing."""
 
     meaning: str
-    unit: float  # the value at factor 1: as shipped, of CURVATURE as proposed
+    unit: float  # the value at factor 1: as shipped
     found_on: str
     setting: Callable[[float], dict[str, object]]  # a value -> what becomes of the names of the modules
 
@@ -50,50 +47,18 @@ def _least_offset(value):
     return {name: least * getattr(patterns, name) for name in names}
 
 
-def _curvature(value):
-    """Twins of a sphere stand nearer to it by this times its curvature in mean radii, by a half at most."""
-    shipped, wide = conforming._room, conforming.OFFSET
-
-    def room(points, normals, own, interfaces, radius):
-        curvature = np.append(1.0 / interfaces.spheres.radii, np.zeros(len(interfaces.others)))[own]
-        nearer = np.minimum(value * radius * curvature, 0.5)
-        return np.minimum(wide * (1.0 - nearer) * radius, shipped(points, normals, own, interfaces, radius))
-
-    return {"_room": room}
-
-
-def _nothing(points, *_):
-    """No gap, no wall: as if all were far away."""
-    return np.full(len(points), np.inf)
-
-
-def _room(value):
-    """Scales how much of a gap twins take up: a quarter from either side of an interface, half of it towards a wall."""
-    shipped = conforming._room
-
-    def room(points, normals, own, interfaces, radius):
-        with patch.object(conforming, "OFFSET", np.inf):
-            free = shipped(points, normals, own, interfaces, radius)
-        with patch.object(interfaces, "gap", _nothing), patch.object(interfaces, "way_to_wall", _nothing):
-            wide = shipped(points, normals, own, interfaces, radius)
-        return np.minimum(wide, value * free)
-
-    return {"_room": room}
-
-
 CLOSE = Laguerre().gap_spacing
 MARGIN = float(conforming.margin(1.0))
 # What the margin was before it became wider: with the other sign of EXCESS.
-NARROW = MARGIN - 2 * conforming.EXCESS
-SPHERE, UNSAID = "centred sphere, four contrasts", "nobody wrote it down"
+BEFORE = MARGIN - 2 * conforming.EXCESS
+SPHERE = "centred sphere, four contrasts"
 CONSTANTS = {
     "OFFSET": Constant("of twins from the interface", conforming.OFFSET, SPHERE, _offset),
-    # Not shipped: what would lower the errors of most scenes, and raise those of dense dispersions.
-    "CURVATURE": Constant(
-        "twins of a sphere stand nearer to it by this times its curvature, times mean radii",
-        1.1,
-        "eleven scenes drawn like those here, from seeds 0 to 2",
-        _curvature,
+    "BEND": Constant(
+        "twins stand nearer to a bent interface by this times R times the sum of its curvatures",
+        conforming.BEND,
+        "one sphere, 27 in order, unequal ones",
+        _named("BEND"),
     ),
     "SPACING": Constant("of twins along the interface", patterns.SPACING, SPHERE, _named("SPACING")),
     "MARGIN": Constant(
@@ -102,16 +67,15 @@ CONSTANTS = {
         "seven random dispersions",
         _margin_of,
     ),
-    "CLEARANCE": Constant(
-        "a particle nearer than the twins beside it plus this gives way",
-        conforming.CLEARANCE,
-        UNSAID,
-        _named("CLEARANCE"),
+    "NARROW": Constant(
+        "gaps narrower than this hold twins alone", conforming.NARROW, "by reasoning, and 83 spheres", _named("NARROW")
+    ),
+    "LESS": Constant(
+        "by so much times R times the sum of curvatures less", conforming.LESS, "83 spheres, dense ones", _named("LESS")
     ),
     "EXCESS": Constant(
         "weight of a twin beyond its squared offset, squared mean radii", conforming.EXCESS, "by reasoning", _excess
     ),
-    "ROOM": Constant("part that twins take up of a narrow gap, over a quarter", 1.0, "by reasoning", _room),
     # A choice of the law: `studies.tuning.rows` sets it there.
     "GAP_SPACING": Constant(
         "of twins in a gap, over its width",

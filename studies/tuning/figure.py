@@ -7,7 +7,7 @@ import numpy as np
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, ORANGE, PINK, RED, SKY
 from studies.harness.pick import pick
 from studies.tuning import means
-from studies.tuning.cases import BENT, MAIN, NEARER, OTHER_SIGN, SPHERE
+from studies.tuning.cases import MAIN, NEARER, OTHER_SIGN, SPHERE, UNBENT
 
 COLOURS = dict(zip(MAIN, (RED, BLUE, GREEN, ORANGE, PINK), strict=True))
 MARKS = {2_000: "o", 8_000: "s", 30_000: "^"}
@@ -15,7 +15,7 @@ SERIES = (
     ("as shipped", BLACK, SPHERE),
     ("OFFSET x 0.7", RED, SPHERE | NEARER),
     ("MARGIN x 0.372", ORANGE, SPHERE | OTHER_SIGN),
-    ("CURVATURE x 1", BLUE, BENT),
+    ("BEND x 0", BLUE, UNBENT),
 )
 PARTS = {
     "error": ("o", BLACK, "error of the conductivity"),
@@ -49,8 +49,7 @@ def _factors(axes, sums):
         axes.annotate(f"{particles} particles, as shipped", **where, fontsize=8, color=GREY)
         for constant, colour in COLOURS.items():
             mine = pick(rows, constant=constant)
-            # Nothing is shipped of CURVATURE.
-            at = np.append(mine["factor"], 0.0 if constant == "CURVATURE" else 1.0)
+            at = np.append(mine["factor"], 1.0)
             order = np.argsort(at)
             label = constant if particles == min(MARKS) else None
             axes.plot(at[order], np.append(mine["median"], own)[order], color=colour, marker=mark, label=label)

@@ -18,7 +18,7 @@ import numpy as np
 from demheat import Laguerre
 from demheat.build import network_of
 from demheat.conduction.steady import solve_steady
-from demheat.packing.cache import relaxed
+from demheat.packing.tile import tiled
 from demheat.referee import value_error
 from demheat.sampling.field_of import field_of
 from demheat.scene import Layer, Material, Scene, Sphere
@@ -57,7 +57,7 @@ def decomposed(shape, contrast, particles, packings, *, constant=None, factor=1.
     parts = []
     for seed in range(FIRST_SEED, FIRST_SEED + packings):
         with constant_set(constant, factor):
-            network = network_of(scene, relaxed(particles, seed=seed), Laguerre(), seed=seed)
+            network = network_of(scene, tiled(particles, size=scene.size, seed=seed), Laguerre(), seed=seed)
         parts.append(_parts(scene, known, network, particles))
     columns = {name: cell([part[name] for part in parts], ".6g") for name in parts[0]}
     return columns | {"unknowns": len(network.volumes)}
