@@ -14,13 +14,15 @@ from scipy.spatial import cKDTree
 from demheat.damage.links import cut, pairs
 from demheat.network.base import Network, image_shifts, row_numbers
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.conforming import CLEARANCE, NEAR_WALL, OFFSET, margin
+from demheat.packing.conforming import NEAR_WALL, OFFSET, margin
 from demheat.packing.patterns import SPACING
 from demheat.packing.solids import SQUARE
 from demheat.scene.inputs import finite, vector
 from demheat.scene.shapes.directions import across
 
 # Side of the square that stands for one twin of an even pattern, in mean radii.
+# Particles nearer to a crack than so many mean radii give way.
+CLEARED = 0.9
 PITCH = SQUARE * SPACING
 # Half the width, in mean radii, below which cracks are said to be small: what a disc takes away was 61 % too large at
 # 2.0, 20 % at 4.0 and 12 % at 8.1.
@@ -219,7 +221,7 @@ def seamed(packing: Packing, cracks) -> Packing:
             # The last row lies half a pitch outside of the rim.
             np.minimum(near, np.hypot(w, np.maximum(crack.beyond(u, v) - pitch, 0.0)), out=near)
     twins = _fitting(packing, np.concatenate(found), radius).reshape(-1, 3)
-    keep = near > (OFFSET + CLEARANCE) * radius
+    keep = near > CLEARED * radius
     most = near**2 - margin(radius)
     kept = np.minimum(packing.radii**2, most)[keep]
     raised = np.concatenate([kept, np.full(len(twins), radius**2)])
