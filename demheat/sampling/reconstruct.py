@@ -15,10 +15,10 @@ from demheat.process_state import one_blas_thread
 from demheat.progress import stage
 
 # Cells of a fit, and the part of their weights that holds it to the linear temperature of the cell. Found on a sphere
-# of contrast 5, flux error away from the interface, rms with 3e3, 1e4, 5e4 particles: 1.30, .49, .18 % (single cells
-# 4.2, 3.2, 2.0 %); 30 cells and 1e-9: 2.6, .86, .22 %. More of the ridge leaves curvature out; less of it, or fewer
-# cells, makes outliers beside interfaces, and more cells smear the front of a moving source.
-NEAREST, RIDGE = 20, 3e-4
+# of contrast 10 with 3000, 8000 and 64 000 particles and on 83 spheres with 8000 and 27 000, flux error rms: 1.12, .57,
+# .16, 8.5, 4.1 %; 20 cells and 3e-4: 1.46, .76, .21, 9.2, 4.9; 14 cells: 1.10, .60, .18, 8.3, 3.9. More of the ridge
+# leaves curvature out, less of it makes outliers in narrow gaps; more cells smear the front of a moving source.
+NEAREST, RIDGE = 16, 1e-4
 # Edge points of a fit, and weights of their values and slopes beside those of cells. Found there with 2e4 particles,
 # flux within a diameter of the interface, rms: .71 %; values weighted as cells .82, without edges 4.2 %.
 EDGES, VALUE, SLOPE = 12, 2.0, 0.3
