@@ -8,13 +8,14 @@ sphere, where the error of the conductivity comes from and with which power of t
 """
 
 from studies.harness.pick import pick, present
-from studies.tuning.cases import COARSE, GROUPS, MOST_MESHED, NEARER, PACKINGS, SCENES, SPHERE, cases
+from studies.tuning.cases import COARSE, GROUPS, MOST_MESHED, NEARER, OLD, PACKINGS, SCENES, SPHERE, cases
 from studies.tuning.scenes import FAMILIES, MESHED
 
 # What another value must gain in every family to be called a clear win.
 GAIN = 0.2
 # As shipped, with offsets of a half, and with the margin that there was before.
 BASE = ((None, 1.0), ("OFFSET", 0.7), ("MARGIN", 0.372))
+NAMES = {"RELAXED": "relaxed packings", "BEFORE": "relaxed packings with the twins of 0.2.0"}
 PAPER = {}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
@@ -72,6 +73,7 @@ def run(part, particles=None, group=None, family=None, constant=None, factor=1.0
 def claims(df):
     """Shipped values are near the best, without bias; parts of the error fall as theory says.
 
+    Tiles may be worse than relaxed packings by 1.3; with today's twins a third of what there was before is asked for.
     Limits are those of the question: half as much again as the best value's error, two standard errors of the mean.
     Orders are held to half a power of theory's. All of them were set before the rows were there; what does not hold
     stands as FAIL: see docs/decisions/order.md. The fewest particles, on which quick rows are, say nothing of bias.
@@ -87,13 +89,17 @@ def claims(df):
 
 def _levels(means, found, particles):
     sums, text = means.summed(found), f"{particles:.0f} particles"
-    best = means.against_best(sums)
+    best = means.against_best(sums[~sums["constant"].isin(OLD)])
     ratio = best["ratio"].max() if len(best) else None
     yield f"{text}: median error as shipped over that of a constant's best value, worst constant", ratio, 1.5
     shipped = pick(sums, constant="").iloc[0]
     bias = abs(shipped["mean"] / shipped["sem"]) if particles > min(SCENES) else None
     yield f"{text}: |mean error| as shipped over its standard error", bias, 2.0
-    wins = means.wins(found, GAIN)
+    for old, most in zip(OLD, (1.3, 1 / 3), strict=True):
+        then = pick(sums, constant=old)
+        ratio = shipped["median"] / then["median"].iloc[0] if len(then) and particles > min(SCENES) else None
+        yield f"{text}: median error over that of {NAMES[old]}", ratio, most
+    wins = means.wins(found[~found["constant"].isin(OLD)], GAIN)
     yield f"{text}: values that lower the median of every family by a fifth {wins or ''}".strip(), len(wins), 0
     yield (
         f"{text}: largest doubt of a witness over the median error",
@@ -135,7 +141,7 @@ def words(df):
 
     found, parts = means.errors(df, "unseen"), []
     for particles, lines in found.groupby("particles"):
-        better = means.wins(lines, GAIN)
+        better = means.wins(lines[~lines["constant"].isin(OLD)], GAIN)
         parts.append(f"{' and '.join(better) if better else 'nothing'} with {particles:.0f} particles")
     return f"the median error of every kind of scene is lowered by a fifth or more by {', by '.join(parts)}"
 

@@ -24,6 +24,8 @@ OTHERS = {
     "LEAST_OFFSET": (0.5, 2.0),
 }
 FINE = {8_000: (0.0, 0.7, 0.85, 1.2, 1.4), 30_000: (0.0, 0.7, 0.85, 1.2, 1.4), 100_000: (0.7, 0.85, 1.2)}
+# Held against tiles and twins as they are.
+OLD = ("RELAXED", "BEFORE")
 # Elements know these families to some 1e-5: too little beside the finest packings.
 MOST_MESHED = 8_000
 # Of the order: packings of each number of particles, and what is varied.
@@ -53,6 +55,7 @@ def cases():
         yield {"part": "reference", "group": "unseen", "family": family, "method": _witness(family)}
     for particles in SCENES:
         yield _varied(None, 1.0, particles)
+        yield from (_varied(old, 1.0, particles) for old in OLD)
         for constant, factors in (MAIN if particles in FINE else MAIN | OTHERS).items():
             allowed = FINE.get(particles, factors)
             yield from (_varied(constant, factor, particles) for factor in factors if factor in allowed)

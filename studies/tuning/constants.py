@@ -89,6 +89,14 @@ CONSTANTS = {
         "density of even patterns",
         _named("THINNING"),
     ),
+    # No constants: what tiles and twins of today are held against.
+    "RELAXED": Constant("a relaxed packing in place of tiles", 1.0, "nothing", lambda _: {}),
+    "BEFORE": Constant(
+        "relaxed packings, twins at half a radius or a quarter of a gap, as in 0.2.0",
+        1.0,
+        "centred sphere, four contrasts",
+        lambda _: {"BEND": 0.0, "NARROW": 4.0 * conforming.OFFSET},
+    ),
     "LEAST_OFFSET": Constant(
         "least offset of a pair that is kept", patterns.LEAST_OFFSET, "by reasoning", _least_offset
     ),

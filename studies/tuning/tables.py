@@ -6,6 +6,7 @@ import pandas as pd
 
 from studies.harness.pick import pick
 from studies.tuning import means
+from studies.tuning.cases import OLD
 from studies.tuning.constants import CONSTANTS
 
 KEYS = ["shape", "contrast", "constant", "factor"]
@@ -19,7 +20,7 @@ def lines(df):
 def _values(sums):
     for _, row in sums.iterrows():
         yield {
-            "what": f"{row['constant']} = {_value(row):.3g}" if row["constant"] else "as shipped",
+            "what": _what(row),
             "factor": row["factor"],
             "particles": f"{row['particles']:.0f}",
             "scenes": row["scenes"],
@@ -30,8 +31,11 @@ def _values(sums):
         }
 
 
-def _value(row):
-    return row["factor"] * CONSTANTS[row["constant"]].unit
+def _what(row):
+    constant = row["constant"]
+    if constant in OLD:
+        return CONSTANTS[constant].meaning
+    return f"{constant} = {row['factor'] * CONSTANTS[constant].unit:.3g}" if constant else "as shipped"
 
 
 def _series(df):
