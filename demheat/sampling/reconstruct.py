@@ -5,7 +5,7 @@ reached over facets within one phase only, so that nothing is fitted across an i
 at the phase's edges: temperatures on interfaces and held walls, slopes at the others, at walls that exchange heat with
 surroundings how both hang together. What is fitted is the difference from the cell's own linear temperature, whose
 gradient makes the cell's flux exact for linear fields: where there are too few cells for a quadratic, that is what
-remains. A jump within a cell, as at a wall heated at once, overshoots by a quarter of it.
+remains. A jump within a cell, as at a wall heated at once, overshoots by up to .6 of it until cells have felt it.
 """
 
 import numpy as np

@@ -114,8 +114,8 @@ def test_held_walls_have_their_temperature():
     for field in demheat.evolve(scene, [0.0, 1e-3, 0.1], particles=3000):
         # A jump over a cell is no quadratic: found 1.1 K off at most.
         assert_allclose(field.temperature_at(wall), 30.0, atol=1.5)
-        # It overshoots: found 2.4 K below.
-        assert field.temperature_at(inside()).min() > 20.0 - 3.5
+        # It overshoots, most where the first layer of particles is one: found 5.8 K below among 4000 points, 4.1 here.
+        assert field.temperature_at(inside()).min() > 20.0 - 6.0
     # Smooth by then.
     assert_allclose(field.temperature_at(wall), 30.0, atol=0.02)
 
