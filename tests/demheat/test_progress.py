@@ -196,7 +196,7 @@ def test_the_stages_of_a_solve_and_a_march_are_heard(heard):
     field = solve(scene, particles=300, seed=11)
     field.temperature_at(np.array([[0.5, 0.5, 0.5]]))
     stages = {report.stage for report in heard}
-    assert {"packing", "points"} <= stages
+    assert {"twins", "points"} <= stages
     heard.clear()
     bar = Scene(size=(1, 1, 1), matrix=STEEL, walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
     assert len(list(evolve(bar, [0.01, 0.02], particles=300, seed=11))) == 2
