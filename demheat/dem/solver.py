@@ -81,8 +81,9 @@ def solve(
         Used instead of tiles or a relaxed one; must have the scene's box and periodicity. A copy is taken.
     replicas : int, optional
         Of a smaller relaxed packing, along the box's shortest side. Where there are no tiles, by default more than
-        2 million particles are replicas of 250 000 or fewer, which cost a few CPU-seconds instead of 90 for each million, and are as accurate; twins at
-        interfaces are not repeated. Between walls only with law "laguerre", and in boxes only.
+        2 million particles are replicas of 250 000 or fewer, which cost a few CPU-seconds instead of 90 for each
+        million, and are as accurate; twins at interfaces are not repeated. Between walls only with law "laguerre", and
+        in boxes only.
     allow_few : bool, optional
         Accept fewer than 100 particles.
 
