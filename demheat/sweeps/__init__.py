@@ -61,7 +61,7 @@ def sweep(
     ...     return solve(gallery.sphere_in_cube(contrast), particles=particles)
     >>> rows = sweep(conductivity, {"contrast": [2.0, 5.0, -1.0], "particles": [1000]})
     >>> [round(row["conductivity"], 1) for row in rows if not row["error"]]
-    [37.0, 42.6]
+    [37.0, 42.7]
     >>> rows[2]["error"]
     'ValueError: contrast = -1.0: must be ...
     """
