@@ -17,7 +17,7 @@ from studies.intervals.scenes import KINDS
 
 EACH = 22  # Scenes of a kind
 # Methods that cost more are asked for the first of each kind.
-FIRST = {"dem": 2, "fem": 11, "fft-em": 11}
+FIRST = {"dem": 11, "fem": 11, "fft-em": 11}
 SHOWN = ("array", "layers", "half-space")
 # Whose truth is not theirs: single spheres in a cell.
 BY_MULTIPOLES = ("array", "speck", "copies")
@@ -60,7 +60,7 @@ CASES = [
 
 def QUICK(case):
     """A scene of three kinds."""
-    return case["seed"] == FIRST["dem"] - 2 and case["scene"] in SHOWN
+    return case["seed"] == 0 and case["scene"] in SHOWN
 
 
 def VALUES(case):
