@@ -26,6 +26,8 @@ COARSE = {"amg": np.float64, "amg-single": np.float32}
 # Found on one and on 83 spheres, 1e4 to 1e5 particles, contrasts 0.01 to 1e6: about as many at 2e4 unknowns, half as
 # many or fewer at 1e5.
 AMG_UNKNOWNS = 50_000
+# Iterations, at most.
+MOST_ITERATIONS = 20_000
 # Beyond this contrast rounding may keep residuals above a tolerance below that.
 HIGH_CONTRAST, LOOSER = 1e7, 1e-6
 # Beyond this one multigrid, in single precision, may go on in vain: in a periodic cell of 1e5 particles with a sphere
@@ -69,14 +71,14 @@ class Solution(NamedTuple):
     still: np.ndarray | None = None
 
 
-def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=20_000):
+def solve_steady(network, scene, *, solver="auto", tolerance=1e-8, max_iterations=MOST_ITERATIONS):
     """Temperatures at which every particle receives as much heat as it gives."""
     check_solver(solver, tolerance)
     scene.require(steady=True, takes=("resistance", "exchange", "image"))
     return solve_checked(network, scene, solver=solver, tolerance=tolerance, max_iterations=max_iterations)
 
 
-def solve_checked(network, scene, *, solver, tolerance, max_iterations=20_000, kept=None, start=None):
+def solve_checked(network, scene, *, solver, tolerance, max_iterations=MOST_ITERATIONS, kept=None, start=None):
     """The same as `solve_steady` of arguments that were checked before."""
     bodies = components.bodies(network, scene)
     network = network if bodies is None else without_links(network, bodies.still)

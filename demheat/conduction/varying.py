@@ -66,11 +66,13 @@ class Conductances:
         )
 
 
-def solve_varying(network, scene, *, solver, tolerance):
+def solve_varying(network, scene, *, solver, tolerance, max_iterations):
     """Temperatures at which every particle receives as much heat as it gives, with conductivities at these."""
     conducting, start, total, aim, level = Conductances(network, scene), None, 0, FURTHER, level_of(scene)
     for rounds in range(1, ROUNDS + 1):
-        solution = solve_checked(network, scene, solver=solver, tolerance=aim, start=start)
+        solution = solve_checked(
+            network, scene, solver=solver, tolerance=aim, max_iterations=max_iterations, start=start
+        )
         start, total = np.nan_to_num(solution.temperature, nan=level), total + solution.stats["iterations"]
         renewed = conducting.at(start, np.nan_to_num(solution.wall_temperature, nan=level))
         left = imbalance(renewed, scene, solution)

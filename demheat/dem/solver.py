@@ -12,7 +12,7 @@ from demheat.build import network_of, networks_of
 from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
-from demheat.conduction.steady import check_solver, solve_checked
+from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_checked
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
@@ -213,7 +213,7 @@ def solve_axes(
         return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
 
 
-def _answers(scenes, law, wanted, *, solver, tolerance):
+def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
     """Solve scenes that differ in their loads only, as they were checked."""
     counts = wanted.counts(scenes[0], law)
     begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
@@ -225,18 +225,20 @@ def _answers(scenes, law, wanted, *, solver, tolerance):
         del packing  # twins may have been added to a copy
         helper.join()
     with announced("DEM", needed):
-        return _fields(scenes, networks, law, wanted, spent, solver=solver, tolerance=tolerance)
+        how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
+        return _fields(scenes, networks, law, wanted, spent, **how)
 
 
-def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance):
+def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iterations):
     """Solve networks; `spent` is of the fields' stats."""
     fields, kept = [], {}
+    how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
         if scene.varies:
-            network, solution = solve_varying(network, scene, solver=solver, tolerance=tolerance)
+            network, solution = solve_varying(network, scene, **how)
         else:
-            solution = solve_checked(network, scene, solver=solver, tolerance=tolerance, kept=kept)
+            solution = solve_checked(network, scene, **how, kept=kept)
         took = spent | {"solve_s": time.perf_counter() - connected}
         estimator = estimator_of(law, wanted, partial(_answer, scene, solver=solver, tolerance=tolerance))
         with stage("field"):
@@ -244,8 +246,9 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance):
     return fields
 
 
-def _answer(scene, law, wanted, *, solver, tolerance):
-    return _answers([scene], law, wanted, solver=solver, tolerance=tolerance)[0]
+def _answer(scene, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
+    how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
+    return _answers([scene], law, wanted, **how)[0]
 
 
 def evolve(
