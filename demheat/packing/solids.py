@@ -25,6 +25,8 @@ SQUARE = 0.75**0.25
 FEWEST_ROUND, FEWEST = 8, 12
 # Cells of the sampling along a spacing where points are spread out, and where planes are moved; rounds of the first.
 SPREAD, LIFTED, ROUNDS = 5, 4, 16
+# Times that a sampling is halved for what is thin, at most.
+FINER = 6
 # Of a width: faces this near to each other in a point are one there.
 ON = 1e-9
 # Cells beyond a wall in which points are spread out, too: those beside the wall then lie as elsewhere.
@@ -170,7 +172,14 @@ def where_they_are(shape, scene, points, normals):
 
 def on_smooth(shape, scene, spacing, rng):
     """Points in the middles of their own parts of any closed smooth surface (Lloyd's algorithm), and normals."""
-    samples, areas = _sampled(shape, scene, spacing / SPREAD)
+    pitch = spacing / SPREAD
+    samples, areas = _sampled(shape, scene, pitch)
+    # Of what is thinner than that too few are met for the fewest points: some of these would be one.
+    for _ in range(FINER if len(samples) else 0):
+        if len(samples) >= SPREAD * FEWEST:
+            break
+        pitch *= 0.5
+        samples, areas = _sampled(shape, scene, pitch)
     count = max(FEWEST, int(np.ceil(areas.sum() / (np.sqrt(0.75) * spacing**2))))
     return _spread(shape, samples, areas, count, rng)
 

@@ -105,3 +105,13 @@ def test_gaps_between_fibres_have_more_twins():
     found = [conform(packing, each).provenance for each in (wide, close)]
     assert found[1]["twins"] > 1.1 * found[1]["even_twins"] and found[0]["twins"] < 1.05 * found[0]["even_twins"]
     assert found[0]["pairs_left_out"] == found[1]["pairs_left_out"] == 0
+
+
+def test_points_on_what_is_thin_for_their_spacing_are_apart():
+    """Fewer samples than points would be the same ones several times, and a pitch of nothing: it never ended."""
+    needle = Ellipsoid(MIDDLE, (0.02, 0.02, 0.1), OTHER)
+    (surface,) = surfaces_of(scene(needle))
+    for seed in range(5):
+        points, _ = surface.pattern(0.6, np.random.default_rng(seed))
+        away, _ = cKDTree(points).query(points, k=2)
+        assert away[:, 1].min() > 1e-3
