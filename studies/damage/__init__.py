@@ -20,7 +20,7 @@ DAMAGE = ("share", "radius", "body", "number", "removed", "draw")
 # with 1000 particles, 12 % with 4000, 6 % with 16 000. When all values were known those more than three times as large
 # were brought nearer: of the DEM from 1 and .3, of coarse elements from .5, of cracks from 8, 4 and 2, of the first
 # links from .1.
-LIMITS = {"dem": (0.4, 0.1), "fem": (0.3, 0.1), "fft": (3.0, 1.0)}
+LIMITS = {"dem": (0.02, 0.008), "fem": (0.3, 0.1), "fft": (3.0, 1.0)}
 CRACK_LIMITS = (6.0, 3.0, 1.5)
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {

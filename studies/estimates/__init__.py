@@ -37,9 +37,6 @@ FAILS = {
         "since tiles and twins took nine tenths of the error, by setting its two powers against each other, changes "
         "between coarser runs, which tell of it, fell less: an interval that knew would be a bet on their signs"
     ),
-    "DEM, plain packing: share": (
-        "not looked into; perhaps as interfaces cut its cells at random, so that a finer packing may err as much"
-    ),
     "FEM, P1: share": "not looked into; perhaps the change between two meshes says too little",
 }
 TIMEOUT = 1800.0

@@ -132,12 +132,12 @@ def claims(df):
 
 def _dem_claims(df):
     third, half = df[df["scene"] == "third"], df[df["scene"] == "half"]
-    for particles, limit, harder in ((PARTICLES[0], 0.007, 0.2), (PARTICLES[1], 0.0015, 0.06)):
+    for particles, limit, harder in ((PARTICLES[0], 0.005, 0.2), (PARTICLES[1], 0.0015, 0.06)):
         text = f"DEM default, {particles} particles, mean of its packings: worst error of any contrast, %"
         yield text, worst(third, name="dem", particles=particles), limit
         yield text.replace("of any contrast", "at f = 0.5"), worst(half, name="dem", particles=particles), harder
     text = f"DEM default, extrapolated from {COARSE} and {PARTICLES[1]} particles: worst error of any contrast, %"
-    yield text, extrapolated(third, COARSE, PARTICLES[1], name="dem"), 0.01
+    yield text, extrapolated(third, COARSE, PARTICLES[1], name="dem"), 0.0015
     mine, theirs = (worst(third, name=name, particles=PARTICLES[1]) for name in ("dem", "dem-calibrated"))
     if mine is not None and theirs is not None:
         yield "DEM default: worst error over that of the paper's network", mine / theirs, 0.015

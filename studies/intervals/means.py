@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from demheat.referee import value_error
 from studies.harness import methods
 
 # An error is known well that is so many times what is true may be off, and more than so much of the conductivity.
@@ -36,7 +37,7 @@ def strictly(each):
 
 def off(each):
     """Error over what is true, signed."""
-    return 2 * each["conductivity"] / (each["low"] + each["high"]) - 1
+    return value_error(each["conductivity"], 0.5 * (each["low"] + each["high"]))
 
 
 def half(each):

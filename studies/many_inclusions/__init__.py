@@ -160,7 +160,7 @@ def _witness(df):
 
 
 def _dem(df):
-    for number, limit in ((PARTICLES[0], 1.5), (PARTICLES[-1], 0.004)):
+    for number, limit in ((PARTICLES[0], 0.03), (PARTICLES[-1], 0.0014)):
         rows = pick(df, name="dem", particles=number)
         yield f"DEM, {number} elements: error, %", largest(rows, "error_percent"), limit
     rows = pick(df, name="dem", particles=PARTICLES[-1]).assign(peak_gib=lambda found: found["peak_mib"] / 1024)

@@ -43,7 +43,6 @@ REASONS = {
 }
 # Why claims on the stored rows fail.
 FAILS = {
-    "T4, dem: order": "half a power below theory was asked for; why it stays below is not known",
     "T3, fem: order": "the wave is 17 mm deep, the coarsest edges are 33 mm long and the finest 8 mm",
 }
 
@@ -160,7 +159,7 @@ def _radiating(df):
 def _levels(df):
     limits = {
         ("T3", "dem"): {3_000: 1.0, 100_000: 0.1},
-        ("T4", "dem"): {3_000: 0.4, 100_000: 0.04},
+        ("T4", "dem"): {3_000: 0.35, 100_000: 0.04},
         # Moved after a first run, from .05 and .005, and of bricks from .3: the wave comes 17 mm deep, one coarse edge.
         ("T3", "fem"): {EDGES["fem"][1]: 0.6, EDGES["fem"][2]: 0.04},
         ("T4", "fem"): {EDGES["fem"][1]: 0.3, EDGES["fem"][2]: 0.04},

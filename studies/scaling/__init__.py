@@ -25,7 +25,7 @@ BEFORE = "b4da0d3"
 ACCURACY = 1e-4  # of the multipoles
 PAPER = {}
 # Largest error of what a method spends on an inclusion, %.
-COARSE = {"dem": 2.5, "fft": 4.0}
+COARSE = {"dem": 0.8, "fft": 4.0}
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "share begun again": "none should be; one in a hundred would cost no more than the clock's noise",
