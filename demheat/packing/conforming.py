@@ -19,16 +19,15 @@ from demheat.progress import stage
 from demheat.scene import Scene, check_scene
 
 # In mean radii R of the packing. On a flat interface twins stand OFFSET from it. On one whose principal curvatures sum
-# to K they stand BEND R K nearer, though not below half of OFFSET: a layer of cells round a ball errs as its particles
-# are off the middles of cells that are thicker outside than within. Found on one sphere, 27 in order and unequal ones,
-# contrasts .01 to 36: one value takes the error away at 8000 and at 27 000 particles.
+# to K they stand BEND R K nearer, though not below half of OFFSET. A fit, not derived: on one sphere and 27 in order,
+# contrasts .01, .05 and 10, and on unequal ones, one value takes most of the error away at 8000 and 27 000 particles.
 OFFSET, BEND = 0.5, 0.43
 # Weight of a twin beyond its squared offset: a twin at OFFSET weighs as much as a mean particle.
 EXCESS = 1.0 - OFFSET**2
 # A gap holds no particle where it is narrower than NARROW mean radii, by LESS R K less at a bent surface: twins' cells
 # reach to its middle, and they stand in the middle of those, at a quarter of the gap. For a particle in the middle of a
-# gap of width w the weights leave a cell beside flat interfaces if w (w - 2 OFFSET R) / 4 > 1.57 R^2: from 2.9 R on.
-# LESS was found on 83 spheres, one that nearly meets its images, and four dense dispersions.
+# gap of width w the weights leave a cell beside flat interfaces if w (w - 2 OFFSET R) / 4 > 1.57 R^2: from 3.1 R on.
+# NARROW and LESS were found on 83 spheres, one that nearly meets its images, and four dense dispersions.
 NARROW, LESS = 2.9, 0.7
 # Twins nearer to a wall than this part of their offset are left out.
 NEAR_WALL = 0.3

@@ -21,7 +21,7 @@ from demheat.powers import cube_root
 
 FILE = Path(__file__).with_name("tile.npy")
 CHECKSUM = "3433fdf7fd2266cb23508c20928baf91ce7840b25baf042e1f35d2e84a0eed01"
-# Tiles have from 50 particles to 769, each RATIO times as many as the one before; those in steps from 100.
+# Tiles have from 50 particles to 769, each RATIO times as many as the one before; steps are from 100.
 RATIO, STEPS = 1.06, range(-12, 36)
 # Coordinates are kept as whole numbers of so many parts of the edge: a thousandth of the least distance.
 PARTS = 1 << 16

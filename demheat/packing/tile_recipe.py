@@ -2,7 +2,7 @@
 
 Equal particles are relaxed in a periodic cube, then moved into the centroids of their Voronoi cells again and again
 (Lloyd's method). A two-point flux of a linear temperature is exact on any cells; of a bent one it is off by what cells
-are off centre, and such cells leave an error of the bulk a tenth of that of relaxed packings.
+are off centre. What that gains over relaxed packings is told in docs/decisions/tile.md.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ def test_the_shipped_points_are_those_of_the_recipe():
 
 
 def test_particles_are_in_the_centroids_of_their_cells():
-    """Those of relaxed packings are .07 of the mean distance off (rms)."""
+    """Root mean square over the mean distance between particles; what they began as is much farther off."""
     for number in (numbers()[0], numbers()[-1]):
         points = tile._tile(number)
         off = np.linalg.norm(tile_recipe.centroids(points) - points, axis=1) * np.cbrt(number)
