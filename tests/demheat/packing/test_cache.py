@@ -1,3 +1,5 @@
+"""Only here: packings on disk that are taken for others, believed when damaged, or half written."""
+
 import json
 import threading
 import warnings
@@ -10,7 +12,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from demheat.packing import kept
 from demheat.packing.base import make_packing
 from demheat.packing.cache import relaxed
-from demheat.packing.kept import cache_folder, cached, code_hash
+from demheat.packing.kept import cache_folder, cached
 from demheat.packing.radii import Gaussian, Uniform
 
 
@@ -62,12 +64,6 @@ def test_two_that_make_the_same_at_once_both_have_it(tmp_path):
     assert kept.provenance["cached"]
 
 
-def test_another_key_is_another_packing(tmp_path):
-    first = cached(Maker(0), {"seed": 0}, folder=tmp_path)
-    second = cached(Maker(1), {"seed": 1}, folder=tmp_path)
-    assert not second.provenance["cached"] and not np.array_equal(first.centers, second.centers)
-
-
 def test_a_file_under_the_wrong_name_is_not_believed(tmp_path):
     """Two keys with one digest must not give one packing: the key inside the file decides."""
     cached(Maker(0), {"seed": 0}, folder=tmp_path)
@@ -81,7 +77,7 @@ def test_a_file_under_the_wrong_name_is_not_believed(tmp_path):
     same(again, Maker(1)())
 
 
-@pytest.mark.parametrize("damage", [lambda raw: b"", lambda raw: raw[: len(raw) // 2], lambda raw: b"no zip" * 99])
+@pytest.mark.parametrize("damage", [lambda raw: b"", lambda raw: raw[: len(raw) // 2]])
 def test_a_damaged_file_is_made_again(tmp_path, damage):
     make = Maker()
     first = cached(make, {}, folder=tmp_path)
@@ -92,19 +88,6 @@ def test_a_damaged_file_is_made_again(tmp_path, damage):
     assert make.calls == 2
     same(first, second)
     assert cached(make, {}, folder=tmp_path).provenance["cached"]
-
-
-def test_every_flipped_byte_of_the_data_is_noticed(tmp_path):
-    make = Maker()
-    first = cached(make, {}, folder=tmp_path)
-    (path,) = tmp_path.iterdir()
-    raw = bytearray(path.read_bytes())
-    where = raw.find(first.centers.tobytes())
-    assert where > 0
-    raw[where + 5] ^= 0x40
-    path.write_bytes(raw)
-    with pytest.warns(UserWarning, match="made again"):
-        same(cached(make, {}, folder=tmp_path), first)
 
 
 def test_a_killed_write_leaves_nothing(tmp_path, monkeypatch):
@@ -187,17 +170,6 @@ def test_new_code_retires_old_packings(tmp_path, monkeypatch):
     relaxed(200, steps=5, folder=tmp_path)
     monkeypatch.setattr("demheat.packing.cache.code_hash", lambda *modules: "newer")
     assert not relaxed(200, steps=5, folder=tmp_path).provenance["cached"]
-
-
-def test_code_hash_reads_the_sources():
-    assert code_hash("demheat.packing.base") != code_hash("demheat.packing.radii")
-    assert len(code_hash(*kept.LSA)) == 64
-
-
-def test_nothing_is_cached_of_bad_input(tmp_path):
-    with pytest.raises(ValueError, match="phi"):
-        relaxed(200, phi=2.0, folder=tmp_path)
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_no_flipped_bit_loads_another_packing_or_raises(tmp_path):

@@ -1,4 +1,4 @@
-"""Grids of cells and near neighbours beside what NumPy finds by looking at all pairs."""
+"""Only here: cells of a grid that hold other points than lie in them, beside a look at all pairs."""
 
 import numpy as np
 import pytest

@@ -1,3 +1,5 @@
+"""Only here: twins whose facets leave their interface, whose phases lack volume, or that meet in a gap."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -8,7 +10,7 @@ from demheat.network.laguerre import laguerre
 from demheat.packing import conforming
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import GAP_SPACING, conform
-from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
+from demheat.packing.interfaces import fibonacci_sphere
 from demheat.packing.patterns import Tally
 
 MATRIX, OTHER = Material(1.0), Material(10.0)
@@ -59,37 +61,13 @@ def test_phase_volumes_are_those_of_the_scene():
     assert_allclose(volumes, [1 - outer, outer - inner, inner], rtol=1e-9)
 
 
-@pytest.mark.parametrize("center", [(0, 0, 0), (0.5, 0.5, 0.0), (0.95, 0.02, 0.5)])
+@pytest.mark.parametrize("center", [(0, 0, 0), (0.95, 0.02, 0.5)])
 def test_a_sphere_may_cross_periodic_faces(center):
     given = scene(Sphere(center, 0.3, OTHER))
     packing, facets = conformed(given)
     _, _, share = interface_links(given, packing, facets)
     assert len(share) == packing.provenance["twins"]
     assert_allclose(share, 0.5, atol=1e-9)
-
-
-def test_layers_are_exact():
-    given = scene(Layer(2, 0.21, 0.55, OTHER))
-    packing, facets = conformed(given)
-    foot, _, share = interface_links(given, packing, facets)
-    assert_allclose(share, 0.5, atol=1e-9)
-    assert_allclose(np.minimum(abs(foot[:, 2] - 0.21), abs(foot[:, 2] - 0.55)), 0.0, atol=1e-12)
-    volumes = np.bincount(given.phase_at(packing.centers), facets.volumes)
-    assert_allclose(volumes, [0.66, 0.34], rtol=1e-12)
-
-
-def test_twins_shrink_into_a_narrow_gap():
-    """Spheres a fifth of a mean radius apart: every twin that is left lies in the phase it stands for."""
-    base = relaxed(3000, seed=1)
-    gap = 0.2 * base.radii.mean()
-    spheres = [Sphere((0.3, 0.5, 0.5), 0.2, OTHER), Sphere((0.7 + gap, 0.5, 0.5), 0.2, OTHER)]
-    given = scene(*spheres)
-    packing, facets = conformed(given)
-    _, _, share = interface_links(given, packing, facets)
-    # Where twins do not fit some facets cut across; they are few and near the gap.
-    assert np.mean(np.abs(share - 0.5) < 1e-9) > 0.98
-    volumes = np.bincount(given.phase_at(packing.centers), facets.volumes)
-    assert_allclose(volumes[1:], 4 / 3 * np.pi * 0.2**3, rtol=1e-3)
 
 
 def test_twins_of_two_interfaces_share_the_gap():
@@ -124,17 +102,10 @@ def test_twins_keep_off_walls(periodic):
     assert conforming._in_place(twins, given).tolist() == [periodic, True] * 2
 
 
-def test_no_inclusions_no_change():
-    packing = relaxed(300, seed=1)
-    conformed = conform(packing, scene())
-    assert conformed.centers is packing.centers and conformed.radii is packing.radii
-
-
 @pytest.mark.parametrize(
     "inclusions",
     [
         (Layer(0, 0.5, 0.515, OTHER),),
-        (Layer(0, 0.2, 0.7, OTHER), Layer(0, 0.4, 0.44, MATRIX)),
         (Sphere((0.5,) * 3, 0.4, OTHER), Sphere((0.5,) * 3, 0.385, MATRIX)),
         (Sphere((0.3, 0.5, 0.5), 0.195, OTHER), Sphere((0.7, 0.5, 0.5), 0.195, OTHER)),
     ],
@@ -159,44 +130,7 @@ def test_pairs_that_do_not_fit_are_counted(gap, crowded):
         assert (conform(base, given).provenance["pairs_left_out"] > 0) == crowded
 
 
-def test_same_seed_same_packing():
-    given = scene(Sphere((0.5, 0.5, 0.5), 0.3, OTHER))
-    base = relaxed(500, seed=1)
-    first, second, other = conform(base, given, seed=4), conform(base, given, seed=4), conform(base, given, seed=5)
-    assert np.array_equal(first.centers, second.centers) and np.array_equal(first.radii, second.radii)
-    assert not np.array_equal(first.centers, other.centers)
-
-
-def test_inscribed_radius_of_a_cube():
-    """The unit-volume-of-the-sphere cube has half-side (pi/6)^(1/3)."""
-    normals = np.concatenate([np.eye(3), -np.eye(3)])
-    # 247 directions sample 1/cos^3, which has a standard deviation of 0.9 and no trend: to about 3 %.
-    assert_allclose(inscribed_radius(normals), (np.pi / 6) ** (1 / 3), rtol=0.03)
-
-
-def test_inscribed_radius_of_many_normals_tends_to_one():
-    defects = [1 - inscribed_radius(fibonacci_sphere(n)) for n in (400, 1600)]
-    assert_allclose(defects[0] / defects[1], 4.0, rtol=0.02)  # falls with the area of a facet
-
-
-def test_a_wide_margin_halves_errors(monkeypatch):
-    from demheat import gallery, solve
-    from references import multipole
-
-    given = gallery.dispersion(20, fraction=0.3, seed=3)
-    exact = multipole.solve(given, accuracy=1e-3).conductivity
-    wide = solve(given, particles=4000).conductivity
-    # The least that keeps facets off the interface.
-    least = (conforming.COVER * conforming.SPACING) ** 2 - conforming.EXCESS
-    monkeypatch.setattr(conforming, "margin", lambda radius: least * radius**2)
-    narrow = solve(given, particles=4000).conductivity
-    # Found on others: .3 to .6 of the error; 1e-3 is the witness's own.
-    assert abs(wide / exact - 1) < 0.75 * abs(narrow / exact - 1)
-    assert abs(narrow / exact - 1) > 4e-3
-
-
-@pytest.mark.parametrize("periodic", [True, False])
-@pytest.mark.parametrize("off", [-3e-16, 3e-16])
+@pytest.mark.parametrize(("off", "periodic"), [(-3e-16, True), (3e-16, False)])
 def test_faces_that_only_rounding_tells_apart_are_one(off, periodic):
     """Layers moved or measured in other units touch but for rounding: no twins fit into such a gap."""
 
@@ -210,7 +144,7 @@ def test_faces_that_only_rounding_tells_apart_are_one(off, periodic):
     assert_allclose(found.centers, right.centers, atol=1e-14)
 
 
-@pytest.mark.parametrize("unit", [1e-9, 0.3, 1e9])  # another number of twins in each without ties broken on purpose
+@pytest.mark.parametrize("unit", [1e-9, 0.3])  # another number of twins in each without ties broken on purpose
 def test_twins_of_a_coat_are_the_same_in_any_unit(unit):
     """Its gap is equally wide all round: which points come first must not hang on rounding."""
 

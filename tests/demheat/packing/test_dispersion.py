@@ -1,4 +1,4 @@
-"""Random dispersions: exact fraction, gaps, seeds, both methods, scenes of them, and what is refused."""
+"""Only here: random dispersions whose fraction, least gap or crowding is not what was asked for."""
 
 import numpy as np
 import pytest
@@ -71,26 +71,12 @@ def test_fraction_and_gaps(knobs):
         assert_allclose(min(size) / mean_diameter(radii), knobs.get("ratio", 6.0), rtol=1 / 140)
 
 
-def test_the_number_of_spheres_at_six_diameters():
-    # 6 f 6^3/pi, the papers' 83 spheres at 20 %.
-    assert [len(dispersion(fraction=f, seed=1)[1]) for f in (0.1, 0.5)] == [41, 206]
-    assert len(dispersion(fraction=0.2, method="rsa")[1]) == 83
-
-
 def test_gaps_are_as_small_as_asked():
     # At f = 0.5 spheres collide until the end, so that some are almost at the least distance: not pushed apart by more.
     between, _ = least_gap(*dispersion(fraction=0.5, seed=1), (1, 1, 1), True)
     assert between < 0.021
     _, walls = least_gap(*dispersion(fraction=0.5, seed=1, periodic=False), (1, 1, 1), False)
     assert walls < 0.021
-
-
-def test_sizes_as_asked():
-    _, radii = dispersion(400, fraction=0.1, radii=Gaussian(0.3, 2.5), method="rsa", seed=4)
-    # 0.955 of the spread remains after the cut (`Gaussian`); 400 draws scatter by 3.5 %.
-    assert_allclose(np.std(radii) / np.mean(radii), 0.3 * 0.955, rtol=0.08)
-    _, radii = dispersion(fraction=0.2, number=4, radii=[1.0, 2.0, 1.0, 2.0], method="rsa", gap=0.01)
-    assert_allclose(np.sort(radii / radii.min()), [1, 1, 2, 2], rtol=1e-12)
 
 
 @pytest.mark.parametrize("method", ["lsa", "rsa"])
@@ -116,11 +102,11 @@ def test_kept_and_scaled(tmp_path, monkeypatch):
             dispersion(**{"fraction": 0.2, "size": (0.1, 0.1, 0.2), "folder": tmp_path} | knobs)
 
 
-def close_pairs(method):
+def close_pairs():
     """Mean number of spheres within 1.3 diameters of another, over some dispersions without a gap."""
     found = []
     for seed in range(3):
-        centers, radii = dispersion(fraction=0.3, ratio=8.0, gap=0.0, method=method, seed=seed)
+        centers, radii = dispersion(fraction=0.3, ratio=8.0, gap=0.0, seed=seed)
         pairs = cKDTree(centers, boxsize=1 + 1e-12).query_pairs(1.3 * mean_diameter(radii))
         found.append(2 * len(pairs) / len(radii))
     return np.mean(found)
@@ -129,12 +115,7 @@ def close_pairs(method):
 def test_neighbours_as_in_equilibrium():
     # Percus and Yevick's fluid at f = 0.3, by inversion of its structure factor, has 4.82, good to some 2 %; centres
     # that only keep off each other would have 2.9. The mean of 3 cells of 293 spheres scatters by 0.05.
-    assert_allclose(close_pairs("lsa"), 4.82, atol=0.2)
-
-
-def test_added_spheres_are_less_crowded():
-    # Found 4.60 against 4.76.
-    assert close_pairs("rsa") < close_pairs("lsa") - 0.05
+    assert_allclose(close_pairs(), 4.82, atol=0.2)
 
 
 def test_scene():
@@ -161,22 +142,12 @@ def test_the_same_spheres_under_both_loads():
 @pytest.mark.parametrize(
     ("knobs", "match"),
     [
-        ({"fraction": 0.0}, "fraction = 0.0: must be"),
-        ({"fraction": "half"}, "fraction = 'half'"),
         ({"fraction": 0.62}, "fill 0.658 of the box; must be <= 0.63 by 'lsa'"),
         ({"fraction": 0.31, "method": "rsa"}, "fraction = 0.31: must be <= 0.3 by 'rsa'"),
         ({"fraction": 0.3, "method": "rsa", "gap": 0.06}, "fill 0.357 of the box; must be <= 0.35 by 'rsa'"),
-        ({"number": 0}, "number = 0: must be an integer >= 1"),
-        ({"number": 83.0}, "number = 83.0: must be an integer"),
         ({"number": 83, "ratio": 6.0}, "number = 83, ratio = 6.0: one gives the other"),
         ({"ratio": 1.0}, "ratio = 1.0: must be a finite number > 1"),
-        ({"gap": -0.01}, "gap = -0.01: must be a finite number >= 0"),
-        ({"seed": -1}, "seed = -1: must be an integer >= 0"),
-        ({"seed": 1.5}, "seed = 1.5"),
-        ({"method": "fire"}, "method = 'fire': must be one of lsa, rsa"),
         ({"periodic": (True, True, False)}, "periodic = .*must be True or False"),
-        ({"size": (1.0, 1.0)}, "size = "),
-        ({"radii": "equal"}, "radii = 'equal': must be a distribution"),
         ({"radii": [1.0, 2.0]}, "2 radii for 83 particles"),
         ({"number": 1, "fraction": 0.6, "gap": 0.0, "method": "lsa", "periodic": False}, "must fit"),
         ({"number": 1}, "number = 1: must be an integer >= 2 by 'lsa', .*method='rsa'"),
@@ -184,9 +155,7 @@ def test_the_same_spheres_under_both_loads():
         ({"number": 3}, "number = 3, fraction = 0.2, gap = 0.02: .*must be >= 2.1 diameters"),
         ({"number": 2, "fraction": 0.5, "gap": 0.0}, "number = 2, fraction = 0.5, gap = 0.0: "),
         ({"number": 100_001}, "number = 100001: must be <= 100000"),
-        ({"number": 10**30}, "number = 1000000.*: must be <= 100000"),
         ({"ratio": 1e6}, r"ratio = 1000000.0 at fraction = 0.2 .*: makes 3.82e\+17 spheres; must be <= 100000"),
-        ({"ratio": 1e300}, "makes inf spheres; must be <= 100000"),
         ({"size": (1, 1, 1e-4)}, "ratio = 6.0 at .*; must be <= 100000"),
     ],
 )
@@ -200,31 +169,22 @@ def test_few_spheres_that_fit():
     # Just above what is refused: 3 spheres by either method, and 1 by the one that makes no collisions.
     assert len(dispersion(3, fraction=0.1)[1]) == len(dispersion(3, fraction=0.2, method="rsa")[1]) == 3
     assert len(dispersion(1, fraction=0.2, method="rsa")[1]) == 1
-
-
-def test_bad_folder():
-    with pytest.raises(ValueError, match="folder = 3: must be a path"):
-        dispersion(folder=3)
+    _, radii = dispersion(fraction=0.2, number=4, radii=[1.0, 2.0, 1.0, 2.0], method="rsa", gap=0.01)
+    assert_allclose(np.sort(radii / radii.min()), [1, 1, 2, 2], rtol=1e-12)
 
 
 @pytest.mark.parametrize(
     ("knobs", "match"),
-    [({"axis": a}, f"axis = {a}: must be") for a in (1.0, True, 3)]
-    + [({"temperatures": t}, "temperatures = ") for t in (1, ("a", 1), (1.0, 1.0), (1.0, np.nan), (1, 2, 3))],
+    [
+        ({"axis": 3}, "axis = 3: must be"),
+        ({"temperatures": (1.0, 1.0)}, "temperatures = "),
+        ({"load": "walls"}, "load = 'walls' with periodic = True"),
+    ],
 )
 def test_bad_loads_are_refused_before_spheres_are_placed(knobs, match, monkeypatch):
     monkeypatch.setattr(module, "dispersion", None)
     with pytest.raises(ValueError, match=match):
         dispersion_scene(matrix=EPOXY, inclusion=SILICA, **knobs)
-
-
-def test_bad_scenes():
-    with pytest.raises(ValueError, match="load = 'walls' with periodic = True"):
-        dispersion_scene(matrix=EPOXY, inclusion=SILICA, load="walls")
-    with pytest.raises(ValueError, match="load = 'both'"):
-        dispersion_scene(matrix=EPOXY, inclusion=SILICA, load="both")
-    with pytest.raises(ValueError, match="axis = 3"):
-        dispersion_scene(matrix=EPOXY, inclusion=SILICA, axis=3)
 
 
 def test_no_room_is_said(monkeypatch):

@@ -1,4 +1,4 @@
-"""Gaps of all surfaces at once against one surface after the other."""
+"""Only here: gaps between surfaces, or to walls, that the search by cells misses; spheres that walls cut."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Packing files that are broken, and bad arguments: errors that name the file, the line and what is wrong."""
+"""Only here: broken packing files whose error names no file, no line, or not what is wrong."""
 
 import numpy as np
 import pytest
@@ -36,25 +36,17 @@ def swapped(text, old, new):
         (DATA.partition("\n2 2 0.0051")[0] + "\n", 19, "the end of the file; expected row 3 of 3"),
         (swapped(DATA, "2500 -0.005", "2500 -O.005"), 18, "x = '-O.005'; expected a number in column 5"),
         (swapped(DATA, "1 1 0.004", "1 1 0"), 18, r"found radius 0\.0; expected a radius > 0"),
-        (swapped(DATA, "1 1 0.004", "1 1 -0.004"), 18, r"found radius -0\.002"),
         (swapped(DATA, "2500 -0.005", "2500 nan"), 18, "finite"),
-        (swapped(DATA, "2500 -0.005", "2500 1e999"), 18, "finite"),
         (swapped(DATA, "2 2 0.0051", "1 2 0.0051"), 19, "id 1 once more"),
-        (swapped(DATA, "2 2 0.0051", "1.5 2 0.0051"), 19, "id 1.5; expected an integer"),
         (swapped(DATA, "0.0151 0 0 0", "0.0251 0 0 0"), 19, "between the walls"),
-        (swapped(DATA, "0.001 0.01 ", "0.001 -0.01 "), 17, "between the walls"),
         (swapped(DATA, "# sphere", "# atomic"), 15, "Atoms # atomic; expected Atoms # sphere"),
         (swapped(DATA, "# sphere\n\n", "# sphere\n"), 16, "a blank line after Atoms"),
         (swapped(DATA, "Atoms", "Bonds"), 26, "the end of the file; expected a section Atoms"),
         (swapped(DATA, "3 atoms", "three atoms"), 3, "'three'; expected the number of atoms"),
-        (swapped(DATA, "3 atoms", "0 atoms"), 3, ">= 1"),
         (swapped(DATA, "3 atoms", ""), 15, "expected number of atoms before it"),
-        (swapped(DATA, "0 0.03 ylo yhi", ""), 15, "expected ylo yhi before it"),
         (swapped(DATA, "0 0.03 ylo", "0.03 0 ylo"), 7, "expected ylo < yhi"),
         (swapped(DATA, "0 0.03 ylo", "a 0.03 ylo"), 7, "two numbers"),
-        (swapped(DATA, "0 0.03 ylo", "0 inf ylo"), 7, "two numbers"),
         (swapped(DATA, "zhi\n", "zhi\n0.1 0 0 xy xz yz\n"), 9, "triclinic"),
-        (swapped(DATA, "zhi\n", "zhi\n1 0 0 avec\n"), 9, "triclinic"),
         ("", 1, "the end of the file"),
     ],
 )
@@ -69,23 +61,15 @@ def test_broken_lammps_data(tmp_path, text, line, message):
     [
         (swapped(DUMP, "ff\n", "ff\nITEM: UNITS\n"), 10, "found 'ITEM: UNITS'; expected xlo xhi"),
         (swapped(DUMP, "ATOMS radius x", "ATOMS mass x"), 13, "mass x y z id; expected radius or diameter"),
-        (swapped(DUMP, "radius x y", "radius x v"), 13, "expected one of y, yu, ys, ysu"),
         (swapped(DUMP, "ATOMS\n3", "ATOMS\n5"), 17, "the end of the file; expected row 4 of 5"),
         (swapped(DUMP, "ATOMS\n3", "ATOMS\n2"), 16, "expected a line ITEM"),
         (swapped(DUMP, "ATOMS\n3", "ATOMS\nx"), 8, "'x'; expected the integer of ITEM: NUMBER OF ATOMS"),
-        (swapped(DUMP, "ATOMS\n3", "ATOMS\n-3"), 8, ">= 0"),
-        (DUMP.partition("0.00255")[0] + "0.00255 0.00", 16, "found 2 columns.*row 3 of 3, 5 columns"),
         (DUMP.partition("ITEM: ATOMS")[0], 13, "expected ITEM: ATOMS"),
         (swapped(DUMP, "ITEM: TIMESTEP\n0\n", ""), 11, "expected ITEM: TIMESTEP before it"),
         (swapped(DUMP, "BOUNDS pp", "BOUNDS xy xz yz pp"), 10, "xlo xhi"),
-        (swapped(DUMP, "BOUNDS pp", "BOUNDS abc origin pp"), 9, "triclinic"),
         (swapped(DUMP, "2.9999999999999999e-02", "0.0"), 11, "ylo < yhi"),
         (swapped(DUMP, "0.002 -0.005", "zwei -0.005"), 15, "radius = 'zwei'; expected a number in column 1"),
-        (swapped(DUMP, "0.002 -0.005", "0 -0.005"), 15, "a radius > 0"),
-        (DUMP.partition("ITEM: BOX")[0], 9, "the end of the file"),
-        (DUMP.partition("0.0000")[0], 11, "the end of the file; expected ylo yhi"),
         ("", 1, "expected ITEM: TIMESTEP"),
-        (DATA, 1, "found 'LAMMPS data file via.*expected a line ITEM"),
     ],
 )
 def test_broken_dump(tmp_path, text, line, message):
@@ -106,13 +90,9 @@ def test_tilted_dump(tmp_path):
     [
         ("#format x_y_z\n1 2 3\n", 1, "expected #format and one of x_y_z_r, x_y"),
         ("1 2 3 .5\n1 2 3\n", 2, "found 3 columns, '1 2 3'; expected row 2, 4 columns: x y z r"),
-        ("1 2 3 .5 1\n", 1, "found 5 columns"),
         ("# x\n\n1 2 3 .5\n\n# y\n1 2 three .5\n", 6, "z = 'three'; expected a number in column 3"),
         ("1 2 3 .5\n1 2 3 0 # no\n", 2, r"radius 0\.0"),
-        ("#format x_y_z_r_matId\n1 2 3 .5\n", 2, "5 columns: x y z r matId"),
-        ("# nothing\n", 2, "the end of the file"),
         (YADE_IDS.replace("\n4\t", "\n7\t"), 4, "id 7 once more"),
-        (DATA, 1, "found .* columns, 'LAMMPS data"),
     ],
 )
 def test_broken_yade(tmp_path, text, line, message):
@@ -124,22 +104,14 @@ def test_broken_yade(tmp_path, text, line, message):
     ("text", "line", "message"),
     [
         (swapped(ASE, "2\n", "two\n"), 1, "the number of spheres of a frame"),
-        (swapped(ASE, "2\n", "0\n"), 1, ">= 1"),
         (swapped(ASE, "2\n", "3\n"), 5, "the end of the file; expected row 3 of 3"),
         (swapped(ASE, "2\n", "1\n"), 4, "the number of spheres of a frame"),
         (swapped(ASE, ":radius:R:1", ""), 2, "expected Properties=... with pos:R:3 and radius:R:1"),
-        (swapped(ASE, "radius:R:1", "radius:R"), 2, "expected Properties"),
-        (swapped(ASE, "Properties", "Property"), 2, "found no Properties"),
         (swapped(ASE, "2.0 0.0 0.0 0.0 3", "2.0 0.1 0.0 0.0 3"), 2, "along the axes"),
-        (swapped(ASE, "3.0 0.0", "-3.0 0.0"), 2, "along the axes"),
         (swapped(ASE, "2.0 0.0 ", "2.0 "), 2, "nine numbers"),
         (swapped(ASE, "T T F", "T F"), 2, "pbc"),
         (swapped(OVITO, "-1 0 0.5", "-1 0"), 2, "Origin"),
-        (swapped(ASE, "0.30000000       0.5", "0.30000000"), 3, "found 4 columns"),
-        (swapped(ASE, "0.30000000  ", "0.3000000O  "), 3, "z = '0.3000000O'; expected a number in column 4"),
-        (swapped(ASE, "0.25000000", "-.25000000"), 4, "radius -0.25"),
         (swapped(ASE, "3.00000000 ", "5.00000000 "), 4, "between the walls"),
-        ("2\n", 2, "the end of the file"),
         ("", 1, "the end of the file"),
     ],
 )
@@ -154,13 +126,11 @@ def test_broken_xyz(tmp_path, text, line, message):
         (swapped(VTK_ASCII, "</Points>", "</Point>"), "line 15: .*expected well-formed XML"),
         (swapped(VTK_ASCII, '"radius"', '"mass"'), "found 2 points with the data mass"),
         (swapped(VTK_ASCII, "0.5 0.25", "0.5"), "found 1 values of radius; expected 2"),
-        (swapped(VTK_ASCII, "0.5 0.25", "0.5 x"), "could not convert"),
         (swapped(VTK_ASCII, "0.5 0.25", "0.5 -1"), "sphere 2: found radius -1"),
         (swapped(VTK_ASCII, 'type="PolyData"', 'type="ImageData"'), "ImageData"),
         (swapped(VTK_ASCII, "vtkZLib", "vtkLZ4"), "compressor vtkLZ4"),
         (swapped(VTK_BINARY, "eJxjYACBB", "eJxjYACB!"), "not a whole PolyData file"),
         (VTK_APPENDED[:-80], "not a whole PolyData file"),
-        ("points", "line 1: "),
     ],
 )
 def test_broken_polydata(tmp_path, text, message):
@@ -190,11 +160,8 @@ def test_cut_binary_files(tmp_path, name):
         ({"centers": None}, "found the arrays radii.*expected centers"),
         ({"radii": np.ones(3)}, "found centers .*radii"),
         ({"centers": np.empty((0, 3)), "radii": np.empty(0)}, r"found centers \(0, 3\) .*; expected .* n > 0"),
-        ({"radii": -np.ones(60)}, "radius -1"),
-        ({"size": np.zeros(3)}, "size"),
         ({"provenance": "{"}, "not a whole"),
         ({"provenance": np.array([{}], dtype=object)}, "pickle"),
-        ({"domain": "cone"}, "domain"),
     ],
 )
 def test_broken_npz(tmp_path, change, message):
@@ -211,17 +178,11 @@ def test_broken_npz(tmp_path, change, message):
         (DATA, ".data", {"periodic": True, "size": (1, 1, 1)}, "size = .*its own box"),
         (DATA, ".data", {"periodic": "ppf"}, "periodic = 'ppf'"),
         (DATA, ".data", {"step": 1}, "step = 1: .*one packing"),
-        (DUMP, ".dump", {"step": 1.5}, "step = 1.5: must be an integer"),
-        (DUMP, ".dump", {"step": True}, "step = True: must be an integer"),
-        (DUMP, ".dump", {"order": "id"}, "order = 'id': must be 'given' or 'morton'"),
-        (DUMP, ".dump", {"domain": "cone"}, "domain = 'cone': must be one of box"),
         (DUMP, ".dump", {"domain": "sphere"}, "some.dump: domain = 'sphere'"),
         (YADE, ".yade", {"periodic": True}, "size: .*has no box"),
         (YADE, ".yade", {"size": (1, 1, 1)}, "line 3: .*between the walls"),
-        (YADE, ".yade", {"size": (1, 1)}, "size = "),
         (ASE, ".xyz", {"step": 1}, "line 5: .*frame 1: the file has 1"),
         (YADE, ".txt", {}, r"the suffix tells no format, .*lammps-data \(.data .lmp\).*yade \(.yade\)"),
-        (YADE, "", {}, "the suffix tells no format"),
         (YADE, ".yade", {"format": "xyz"}, "format = 'xyz': must be one of lammps-data"),
         (VTK_ASCII, ".vtp.gz", {}, "only text is packed"),
     ],
@@ -240,14 +201,6 @@ def test_arguments_are_judged_before_the_file(tmp_path):
         io.read(tmp_path / "absent.data")
     with pytest.raises(FileNotFoundError):
         io.write(awkward(0), tmp_path / "absent" / "a.data")
-
-
-@pytest.mark.parametrize("word", ["1_0", "\u0663"])
-def test_numbers_of_python_alone_name_their_line(tmp_path, word):
-    path = tmp_path / "a.yade"
-    path.write_text(f"#format x_y_z_r\n.5 .5 .5 .1\n{word} .5 .5 .1\n", encoding="utf-8")
-    with pytest.raises(ValueError, match=f"line 3: found x = '{word}'; expected a number in column 1"):
-        io.read(path)
 
 
 def test_a_packing_outside_of_its_box_is_not_written(tmp_path):

@@ -1,7 +1,8 @@
-import numba
+"""Only here: growing spheres that overlap, jam too early, or lose momentum, energy or the estimate of their time."""
+
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
 from demheat.packing import lsa_kernels as kernels
@@ -63,36 +64,20 @@ def test_jammed(jammed):
 @pytest.mark.parametrize(
     "knobs",
     [
-        {"phi": 0.6},
         {"phi": 0.3, "radii": Uniform(0.0)},
-        {"phi": 0.55, "periodic": False, "size": (1, 2, 3)},
-        {"phi": 0.55, "periodic": (True, False, True)},
+        {"phi": 0.55, "periodic": (True, False, True), "size": (1, 2, 3)},
         {"phi": 0.5, "periodic": (False, True, False), "domain": "cylinder-y", "size": (1, 3, 1)},
-        {"phi": 0.5, "periodic": False, "domain": "cylinder-y"},
         {"phi": 0.5, "periodic": False, "domain": "sphere"},
         {"phi": 0.6, "radii": Bidisperse(10.0, 0.05)},
     ],
 )
 def test_phi_is_met_and_nothing_overlaps(knobs):
-    packing = lsa(1000, **knobs)
-    # Rounding of a sum of 1000 cubes, and radii shrunk by the last bit.
+    packing = lsa(400, **knobs)
+    # Rounding of a sum of 400 cubes, and radii shrunk by the last bit.
     assert_allclose(packing.phi, knobs["phi"], rtol=1e-12)
     assert packing.provenance["stopped_by"] == "phi" and packing.provenance["shrunk"] < 1e-12
     assert least_gap(packing) >= -1e-14  # rounding of coordinates
     assert packing.domain == knobs.get("domain", "box")
-
-
-def test_same_bits_for_any_number_of_threads():
-    first = lsa(400, phi=0.5, seed=5)
-    threads = numba.get_num_threads()
-    numba.set_num_threads(1)
-    try:
-        second = lsa(400, phi=0.5, seed=5)
-    finally:
-        numba.set_num_threads(threads)
-    for one, two in zip(first[:4], second[:4], strict=True):
-        assert_array_equal(one, two)
-    assert not np.array_equal(first.centers, lsa(400, phi=0.5, seed=6).centers)
 
 
 def test_radii_keep_their_ratios():
@@ -128,11 +113,6 @@ def test_a_start_that_overlaps_too_much(centers):
     start = make_packing(centers, [0.1] * 3, (1, 1, 1), False, {})
     with pytest.raises(ValueError, match="start: two of its spheres, or one and a wall, are at 0 of"):
         lsa(start=start, phi=0.1)
-
-
-def test_unequal_spheres_may_be_denser_than_equal_ones():
-    packing = lsa(800, radii=Bidisperse(5.0, 0.02), phi=0.745, growth=0.005)
-    assert packing.phi > 0.74048 and least_gap(packing) >= -1e-14
 
 
 def test_what_takes_too_long_is_refused_by_the_estimate_alone():
@@ -171,28 +151,11 @@ def test_unreachable_phi_says_what_was_reached():
     "change, name",
     [
         ({"number": 50}, "fewer than 100"),
-        ({"number": 2.5}, "number"),
-        ({"number": True}, "number"),
         ({"phi": 1.0}, "phi"),
-        ({"phi": "0.5"}, "phi"),
-        ({"phi": 0.0}, "phi"),
-        ({"phi": float("nan")}, "phi"),
         ({"pressure": 9.0}, "pressure = 9.0: must be >= 10"),
-        ({"pressure": "high"}, "pressure"),
-        ({"growth": "slow"}, "growth"),
-        ({"domain": ["box"]}, "domain"),
-        ({"size": "abc"}, "size"),
-        ({"start": "x.dump"}, "start"),
-        ({"growth": 0.0}, "growth"),
         ({"growth": [(5.0, 0.1), (1.0, 0.1)]}, "growth"),
-        ({"growth": [1.0, 2.0, 3.0]}, "growth"),
         ({"radii": np.ones(5)}, "one each"),
-        ({"radii": -np.ones(200)}, "> 0"),
-        ({"radii": "big"}, "radii"),
-        ({"seed": -1}, "seed"),
         ({"size": (1, 1, 0.2)}, "side 2"),
-        ({"size": (1, 0, 1)}, "size"),
-        ({"domain": "cone"}, "domain"),
         ({"domain": "sphere"}, "not periodic"),
         ({"number": 100, "radii": Bidisperse(10, 0.05)}, "use more spheres"),
     ],

@@ -1,4 +1,5 @@
-import numba
+"""Only here: a pair that lists of neighbours leave out or count twice, or a gap that lies on a pair."""
+
 import numpy as np
 import pytest
 from crystals import distances
@@ -24,7 +25,7 @@ def rows(near):
     return np.concatenate(([0], np.cumsum(near.sum(axis=1)))), np.nonzero(near)[1]
 
 
-@pytest.mark.parametrize("seed", range(40))
+@pytest.mark.parametrize("seed", range(12))
 def test_lists_are_those_of_brute_force(seed):
     packing = random_packing(seed)
     rng = np.random.default_rng(1000 + seed)
@@ -60,21 +61,6 @@ def test_a_wide_distribution_costs_few_candidates():
     assert grid.dims[1:].prod() >= 5000 / 8
 
 
-@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
-def test_bits_do_not_depend_on_threads():
-    packing = random_packing(5, most=3000)
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(1)
-        one = neighbours(packing, scale=1.5, skin=0.1)
-        numba.set_num_threads(2)
-        two = neighbours(packing, scale=1.5, skin=0.1)
-    finally:
-        numba.set_num_threads(before)
-    assert_array_equal(one[0], two[0])
-    assert_array_equal(one[1], two[1])
-
-
 @pytest.fixture(scope="module")
 def relaxed():
     return relax(1000, seed=1)
@@ -86,7 +72,7 @@ def apart(relaxed):
     return distances(relaxed)
 
 
-@pytest.mark.parametrize("coordination", [4.0, 7.5, 14.0])
+@pytest.mark.parametrize("coordination", [4.0, 14.0])
 def test_coordination_is_met(relaxed, apart, coordination):
     indptr, indices, gap = contacts(relaxed, coordination=coordination)
     # Exact: one pair more or less changes the mean by 2/1000.
@@ -100,7 +86,7 @@ def test_coordination_is_met(relaxed, apart, coordination):
     assert_array_equal(matrix, matrix.T)
 
 
-@pytest.mark.parametrize("links", [3500, 3501, 3502])
+@pytest.mark.parametrize("links", [3500, 3501])
 def test_the_gap_parts_no_pair(relaxed, apart, links):
     """Each pair stands in two rows: midway to the next must lie between pairs, not on one."""
     _, indices, gap = contacts(relaxed, coordination=2 * links / 1000 + 1e-6)
@@ -110,19 +96,12 @@ def test_the_gap_parts_no_pair(relaxed, apart, links):
     assert np.abs(ratio - (1 + gap)).min() > 1e-9
 
 
-@pytest.mark.parametrize("ends", [7001, 7003])
-def test_an_odd_number_of_ends_is_rounded(relaxed, apart, ends):
+def test_an_odd_number_of_ends_is_rounded(relaxed, apart):
+    ends = 7001
     _, indices, gap = contacts(relaxed, coordination=ends / 1000)
     ratio = (apart / (relaxed.radii[:, None] + relaxed.radii))[np.triu_indices(1000, 1)]
     assert abs(len(indices) - ends) == 1
     assert np.abs(ratio - (1 + gap)).min() > 1e-9
-
-
-def test_gap_given_and_gap_found_agree(relaxed):
-    found = contacts(relaxed, coordination=7.5)
-    given = contacts(relaxed, gap=found[2])
-    for a, b in zip(found, given, strict=True):
-        assert_array_equal(a, b)
 
 
 def test_walled_coordination_counts_the_bulk_only():
@@ -139,30 +118,8 @@ def test_walled_coordination_counts_the_bulk_only():
     assert_allclose(len(everywhere[1]) / 2000, 7.5, atol=2 / 2000)
 
 
-def test_bad_input(relaxed):
-    walled = relaxed._replace(periodic=np.zeros(3, dtype=bool))
-    for call in (
-        lambda: neighbours(relaxed, scale=-1.0),
-        lambda: neighbours(relaxed, skin=np.nan),
-        lambda: contacts(relaxed, coordination=0),
-        lambda: contacts(relaxed, coordination=1000),
-        lambda: contacts(relaxed, coordination=np.nan),
-        lambda: contacts(relaxed, gap=-1.0),
-        lambda: contacts(relaxed, margin=-1.0),
-        lambda: contacts(walled, margin=50.0),
-    ):
-        with pytest.raises(ValueError, match="scale|skin|coordination|gap|margin"):
-            call()
-
-
-def test_all_others_may_be_asked_for():
-    packing = make_packing(np.random.default_rng(0).random((6, 3)), [0.05] * 6, (1, 1, 1), True, {})
-    indptr, _, _ = contacts(packing, coordination=5)
-    assert np.diff(indptr).tolist() == [5] * 6
-
-
-@pytest.mark.parametrize("wanted", [3.0, 7.5])
-def test_additive_gap_is_one_length_for_all_pairs(relaxed, apart, wanted):
+def test_additive_gap_is_one_length_for_all_pairs(relaxed, apart):
+    wanted = 7.5
     indptr, indices, gap = contacts(relaxed, coordination=wanted, additive=True)
     surface = apart - relaxed.radii[:, None] - relaxed.radii
     expected = rows(surface <= gap * 2 * relaxed.radii.mean())
@@ -175,7 +132,7 @@ def test_additive_gap_is_one_length_for_all_pairs(relaxed, apart, wanted):
 
 
 def test_bulk_of_a_cylinder_is_away_from_its_round_wall():
-    packing = relax(4000, seed=2)
+    packing = relax(2500, seed=2)
     inside = np.linalg.norm(packing.centers[:, [0, 2]] - 0.5, axis=1) < 0.5
     drum = make_packing(
         packing.centers[inside], packing.radii[inside], (1, 1, 1), (False, True, False), {}, domain="cylinder-y"
@@ -183,6 +140,6 @@ def test_bulk_of_a_cylinder_is_away_from_its_round_wall():
     indptr, _, _ = contacts(drum, coordination=7.5, margin=4.0)
     off_axis = np.linalg.norm(drum.centers[:, [0, 2]] - 0.5, axis=1)
     bulk = off_axis <= 0.5 - 4 * drum.radii.mean()
-    assert 500 < bulk.sum() < 2500
+    assert 250 < bulk.sum() < 1800
     # One pair more or less.
     assert_allclose(np.diff(indptr)[bulk].mean(), 7.5, atol=2 / bulk.sum())

@@ -1,3 +1,5 @@
+"""Only here: radii whose mean, spread or cut is not that of their distribution."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -44,10 +46,6 @@ def test_moments_and_limits(distribution):
     assert radii.min() < low + 0.01 * (high - low) and radii.max() > high - 0.01 * (high - low)
 
 
-def test_default_cut_leaves_the_stated_deviation():
-    assert_allclose(moments(Gaussian())[1] / 0.3, 0.955, atol=5e-4)  # three digits are stated
-
-
 def test_bidisperse_counts_are_exact():
     radii = Bidisperse(ratio=3.0, fraction=0.1).draw(1000, np.random.default_rng(0))
     assert np.count_nonzero(radii > 1.5 * radii.min()) == 100
@@ -67,25 +65,3 @@ def test_listed_are_used_once_each():
 def test_names_tell_lists_apart():
     assert repr(Listed([1.0, 2.0])) == repr(Listed((1.0, 2.0))) != repr(Listed([1.0, 2.1]))
     assert repr(Gaussian()) == "Gaussian(spread=0.3, cut=2.5)"
-
-
-@pytest.mark.parametrize(
-    "make",
-    [
-        lambda: Gaussian(-0.1),
-        lambda: Gaussian(0.4),  # 2.5 * 0.4 = 1: a radius of 0
-        lambda: Gaussian(float("nan")),
-        lambda: Gaussian(0.1, 0.0),
-        lambda: Uniform(1.0),
-        lambda: Lognormal(-1.0),
-        lambda: Lognormal(0.1, float("inf")),
-        lambda: Bidisperse(0.5),
-        lambda: Bidisperse(2.0, 1.5),
-        lambda: Listed([]),
-        lambda: Listed([1.0, -1.0]),
-        lambda: Listed([1.0, float("nan")]),
-    ],
-)
-def test_bad_input(make):
-    with pytest.raises(ValueError, match="must be"):
-        make()

@@ -1,26 +1,25 @@
+"""Only here: relaxed packings with order in them, overlaps other than reported, walls that give way."""
+
 import importlib
-import json
-import os
-import subprocess
-import sys
 from types import SimpleNamespace
 
-import numba
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts, neighbours
-from demheat.packing.radii import Bidisperse, Gaussian, Listed, Lognormal
+from demheat.packing.radii import Bidisperse, Listed
 from demheat.packing.relax import relax, settle
 
 module = importlib.import_module("demheat.packing.relax")
+# A grid of 16^3 is what they begin from.
+NUMBER = 4096
 
 
 @pytest.fixture(scope="module")
 def packing():
-    return relax(8000, seed=2)
+    return relax(NUMBER, seed=2)
 
 
 def pair_overlaps(packing):
@@ -34,19 +33,15 @@ def pair_overlaps(packing):
 
 
 def test_phi_is_exact_and_overlaps_are_as_reported(packing):
-    assert packing.number == 8000
-    assert_allclose(packing.phi, 0.64, rtol=1e-13)  # rounding of a sum of 8000 cubes
+    assert packing.number == NUMBER and packing.centers.min() >= 0 and np.all(packing.centers < packing.size)
+    assert_allclose(packing.phi, 0.64, rtol=1e-13)  # rounding of a sum of 4096 cubes
     reached, overlaps = packing.provenance, pair_overlaps(packing)
     assert reached["converged"] and reached["mean_overlap"] <= 0.002
     # Rounding of positions, relative to overlaps of 1e-3.
     assert_allclose(overlaps.mean() / (2 * packing.radii.mean()), reached["mean_overlap"], rtol=1e-9)
     assert_allclose(overlaps.max() / (2 * packing.radii.mean()), reached["max_overlap"], rtol=1e-9)
     # At 0.64 there must be overlapping pairs, several per particle: spheres that vanished would have none.
-    assert len(overlaps) > 8000
-
-
-def test_centres_lie_in_the_cell(packing):
-    assert packing.centers.min() >= 0 and np.all(packing.centers < packing.size)
+    assert len(overlaps) > NUMBER
 
 
 @pytest.mark.parametrize("domain, periodic", [("cylinder-y", (False, True, False)), ("sphere", False)])
@@ -63,7 +58,7 @@ def test_round_domains(domain, periodic):
 def test_packing_is_isotropic(packing):
     """Second and fourth moments of the branch vectors within sampling error, no Bragg peak of the starting grid."""
     indptr, indices, _ = contacts(packing, coordination=7.5)
-    rows = np.repeat(np.arange(8000), np.diff(indptr))
+    rows = np.repeat(np.arange(NUMBER), np.diff(indptr))
     normals = packing.centers[indices] - packing.centers[rows]
     normals -= np.rint(normals)
     normals /= np.linalg.norm(normals, axis=1)[:, None]
@@ -73,9 +68,9 @@ def test_packing_is_isotropic(packing):
     assert_allclose(np.diag(fabric), 1 / 3, atol=4 * np.sqrt(4 / 45 / links))
     assert_allclose(fabric[np.triu_indices(3, 1)], 0.0, atol=4 * np.sqrt(1 / 15 / links))
     assert_allclose((normals**4).mean(axis=0), 1 / 5, atol=4 * np.sqrt(16 / 225 / links))
-    # Structure factor at the wave vectors of the 20^3 grid: exponential of mean below 1 without order, so above 12
-    # once in 1e5; a jitter of 0.15 spacings left 100 to 300 at this number.
-    peaks = np.abs(np.exp(2j * np.pi * 20 * packing.centers).sum(axis=0)) ** 2 / 8000
+    # Structure factor at the wave vectors of the 16^3 grid: exponential of mean below 1 without order, so above 12
+    # once in 1e5; a jitter of 0.15 spacings left 100 to 300 at twice this number, in proportion to it.
+    peaks = np.abs(np.exp(2j * np.pi * 16 * packing.centers).sum(axis=0)) ** 2 / NUMBER
     assert peaks.max() < 12
 
 
@@ -93,20 +88,13 @@ def test_walls_hold(periodic):
         assert depth[:, packing.periodic].min() < 0.2
 
 
-@pytest.mark.parametrize("radii", [Bidisperse(3.0, 0.1), Lognormal(0.6, 2.0), Gaussian(0.0)])
-def test_wide_and_equal_sizes_converge(radii):
-    packing = relax(1000, radii=radii, phi=0.6, seed=0)
-    assert packing.provenance["converged"]
-    assert_allclose(packing.phi, 0.6, rtol=1e-13)
-
-
 def test_more_than_fits_is_said():
     packing = relax(300, phi=0.74, seed=0, steps=60)
     assert not packing.provenance["converged"] and packing.provenance["iterations"] == 60
     assert packing.provenance["mean_overlap"] > 0.01
 
 
-@pytest.mark.parametrize("number", [1, 2, 7, 101, 997])
+@pytest.mark.parametrize("number", [1, 7, 997])
 def test_any_number_is_exact(number):
     packing = relax(number, phi=0.01, size=(1.0, 2.0, 3.0), allow_few=True, steps=20)
     assert packing.number == number
@@ -116,35 +104,6 @@ def test_seeds_differ_and_repeat():
     first, again, other = (relax(200, seed=seed, steps=20) for seed in (0, 0, 1))
     assert_array_equal(first.centers, again.centers)
     assert not np.array_equal(first.radii, other.radii)
-
-
-@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
-def test_bits_do_not_depend_on_threads():
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(1)
-        one = relax(3000, steps=60)
-        numba.set_num_threads(2)
-        two = relax(3000, steps=60)
-    finally:
-        numba.set_num_threads(before)
-    assert_array_equal(one.centers, two.centers)
-    assert one.provenance == two.provenance
-
-
-def test_bits_do_not_depend_on_the_compiler():
-    """The kernels as plain Python do the same: nothing in them leans on undefined behaviour."""
-    code = "from demheat.packing.relax import relax; print(relax(30, steps=3, allow_few=True, phi=.3).centers.tolist())"
-    plain = subprocess.run(
-        [sys.executable, "-c", code],
-        env=os.environ | {"NUMBA_DISABLE_JIT": "1"},
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    compiled = relax(30, steps=3, allow_few=True, phi=0.3).centers
-    # Rounding only: a compiler may fuse a product and a sum.
-    assert_allclose(np.array(json.loads(plain.stdout)), compiled, rtol=0, atol=1e-13)
 
 
 def test_lists_are_renewed_in_time(monkeypatch):
@@ -178,16 +137,6 @@ def test_settle_parts_twins_at_one_place():
     assert 0.2 * (1 - 1e-6) < np.linalg.norm(np.diff(packing.centers, axis=0)) < 0.5
 
 
-def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
-    goal = SimpleNamespace(overlap=1e-4, steps=1000)
-    assert module._share(10, 1e-3, 1e-2, goal) == pytest.approx(0.5)
-    assert module._share(800, 1e-3, 1e-2, goal) == 0.8
-    # Not yet below the first, there already, and nothing to begin with: steps alone tell.
-    for mean, first in ((2e-2, 1e-2), (1e-5, 1e-2), (0.0, 0.0)):
-        assert module._share(10, mean, first, goal) == 0.01
-    assert module._share(10, 1.01e-4, 1e-2, goal) == 0.95
-
-
 def test_progress_is_told():
     seen = []
     packing = relax(200, progress=lambda step, mean: seen.append((step, mean)))
@@ -199,22 +148,8 @@ def test_progress_is_told():
     "change, name",
     [
         ({"number": 99}, "allow_few"),
-        ({"number": 0, "allow_few": True}, "number"),
-        ({"number": 100.0}, "number"),
-        ({"number": True, "allow_few": True}, "number"),
-        ({"size": (1, 1, 0)}, "size"),
-        ({"size": (1, 1, float("nan"))}, "size"),
-        ({"phi": 0.0}, "phi"),
         ({"phi": 0.75}, "phi"),
-        ({"phi": float("nan")}, "phi"),
-        ({"radii": 0.3}, "radii"),
         ({"radii": Listed([1.0, 2.0])}, "2 radii for 200"),
-        ({"periodic": 1}, "periodic"),
-        ({"seed": -1}, "seed"),
-        ({"seed": 0.5}, "seed"),
-        ({"overlap": -1.0}, "overlap"),
-        ({"steps": -1}, "steps"),
-        ({"size": (1.0, 1.0, 0.05)}, "side 2 must be"),
         ({"size": (1.0, 1.0, 0.2)}, "side 2 must be"),  # 2 but not 4 of the largest radii
         ({"size": (1.0, 1.0, 0.02), "periodic": False}, "side 2 must be"),
         ({"radii": Bidisperse(20.0, 0.005)}, "side 0 must be"),
@@ -225,7 +160,11 @@ def test_bad_input(change, name):
         relax(**({"number": 200} | change))
 
 
-@pytest.mark.parametrize("change", [{"fixed": np.zeros(3, dtype=bool)}, {"fixed": np.zeros(200)}, {"steps": -1}])
-def test_settle_bad_input(change):
-    with pytest.raises(ValueError, match="fixed|steps"):
-        settle(relax(200, steps=0), **change)
+def test_the_part_done_follows_the_digits_of_the_overlap_or_the_steps():
+    goal = SimpleNamespace(overlap=1e-4, steps=1000)
+    assert module._share(10, 1e-3, 1e-2, goal) == pytest.approx(0.5)
+    assert module._share(800, 1e-3, 1e-2, goal) == 0.8
+    # Not yet below the first, there already, and nothing to begin with: steps alone tell.
+    for mean, first in ((2e-2, 1e-2), (1e-5, 1e-2), (0.0, 0.0)):
+        assert module._share(10, mean, first, goal) == 0.01
+    assert module._share(10, 1.01e-4, 1e-2, goal) == 0.95

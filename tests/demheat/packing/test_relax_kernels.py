@@ -1,4 +1,4 @@
-"""Forces and steps of the relaxation beside NumPy's sums over all pairs, and beside the slope of an energy."""
+"""Only here: forces of the relaxation that are no slope of an energy, beside sums over all pairs."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What the statistics of packings refuse."""
+"""Only here: links and reaches that statistics cannot have, of values that are each good."""
 
 import numpy as np
 import pytest
@@ -25,15 +25,10 @@ def test_bad_input():
     one = Packing(np.full((2, 3), 1.0), np.full(2, 0.5), np.full(3, 4.0), np.ones(3, dtype=bool), {})
     pair = np.array([0, 1, 2]), np.array([1, 0])
     for name, call in (
-        ("margin = -1", lambda: packing_fraction(crystal, margin=-1)),
-        ("margin = nan", lambda: packing_fraction(crystal, margin=np.nan)),
-        ("margin = '1'", lambda: packing_fraction(crystal, margin="1")),
         ("margin = 6.0: must be < 6 mean radii", lambda: packing_fraction(walled, margin=6.0)),
         ("margin = 5.5: no particle", lambda: coordination(walled, *rows, margin=5.5)),
-        ("indptr of shape", lambda: coordination(crystal, indptr[:-1], indices)),
         ("indptr of shape", lambda: coordination(crystal, indptr[::-1], indices)),
         ("indices of shape", lambda: coordination(crystal, indptr, indices[:-1])),
-        ("indices of shape", lambda: coordination(crystal, indptr, indices.astype(float))),
         ("indices from", lambda: coordination(crystal, indptr, indices + 1)),
         ("indices: each pair", lambda: coordination(crystal, indptr, swapped)),
         ("indices: each pair", lambda: coordination(one, np.array([0, 1, 1]), np.array([1]))),
@@ -42,22 +37,14 @@ def test_bad_input():
         ("centers: 0 and 1 coincide", lambda: fabric(one, *pair)),
         ("centers: 0 and 1 coincide", lambda: backbone(one, *pair)),
         ("no links", lambda: fabric(one, np.zeros(3, dtype=int), np.empty(0, dtype=int))),
-        ("gap = -1", lambda: backbone(crystal, *rows, gap=-1)),
-        ("rule = 'lp'", lambda: backbone(crystal, *rows, rule="lp")),
         ("bins = 7", lambda: directions(crystal, *rows, bins=7)),
-        ("bins = 0", lambda: radial_distribution(crystal, bins=0)),
-        ("bins = 9.0", lambda: radial_distribution(crystal, r_max=1.0, bins=9.0)),
         ("r_max = 3.1: .* <= 3, half of the shortest period", lambda: radial_distribution(crystal, r_max=3.1)),
         ("r_max = 3.0: no centre", lambda: radial_distribution(walled, r_max=3.0)),
-        ("r_max = 0", lambda: two_point(crystal, r_max=0)),
         ("r_max = 2.6: must be <= 2.5, half of the longest line", lambda: two_point(walled, r_max=2.6, margin=1.0)),
         ("at least 2", lambda: radial_distribution(make_packing([[1, 1, 1]], [0.5], (4, 4, 4), True, {}))),
-        ("along = ", lambda: two_point(crystal, along=[[0, 0, 0]], r_max=1.0)),
         ("along = ", lambda: two_point(crystal, along=(1, 0, 0), r_max=1.0)),
-        ("along = ", lambda: two_point(crystal, along="x", r_max=1.0)),
         ("points = 1", lambda: two_point(crystal, points=1, r_max=1.0)),
         ("lines = 1", lambda: two_point(crystal, lines=1, r_max=1.0)),
-        ("seed = -1", lambda: two_point(crystal, seed=-1, r_max=1.0)),
         ("periods must be", lambda: two_point(one._replace(radii=np.full(2, 1.1)), r_max=0.5)),
     ):
         with pytest.raises(ValueError, match=name):

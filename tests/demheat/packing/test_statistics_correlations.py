@@ -1,17 +1,14 @@
-"""Radial distribution and two-point probability of packings."""
+"""Only here: correlations of packings counted wrong, cut by walls, or told with errors that are none."""
 
 from itertools import product
 
-import numba
 import numpy as np
 import pytest
 from crystals import distances, random_packing, simple_cubic
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_allclose
 
 from demheat.packing.base import make_packing
-from demheat.packing.neighbours import neighbours
-from demheat.packing.statistics import backbone, radial_distribution, two_point
-from demheat.packing.statistics.links import _unit_vectors
+from demheat.packing.statistics import radial_distribution, two_point
 from demheat.packing.statistics.regions import inscribed_box
 from demheat.packing.walls import wall_distances
 
@@ -29,19 +26,17 @@ def test_shells_of_a_simple_cubic_crystal(periodic):
     assert found.origins == (512 if periodic else 64)  # depth > 1.95: beyond two layers of spheres
 
 
-@pytest.mark.parametrize("scaled", [False, True])
 @pytest.mark.parametrize(
-    ("domain", "periodic", "number", "r_max"),
+    ("domain", "periodic", "number", "r_max", "scaled"),
     [
-        ("box", True, 600, 2.0),
-        ("box", True, 1200, 3.2),  # 460 neighbours within .48: more than the buffer first holds
-        ("box", False, 600, 2.0),
-        ("box", (True, False, True), 600, 2.0),
-        ("sphere", False, 600, 2.0),
-        ("cylinder-y", False, 600, 2.0),
+        ("box", True, 600, 2.0, True),
+        ("box", True, 1200, 3.2, False),  # 460 neighbours within .48: more than the buffer first holds
+        ("box", (True, False, True), 600, 2.0, False),
+        ("sphere", False, 600, 2.0, True),
+        ("cylinder-y", False, 600, 2.0, False),
     ],
 )
-def test_pair_counts_are_those_of_brute_force(scaled, domain, periodic, number, r_max):
+def test_pair_counts_are_those_of_brute_force(domain, periodic, number, r_max, scaled):
     packing = random_packing(3, number, periodic=periodic, domain=domain)
     r_max = r_max if scaled else 1.5 * r_max
     found = radial_distribution(packing, r_max=r_max, bins=40, scaled=scaled)
@@ -121,27 +116,6 @@ def test_lines_keep_away_from_walls(domain):
     assert_allclose([found.phi, found.exact_slope], 0.0, atol=1e-15)  # what cut spheres leave by rounding
     # Filled, the same lines see the spheres.
     assert np.all(two_point(packing, margin=8.0, points=3, lines=200).s2 > 0)
-
-
-@pytest.mark.skipif(numba.config.NUMBA_NUM_THREADS < 2, reason="one thread only")
-def test_bits_do_not_depend_on_threads():
-    packing = random_packing(9, 3000, radius=0.04)
-    rows = neighbours(packing)
-
-    def everything():
-        g, s2 = radial_distribution(packing, r_max=2.0), two_point(packing, r_max=2.0, lines=500)
-        return [*g, *s2, _unit_vectors(packing, *rows), *backbone(packing, *rows, rule="half-space")]
-
-    before = numba.get_num_threads()
-    try:
-        numba.set_num_threads(1)
-        one = everything()
-        numba.set_num_threads(2)
-        two = everything()
-    finally:
-        numba.set_num_threads(before)
-    for a, b in zip(one, two, strict=True):
-        assert_array_equal(a, b)
 
 
 def test_order_of_particles_does_not_matter():

@@ -1,4 +1,4 @@
-"""Pairs counted and lines cut beside sums over all pairs and over all periodic images."""
+"""Only here: pairs that kernels count twice or not, chords that they join wrongly, beside brute force."""
 
 from itertools import product
 

@@ -1,4 +1,4 @@
-"""Contacts and isotropy of packings."""
+"""Only here: contacts, backbones and fabrics of packings other than those of crystals and of theory."""
 
 import numpy as np
 import pytest

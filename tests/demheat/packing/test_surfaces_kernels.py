@@ -1,3 +1,5 @@
+"""Only here: kernels of twins that turn, thin or part points otherwise than NumPy does."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
@@ -118,14 +120,6 @@ def test_areas_are_those_of_the_polyhedron():
     assert_allclose(inscribed_radii(normals, count), [inscribed_radius(each) for each in sets], rtol=2e-4)
 
 
-def test_a_cube_and_what_has_no_end():
-    cube = np.concatenate([np.eye(3), -np.eye(3)])
-    half = fibonacci_sphere(200)[:100]
-    radii = inscribed_radii(np.concatenate([cube, half, cube]), np.array([6, 100, 6]))
-    assert_allclose(radii[[0, 2]], (np.pi / 6) ** (1 / 3), rtol=1e-14)
-    assert np.isnan(radii[1])
-
-
 def test_many_corners_are_no_crash():
     """A facet with more corners than there is room for, between two rings of planes that are nearly upright."""
     angle = np.linspace(0, 2 * np.pi, 200, endpoint=False)
@@ -133,3 +127,11 @@ def test_many_corners_are_no_crash():
     ring /= np.linalg.norm(ring, axis=1)[:, None]
     normals = np.concatenate([ring, ring * [1, 1, -1], [[0, 0, 1.0], [0, 0, -1.0]]])
     assert np.isnan(inscribed_radii(normals, np.array([len(normals)]))[0])
+
+
+def test_a_cube_and_what_has_no_end():
+    cube = np.concatenate([np.eye(3), -np.eye(3)])
+    half = fibonacci_sphere(200)[:100]
+    radii = inscribed_radii(np.concatenate([cube, half, cube]), np.array([6, 100, 6]))
+    assert_allclose(radii[[0, 2]], (np.pi / 6) ** (1 / 3), rtol=1e-14)
+    assert np.isnan(radii[1])

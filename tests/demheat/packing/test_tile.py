@@ -1,13 +1,11 @@
-"""Tiles: they are what the recipe makes, meet the number asked for, fill any box, are read whole or not at all."""
+"""Only here: tiles that are not what the recipe makes, miss the number asked for, have seams, or are read in part."""
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
 
-from demheat import Material, Scene, Sphere, gallery, solve
 from demheat.packing import tile, tile_recipe
-from demheat.packing.domain import replicate
 from demheat.packing.gate import check_packing
 from demheat.packing.tile import OFF, STRETCH, fits, numbers, tiled
 
@@ -34,9 +32,9 @@ def test_centroids_of_a_lattice_that_is_shifted_are_its_points():
     assert_allclose(tile_recipe.centroids(points), points, atol=1e-7)
 
 
-@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 1.0, 2.0), (1.0, 1.3, 1.7), (0.2, 0.3, 0.25)])
+@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 1.3, 1.7)])
 def test_any_number_is_met(size):
-    for number in (1000, 1777, 8000, 12_345, 100_000):
+    for number in (1000, 1777, 12_345, 100_000):
         packing = tiled(number, size=size, seed=3)
         assert abs(packing.number / number - 1) <= OFF
         assert packing.provenance["number"] == packing.number and packing.provenance["stretch"] <= STRETCH
@@ -105,27 +103,3 @@ def test_a_file_that_is_cut_or_foreign_is_refused(spoiled, monkeypatch, tmp_path
             tiled(1000, size=(1.0, 1.0, 1.0))
     finally:
         tile._tiles.cache_clear(), tile._tile.cache_clear()
-
-
-def test_solve_takes_tiles_and_says_so():
-    packing = solve(gallery.sphere_in_cube(5.0), particles=1000).stats["packing"]
-    assert packing["algorithm"] == "tile" and packing["asked"] == 1000
-
-
-def test_repeats_of_a_homogeneous_cell_change_nothing():
-    """A bare tile and its repeats have one conductivity, to the solver's tolerance."""
-    scene = Scene((1.0, 1.0, 1.0), Material(2.0), gradient=(1.0, 0, 0))
-    one = tiled(200, size=(1.0, 1.0, 1.0))
-    assert_allclose(solve(scene, packing=one).conductivity, 2.0, rtol=1e-7)
-    assert_allclose(solve(scene, packing=replicate(one, (2, 2, 2)).scaled(0.5)).conductivity, 2.0, rtol=1e-7)
-
-
-def test_tiles_are_as_accurate_as_relaxed_packings():
-    """A sphere of contrast 10 by 8000 particles; .002 to .006 % when this was written, .021 % on packings of before."""
-    from references import multipole
-
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 1 / 3, Material(10.0))], gradient=(0, 0, 1))
-    right = multipole.solve(scene, accuracy=1e-6).conductivity
-    found = [solve(scene, particles=8000, seed=seed).conductivity for seed in range(3)]
-    # Half of what it was.
-    assert_allclose(found, right, rtol=1e-4)

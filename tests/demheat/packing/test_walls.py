@@ -1,4 +1,4 @@
-"""Distances of a packing's centres from its walls, and its bulk."""
+"""Only here: distances of centres from walls, flat and round, and what counts as bulk."""
 
 import numpy as np
 import pytest
