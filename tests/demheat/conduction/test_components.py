@@ -1,4 +1,4 @@
-"""Bodies of a network with pores: beside a search by hand, and what a steady solution makes of them."""
+"""Only here: bodies of a network with pores joined or parted wrongly, and ways around a period not seen."""
 
 from types import SimpleNamespace
 
@@ -19,7 +19,7 @@ PORE, ONE = Material(0.0), Material(1.0)
 
 @pytest.mark.twin
 @pytest.mark.parametrize("per_row, most", [(1, 7), (2, 1000), (3, 1)])
-@pytest.mark.parametrize("jump", [(1.0, 0.0, 0.0), (0.0, 0.0, 0.0), (1.0, -0.5, 2.0)])
+@pytest.mark.parametrize("jump", [(0.0, 0.0, 0.0), (1.0, -0.5, 2.0)])
 def test_bodies_beside_those_found_by_hand(per_row, most, jump):
     links, places = random_links(60, per_row=per_row, seed=per_row)
     solid, jump = np.random.default_rng(1).random(60) > 0.2, np.array(jump)

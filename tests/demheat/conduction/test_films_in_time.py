@@ -1,4 +1,4 @@
-"""Convection and radiation at walls in time: the DEM against series with Biot numbers and lumped bodies."""
+"""Only here: walls that exchange heat in time, against series with Biot numbers, lumped bodies and bricks."""
 
 import math
 from dataclasses import replace
@@ -7,14 +7,13 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, UniformSource, evolve, solve
+from demheat import Convection, Flux, Material, Radiation, Scene, Sphere, UniformSource, evolve
 from demheat.packing.cache import relaxed
 from demheat.scene import STEFAN_BOLTZMANN
 from references import fem, series
 
 UNIT = Material(1.0, 1.0, 1.0)
 BOX = (1.0, 1.0, 1.0)
-EXPLICIT = ("euler", "rkl2")
 
 
 def last(scene, times, **knobs):
@@ -31,10 +30,7 @@ def off(field, right):
 @pytest.mark.parametrize(
     ("walls", "integrator"),
     [
-        *(
-            ({"y-": 1.0, "y+": Convection(2.0, 0.0)}, name)
-            for name in ("euler", "rkl2", "tr-bdf2", "tr-bdf2-multigrid")
-        ),
+        *(({"y-": 1.0, "y+": Convection(2.0, 0.0)}, name) for name in ("euler", "rkl2", "tr-bdf2")),
         ({"y-": Convection(0.7, 1.0)}, "auto"),
     ],
 )
@@ -53,14 +49,6 @@ def test_slab_with_convection_against_the_series(walls, integrator):
                 field.wall_heat[name], right.wall_heat[name], atol=(0.1 if field.time < 0.1 else 0.06) * largest
             )
     assert field.stats["energy_error"] < 1e-10
-
-
-def test_its_error_falls_at_second_order():
-    scene = Scene(BOX, UNIT, walls={"y-": Convection(3.0, 1.0), "y+": Convection(1.0, -1.0)}, initial=0.0)
-    (right,) = series.evolve(scene, [0.2])
-    errors = [off(last(scene, [0.2], particles=number, accuracy=1e-5), right) for number in (700, 5600)]
-    # Twice as fine: four times less; one packing each, so less is asked.
-    assert errors[0] / errors[1] > 2.5
 
 
 def test_surroundings_that_change():
@@ -116,9 +104,9 @@ GLOWING = Scene(BOX, Material(50.0, 1000.0, 1.0), walls={"x-": 1200.0, "x+": Rad
 
 
 @pytest.mark.parametrize(
-    ("integrator", "counts", "order"), [("rkl2", (16, 32, 64), 2), ("euler", (1000, 2000, 4000), 1)]
+    ("integrator", "counts", "order", "most"), [("rkl2", (16, 32, 64), 2, 0.1), ("euler", (1000, 2000), 1, 0.2)]
 )
-def test_steps_of_radiation_halve(integrator, counts, order):
+def test_steps_of_radiation_halve(integrator, counts, order, most):
     """Half the step, a half or a quarter of the error, beside tiny steps of second order on the same packing."""
     packing = relaxed(150, size=BOX, periodic=False, seed=0)
 
@@ -128,7 +116,7 @@ def test_steps_of_radiation_halve(integrator, counts, order):
     right = warmth("rkl2", 512)
     errors = [np.sqrt(np.mean((warmth(integrator, count) - right) ** 2)) for count in counts]
     # Of a span of 900 K; an order less a tenth of it.
-    assert errors[2] < 0.1 and all(a / b > 2 ** (0.9 * order) for a, b in zip(errors[:-1], errors[1:], strict=True))
+    assert errors[-1] < most and all(a / b > 2 ** (0.9 * order) for a, b in zip(errors[:-1], errors[1:], strict=True))
 
 
 def test_radiation_in_time_beside_bricks():
@@ -153,16 +141,6 @@ def test_explicit_steps_are_those_of_a_held_wall():
     # 500 K at first; that dies out.
     assert_allclose(field.wall_temperature["x+"], 3000.0, rtol=1e-4)
     assert np.abs(field.samples.temperature - 3000.0).max() < 250.0
-
-
-def test_radiation_in_time_ends_in_the_steady_state():
-    packing = relaxed(150, size=BOX, periodic=False, seed=0)
-    field = last(GLOWING, [200.0], packing=packing, accuracy=1e-5)
-    steady = solve(GLOWING, packing=packing, tolerance=1e-10)
-    # Nothing of the start is left after ten times L^2 over the diffusivity.
-    assert_allclose(field.samples.temperature, steady.samples.temperature, atol=0.02)
-    assert_allclose(field.wall_heat["x+"], steady.wall_heat["x+"], rtol=1e-4)
-    assert field.stats["integrator"] in EXPLICIT
 
 
 @pytest.mark.parametrize("integrator", ["tr-bdf2", "tr-bdf2-multigrid"])

@@ -1,4 +1,4 @@
-"""Kernels of the multigrid preconditioner beside what their definitions say."""
+"""Only here: kernels of multigrid beside their definitions: strong links, aggregates, sweeps, ways between levels."""
 
 import numpy as np
 import pytest

@@ -1,3 +1,5 @@
+"""Only here: power of sources that is lost at rims, jitters between cells or falls beside where they are."""
+
 import math
 
 import numpy as np
@@ -184,9 +186,7 @@ def test_volumes_that_do_not_fill_the_body_get_its_power(cells):
 
 
 @pytest.mark.parametrize("domain", ["box", "cylinder-z"])
-@pytest.mark.parametrize(
-    "start, velocity", [((-1.0, 0.02), (0.5, 0.0)), ((-0.1, -0.12), (0.3, 0.31)), ((0.07, 0.2), (-0.1, -0.4))]
-)
+@pytest.mark.parametrize("start, velocity", [((-1.0, 0.02), (0.5, 0.0)), ((0.07, 0.2), (-0.1, -0.4))])
 def test_times_at_which_a_source_meets_and_leaves_the_body(domain, start, velocity):
     source = laser(diameter=0.02, start=start, velocity=velocity, clip=True)
     scene = sheet(source, size=(0.05, 0.05, 0.002), domain=domain)

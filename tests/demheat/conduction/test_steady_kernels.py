@@ -1,4 +1,4 @@
-"""Kernels of the steady solver beside what their formulas say, on random links."""
+"""Only here: kernels of the steady solver beside their formulas, on random links, over several blocks."""
 
 import numpy as np
 import pytest

@@ -1,11 +1,11 @@
-"""Transients by the discrete element method: against exact series and by hand, in phases and pores, far beyond rest."""
+"""Only here: transients of the DEM against exact series, in phases and pores, far beyond rest."""
 
 import re
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from transient_scenes import BOX, INTEGRATORS, METAL, SLAB, last
+from transient_scenes import BOX, METAL, SLAB, last
 
 from demheat import Material, Scene, Sphere, UniformSource, evolve
 from demheat.conduction.integrators import linear
@@ -13,7 +13,7 @@ from demheat.packing.cache import relaxed
 from references import series
 
 
-@pytest.mark.parametrize("integrator", ["auto", *INTEGRATORS])
+@pytest.mark.parametrize("integrator", ["auto", "tr-bdf2-multigrid"])
 def test_slab_against_the_series(integrator):
     times = [0.05, 0.1, 0.2]
     fields = list(evolve(SLAB, times, particles=3000, integrator=integrator))
@@ -32,27 +32,7 @@ def test_slab_against_the_series(integrator):
     assert 1e-7 < stats["residual"] <= 2.1e-4 if stats["integrator"].startswith("tr-bdf2") else stats["residual"] == 0
 
 
-def test_errors_fall_at_second_order_in_the_spacing():
-    errors = []
-    for number in (700, 5600):
-        field = last(SLAB, [0.2], particles=number, accuracy=1e-5)
-        exact = next(iter(series.evolve(SLAB, [0.2])))
-        points, _, temperature, _, _ = field.samples
-        errors.append(np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)))
-    # A factor of 8 in number is 2 in spacing: 4 times less; one packing each, so less is asked.
-    assert errors[0] / errors[1] > 2.5
-
-
-def test_a_field_at_points():
-    field = last(SLAB, [0.2], particles=3000)
-    points = np.array([[0.05, y, 0.05] for y in (0.025, 0.05, 0.075, 0.09)])
-    # Haddad et al. 2021, eq. 17, at these points; linear inside cells, so about as good as in the centres.
-    assert_allclose(field.temperature_at(points), [25.7976, 27.4834, 30.6420, 33.1761], atol=0.06)
-    assert field.flux_at(points).shape == (4, 3)
-
-
-@pytest.mark.parametrize("law", ["calibrated", "platonic"])
-@pytest.mark.parametrize("wall", ["center", "surface"])
+@pytest.mark.parametrize(("law", "wall"), [("calibrated", "center"), ("platonic", "surface")])
 def test_contact_laws(law, wall):
     field = last(SLAB, [0.2], particles=3000, law=law, wall=wall)
     exact = next(iter(series.evolve(SLAB, [0.2])))
@@ -92,8 +72,8 @@ def test_a_sphere_against_the_series():
         assert_allclose(np.linalg.norm(field.mean_flux), 0.0, atol=0.02 * 185.0 * 180.0 / 0.05)
 
 
-@pytest.mark.parametrize("law", ["calibrated", "platonic"])
-def test_contact_laws_in_a_sphere(law):
+def test_contact_laws_in_a_sphere():
+    law = "calibrated"
     metal = Material(185.0, density=2700.0, heat_capacity=900.0)
     scene = Scene(size=BOX, matrix=metal, domain="sphere", walls={"round": 200.0}, initial=20.0)
     field = last(scene, [10.0], particles=3000, law=law)
@@ -106,7 +86,7 @@ def test_contact_laws_in_a_sphere(law):
     # A few per cent of the span of 180 K: temperatures act a radius inside of the wall.
     assert 0.5 < np.sqrt(np.mean((temperature - exact.temperature_at(points)) ** 2)) < 12.0
     assert field.stats["energy_error"] < 1e-10
-    assert (0.5 < field.stats["calibration"] < 0.9) == (law == "calibrated")
+    assert 0.5 < field.stats["calibration"] < 0.9
 
 
 def test_a_step_by_hand():
@@ -119,23 +99,9 @@ def test_a_step_by_hand():
     assert last(SLAB, [0.02], integrator="rkl2", step=0.005).stats["steps"] == 4
 
 
-def test_the_same_packing_gives_the_same_bits():
-    packing = relaxed(1000, size=BOX, periodic=False, seed=5)
-    first, second = (last(SLAB, [0.02, 0.1], packing=packing).samples.temperature for _ in range(2))
-    assert np.array_equal(first, second)
-    assert not np.array_equal(first, last(SLAB, [0.02, 0.1], seed=6).samples.temperature)
-
-
 @pytest.mark.parametrize(
     ("integrator", "accuracy", "relaxations"),
-    [
-        *(
-            (name, *how)
-            for name in ("tr-bdf2", "tr-bdf2-multigrid")
-            for how in [(1e-3, 1e7), (1e-3, 1e12), (1e-6, 1e17)]
-        ),
-        ("tr-bdf2", 1e-3, 1e49),
-    ],
+    [("tr-bdf2", 1e-3, 1e7), ("tr-bdf2-multigrid", 1e-6, 1e17), ("tr-bdf2", 1e-3, 1e49)],
 )
 def test_far_beyond_the_steady_state(integrator, accuracy, relaxations):
     """The bound on what a solve leaves grows with the step; what it leaves does not."""

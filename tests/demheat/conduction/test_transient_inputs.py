@@ -1,4 +1,4 @@
-"""What `evolve` refuses, and in which words; numbers of other types that it takes."""
+"""Only here: what `evolve` takes or refuses of good values that do not go together, and of users' functions."""
 
 import re
 from dataclasses import replace
@@ -18,28 +18,8 @@ def scattered(size, periodic):
 
 
 BAD = [
-    ({"times": []}, "times"),
-    ({"times": [0.2, 0.1]}, "times"),
-    ({"times": [-1.0, 0.1]}, "times"),
-    ({"times": [0.1, float("nan")]}, "times"),
-    *(({"times": odd}, "times = ") for odd in (["a"], "abc", {0.1: 1}, (t for t in [0.1]), [0.1j], ["1", "2"], 0.1)),
-    ({"times": [[0.1], [0.2, 0.3]]}, "times = [[0.1]"),
-    ({"accuracy": True}, "accuracy = True"),
-    ({"step": True}, "step = True"),
-    ({"step": "a"}, "step = 'a'"),
-    ({"conforming": "no"}, "conforming = 'no'"),
-    ({"allow_few": "x"}, "allow_few = 'x'"),
-    ({"particles": "a"}, "particles = 'a'"),
-    ({"particles": 1e3}, "particles = 1000.0"),
-    ({"integrator": "magic"}, "integrator = 'magic'"),
-    ({"accuracy": 0.0}, "accuracy = 0.0"),
+    *(({"times": odd}, "times = ") for odd in ((t for t in [0.1]), [[0.1], [0.2, 0.3]])),
     ({"accuracy": 1.0}, "accuracy = 1.0"),
-    ({"step": -1.0}, "step = -1.0"),
-    ({"step": float("inf")}, "step = inf"),
-    ({"law": "magic"}, "law = 'magic'"),
-    ({"law": "calibrated", "conforming": True}, "conforming = True"),
-    ({"sparse": "drop"}, "sparse = 'drop'"),
-    ({"interface": "magic"}, "interface = 'magic'"),
     ({"particles": 50}, "particles = 50"),
     ({"packing": scattered((0.1, 0.1, 0.2), periodic=False)}, "packing of size"),
     ({"packing": scattered(BOX, periodic=True)}, "packing of size"),

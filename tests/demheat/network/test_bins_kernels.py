@@ -1,3 +1,5 @@
+"""Only here: points filed in other cells than they lie in."""
+
 import numpy as np
 import pytest
 

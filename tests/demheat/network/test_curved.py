@@ -1,10 +1,12 @@
+"""Only here: cells at round walls that leave gaps, slivers or planes off the wall."""
+
 from functools import cache, partial
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy import sparse
-from scipy.sparse.linalg import cg, eigsh, expm_multiply
+from scipy.sparse.linalg import eigsh
 from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from demheat.conduction.steady import Solution, matrix
@@ -61,19 +63,9 @@ def assembled(packing):
     return facets, made, matrix(made, diagonal), diagonal
 
 
-def imposed(packing_of, harmonic):
-    """Steady temperatures where the wall at the foot of each wall link has those of a function; errors, volumes."""
-    packing, (facets, made, a, _) = packed(*packing_of), network(packing_of)
-    x = packing.centers - packing.size / 2
-    foot = x[facets.wall_particle] + facets.wall_distance[:, None] * facets.wall_normal
-    heat = np.bincount(made.wall_particle, made.wall_conductance * harmonic(foot), minlength=packing.number)
-    temperature, info = cg(a, heat, rtol=1e-12, M=sparse.diags(1 / a.diagonal()))
-    assert info == 0
-    return temperature - harmonic(x), facets.volumes
-
-
-@pytest.mark.parametrize("domain, size", [*BODIES, ("cylinder-y", (1.0, 2.0, 1.0))])
-@pytest.mark.parametrize("through", [False, True])
+@pytest.mark.parametrize(
+    "domain, size, through", [(*each, False) for each in BODIES] + [("cylinder-y", (1.0, 2.0, 1.0), True)]
+)
 def test_cells_close_and_fill_the_body(domain, size, through):
     """Also a cylinder that goes on periodically along its axis."""
     centers, weights, spacing = cloud(domain, size)
@@ -97,12 +89,12 @@ def test_cells_close_and_fill_the_body(domain, size, through):
 def test_wide_facets(monkeypatch):
     """Where a plane that cuts a cell touches the body beyond the cell's first reach, the reach must grow."""
     monkeypatch.setattr("demheat.network.laguerre.round_wall", partial(round_wall, width=6.0))
-    centers, weights, spacing = cloud("sphere", (2, 2, 2), 4000)
+    centers, weights, spacing = cloud("sphere", (2, 2, 2), 2000)
     facets = laguerre(centers, weights, (2, 2, 2), periodic=False, domain="sphere")
     assert_allclose(facets.volumes.sum(), domain_volume("sphere", np.full(3, 2.0)), rtol=1e-12)
 
 
-@pytest.mark.parametrize("domain, size", BODIES)
+@pytest.mark.parametrize("domain, size", BODIES[:1])
 def test_links_stand_in_both_rows_with_one_area(domain, size):
     centers, weights, spacing = cloud(domain, size)
     facets = laguerre(centers, weights, size, periodic=False, domain=domain)
@@ -113,26 +105,6 @@ def test_links_stand_in_both_rows_with_one_area(domain, size):
         assert there[p, q][0] == there[q, p][0]
         # Both ends measure the same plane, to rounding of the box's coordinates.
         assert abs(there[p, q][1] + there[q, p][1] - d) < 1e-12
-
-
-@pytest.mark.parametrize("domain, size", BODIES)
-def test_slow_twin(domain, size):
-    """Points within all tangent planes belong to the cell of least power: volumes by counting."""
-    centers, weights, spacing = cloud(domain, size, 60)
-    facets = laguerre(centers, weights, size, periodic=False, domain=domain)
-    wall, h = round_wall(domain, size, spacing), spacing / 12
-    room = np.array([8 * h * (k in ROUND_AXES[domain]) for k in range(3)])
-    steps = [np.arange(-room[k], size[k] + room[k], h) for k in range(3)]
-    points = np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3) + h / 2
-    points = points[np.all(points < np.where(wall.across > 0, np.inf, size), axis=1)]
-    points = points[((points - wall.middle) @ wall.normals.T).max(axis=1) <= wall.radius]
-    power = ((points[:, None, :] - centers) ** 2).sum(axis=2) - weights
-    counted = np.bincount(power.argmin(axis=1), minlength=len(centers))
-    # A cell's surface cuts about 6 (V^(1/3)/h)^2 voxels, each with an error of half a voxel of either sign at random;
-    # flat ends not at a whole number of steps cut a row of them alike.
-    surface = 6 * (facets.volumes / h**3) ** (2 / 3)
-    ends = 0.5 * (facets.volumes / h**3) ** (2 / 3) if domain != "sphere" else 0.0
-    assert np.all(np.abs(counted - facets.volumes / h**3) < 3 * np.sqrt(surface) + ends + 3)
 
 
 def test_volume_within_tangent_planes():
@@ -158,55 +130,6 @@ def test_tangents_within():
     assert 0 < len(planes) < 50 * len(touch)
 
 
-@pytest.mark.parametrize("domain, size", BODIES)
-def test_linear_temperatures_are_exact(domain, size):
-    error, _ = imposed((domain, size, 400), lambda x: x @ [1.0, 0.3, -0.7])
-    # The linear solver's tolerance of 1e-12 times its condition, below 1e3.
-    assert np.abs(error).max() < 1e-9
-
-
-@pytest.mark.parametrize("domain, size", BODIES[:2])
-def test_harmonic_temperatures_are_of_second_order(domain, size):
-    rms, inner_rms = [], []
-    for number in (1000, 8000):
-        error, volumes = imposed(
-            (domain, size, number), lambda x: np.exp(x[:, 0]) * np.cos(0.6 * x[:, 1]) * np.cos(0.8 * x[:, 2])
-        )
-        offsets = (packed(domain, size, number).centers - np.array(size) / 2)[:, list(ROUND_AXES[domain])]
-        inner = np.linalg.norm(offsets, axis=1) < 0.3 * min(size)
-        rms.append(np.sqrt(np.average(error**2, weights=volumes)))
-        inner_rms.append(np.sqrt(np.average(error[inner] ** 2, weights=volumes[inner])))
-    # Eight times the particles halve the spacing: inside, a fourth of the error (found 3.5 and 3.9 times less), with
-    # room for packings being random. At the wall, which is held, it is smallest, and that layer thins: 3.1 and 3.7 in
-    # all, from 500 to 8000 as N^(-2/3) (1 - 3 N^(-1/3)). First order would be 2.
-    assert inner_rms[0] / inner_rms[1] > 3.3
-    assert rms[0] / rms[1] > 2.9
-    assert rms[1] < 1e-3  # of values between 0.3 and 3; found 3.4e-4 and 5.3e-4
-
-
-def sphere_series(r, time):
-    """Sphere of Haddad et al. 2021, section 3.3: eq. 18 with its misprints mended, degrees Celsius."""
-    n = np.arange(1, 200)
-    decay = (-1.0) ** n * np.exp(-185 / (2700 * 900) * (n * np.pi / 0.05) ** 2 * time)
-    return 200 + 2 * 180 * np.sinc(np.outer(r / 0.05, n)) @ decay
-
-
-def test_heating_of_a_sphere():
-    """The whole field at 10 s, in time by a matrix exponential: its error is that of the cells alone."""
-    assert_allclose(sphere_series(np.zeros(1), 10.0), 182.17817, atol=1e-5)  # printed digits
-    worst = []
-    for number in (400, 3200):
-        facets, _, a, _ = network(("sphere", (2.0, 2.0, 2.0), number))
-        packing = packed("sphere", (2.0, 2.0, 2.0), number)
-        time = 185 / (2700 * 900) * 10.0 / 0.05**2  # in units of R^2 over the diffusivity
-        heated = 200 + expm_multiply(-time * sparse.diags(1 / facets.volumes) @ a, np.full(number, -180.0))
-        radius = 0.05 * np.linalg.norm(packing.centers - 1.0, axis=1)
-        worst.append(np.abs(heated - sphere_series(radius, 10.0)).max())
-    # Second order like the harmonic fields. At 3200 particles 0.45 K of the 180 K was found.
-    assert worst[0] / worst[1] > 3.0
-    assert worst[1] < 0.6
-
-
 def spectral_radius(packing):
     """Largest eigenvalue of the scaled matrix over the median of its diagonal."""
     facets, _, a, diagonal = assembled(packing)
@@ -216,25 +139,11 @@ def spectral_radius(packing):
 
 def test_no_slivers():
     """Found 7 in periodic boxes, 10 to 18 between flat or round walls, where the smallest spheres touch the wall."""
-    assert spectral_radius(packed("sphere", (2.0, 2.0, 2.0), 3200)) < 25
+    assert spectral_radius(packed("sphere", (2.0, 2.0, 2.0), 400)) < 25
     clipped = cut(relax(3000, size=(2, 2, 2), seed=3, overlap=0.01), "sphere", keep="center")
     # Centres just inside the wall make slivers; pushed off it by half their radius or more they do not.
     assert spectral_radius(clipped) > 250  # found 980, with two other seeds 300 and 560
     assert spectral_radius(settle(clipped, steps=100)) < 25  # found 8
-
-
-def test_bits_do_not_depend_on_threads():
-    numba = pytest.importorskip("numba")
-    centers, weights, _ = cloud("sphere", (2, 2, 2), 400)
-    before = numba.get_num_threads()
-    try:
-        results = []
-        for threads in (1, before):
-            numba.set_num_threads(threads)
-            results.append(laguerre(centers, weights, (2, 2, 2), periodic=False, domain="sphere"))
-    finally:
-        numba.set_num_threads(before)
-    assert all(np.array_equal(a, b) for a, b in zip(*results, strict=True))
 
 
 @pytest.mark.parametrize(
@@ -253,7 +162,7 @@ def test_bad_input(change, words):
         laguerre(**good | change)
 
 
-@pytest.mark.parametrize("domain, size", BODIES)
+@pytest.mark.parametrize("domain, size", BODIES[:2])
 def test_linear_fields_at_points(domain, size):
     """Temperature and flux wherever they are asked for in the body, also between the facets and the round wall."""
     packing, (facets, made, _, _) = packed(domain, size, 400), network((domain, size, 400))

@@ -1,3 +1,5 @@
+"""Only here: the two ends of a link in series swapped, which no homogeneous body shows."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

@@ -1,3 +1,5 @@
+"""Only here: cells that leave gaps, facets that one side alone sees, hidden points that stay; beside Voro++."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -52,19 +54,6 @@ def test_links_stand_in_both_rows_with_one_area():
         assert area == back_area
         # Both ends measure the same plane: their distances add up to the link, to rounding of the box's coordinates.
         assert abs(height + back_height - d) < 1e-12
-
-
-def test_slow_twin():
-    """Each random point belongs to the cell that the definition of the power diagram names: volumes by counting."""
-    centers, weights = cloud(120)
-    facets = laguerre(centers, weights, (1, 1, 1), periodic=False)
-    points = (np.stack(np.meshgrid(*[np.arange(48) + 0.5] * 3, indexing="ij"), -1) / 48).reshape(-1, 3)
-    power = ((points[:, None, :] - centers) ** 2).sum(axis=2) - weights
-    counted = np.bincount(power.argmin(axis=1), minlength=120) / 48**3
-    # A cell's surface cuts about 6 (V^(1/3) 48)^2 voxels, each with an error of half a voxel of either sign at random.
-    surface = 6 * (np.maximum(facets.volumes, 1e-9) ** (1 / 3) * 48) ** 2
-    assert np.all(np.abs(counted - facets.volumes) * 48**3 < 3 * np.sqrt(surface) + 3)
-    assert np.array_equal(counted > 1e-4, (counted > 1e-4) & (facets.volumes > 0))
 
 
 def test_simple_cubic_crystal():
@@ -131,20 +120,6 @@ def test_a_facet_that_one_of_its_cells_does_not_see_is_rounding_or_an_error():
         matched(1.1e-7 * spacing**2)
 
 
-def test_bits_do_not_depend_on_threads():
-    numba = pytest.importorskip("numba")
-    centers, weights = cloud(400)
-    before = numba.get_num_threads()
-    try:
-        results = []
-        for threads in (1, before):
-            numba.set_num_threads(threads)
-            results.append(laguerre(centers, weights, (1, 1, 1)))
-    finally:
-        numba.set_num_threads(before)
-    assert all(np.array_equal(a, b) for a, b in zip(*results, strict=True))
-
-
 def graded(ratio, n, *, seed=0):
     """Random points with weights of spheres, one of them large, in which none of the others lies."""
     rng = np.random.default_rng(seed)
@@ -156,7 +131,7 @@ def graded(ratio, n, *, seed=0):
     return points[kept], radii[kept] ** 2
 
 
-@pytest.mark.parametrize("ratio, n, periodic", [(1, 3000, True), (10, 6000, True), (30, 30_000, False)])
+@pytest.mark.parametrize("ratio, n, periodic", [(1, 1000, True), (10, 6000, False)])
 def test_cells_are_rarely_begun_again(ratio, n, periodic):
     """The large one may be, for want of room."""
     centers, weights = graded(ratio, n)

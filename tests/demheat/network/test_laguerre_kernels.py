@@ -1,3 +1,5 @@
+"""Only here: cells cut by fewer planes than cut them, beside all half-spaces; cells that find no room."""
+
 from itertools import product
 
 import numpy as np

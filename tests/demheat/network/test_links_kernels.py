@@ -1,3 +1,5 @@
+"""Only here: links of images whose rise or area is taken of another image."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

@@ -1,3 +1,5 @@
+"""Only here: surfaces and fractions other than the paper's, and what lone or dropped particles carry."""
+
 from itertools import product
 
 import numpy as np
@@ -5,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import demheat
-from demheat import Flux, Material, Scene
+from demheat import Material, Scene
 from demheat.laws import Platonic
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import drop_empty_cells
@@ -48,34 +50,11 @@ def test_the_printed_rows(number, surface, fraction):
     assert abs(fraction_factors(np.array([number]))[0] - fraction) < 1e-5
 
 
-def hull_faces(vertices):
-    """Areas of the faces of a regular polyhedron over its squared inradius, from its vertices by brute force."""
-    from scipy.spatial import ConvexHull
-
-    hull = ConvexHull(vertices)
-    normals, label = np.unique(np.round(hull.equations, 9), axis=0, return_inverse=True)
-    corners = hull.points[hull.simplices]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return np.bincount(label.ravel(), areas) / normals[0, 3] ** 2
-
-
-def solids():
-    golden = (1 + 5**0.5) / 2
-    signs = np.array(list(product((-1, 1), repeat=3)))
-    ico = np.array([(0, a, b * golden) for a, b in product((-1, 1), repeat=2)])
-    dode = np.array([(0, a / golden, b * golden) for a, b in product((-1, 1), repeat=2)])
-    yield 4, signs[signs.prod(axis=1) > 0]
-    yield 6, signs
-    yield 8, np.vstack([np.eye(3), -np.eye(3)])
-    yield 12, np.vstack([signs, *(np.roll(dode, k, axis=1) for k in range(3))])
-    yield 20, np.vstack([np.roll(ico, k, axis=1) for k in range(3)])
-
-
-@pytest.mark.parametrize(("number", "vertices"), list(solids()))
-def test_surfaces_are_those_of_the_polyhedra(number, vertices):
-    areas = hull_faces(vertices)
-    assert len(areas) == number
-    assert_allclose(surface_factors(np.array([number])), areas.mean(), rtol=1e-7)  # equations rounded to 9 digits
+def test_surfaces_are_those_of_the_polyhedra():
+    """Of one face over the squared radius of the sphere inside: textbook values of the five solids."""
+    dodecahedron, icosahedron = 2.5 * (130 - 58 * 5**0.5) ** 0.5, 1.5 * 3**0.5 * (7 - 3 * 5**0.5)
+    known = [6 * 3**0.5, 4.0, 1.5 * 3**0.5, dodecahedron, icosahedron]
+    assert_allclose(surface_factors(np.array([4, 6, 8, 12, 20])), known, rtol=1e-12)
 
 
 def test_fractions_are_those_of_the_crystals():
@@ -118,15 +97,6 @@ def test_links_and_volumes_are_the_papers(packing):
     assert_allclose(facets.volumes[linked] * f, 4 / 3 * np.pi * packing.radii[linked] ** 3, rtol=1e-13)
     back = {(p, q): a for p, q, a in zip(row_numbers(facets.indptr), facets.indices, facets.area, strict=True)}
     assert all(back[q, p] == a for (p, q), a in back.items())
-
-
-def test_default_coordination_and_the_knob(packing):
-    for wanted, facets in (
-        (7.2, platonic_facets(packing, Platonic(sparse="keep"))),
-        (6.0, platonic_facets(packing, Platonic(coordination=6.0, sparse="keep"))),
-    ):
-        # The gap is the midpoint between two pair distances: Z is met to one pair, 2/n.
-        assert_allclose(np.diff(facets.indptr).mean(), wanted, atol=2 / 1000 + 1e-12)
 
 
 def test_lone_particles_take_no_part():
@@ -195,35 +165,9 @@ def test_steady_conductivity_of_crystals(name):
     assert_allclose(field.samples.volumes.sum(), 27.0, rtol=1e-12)
 
 
-def test_mass_is_not_conserved_nor_fractions_wrong(packing):
-    """Poor contacts overestimate capacity and conductance alike; fractions stay fractions."""
-    sums, ratios = [], []
-    for wanted in (6.2, 8.5):
-        field = demheat.solve(
-            Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", packing=packing, coordination=wanted
-        )
-        assert_allclose(field.fractions, [1.0], rtol=1e-14)
-        sums.append(field.samples.volumes.sum())
-        ratios.append(field.conductivity)
-    # Falls with every contact; the law has no calibration that would hold it at one.
-    assert sums[0] > 1.05 > 0.95 > sums[1]
-    assert ratios[0] > 1.03 and ratios[0] > ratios[1] + 0.05
-
-
-def test_walls_and_balance():
-    packing = relax(2000, periodic=(False, False, False), seed=2)
-    for wall in ("center", "surface"):
-        field = demheat.solve(
-            Scene((1, 1, 1), ONE, walls={"y-": 0.0, "y+": Flux(2.0)}), law="platonic", packing=packing, wall=wall
-        )
-        assert_allclose(field.wall_heat["y-"], -2.0, rtol=1e-6)  # solver tolerance, over a sum of walls
-        # 17 % too much inside, less at the walls.
-        assert 0.9 < field.conductivity < 1.5
-
-
 def test_links_at_the_wall_make_up_for_the_layer_there():
     """Under a linear field the whole sample conducts on average as planes through its bulk do, brute force."""
-    packing = relax(3000, periodic=(True, False, True), phi=0.628, seed=1)
+    packing = relax(2000, periodic=(True, False, True), phi=0.628, seed=1)
     facets = platonic_facets(packing, Platonic(wall="surface"))
     rows, y = row_numbers(facets.indptr), packing.centers[:, 1]
     step = branches(packing.centers, packing.size, facets.indptr, facets.indices, facets.image)
@@ -234,29 +178,3 @@ def test_links_at_the_wall_make_up_for_the_layer_there():
     walls = (facets.wall_area / facets.wall_distance) @ height**2
     # Sampling by 2001 planes: 1e-4. Without the factor the sum would be 2 % higher.
     assert_allclose(0.5 * flow @ step[:, 1] + walls, np.mean(crossing), rtol=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("change", "words"),
-    [
-        ({"sparse": "join"}, "sparse = 'join'"),
-        ({"wall": "face"}, "wall = 'face'"),
-        ({"coordination": -1.0}, "coordination = -1.0"),
-    ],
-)
-def test_bad_choices(packing, change, words):
-    with pytest.raises(ValueError, match=words):
-        platonic_facets(packing, Platonic(**change))
-    with pytest.raises(ValueError, match=words):
-        demheat.solve(Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0)), law="platonic", **change)
-
-
-def test_the_choices_of_contact_laws_are_not_laguerres():
-    scene = Scene((1, 1, 1), ONE, gradient=(0, 1.0, 0))
-    with pytest.raises(ValueError, match="coordination = 7.0 with law = 'laguerre'"):
-        demheat.solve(scene, coordination=7.0)
-    with pytest.raises(ValueError, match="twins need not touch"):
-        demheat.solve(scene, law="platonic", conforming=True)
-    held = Scene((1, 1, 1), ONE, walls={"y-": 0.0, "x-": 1.0})
-    with pytest.raises(NotImplementedError, match="law 'platonic' with wall 'center'"):
-        demheat.solve(held, law="platonic")

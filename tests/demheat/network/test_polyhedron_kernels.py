@@ -1,3 +1,5 @@
+"""Only here: a polyhedron that a cut leaves with wrong corners, edges or areas, beside brute force."""
+
 import numpy as np
 import pytest
 from brute_polyhedron import corners, measured

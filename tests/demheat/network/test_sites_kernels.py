@@ -1,3 +1,5 @@
+"""Only here: sites that cut a cell and that the search by rings does not reach."""
+
 import numpy as np
 import pytest
 
@@ -45,11 +47,10 @@ def level_of(sites):
     return np.searchsorted(ends, np.arange(len(sites.items)), side="right")
 
 
-@pytest.mark.parametrize("scale", [1.0, 1e-3])
-def test_a_cell_of_a_grid_holds_about_one_site(scale):
+def test_a_cell_of_a_grid_holds_about_one_site():
     """Fewer are searched for nothing and fill the memory, more are compared one by one."""
-    points, size = scale * np.random.default_rng(0).random((2000, 3)) * SIZE, scale * SIZE
-    sites = filed(points, np.zeros(2000), size, np.array([True] * 3), scale * (2.0 / 2000) ** (1 / 3))
+    points = np.random.default_rng(0).random((2000, 3)) * SIZE
+    sites = filed(points, np.zeros(2000), SIZE, np.array([True] * 3), (2.0 / 2000) ** (1 / 3))
     # 1.1^3 of them, and more where widths are made to divide the box.
     assert 1.3 < 2000 / sites.counts.prod() < 2.0
 

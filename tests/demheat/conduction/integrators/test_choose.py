@@ -1,4 +1,4 @@
-"""The choice of an integrator by its estimated cost."""
+"""Only here: an integrator chosen that costs more than another, or whose steps are too long."""
 
 import numpy as np
 import pytest
@@ -16,10 +16,10 @@ def work(stats):
     return 1.2 * stats["stages"]
 
 
-@pytest.mark.parametrize("accuracy", [1e-2, 1e-3, 1e-4])
+@pytest.mark.parametrize("accuracy", [1e-2, 1e-4])
 @pytest.mark.parametrize("name", ["rkl2", "tr-bdf2"])
 def test_costs_are_about_those_of_a_run(name, accuracy):
-    system = system_of("laguerre", 3000)
+    system = system_of("laguerre")
     times = [0.5, 1.0, 2.0]
     temperature = np.full(system.particles, 25.0)
     *_, last = integrate(system, temperature, times, integrator=name, accuracy=accuracy)

@@ -1,4 +1,4 @@
-"""What loads ask of steps: jumps of functions of time, how fast they change, how fast sources move."""
+"""Only here: jumps and short pulses of a load that steps pass over, sources that they outrun."""
 
 import math
 from itertools import pairwise
@@ -14,7 +14,7 @@ def pace(*functions, transits=(), accuracy=1e-3):
     return pace_of(functions, transits, 100.0, accuracy)
 
 
-@pytest.mark.parametrize("width", [0.11, 0.5, 30.0])
+@pytest.mark.parametrize("width", [0.11, 30.0])
 def test_both_sides_of_every_jump_are_breaks(width):
     found = pace(lambda t: 5.0 if 50.033 <= t < 50.033 + width else -1.0).breaks
     assert len(found) == 4 and np.all(np.diff(found) > 0)

@@ -1,4 +1,4 @@
-"""The spectral radius from the safe side, and what slivers do to it."""
+"""Only here: a spectral radius below the true one, which makes explicit steps unstable; slivers."""
 
 import numpy as np
 import pytest
@@ -41,7 +41,7 @@ def test_networks_are_what_they_are_called():
     assert np.sum(links == 2) > 10
 
 
-@pytest.mark.parametrize("passes", [1, 2, 3, 7])
+@pytest.mark.parametrize("passes", [1, 3])
 def test_a_bound_after_any_number_of_passes(monkeypatch, passes):
     monkeypatch.setattr(module, "MOST", passes)
     for kind in KINDS:
@@ -89,7 +89,7 @@ def test_no_exchange_of_heat_is_no_limit():
 
 def ratio(periodic):
     """Spectral radius over the mean row of Laguerre cells between walls, from a packing made with walls or not."""
-    packing = relaxed(3000, periodic=periodic, seed=0)
+    packing = relaxed(1000, periodic=periodic, seed=0)
     # Walls all round, whatever the packing was made for.
     network = built(JUMP, packing._replace(periodic=np.zeros(3, dtype=bool)), Laguerre())
     found = spectrum(semi_discrete(network, JUMP, capacities(network, JUMP)))

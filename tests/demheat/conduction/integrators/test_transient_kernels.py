@@ -1,4 +1,4 @@
-"""Kernels of steps in time beside what their formulas say, on random links."""
+"""Only here: kernels of steps in time beside their formulas, on random links."""
 
 import numpy as np
 import pytest
