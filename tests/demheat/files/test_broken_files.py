@@ -1,4 +1,4 @@
-"""Broken scene files and units: each is one line with file, line, key, what is there and what would be valid."""
+"""Only here: broken scene files whose error has another line, no key, or more than a line."""
 
 # ruff: noqa: E501 (a row of the table is a line)
 
@@ -42,89 +42,57 @@ TABLE = {'shape = "sphere"\ncenter_mm = [5, 5, 5]\nradius_mm = 3': 'file = "bead
 BROKEN = [
     # Numbers and units.
     ("radius_mm = 3", "radius_mm = -3", 10, r"inclusions\[0\].radius_mm = -3: must be a finite number > 0 m"),
-    ("radius_mm = 3", "radius_mm = nan", 10, r"inclusions\[0\].radius_mm = nan: must be a finite"),
     ("radius_mm = 3", "radius = inf", 10, r"inclusions\[0\].radius = inf: must be a finite"),
     ("radius_mm = 3", "radius_mm = true", 10, r"radius_mm = true: must be a number"),
     ("radius_mm = 3", 'radius_mm = "3 mm"', 10, r"radius_mm = '3 mm': must be a number"),
     ("radius_mm = 3", 'radius = "3"', 10, r"radius = '3': must be a number, or text of a number and a unit such as '3 m'"),
     ("radius_mm = 3", 'radius = "3 mmm"', 10, r"unit 'mmm' is not known"),
     ("radius_mm = 3", 'radius = "3 kg"', 10, r"unit 'kg' does not fit; must be one like m"),
-    ("radius_mm = 3", 'radius = "3 m^2"', 10, r"unit 'm\^2' does not fit"),
-    ("radius_mm = 3", 'radius = "three mm"', 10, r"radius = 'three mm': must be"),
     ("radius_mm = 3", 'radius = "3,5 mm"', 10, r"unit ',5 mm' is not known"),
-    ("radius_mm = 3", "radius_mm = [3]", 10, r"radius_mm = \[3\]: must be a number"),
     ("radius_mm = 3", "radius_inch = 3", 10, r"radius_inch: no such key here; did you mean 'radius"),
     ("radius_mm = 3", "radius_mm = 1e60", 7, r"inclusions\[0\]: sphere of diameter 2e\+57 is larger than the box"),
-    ("radius_mm = 3", "radius_mm = 9" + 400 * "9", 10, r"radius_mm = 9999.*: must be a finite"),
-    ("radius_mm = 3", "radius_mm = 1979-05-27", 10, r"radius_mm = datetime.*: must be a number"),
     ("center_mm = [5, 5, 5]", "center_mm = [5, 5]", 9, r"center_mm = \[5, 5\]: must be three finite numbers"),
     ("radius_mm = 3", "radius_mm = 3\nresistance = -1", 11, r"inclusions\[0\].resistance = -1: must be"),
     ('"25 degC"', "{coefficient = 0, temperature = 3}", 13, r"coefficient = 0: must be a finite number > 0"),
     ('"25 degC"', '{coefficient = "3 W/m2", temperature = 3}', 13, r"unit 'W/m2' does not fit; must be one like W/\(m2 K\)"),
-    ('"25 degC"', "{coefficient = 3}", 13, r"walls.y-: temperature is missing"),
     ('"25 degC"', "{temperature = 3}", 13, r"walls.y-: must have one of flux, coefficient, emissivity"),
     ('"25 degC"', "{flux = 3, temperature = 3}", 13, r"temperature: no such key here"),
     ('"25 degC"', '{emissivity = 0.5, temperature = "3 degC"}', 13, r"emissivity: with it all temperatures are in kelvin, and that in line 13 in degC"),
-    ('"25 degC"', "{emissivity = 1.5, temperature_C = 3}", 13, r"emissivity"),
     ('"25 degC"', "{emissivity = 0.5, temperature = 300}", 13, r"emissivity: .* in kelvin, and that in line 13 has no unit; must say so"),
     ('"25 degC"\n"y+" = "35 degC"', '80\n"y+" = {emissivity = 0.5, temperature_K = 300}', 14, r"is in K, and that in line 13 without a unit"),
-    ("center_mm = [5, 5, 5]", "center_mm = 5", 9, r"center_mm = 5: must be an array of numbers"),
-    ("center_mm = [5, 5, 5]", 'center_mm = [5, 5, "5"]', 9, r"center_mm\[2\] = '5': must be a number"),
     ("center_mm = [5, 5, 5]", "center_mm = [\n5,\n false,\n5]", 11, r"center_mm\[1\] = false: must be a number"),
     ("center_mm = [5, 5, 5]", "center_mm = [50, 5, 5]", 7, r"inclusions\[0\]: .*lies outside the box"),
     ("size_mm = [10, 10, 10]", "size_mm = [10, 10, 0]", 1, r"size_mm = \[10, 10, 0\]: all three lengths must be > 0 m"),
-    ("size_mm = [10, 10, 10]", "size_mm = [10, 10]", 1, r"size_mm = \[10, 10\]: all three lengths must be > 0 m"),
-    ("size_mm = [10, 10, 10]", 'size = "10 mm"', 1, r"size = '10 mm': must be an array"),
     ("size_mm = [10, 10, 10]", "", 1, r"size is missing"),
     ('"0.2 W/(m K)"', '"0.2 W/mK"', 4, r"materials.resin.conductivity.*'W/mK' does not fit; must be one like W/\(m K\)"),
     ('"0.2 W/(m K)"', '"0.2 W/(m K"', 4, r"unit 'W/\(m K' is not finished"),
     ('"0.2 W/(m K)"', '"0.2 BTU/h"', 4, r"is not known at 'BTU'"),
-    ('"0.2 W/(m K)"', "-0.2", 4, r"materials.resin.conductivity = -0.2: must be a finite number >= 0"),
-    ("conductivity = 1.4", "conductivity = 1.4\ndensity = 0", 7, r"materials.silica.density = 0: must be"),
-    ("conductivity = 1.4", "density_kg_m3 = 2200", 5, r"materials.silica: conductivity is missing"),
     ("conductivity = 1.4", "conductivity = 1.4\nconductivity_W_mK = 2", 7, r"conductivity_W_mK: is conductivity once more"),
     ("conductivity = 1.4", "conductivty = 1.4", 6, r"conductivty: no such key here; did you mean 'conductivity'"),
     # Temperatures.
     ('"35 degC"', '"35 degF"', 14, r"walls.y\+ = '35 degF': unit 'degF' is none of a temperature; must be K or degC"),
     ('"35 degC"', "35", 14, r"walls.y\+: is without a unit, and that in line 13 in degC; all temperatures"),
-    ('"35 degC"', '"308 K"', 14, r"walls.y\+: is in K, and that in line 13 in degC"),
-    ('"35 degC"', "{flux = 5, to = 3}", 14, r"walls.y\+.to: no such key here"),
-    ('"35 degC"', "{flux = nan}", 14, r"walls.y\+.flux = nan: must be a finite number of W/m2"),
     ('"35 degC"', '{flux = "5 W"}', 14, r"unit 'W' does not fit; must be one like W/m2"),
     ('"y+" =', '"q+" =', 14, r"walls.q\+: no such key here"),
     ('"y+" =', "y+ =", 14, r"no TOML: .*; a key with a plus needs quotes"),
     ('"25 degC"\n"y+" = "35 degC"', '1.0\n"y+" = 1.0000000000001', 12, r"walls = .*: rounding leaves little"),
-    ("[walls]", "gradient = [0, 1, 0]\n[walls]", 12, r"inclusions\[0\].gradient: no such key here"),
     # Names.
     ('material = "silica"', 'material = "silcia"', 11, r"material = 'silcia': must be the name of one of .*did you mean 'silica'"),
-    ('material = "silica"', "material = 5", 11, r"material = 5: must be the name of"),
-    ('material = "silica"', "", 7, r"inclusions\[0\]: material is missing"),
-    ('matrix = "resin"', 'matrix = "Resin"', 2, r"matrix = 'Resin': must be the name of one of .*did you mean 'resin'"),
-    ('matrix = "resin"', "", 1, r"matrix is missing"),
     ('matrix = "resin"', 'matirx = "resin"', 2, r"matirx: no such key here; did you mean 'matrix'"),
     ('matrix = "resin"', 'matrix = "resin"\ndomain = "sphre"', 3, r"domain = 'sphre': must be one of .*did you mean 'sphere'"),
     ('shape = "sphere"', 'shape = "ball"', 8, r"shape = 'ball': must be one of 'sphere', 'layer'"),
-    ('shape = "sphere"', "shape = 1", 8, r"shape = 1: must be text in quotes"),
-    ('shape = "sphere"', "", 7, r"inclusions\[0\]: shape is missing"),
-    ("radius_mm = 3", "radius_mm = 3\nradius = 0.003", 11, r"radius: is radius_mm once more"),
     ("radius_mm = 3", "radus_mm = 3", 10, r"radus_mm: no such key here; did you mean 'radius_mm'"),
     ("radius_mm = 3", "", 7, r"inclusions\[0\]: radius is missing"),
     ("[[inclusions]]", "[inclusions]", 7, r"inclusions = .*: must be an array of tables, \[\[inclusions\]\]"),
-    ("[[inclusions]]", "[[inclusion]]", 7, r"inclusion: no such key here; did you mean 'inclusions'"),
     ("[materials.resin]", "[materials]\nresin = 0.2\n[materials.other]", 4, r"materials.resin = 0.2: must be a table"),
-    ("[walls]", "walls = 3", 12, r"inclusions\[0\].walls: no such key"),
     # Methods.
     ("[solve.fft]", "[solve.fftt]", 15, r"solve.fftt: no such method; did you mean 'fft'"),
     ("voxels = 32", "voxels = {a = 1}", 16, r"solve.fft.voxels = {'a': 1}: must be a number, text, a flag or an array"),
-    ("[solve.fft]", "solve = 5", 15, r"walls.solve: no such key"),
     ('matrix = "resin"', 'matrix = "resin"\naccuracy = 2', 3, r"accuracy = 2: must be a number from 1e-9 to below 1"),
     # TOML itself.
     ("radius_mm = 3", "radius_mm = ", 10, r"no TOML: invalid value"),
     ("radius_mm = 3", "radius_mm = 3\nradius_mm = 4", 11, r"no TOML: cannot overwrite a value"),
-    ("radius_mm = 3", "radius_mm = 03", 10, r"no TOML"),
     ("[walls]", "[walls", 12, r"no TOML: expected ']'"),
-    ("voxels = 32", 'voxels = """', 16, r"no TOML: unterminated string|no TOML: expected"),
-    ("[materials.silica]", "[materials.resin]", 5, r"no TOML: cannot declare"),
 ]  # fmt: skip
 
 
@@ -153,11 +121,6 @@ def test_a_broken_file_is_one_line(tmp_path, old, new, line, words):
     assert re.match(rf"scene\.toml:{line}: .*(?:{words})", told), told
 
 
-def test_there_are_sixty():
-    assert len(BROKEN) >= 60
-    assert len({new for _, new, _, _ in BROKEN}) >= 60
-
-
 def test_what_is_broken_was_whole(tmp_path):
     for k, changes in enumerate(({}, PERIODIC, LAYER)):
         (tmp_path / f"{k}.toml").write_text(changed(changes))
@@ -166,8 +129,6 @@ def test_what_is_broken_was_whole(tmp_path):
 
 LAYERS = [
     ("axis", 'axis = "w"', 9, r"axis = 'w': must be \"x\", \"y\" or \"z\""),
-    ("axis", "axis = 3", 9, r"axis = 3: must be"),
-    ("axis", "axis = true", 9, r"axis = true: must be"),
     ("stop_mm", "stop_mm = 1", 11, r"stop_mm = 1: must be a finite number > start"),
     ("stop_mm", "stop_mm = 40", 7, r"inclusions\[0\]: layer from 0.002 to 0.04 must lie in the box"),
     ("stop_mm", "radius_mm = 4", 11, r"radius_mm: no such key here"),
@@ -200,7 +161,6 @@ def test_two_inclusions_that_overlap_are_both_placed(tmp_path):
 # Tables of spheres: text, line, words.
 TABLES = [
     ("", 1, r"is empty; must begin with a line of names"),
-    ("# only\n", 1, r"is empty"),
     ("x,y,z,radius\n", 1, r"has names and no rows"),
     ("1,2,3,4\n", 1, r"must have x, y, z, radius among them"),
     ("x,y,radius\n1,2,3\n", 1, r"columns 'x, y, radius': must have z among them"),
@@ -208,15 +168,12 @@ TABLES = [
     ("x,y,z,radius,diameter\n1,2,3,4,8\n", 1, r"columns radius and diameter; must be one of them"),
     ("x,y,z,radius,radius_mm\n1,2,3,4,4\n", 1, r"'radius_mm' is radius once more"),
     ("x,y,z,radius\n.005,.005,.005,-1\n", 2, r"radius = -1.0: must be a finite number > 0"),
-    ("x,y,z,radius\n.005,.005,.005,nan\n", 2, r"radius = nan"),
     ("x,y,z,radius\n.005,.005,.005,.001\n\n# c\n.005,.005,.005\n", 5, r"3 values; must be 4"),
     ("x,y,z,radius\n.005,.005,five,.001\n", 2, r"z = 'five': must be a number with a decimal point"),
     ("x;y;z;radius\n0,005;.005;.005;.001\n", 2, r"x = '0,005': must be a number with a decimal point"),
-    ("x,y,z,radius\n1_0,.005,.005,.001\n", 2, r"x = '1_0': must be a number"),
     ("x,y,z,radius,material\n.005,.005,.005,.001,silcia\n", 2, r"material = 'silcia'.*did you mean 'silica'"),
     ("x_mm,y_mm,z_mm,radius_mm\n5,5,5,2\n5,5,8,2\n", 2, r"overlap partially.*beads.csv:3"),
     (b"x,y,z,radius\n\xff,1,1,1\n", 2, r"byte 0xff is no UTF-8"),
-    (b"x,y,z,radius\n\0", 2, r"zero bytes"),
 ]
 
 
@@ -250,7 +207,6 @@ def test_files_are_suggested_by_their_names_not_their_endings(tmp_path, asked, t
 ENTRIES = [
     ("", 8, r"scene.toml:8: inclusions\[0\].file = 'beads.csv': there is no such file; did you mean 'beeds.csv'"),
     ('\nunit = "inch"', 9, r"unit = 'inch': must be one of 'm', 'cm'"),
-    ("\nunits = 1", 9, r"units: no such key here; did you mean 'unit'"),
     ("\nradius_factor = 2", 9, r"radius_factor = 2: must be a number > 0, at most 1"),
     ("\noffset_mm = [1, 2]", 9, r"offset_mm = .*: must be three lengths"),
     ("\nstep = 5", 9, r"step = 5: a table has one set of spheres"),
@@ -309,25 +265,7 @@ def test_a_huge_file_is_not_read(tmp_path):
         files.read(path)
 
 
-WORDS = (
-    "nan",
-    "inf",
-    "-1",
-    "true",
-    '"x"',
-    "[]",
-    "{}",
-    "[[]]",
-    "1e400",
-    "9e9",
-    "a.b",
-    "= =",
-    "#",
-    "[x]",
-    "\\",
-    '"""',
-    "0",
-)
+WORDS = ("nan", "-1", "true", '"x"', "[]", "{}", "1e400", "a.b", "= =", "#", "[x]", "\\", '"""', "0")
 
 
 def spoilt(text, draw):
@@ -349,7 +287,7 @@ def spoilt(text, draw):
 def test_slips_at_random_are_one_line_or_a_scene(tmp_path):
     draw, path = random.Random(16), tmp_path / "scene.toml"
     told = {True: 0, False: 0}
-    for _ in range(400):
+    for _ in range(250):
         text = spoilt(GOOD, draw)
         path.write_text(text)
         try:

@@ -1,4 +1,4 @@
-"""Fields in ParaView's files and NumPy's, read back by other means; pictures and short tables; stored fields."""
+"""Only here: files, pictures and tables of fields in another order, without their mesh, or half written."""
 
 import copy
 import json

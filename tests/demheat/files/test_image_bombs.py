@@ -1,4 +1,4 @@
-"""Small files that would expand beyond what their headers tell of, or run what they hold: one line, little memory."""
+"""Only here: small files that expand beyond what their headers tell of, or run what they hold."""
 
 import bz2
 import gzip
@@ -59,10 +59,8 @@ NRRDS = {
     "short gzip": ("gzip", gzip.compress(bytes(7)), "hold 7 bytes; what its header tells of takes 8"),
     "cut gzip": ("gzip", gzip.compress(bytes(8))[:-9], "no NRRD, or a part of one: Compressed file ended"),
     "text": ("text", b"0 " * 10**6, "8 or more numbers; its header tells of 8"),
-    "short text": ("ascii", b"0 1 0", "3 or more numbers; its header tells of 8"),
     "raw": ("raw", bytes(9), "9 bytes of data, of which its header tells of 8"),
     "short raw": ("raw", bytes(7), "2 x 2 x 2 voxels of uint8 take"),
-    "no such encoding": ("hex", b"00" * 8, "encoding = hex: must be one of raw, gzip"),
 }
 
 
@@ -82,9 +80,10 @@ def test_a_header_without_end(tmp_path):
 LABELS = np.random.default_rng(3).integers(0, 2, (3, 4, 5))
 
 
-@pytest.mark.parametrize("encoding", ["raw", "gzip", "bzip2", "ascii"])
-@pytest.mark.parametrize("kind", ["uint8", ">i4", "<u2"])
-@pytest.mark.parametrize("apart", [False, True])
+@pytest.mark.parametrize(
+    ("encoding", "kind", "apart"),
+    [("raw", ">i4", False), ("gzip", "<u2", True), ("bzip2", "uint8", False), ("ascii", "uint8", True)],
+)
 def test_what_pynrrd_writes_is_read(encoding, kind, apart, tmp_path):
     path = tmp_path / ("x.nhdr" if apart else "x.nrrd")
     nrrd.write(str(path), LABELS.astype(kind), {"encoding": encoding})
@@ -120,7 +119,6 @@ def tiff(path, data, kind, tile=None):
 PACKBITS = b"\x81\0" * (LARGE // 128 // 16)
 TIFFS = {
     "deflate": ((zlib.compress(ZEROS, 1), 8), "expand to more than 4 bytes"),
-    "lzma": ((lzma.compress(ZEROS, preset=0), 34925), "expand to more than 4 bytes"),
     "packbits": ((PACKBITS, 32773), "expand to more than 4 bytes"),
     "tile": ((zlib.compress(bytes(4)), 8, 4096), "tiles of (4096, 4096) for a page of (2, 2)"),
     "plain tile": ((bytes(2**18), 1, 16), "262144 bytes of a strip or tile that takes 256"),
@@ -200,7 +198,6 @@ SAID = struct.pack("<I", LARGE)
 OF_ZSTD = b"\x28\xb5\x2f\xfd"
 CHUNKS = {
     "zlib": ({"compressor": {"id": "zlib"}}, zlib.compress(ZEROS, 1)),
-    "gzip": ({"compressor": {"id": "gzip"}}, gzip.compress(ZEROS, 1)),
     "gzip in members": ({"compressor": {"id": "gzip"}}, gzip.compress(bytes(8)) + gzip.compress(ZEROS, 1)),
     "bz2": ({"compressor": {"id": "bz2"}}, bz2.compress(ZEROS, 1)),
     "lzma": ({"compressor": {"id": "lzma"}}, lzma.compress(ZEROS, preset=0)),
@@ -240,7 +237,6 @@ CASES = {
         "a chunk of zstd that does not tell its length",
     ),
     "nothing": (lambda path: zarr2(path, b"", shape=[0, 2, 2]), "must be numbers >= 1"),
-    "two axes": (lambda path: zarr2(path, b"", shape=[2, 2]), "shape (2, 2) in chunks of (2, 2, 2)"),
     "no JSON": (
         lambda path: (zarr2(path, b"") / ".zarray").write_text("{") and path,
         "no zarr array, or a part of one",

@@ -1,4 +1,4 @@
-"""Every key and member of a TOML text has its line: the very paths that the parser of the library finds."""
+"""Only here: keys of a TOML text that have no line, or another."""
 
 import pytest
 

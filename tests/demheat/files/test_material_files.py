@@ -1,4 +1,4 @@
-"""Materials in files: principal conductivities turned, tensors, tables of what follows the temperature."""
+"""Only here: principal conductivities of a file turned the other way, tensors and tables in other units."""
 
 import math
 
@@ -50,8 +50,6 @@ def test_what_is_written_is_read_back_to_the_bit(tmp_path, load):
     ("text", "line", "words"),
     [
         ("conductivity = [1, 2]", 7, "conductivity = [1, 2]: must be a number, three of them"),
-        ("conductivity = [1, 2, -3]", 7, "conductivity = [1, 2, -3]: must be a number > 0"),
-        ("conductivity = [1, 2, 3]\nrotation_deg = [0, 0]", 8, "rotation_deg = [0, 0]: must be three finite numbers"),
         ("conductivity = 2\nrotation_deg = [0, 0, 30]", 8, "rotation_deg: turns three principal conductivities"),
         ("conductivity = [[1, 0, 0], [0, 2, 5], [0, 5, 3]]", 7, "symmetric positive definite"),
         (
@@ -71,10 +69,7 @@ def test_what_is_written_is_read_back_to_the_bit(tmp_path, load):
         ),
         ("conductivity = 2\ndependence_C = [[20, 1],\n[100]]", 9, "dependence_C[1] = [100]: must be pairs"),
         ("conductivity = 2\ndependence_C = [[20, 1],\n[100, 'x']]", 9, "dependence_C[1][1] = 'x': must be a number"),
-        ("conductivity = 2\ndependence_C = 3", 8, "dependence_C = 3: must be pairs"),
         ("conductivity = 2\ndependence = [[20, 1], [100, 2]]", 4, "all temperatures of a file must be of one scale"),
-        ("density = 2", 6, "conductivity is missing"),
-        ("conductivity = 2\nrotation = [0, 0, 1]", 8, "rotation: no such key here"),
     ],
 )
 def test_what_is_wrong_is_one_line_with_its_place(tmp_path, text, line, words):

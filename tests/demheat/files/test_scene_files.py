@@ -1,4 +1,4 @@
-"""Scenes read from files are those of Python; what is written is read back to the last bit."""
+"""Only here: keys of a scene file that are read in another unit, and scenes that come back otherwise than written."""
 
 import numpy as np
 import pytest
@@ -14,7 +14,6 @@ from demheat import (
     Sphere,
     UniformSource,
     files,
-    gallery,
 )
 from demheat.packing import io, make_packing
 
@@ -107,7 +106,7 @@ def drawn(seed):
     return Scene((1.0, 1.0, 1.0), Material(next(k)), layer or spheres, **loads[seed % 6])
 
 
-@pytest.mark.parametrize("seed", range(24))
+@pytest.mark.parametrize("seed", range(12))
 def test_what_is_written_is_read_back(tmp_path, seed):
     scene = drawn(seed)
     files.write(scene, tmp_path / "scene.toml")
@@ -289,15 +288,9 @@ def test_methods_and_accuracy_of_a_file(tmp_path):
     assert found.accuracy == 1e-4
 
 
-def test_scenes_of_the_gallery(tmp_path):
-    for scene in (gallery.sphere_in_cube(7.7), gallery.laminate(), gallery.body_centred(), gallery.coated_sphere()):
-        files.write(scene, tmp_path / "scene.toml")
-        assert files.read(tmp_path / "scene.toml") == scene
-
-
-def test_ten_thousand_spheres_are_read_in_a_moment(tmp_path):
+def test_thousands_of_spheres_are_read_in_a_moment(tmp_path):
     """A table of any length: each of its spheres has its line."""
-    n = 22
+    n = 15
     grid = (np.indices((n, n, n)).reshape(3, -1).T + 0.5) / n
     rows = "\n".join(f"{x},{y},{z},{0.4 / n}" for x, y, z in grid.tolist())
     (tmp_path / "t.csv").write_text(f"x,y,z,radius\n{rows}\n")

@@ -1,4 +1,4 @@
-"""Units taken apart, and numbers that keep the decimal that they are written as."""
+"""Only here: units taken for others, and decimals that change in the last bit."""
 
 from fractions import Fraction
 

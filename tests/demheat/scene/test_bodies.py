@@ -1,4 +1,4 @@
-"""Volumes, walls and distances of bodies inscribed in a box, by points and balls."""
+"""Only here: bodies inscribed in a box with walls elsewhere than they end."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Conductivities that follow the temperature: factors, their integral and what takes it back."""
+"""Only here: factors of the temperature whose integral, mean or inverse is another's."""
 
 import numpy as np
 import pytest
@@ -61,17 +61,10 @@ def test_linear_ones_are_cut_where_they_end():
 @pytest.mark.parametrize(
     "points",
     [
-        (),
         [(0, 1)],
-        [(0, 1), (0, 2)],
         [(1, 1), (0, 2)],
-        [(0, 1), (1, 0)],
-        [(0, 1), (1, -1)],
         [(0, 1), (1, np.inf)],
-        [(0, 1), (np.nan, 1)],
         [(0, 1, 2), (1, 2, 3)],
-        "x",
-        3.0,
     ],
 )
 def test_what_is_no_table_is_refused(points):
@@ -81,21 +74,6 @@ def test_what_is_no_table_is_refused(points):
     ):
         with pytest.raises(ValueError, match=f"{name} = .*must be two or more pairs"):
             make(points)
-
-
-@pytest.mark.parametrize("wrong", [{"coefficient": 0.5}, {"between": (3, 1)}, {"between": (1,)}, {"reference": "x"}])
-def test_what_is_no_line_is_refused(wrong):
-    with pytest.raises(ValueError, match="must"):
-        Dependence.linear(
-            **{"coefficient": -0.01, "reference": 10.0, "between": (0.0, 50.0)}
-            | wrong
-            | ({"coefficient": -0.5} if "coefficient" in wrong else {})
-        )
-
-
-def test_a_material_takes_a_table_of_pairs():
-    assert Material(1.0, dependence=[(0, 1), (1, 2)]) == Material(1.0, dependence=Dependence(((0.0, 1.0), (1.0, 2.0))))
-    assert Material(1.0) != Material(1.0, dependence=[(0, 1), (1, 2)])
 
 
 def test_a_periodic_cell_has_no_level():

@@ -1,4 +1,4 @@
-"""What users are given or give cannot be changed, or does not count, once a scene is made or solved."""
+"""Only here: arrays and functions of users that change what was made or solved of them."""
 
 import copy
 import pickle
@@ -12,7 +12,6 @@ from demheat import Flux, Material, MovingCylinder, Scene, Sphere, referee, slic
 from demheat.packing import make_packing
 from demheat.scene import Layer, Shape
 from demheat.scene.frozen import ReadOnly, read_only
-from demheat.scene.functions import initial_at, load_at
 from references import exact, fem
 
 METAL = Material(1.0, 1.0, 1.0)
@@ -84,16 +83,6 @@ def test_an_initial_temperature_that_fails_is_named(method):
     with pytest.raises(ValueError, match="Scene.initial: the function raises IndexError") as caught:
         method(cooling(lambda x: x[:, 7]))
     assert isinstance(caught.value.__cause__, IndexError)
-
-
-def test_loads_and_initial_temperatures():
-    assert load_at("x-", 2, 0.0) == 2.0 and load_at("x-", Flux(lambda t: 3 * t), 2.0) == 6.0
-    with pytest.raises(ValueError, match=r"Scene.walls\['x-'\] at 1.0 s = None: must be a finite number"):
-        load_at("x-", lambda t: None, 1.0)
-    points = np.ones((2, 3))
-    assert_array_equal(initial_at(cooling(3), points), [3.0, 3.0])
-    assert_array_equal(initial_at(cooling(in_place), points), [0.5, 0.5])
-    assert_array_equal(points, 1.0)
 
 
 SOLVED = {

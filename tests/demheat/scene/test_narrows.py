@@ -1,4 +1,4 @@
-"""Gaps between good conductors, or between bad ones, that are narrower than a length."""
+"""Only here: narrow gaps between good conductors, bad ones, images or walls that are not seen."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""What a method cannot do of a scene is named, with what it can, and who takes it (`Scene.require`)."""
+"""Only here: what a method cannot do of a scene, named without what it can or who takes it."""
 
 import numpy as np
 import pytest

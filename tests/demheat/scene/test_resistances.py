@@ -1,17 +1,17 @@
-"""Resistances of surfaces: what shapes take, what is met between two phases, what symmetry and others make of it."""
+"""Only here: resistances of surfaces left out between two phases, or mirrored where surfaces are unlike."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose, assert_array_equal
+from numpy.testing import assert_array_equal
 
 from demheat import Layer, Material, Scene, Sphere, recommend
 from demheat.scene.negligible import negligible
 from demheat.scene.resistances import between, joined
 from demheat.scene.symmetry import alike_axes, mirrors, reduced
 
-GOOD, POOR = Material(30.0), Material(0.1)
+GOOD = Material(30.0)
 
 
 def cell(*inclusions, gradient=(1.0, 0.0, 0.0)):
@@ -30,7 +30,7 @@ def layer(start, stop, resistance=0.0, material=GOOD):
     return Layer(0, start, stop, material, resistance=resistance)
 
 
-@pytest.mark.parametrize("value", [-1e-9, np.nan, np.inf, 1e60, 1e-60, "1", True, None, [0.1]])
+@pytest.mark.parametrize("value", [-1e-9, np.nan, 1e60, 1e-60, "1", None])
 @pytest.mark.parametrize("shape", [ball(0.5, 0.5, 0.5), layer(0.2, 0.4)])
 def test_resistances_that_are_none_are_refused(shape, value):
     kind = type(shape).__name__
@@ -115,10 +115,3 @@ def test_laws_of_error_are_not_asked():
         assert "perfect interfaces" in found[method]
     assert recommend(cell(*crowd)).method == "multipole"
     assert recommend(cell(layer(0.2, 0.4, 1e-3))).method == "exact"
-
-
-def test_layers_of_a_shape_that_knows_no_resistance():
-    from demheat.scene.shapes import Shape
-
-    assert Shape.resistance == 0.0
-    assert_allclose(cell(layer(0.2, 0.4)).resistances, 0.0)

@@ -1,6 +1,5 @@
-"""Every refusal of the scene, its geometry and its phases."""
+"""Only here: inclusions that overlap or hide and are taken, phases painted in another order, images left out."""
 
-import math
 from dataclasses import FrozenInstanceError
 
 import numpy as np
@@ -34,62 +33,12 @@ def ball(x, y, z, radius, material=B):
 @pytest.mark.parametrize(
     ("make", "match"),
     [
-        (lambda: Material(-1.0), r"Material.conductivity = -1.0: must be a finite number >= 0"),
-        (lambda: Material(math.nan), "Material.conductivity = nan"),
-        (lambda: Material(math.inf), "Material.conductivity = inf"),
-        (lambda: Material("33"), "Material.conductivity = '33'"),
-        (lambda: Material(None), "Material.conductivity = None"),
-        (lambda: Material(1j), "Material.conductivity = 1j"),
-        (lambda: Material(10**400), "Material.conductivity = 1000"),
-        (lambda: Material(np.ones(2)), r"Material.conductivity = array"),
-        (lambda: Material(1.0, density=0.0), "Material.density = 0.0: must be a finite number > 0"),
-        (lambda: Material(1.0, density=1.0, heat_capacity=-1.0), "Material.heat_capacity = -1.0"),
-        (lambda: Sphere((0, 0), 0.1, B), r"Sphere.center = \(0, 0\): must be three finite numbers"),
-        (lambda: Sphere((0, 0, math.nan), 0.1, B), "Sphere.center"),
-        (lambda: Sphere(("a", 0, 0), 0.1, B), r"Sphere.center = \('a', 0, 0\)"),
-        (lambda: Sphere((0, (0, 1), 0), 0.1, B), "Sphere.center"),
-        (lambda: Sphere(None, 0.1, B), "Sphere.center = None"),
-        (lambda: Sphere((0, 0, 0), 0.0, B), "Sphere.radius = 0.0: must be a finite number > 0 m"),
-        (lambda: Sphere((0, 0, 0), -0.1, B), "Sphere.radius = -0.1"),
-        (lambda: Sphere((0, 0, 0), math.inf, B), "Sphere.radius = inf"),
-        (lambda: Sphere((0, 0, 0), 0.1, 2.0), "Sphere.material = 2.0: must be a Material"),
-        (lambda: Layer(3, 0.0, 0.1, B), "Layer.axis = 3: must be 0, 1 or 2"),
-        (lambda: Layer("y", 0.0, 0.1, B), "Layer.axis = 'y'"),
-        (lambda: Layer(1.0, 0.0, 0.1, B), "Layer.axis = 1.0"),
-        (lambda: Layer(0, math.nan, 0.1, B), "Layer.start = nan"),
-        (lambda: Layer(0, 0.2, 0.2, B), "Layer.stop = 0.2: must be a finite number > start = 0.2"),
-        (lambda: Layer(0, 0.2, math.inf, B), "Layer.stop = inf"),
-        (lambda: Layer(0, 0.2, 0.3, None), "Layer.material = None"),
-        (lambda: Flux(math.nan), "Flux.value = nan"),
-        (lambda: Flux("1"), "Flux.value = '1'"),
-    ],
-)
-def test_bad_parts(make, match):
-    with pytest.raises(ValueError, match=match):
-        make()
-
-
-@pytest.mark.parametrize(
-    ("make", "match"),
-    [
-        (lambda: Scene((1.0, 1.0), A, walls=WALLS), r"Scene.size = \(1.0, 1.0\)"),
-        (lambda: Scene(1.0, A, walls=WALLS), "Scene.size = 1.0"),
-        (lambda: Scene((1.0, 0.0, 1.0), A, walls=WALLS), "Scene.size.*all three lengths must be > 0"),
-        (lambda: Scene((1.0, math.nan, 1.0), A, walls=WALLS), "Scene.size"),
-        (lambda: Scene(BOX, 33.0, walls=WALLS), "Scene.matrix = 33.0: must be a Material"),
         (lambda: Scene(BOX, A, ball(0.5, 0.5, 0.5, 0.1), walls=WALLS), "must be a sequence of Sphere or Layer"),
-        (lambda: Scene(BOX, A, [B], walls=WALLS), r"Scene.inclusions\[0\] = .*must be a Sphere or a Layer"),
         (lambda: Scene(BOX, A), "neither given; a scene needs exactly one load"),
         (lambda: Scene(BOX, A, walls=WALLS, gradient=(0, 1, 0)), "both given; a scene needs exactly one load"),
-        (lambda: Scene(BOX, A, gradient=(0, 0, 0)), "Scene.gradient = .*must not be zero"),
-        (lambda: Scene(BOX, A, gradient=(0, math.inf, 0)), "Scene.gradient"),
-        (lambda: Scene(BOX, A, gradient=1.0), "Scene.gradient = 1.0: must be three finite numbers"),
         (lambda: Scene(BOX, A, walls={}), "Scene.walls = {}: must map at least one of x-"),
         (lambda: Scene(BOX, A, walls=[25.0, 35.0]), "Scene.walls = .*must map"),
         (lambda: Scene(BOX, A, walls={"top": 1.0}), "unknown wall 'top'; must be one of x-"),
-        (lambda: Scene(BOX, A, walls={"y-": math.nan}), r"Scene.walls\['y-'\] = nan: must be a finite temperature"),
-        (lambda: Scene(BOX, A, walls={"y-": "hot"}), r"Scene.walls\['y-'\] = 'hot'"),
-        (lambda: Scene(BOX, A, walls={"y-": None}), r"Scene.walls\['y-'\] = None"),
     ],
 )
 def test_bad_scenes(make, match):
@@ -285,35 +234,6 @@ def test_a_moving_source():
         made.require(steady=True)
 
 
-@pytest.mark.parametrize(
-    "make, match",
-    [
-        (lambda: transient(initial="warm"), "Scene.initial"),
-        (lambda: transient(initial=float("inf")), "Scene.initial"),
-        (lambda: transient(sources=[3.0]), "Scene.sources"),
-        (lambda: transient(domain="cone"), "Scene.domain"),
-        (lambda: transient(domain="sphere"), "must be equal"),
-        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), domain="sphere"), "only a box"),
-        (lambda: UniformSource(-1.0), "power_density"),
-        (lambda: MovingCylinder(2, 0.1, -1e9, (0, 0)), "power_density"),
-        (lambda: MovingCylinder(3, 0.1, 1e9, (0, 0)), "axis"),
-        (lambda: MovingCylinder(2, 0.0, 1e9, (0, 0)), "diameter"),
-        (lambda: MovingCylinder(2, 0.1, 1e9, (0, 0, 0)), "two finite numbers"),
-        (lambda: MovingCylinder(2, 0.1, 1e9, (0, 0), clip=1), "clip"),
-        (lambda: transient(matrix=Material(1.0)).require(steady=False), "Material.density = None in phase 0"),
-        (lambda: transient(matrix=Material(1.0, density=1.0)).require(steady=False), "heat_capacity = None"),
-        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, walls={"y-": 1.0}).require(steady=False), "Scene.initial = None"),
-        (
-            lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), initial=1.0).require(steady=False),
-            "gradient",
-        ),
-    ],
-)
-def test_bad_transients(make, match):
-    with pytest.raises(ValueError, match=match):
-        make()
-
-
 @pytest.mark.parametrize("periodic", [True, False])
 def test_phases_of_many_points_are_those_of_each_inclusion_asked_apart(periodic):
     rng = np.random.default_rng(3)
@@ -356,3 +276,19 @@ class TestExtremes:
             Scene((1, 1, size), STEEL, gradient=(1, 0, 0))
         with pytest.raises(ValueError, match="Flux.value = "):
             Flux(size)
+
+
+@pytest.mark.parametrize(
+    "make, match",
+    [
+        (lambda: transient(domain="sphere"), "must be equal"),
+        (lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), domain="sphere"), "only a box"),
+        (
+            lambda: Scene(size=(1, 1, 1), matrix=STEEL, gradient=(0, 1, 0), initial=1.0).require(steady=False),
+            "gradient",
+        ),
+    ],
+)
+def test_bad_transients(make, match):
+    with pytest.raises(ValueError, match=match):
+        make()

@@ -1,10 +1,9 @@
-"""Mirror planes, the part between them, axes alike: what is found, what is not, what the part has of the whole."""
+"""Only here: mirror planes found where there are none, or missed; a part that is not the whole unfolded."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
-from method_scenes import METHODS, answered
 from numpy.testing import assert_allclose
 
 from demheat import Flux, Layer, Material, Scene, Sphere, UniformSource, gallery
@@ -84,7 +83,7 @@ def test_some_planes_only():
     assert mirrors(cell(*pair, Sphere((0.61, 0.8, 0.5), 0.1, POOR))) == (None, None, 0.0)
 
 
-@pytest.mark.parametrize("moved", [1e-3, 1e-6, 1e-10])
+@pytest.mark.parametrize("moved", [1e-3, 1e-10])
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_one_inclusion_out_of_place_and_nothing_is_cut(moved, axis):
     for scene in (SKEWED, BOXED):
@@ -147,15 +146,6 @@ def test_axes_alike():
     assert alike_axes(cell(*three)) == alike_axes(box(*three)) == (0, 1, 2)
 
 
-def test_conductivities_of_axes_alike():
-    """By the multipole method, to its accuracy of 1e-5; along the third axis of the screw five times that apart."""
-    turns = [(0.3, 0.0), (0.0, 0.3), (-0.3, 0.0), (0.0, -0.3)]
-    screw = [Sphere((0.5 + x, 0.5 + y, 0.125 + 0.25 * i), 0.12, GOOD) for i, (x, y) in enumerate(turns)]
-    k = [multipole.solve(cell(*screw, gradient=tuple(g))).conductivity for g in np.eye(3)]
-    assert_allclose(k[0], k[1], rtol=1e-5)
-    assert abs(k[2] / k[0] - 1) > 5e-5
-
-
 @pytest.mark.parametrize("name", SYMMETRIC)
 def test_part_is_the_whole_unfolded(name):
     """The same material at every point: one placed too many, or not cut where it should be, shows."""
@@ -195,14 +185,7 @@ def test_what_the_load_does_not_allow_is_not_cut():
         reduced(replace(box(sphere), sources=[UniformSource(3.0)]))
 
 
-@pytest.mark.parametrize("name", CUBIC)
-def test_multipoles_of_the_part_are_those_of_the_whole(name):
-    scene = CUBIC[name]
-    part = multipole.solve(reduced(scene).scene, accuracy=1e-6)
-    assert_allclose(part.conductivity, exact.solve(scene).conductivity, rtol=1e-6)  # its own accuracy
-
-
-@pytest.mark.parametrize("name", ["sc", "bcc", "fcc", "cube"])
+@pytest.mark.parametrize("name", ["bcc", "cube"])
 def test_field_of_the_part_unfolded_is_that_of_the_whole(name):
     """Against the exact field of the lattice, at points anywhere, in other periods too."""
     scene = CUBIC[name]
@@ -218,19 +201,3 @@ def test_field_of_the_part_unfolded_is_that_of_the_whole(name):
     assert_allclose(found, wanted, rtol=0, atol=2e-5 * span)
     flux = at.signs * field.flux_at(at.points)
     assert_allclose(flux, whole.flux_at(points), rtol=0, atol=2e-3 * np.abs(whole.mean_flux).max())
-
-
-@pytest.mark.parametrize("method", ["dem", "fem", "fft"])
-def test_methods_find_the_same_of_both(method):
-    """Each within its declared error of the exact value, at a contrast below those that it is declared for."""
-    for scene in (gallery.simple_cubic(5.0, fraction=0.15), gallery.sphere_in_cube(0.2, fraction=0.15)):
-        k = exact.solve(scene).conductivity
-        for one in (scene, reduced(scene).scene):
-            assert_allclose(answered(METHODS[method], one).conductivity, k, rtol=METHODS[method].errors.conductivity)
-
-
-def test_points_that_are_none_are_refused():
-    with pytest.raises(ValueError, match="must be"):
-        unfold(reduced(BOXED), np.zeros(3))
-    with pytest.raises(ValueError, match="must be"):
-        unfold(reduced(BOXED), [[0.0, np.nan, 0.0]])

@@ -1,4 +1,4 @@
-"""Balls by cells, and what a scene finds with them: nothing is left out, and work grows with the number of balls."""
+"""Only here: balls that the search by cells leaves out, or finds with work that grows as the square."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,7 @@ def slow_pairs(points, centers, radii, periodic):
 
 @pytest.mark.twin
 @pytest.mark.parametrize("periodic", [True, False])
-@pytest.mark.parametrize(("number", "ratio"), [(1, 1.0), (3, 1.0), (200, 1.0), (200, 30.0)])
+@pytest.mark.parametrize(("number", "ratio"), [(1, 1.0), (200, 30.0)])
 def test_no_ball_that_holds_a_point_is_left_out(periodic, number, ratio):
     centers, radii = spread(number, ratio=ratio)
     radii[0] = 0.34  # across nearly all of the shortest side

@@ -1,4 +1,4 @@
-"""What shapes tell of themselves, each against points and by differences."""
+"""Only here: shapes whose distance, normal, bounds or images are another's, by points and differences."""
 
 import math
 from pathlib import Path
@@ -78,12 +78,6 @@ def test_volumes_are_those_of_points(shape):
     # A surface passes a share of some 6 area h of the cells, half of them on either side.
     assert_allclose(shape.volume_in(PERIOD, periodic=True) / PERIOD.prod(), share, rtol=2e-2)
     assert shape.volume == (math.inf if not shape.bounded else shape.volume_in(PERIOD, periodic=True))
-
-
-def test_a_cut_volume_is_refused():
-    assert Sphere((0.5, 0.5, 0.5), 0.5, M).volume_in((1, 1, 1), periodic=False) == math.pi / 6
-    with pytest.raises(NotImplementedError, match="sphere at .* cut by a wall"):
-        Sphere((0.5, 0.5, 0.51), 0.5, M).volume_in((1, 1, 1), periodic=False)
 
 
 def test_turned_axes(shape, points):

@@ -1,4 +1,4 @@
-"""Level sets whose values say nothing but a sign: surfaces found by bisection."""
+"""Only here: level sets whose values lead elsewhere than to their surface, and are believed."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from demheat.scene import LevelSet
 from demheat.scene.shapes.traced import leads
 from references import fft
 
-MIDDLE, RADIUS, EXACT = 0.5, 0.35, 1.5529105  # of the array, contrast 20, by multipoles
+MIDDLE, RADIUS = 0.5, 0.35
 LIMITS = ((0.1, 0.1, 0.1), (0.9, 0.9, 0.9))
 
 
@@ -25,23 +25,15 @@ def sign(points):
     return np.where(away(points) <= 0, -1.0, 1.0)
 
 
-def mask(points):
-    return 0.5 - (away(points) <= 0)
-
-
 def cubed(points):
     return away(points) ** 3
-
-
-def squared(points):
-    return away(points) * np.abs(away(points))
 
 
 def far_cut_off(points):
     return np.clip(away(points), -0.1, 0.1)
 
 
-UNKNOWN = [cut_off, sign, mask, cubed, squared, far_cut_off]
+UNKNOWN = [cut_off, sign, cubed, far_cut_off]
 
 
 def ball(function):
@@ -97,20 +89,14 @@ def test_moved_and_turned_ones_are_not_measured_again(shape):
     assert calls == [len(points)] * 4
 
 
-@pytest.mark.parametrize("rule", ["auto", "laminate"])
-def test_conductivity_is_that_of_a_distance(rule, shape):
+def test_conductivity_is_that_of_a_distance(shape):
+    rule = "laminate"
     scene = Scene((1.0, 1.0, 1.0), Material(1.0), [shape], gradient=(0, 1, 0))
     field = fft.solve(scene, voxels=16, rule=rule)
     same = fft.solve(Scene(scene.size, scene.matrix, [ball(away)], gradient=(0, 1, 0)), voxels=16, rule=rule)
     # The table's surface is within some 1e-4 of the sphere's.
     assert_allclose(field.conductivity, same.conductivity, rtol=1e-4)
     assert field.stats["rule"] == same.stats["rule"] != "plain"
-
-
-def test_particles_answer(shape):
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [shape], gradient=(0, 1, 0))
-    # Declared of the DEM's conforming packing at 2000 particles: .4 %, beside spheres.
-    assert_allclose(solve(scene, particles=2000).conductivity, EXACT, rtol=4e-3)
 
 
 def test_what_is_too_rough_has_no_surface():

@@ -1,4 +1,4 @@
-"""Unions: against points, their own members and closed forms; no surface is left inside."""
+"""Only here: unions with a surface left inside, or whose distance is no member's."""
 
 import math
 
