@@ -1,4 +1,4 @@
-"""Tasks on two Dask workers: all come home, whoever is killed meanwhile; skipped without Dask."""
+"""Only here: tasks on Dask workers lost with those that are killed; skipped without Dask."""
 
 import atexit
 import logging

@@ -1,3 +1,5 @@
+"""Only here: old, broken or foreign machine code that is run, and kernels that cannot be kept and stop a solve."""
+
 import os
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""High contrasts in the discrete element method: what rounding drowns is refused first, what it does not is solved."""
+"""Only here: contrasts that rounding drowns and the DEM goes on with, or refuses in vain."""
 
 import pytest
 

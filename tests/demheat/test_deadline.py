@@ -1,4 +1,4 @@
-"""Budgets of time: who looks at the clock, where, and what is left when one is over."""
+"""Only here: loops that do not look at the clock, and budgets that outlive their solve."""
 
 import threading
 import time

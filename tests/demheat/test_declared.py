@@ -1,4 +1,4 @@
-"""Methods are found where their modules declare them."""
+"""Only here: two methods of one name, and modules loaded that declare none."""
 
 import pytest
 

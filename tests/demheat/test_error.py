@@ -1,4 +1,4 @@
-"""Estimates of error: what they read off coarser runs, and that they hold where the exact solution is known."""
+"""Only here: estimates of error without their safety, or what is missing read wrongly off coarser runs."""
 
 import math
 import warnings
@@ -181,7 +181,7 @@ def test_methods_raise_what_they_lack_by_what_drawn_scenes_asked_for(of, conduct
     assert estimate.temperature == pytest.approx(0.1 / 3 * temperature, rel=1e-9)
 
 
-@pytest.mark.parametrize("name", [name for name, m in METHODS.items() if m.call == "solve" and m.resolution])
+@pytest.mark.parametrize("name", ["dem", "fem", "fft", "multipole"])
 def test_methods_know_how_far_they_are_off(name):
     """On the sphere in a cube, at the suite's coarse resolution; off the middle, for no symmetry to help."""
     method, scene = METHODS[name], gallery.sphere_in_cube(10.0)
@@ -195,12 +195,6 @@ def test_methods_know_how_far_they_are_off(name):
     points = np.random.default_rng(5).random((300, 3)) * scene.size
     off = np.sqrt(np.mean((field.temperature_at(points) - right.temperature_at(points)) ** 2))
     assert off <= estimate.temperature
-
-
-def test_exact_solutions_say_so():
-    estimate = exact.solve(gallery.sphere_in_cube(10.0)).error
-    assert estimate.how.startswith("exact to")
-    assert 0 < estimate.upper / estimate.lower - 1 < 1e-9
 
 
 def test_stopped_heat_is_exactly_none():

@@ -1,4 +1,4 @@
-"""The effective conductivity that a Field works out of its mean flux, and its lazy samples."""
+"""Only here: a conductivity taken across the load, or of walls' nominal temperatures; samples made twice."""
 
 import numpy as np
 import pytest

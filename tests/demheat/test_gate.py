@@ -1,4 +1,4 @@
-"""The gate that every answer passes: no conductivity that no body with these fractions can have."""
+"""Only here: a conductivity that no body with these fractions can have, handed out as an answer."""
 
 import math
 from dataclasses import replace
@@ -18,17 +18,11 @@ CELL = Scene(UNIT, Material(1.0), [BALL], gradient=(0, 1, 0))
 SHARE = BALL.volume
 GRID = {"unknowns": 48**3, "voxels": (48, 48, 48), "residual": 1e-6}
 OWN = np.array([1 - SHARE, SHARE])
-EXACT = 1.5529105  # of this array, by multipoles
 
 
 def field(scene, k, share=SHARE, stats=GRID, **more):
     """What a method would hand back that finds a conductivity of a cell along y, with so much of its one inclusion."""
     return Field(scene, np.array([0, -k, 0]), np.array([1 - share, share]), None, None, None, stats=stats, **more)
-
-
-def test_the_right_answer_passes():
-    for k in (EXACT, 0.99 * EXACT, 1.01 * EXACT):
-        assert field(CELL, k).conductivity == k
 
 
 @pytest.mark.parametrize("k", [11.12, 5.0, 1.2])

@@ -1,4 +1,4 @@
-"""Laws as objects: equal to their short forms, checked by themselves; the network that each makes of a packing."""
+"""Only here: laws that are not their short forms, choices without effect, networks other than k S / d by hand."""
 
 import dataclasses
 import re
@@ -8,9 +8,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 import demheat
-from demheat import Calibrated, Laguerre, Layer, Material, Platonic, Scene, Sphere
+from demheat import Calibrated, Laguerre, Material, Platonic, Scene, Sphere
 from demheat.build import network_of
-from demheat.laws import LAWS, POLICIES, RULES, WALL_RULES, Choices
+from demheat.laws import POLICIES, RULES, WALL_RULES, Choices
 from demheat.network.base import branches, link_distances, row_numbers
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts
@@ -28,16 +28,10 @@ UNASKED = {"sparse": "nearest", "wall": "center", "coordination": None, "gap": N
 SHORT = [
     (Laguerre(), {}),
     (Laguerre(), {"law": "laguerre", "conforming": True, "interface": "harmonic", **UNASKED}),
-    (Laguerre(conforming=False), {"conforming": False}),
     (Laguerre(conforming=False, interface="arithmetic"), {"conforming": False, "interface": "arithmetic"}),
     (Calibrated(), {"law": "calibrated", "conforming": False, **UNASKED}),
     (Calibrated(coordination=6.5, sparse="drop"), {"law": "calibrated", "coordination": 6.5, "sparse": "drop"}),
     (Calibrated(gap=0.1, wall="surface"), {"law": "calibrated", "gap": 0.1, "wall": "surface"}),
-    (
-        Calibrated(interface="arithmetic", sparse="keep"),
-        {"law": "calibrated", "interface": "arithmetic", "sparse": "keep"},
-    ),
-    (Platonic(), {"law": "platonic", "conforming": None}),
     (Platonic(coordination=6.2, wall="surface"), {"law": "platonic", "coordination": 6.2, "wall": "surface"}),
 ]
 
@@ -51,7 +45,7 @@ def assert_same_field(one, two):
 
 @pytest.mark.parametrize(("law", "short"), SHORT)
 def test_objects_are_their_short_forms_to_the_last_bit(law, short):
-    packing = relaxed(1500, periodic=False, seed=1)
+    packing = relaxed(1000, periodic=False, seed=1)
     assert_same_field(*(demheat.solve(WALLED, packing=packing, **knobs) for knobs in ({"law": law}, short)))
     if "law" in short:
         fields = (demheat.evolve(WALLED, [0.1], packing=packing, **knobs) for knobs in ({"law": law}, short))
@@ -67,27 +61,11 @@ def test_the_spacing_of_twins_in_gaps_is_a_keyword():
             demheat.solve(WALLED, law=law, gap_spacing=0.5)
 
 
-def test_defaults_are_those_of_the_papers():
-    assert Calibrated() == Calibrated(coordination=7.5) and Platonic() == Platonic(coordination=7.2)
-    assert Calibrated(gap=0.1).coordination is None
-    # Frozen: a law can be a key, and stays what was checked.
-    assert len({Laguerre(), Laguerre(), Laguerre(conforming=False), Platonic(), Calibrated()}) == 4
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        Laguerre().conforming = "no"
-
-
 CONTACT = [
     ({"sparse": "join"}, "sparse = 'join': must be one of nearest, keep, drop"),
-    ({"sparse": None}, "sparse = None: must be"),
     ({"wall": "face"}, "wall = 'face': must be one of center, surface"),
     ({"coordination": -1.0}, "coordination = -1.0: must be a finite number > 0"),
-    ({"coordination": 0}, "coordination = 0: must be"),
-    ({"coordination": np.inf}, "coordination = inf: must be"),
-    ({"coordination": np.nan}, "coordination = nan: must be"),
-    ({"coordination": "many"}, "coordination = 'many': must be"),
-    ({"coordination": True}, "coordination = True: must be"),
     ({"gap": -1.0}, "gap = -1.0: must be a finite part of r_i + r_j > -1"),
-    ({"gap": True}, "gap = True: must be"),
     ({"gap": 0.1, "coordination": 7.0}, "gap = 0.1, coordination = 7.0: one gives the other; pass one of them"),
     ({"interface": "median"}, "interface = 'median': must be one of harmonic, arithmetic"),
     ({"interface": None}, "interface = None: must be"),
@@ -97,7 +75,6 @@ WRONG = [
     *[(Platonic, *wrong) for wrong in CONTACT],
     (Laguerre, *CONTACT[-2]),
     (Laguerre, *CONTACT[-1]),
-    (Laguerre, {"conforming": "no"}, "conforming = 'no': must be True or False"),
     (Laguerre, {"gap_spacing": 0.9}, "gap_spacing = 0.9: must be a number above 0, at most 0.88"),
     (Laguerre, {"conforming": False, "gap_spacing": 0.5}, "gap_spacing = 0.5 with conforming = False: there are no"),
 ]
@@ -114,20 +91,6 @@ def test_a_wrong_choice_is_refused_by_its_law_and_by_its_short_form(kind, knobs,
         demheat.solve(WALLED, law=kind.name, **knobs)
     with pytest.raises(ValueError, match=re.escape(words)):
         demheat.evolve(WALLED, [0.1], law=kind.name, **knobs)
-
-
-@pytest.mark.parametrize(
-    ("knobs", "words"),
-    [
-        ({"mean": "median"}, "mean = 'median': must be one of arithmetic, harmonic, geometric"),
-        ({"additive": 1}, "additive = 1: must be True or False"),
-        ({"factor": 0.0}, "factor = 0.0: must be a finite number > 0"),
-        ({"factor": True}, "factor = True: must be"),
-    ],
-)
-def test_choices_of_the_calibrated_law_alone(knobs, words):
-    with pytest.raises(ValueError, match=re.escape(words)):
-        Calibrated(**knobs)
 
 
 @pytest.mark.parametrize(
@@ -155,14 +118,6 @@ def test_what_does_not_go_together(knobs, words):
         demheat.evolve(BLOCK, [0.1], **knobs)
 
 
-@pytest.mark.parametrize("law", LAWS)
-def test_a_keyword_that_nobody_knows(law):
-    with pytest.raises(TypeError, match="unexpected keyword argument 'partciles'"):
-        demheat.solve(BLOCK, law=law, partciles=1000)
-    with pytest.raises(TypeError, match="unexpected keyword argument 'partciles'"):
-        LAWS[law](partciles=1000)
-
-
 @pytest.mark.parametrize(
     ("law", "scene", "words"),
     [
@@ -179,25 +134,14 @@ def test_scenes_that_a_law_cannot_do(law, scene, words):
         demheat.evolve(scene, [0.1], law=law)
 
 
-def test_scenes_that_a_law_can_do():
-    for law in (Laguerre(), Calibrated(), Platonic()):
-        for scene in (WALLED, CELL, SPHERE):
-            law.check(scene)
-    Laguerre(conforming=False).check(dataclasses.replace(SPHERE, inclusions=[BALL]))
-    for scene in (Scene((1, 1, 1), METAL, walls={"x-": 0.0, "y-": 1.0}), SPHERE):
-        Calibrated(wall="surface").check(scene)
-
-
 # ---- A network alone -------------------------------------------------------------------------------------------------
 
 
 def packed(scene):
-    return relaxed(1500, periodic=scene.periodic, seed=2)
+    return relaxed(1000, periodic=scene.periodic, seed=2)
 
 
-@pytest.mark.parametrize(
-    "law", [Laguerre(), Laguerre(conforming=False), Calibrated(), Calibrated(sparse="drop"), Platonic()]
-)
+@pytest.mark.parametrize("law", [Laguerre(), Laguerre(conforming=False), Calibrated(sparse="drop"), Platonic()])
 @pytest.mark.parametrize("scene", [WALLED, CELL])
 def test_a_network_has_all_that_evaluation_needs(scene, law):
     network, packing = network_of(scene, packed(scene), law), packed(scene)
@@ -261,17 +205,6 @@ def test_seeds_turn_the_twins():
     one, same, other = (network_of(CELL, packing, Laguerre(), seed=seed).centers for seed in (0, 0, 1))
     assert_array_equal(one, same)
     assert one.shape != other.shape or not np.array_equal(one, other)
-
-
-def test_a_name_is_no_law():
-    with pytest.raises(ValueError, match="law = 'laguerre': must be a law, such as Laguerre"):
-        network_of(CELL, packed(CELL), "laguerre")
-
-
-def test_an_inclusion_that_no_particle_hits_is_warned_of():
-    film = Scene((1, 1, 1), METAL, [Layer(1, 0.5, 0.5 + 5e-8, TEN)], walls={"y-": 0.0, "y+": 1.0})
-    with pytest.warns(UserWarning, match="no particle lies in inclusions \\[0\\]"):
-        network_of(film, packed(film), Laguerre(conforming=False))
 
 
 def test_every_choice_is_at_work():

@@ -1,4 +1,4 @@
-"""How much memory is free is read as systems tell it; what would need more, or days, is refused at once."""
+"""Only here: free memory read wrongly of what systems tell, and limits that let twice as much pass."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""What the DEM says that it will take, before it begins."""
+"""Only here: memory of the DEM told before it begins, off what was measured."""
 
 import pytest
 

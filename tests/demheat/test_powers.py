@@ -1,4 +1,4 @@
-"""Powers that are right, and spheres that are drawn without those whose last bit hangs on the processor."""
+"""Only here: spheres drawn with functions whose last bit hangs on the processor, and powers that are off."""
 
 import ast
 import importlib.util

@@ -1,3 +1,5 @@
+"""Only here: BLAS left with one thread, or NumPy's generator moved, after who asked for it."""
+
 import threading
 
 import numpy as np

@@ -1,3 +1,5 @@
+"""Only here: progress that is silent, said twice, falls, or outlives its stage."""
+
 import io
 import threading
 import time
@@ -28,17 +30,6 @@ def test_a_hook_hears_of_stages(impatient):
     assert heard[0].left != heard[0].left and heard[1].left == heard[1].elapsed
 
 
-def test_short_stages_and_streams_that_are_no_terminals_stay_silent(monkeypatch):
-    said = io.StringIO()
-    monkeypatch.setattr("sys.stderr", said)
-    with progress.stage("cells") as done:
-        done(0.5)
-    monkeypatch.setattr(progress, "SILENT", 0.0)
-    with progress.stage("cells") as done:
-        done(0.5)
-    assert said.getvalue() == ""
-
-
 def test_a_terminal_shows_a_line_and_clears_it(impatient, monkeypatch):
     said = io.StringIO()
     said.isatty = lambda: True
@@ -46,11 +37,6 @@ def test_a_terminal_shows_a_line_and_clears_it(impatient, monkeypatch):
     with progress.stage("cells") as done:
         done(0.25)
     assert "cells: 25%" in said.getvalue() and said.getvalue().endswith("\r\x1b[K")
-
-
-def test_a_hook_must_be_callable():
-    with pytest.raises(ValueError, match="hook = 3"):
-        on_progress(3)
 
 
 @pytest.fixture
@@ -167,9 +153,7 @@ def test_without_listeners_a_stage_starts_no_thread(monkeypatch):
     assert progress._speaker == [None] and not progress._open
 
 
-@pytest.mark.parametrize(
-    "left, words", [(5.4, "5 s"), (99.0, "99 s"), (120.0, "2 min"), (7200.0, "2.0 h")], ids=["s", "99", "min", "h"]
-)
+@pytest.mark.parametrize("left, words", [(99.0, "99 s"), (120.0, "2 min"), (7200.0, "2.0 h")], ids=["s", "min", "h"])
 def test_time_left_in_words(left, words):
     assert progress.line(progress.Report("cells", 0.5, 1.0, left)) == f"cells: 50%, {words} left"
 
@@ -202,13 +186,3 @@ def test_the_stages_of_a_solve_and_a_march_are_heard(heard):
     assert len(list(evolve(bar, [0.01, 0.02], particles=300, seed=11))) == 2
     shares = [report.share for report in heard if report.stage == "march" and report.share == report.share]
     assert shares == sorted(shares) and 0.4 < shares[-1] <= 1 + 1e-9  # rounding
-
-
-def test_relaxing_growing_and_rows_tell_shares_that_do_not_fall(heard):
-    from demheat.packing.lsa import lsa
-    from demheat.packing.relax import settle
-
-    settle(lsa(200, phi=0.5, seed=3), steps=3)
-    for name in ("packing", "growing", "settling"):
-        shares = [report.share for report in heard if report.stage == name and report.share == report.share]
-        assert shares and all(0 <= share <= 1 for share in shares), name

@@ -1,4 +1,4 @@
-"""Old names that users have met still work, and say what they are called now."""
+"""Only here: old names that users have met and that no longer work or warn."""
 
 import pytest
 

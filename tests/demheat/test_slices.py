@@ -1,4 +1,4 @@
-"""Planes through a body and Fields on them."""
+"""Only here: planes through a body turned, shifted, or masked otherwise than the body ends."""
 
 import numpy as np
 import pytest
@@ -39,7 +39,6 @@ def test_a_side_thinner_than_a_pixel_has_one():
         ("sphere", 2, 0.5, np.pi / 4),
         # The circle at a height h over the middle has the radius sqrt(R^2 - h^2).
         ("sphere", 0, 0.8, np.pi / 4 * (1 - 0.36)),
-        ("cylinder-z", 2, 0.1, np.pi / 4),
         ("cylinder-z", 0, 0.5, 1.0),
         ("cylinder-z", 1, 0.8, 0.8),
     ],
@@ -90,29 +89,7 @@ def test_outside_is_not_a_number_and_another_flux_may_stand_in():
     assert_allclose(sliced.temperature[2], (np.arange(5) + 0.5) / 5)
 
 
-@pytest.mark.parametrize(
-    ("knobs", "words"),
-    [
-        ({"axis": 3, "at": 0.05}, "axis = 3: must be 0, 1 or 2"),
-        ({"axis": True, "at": 0.05}, "axis = True"),
-        ({"axis": 0, "at": 0.11}, "at = 0.11: must be between 0 and 0.1 m"),
-        ({"axis": 0, "at": float("nan")}, "at = nan"),
-        ({"axis": 0, "at": "middle"}, "at = 'middle'"),
-        ({"axis": 0, "at": 0.05, "n": 0}, "n = 0: must be an integer >= 1"),
-        ({"axis": 0, "at": 0.05, "n": 2.0}, "n = 2.0"),
-    ],
-)
-def test_bad_input_is_named(knobs, words):
-    with pytest.raises(ValueError, match=words):
-        slices.plane(slab(), **knobs)
-
-
 def test_a_plane_that_touches_only_is_refused():
     scene = Scene(size=(1.0, 1.0, 1.0), matrix=Material(1.0), domain="sphere", initial=0.0)
     with pytest.raises(ValueError, match="none of the pixels"):
         slices.plane(scene, axis=2, at=0.0, n=4)
-
-
-def test_values_must_fit_the_mask():
-    with pytest.raises(ValueError, match="shape \\(3,\\): must be one for each of 4"):
-        slices.filled(np.ones((2, 2), dtype=bool), np.zeros(3))

@@ -1,4 +1,4 @@
-"""What is too thin for a grid is said: layers and spheres without twins, coats without and on voxels."""
+"""Only here: what is too thin for particles or voxels and nobody is told of, or told of in vain."""
 
 import warnings
 
@@ -49,9 +49,7 @@ def test_coats_by_the_nearest_image():
     assert_allclose(coats(walled), [0.1, np.inf])
 
 
-@pytest.mark.parametrize(
-    "knobs", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}, {"law": "platonic", "gap": 0.1}]
-)
+@pytest.mark.parametrize("knobs", [{"conforming": False}, {"law": "platonic", "gap": 0.1}])
 @pytest.mark.parametrize(
     "inclusions",
     [
@@ -82,7 +80,7 @@ def test_coats_unlike_their_cores_are_told(core, told):
     assert ["inclusions [0] are thin for particles" in str(each.message) for each in caught] == [True] * told
 
 
-@pytest.mark.parametrize("law", [{"conforming": False}, {"law": "calibrated", "gap": 0.1}])
+@pytest.mark.parametrize("law", [{"conforming": False}])
 @pytest.mark.parametrize(
     ("gap", "contrast", "told"),
     [(0.1, 1e3, True), (0.149, 1e3, True), (0.151, 1e3, False), (0.149, 7.5, True), (0.149, 6.5, False)],
@@ -100,7 +98,7 @@ def test_short_cuts_without_twins_are_told(law, gap, contrast, told):
 
 
 @pytest.mark.parametrize("rule", ["plain", "laminate", "links"])
-@pytest.mark.parametrize(("voxels", "told"), [(12, True), (23, True), (24, False), (9, True)])
+@pytest.mark.parametrize(("voxels", "told"), [(23, True), (24, False), (9, True)])
 def test_gaps_narrower_than_a_voxel_are_told(rule, voxels, told):
     """A gap of .06 is less than 1.4 of 12 or 23 voxels, or than two of fewer than ten, but more than 1.4 of 24."""
     pair = [Sphere((x, 0.5, 0.5), 0.2, Material(30.0)) for x in (0.27, 0.73)]

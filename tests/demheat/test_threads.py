@@ -1,3 +1,5 @@
+"""Only here: a threading layer other than asked, pieces of work lost or begun after one that failed."""
+
 import os
 import subprocess
 import sys

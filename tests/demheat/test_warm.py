@@ -1,3 +1,5 @@
+"""Only here: helpers that compile for other types, outlive their caller or keep it waiting."""
+
 import os
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""The cheapest way to an accuracy: what it chooses, that it gets there, and what it refuses."""
+"""Only here: a way to an accuracy that does not get there, or is not the cheapest."""
 
 from dataclasses import replace
 from importlib import import_module
@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Ellipsoid, Flux, Layer, Material, Scene, Sphere, effective, gallery, recommend
+from demheat import Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, recommend
 from demheat.cheapest import laws, ways
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.measures import measures
@@ -43,7 +43,7 @@ def test_a_body_without_symmetry_takes_three_loads_on_one_set_up():
 
 
 @pytest.mark.parametrize(
-    "method", ["exact", "multipole", "fem", "fft", pytest.param("dem", marks=pytest.mark.slow), "bracket"]
+    "method", ["multipole", "fft", *(pytest.param(name, marks=pytest.mark.slow) for name in ("fem", "dem", "bracket"))]
 )
 def test_every_method_gets_there(method):
     right = exact.solve(CUBE).conductivity
@@ -58,7 +58,7 @@ def test_every_method_gets_there(method):
     assert found.cost["cpu_s"] > 0 and found.how and found.saved
 
 
-@pytest.mark.parametrize("method", ["fem", "fft", "dem", "bracket"])
+@pytest.mark.parametrize("method", ["fft", "dem"])
 def test_the_whole_tensor_lies_in_its_intervals(method):
     right = conductivity_tensor(multipole.solve_axes(ASKEW))
     assert abs(right[0, 1]) > 5e-3 * right[0, 0]  # there is something beside the diagonal
@@ -98,13 +98,6 @@ def test_a_way_that_turns_out_dear_gives_way(monkeypatch):
     begin_with(monkeypatch, first, ways.Way("fem", {"size": CUBE.size[0] / 10}, cpu_s=0.05, bytes=1e6))
     assert ways.finer(first, loads_of(CUBE), 10.0, 1e12).cpu_s > 0.05
     assert effective(CUBE, accuracy=2e-4).method == "fem"
-
-
-def test_a_way_that_stays_cheapest_is_gone_on_with(monkeypatch):
-    dear = ways.Way("fem", {"size": CUBE.size[0] / 24}, cpu_s=1e9, bytes=1e6)
-    begin_with(monkeypatch, ways.Way("fft", {"voxels": 8}, cpu_s=0.01, bytes=1e6), dear)
-    found = effective(CUBE, accuracy=3e-3)
-    assert found.method == "fft" and found.cost["rounds"] > 1
 
 
 def test_what_nobody_reaches_is_refused_with_reasons():
@@ -166,17 +159,3 @@ def test_equal_walls_are_refused_before_any_method_is_tried():
     for ask in (effective, recommend):
         with pytest.raises(ValueError, match="Scene.walls = .*must differ in temperature"):
             ask(level)
-
-
-def test_nonsense_is_refused():
-    for knobs, words in (
-        ({"accuracy": 0.0}, "accuracy = 0.0: must be a number from 1e-9 to below 1"),
-        ({"accuracy": "fine"}, "accuracy = 'fine': must be"),
-        ({"method": "magic"}, "method = 'magic': must be one of exact, multipole, fem, fft, dem, bracket"),
-        ({"memory": -1.0}, "memory = -1.0: must be a number of bytes > 0"),
-    ):
-        with pytest.raises(ValueError, match=words):
-            effective(CUBE, **knobs)
-    flux = Scene((1.0,) * 3, Material(1.0), walls={"x-": 0.0, "x+": Flux(1.0)})
-    with pytest.raises(NotImplementedError, match="Scene.walls"):
-        effective(flux)

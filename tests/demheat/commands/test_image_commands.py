@@ -1,4 +1,4 @@
-"""The commands on an image: what they solve, what they say instead."""
+"""Only here: commands on an image that take it for shapes, or another image for the same."""
 
 import numpy as np
 import pytest

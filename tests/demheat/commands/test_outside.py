@@ -1,4 +1,4 @@
-"""A value that no such body can have is called so, beside the bound that says it."""
+"""Only here: a value that no such body can have, printed without a word."""
 
 from demheat.commands.bounds import Bound
 from demheat.commands.compare import table

@@ -1,4 +1,4 @@
-"""Time and refusals on the command line: --seconds, and what is said before anything is solved."""
+"""Only here: --seconds without effect, and what cannot be written said after the solve."""
 
 import csv
 from importlib import import_module

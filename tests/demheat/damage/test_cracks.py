@@ -1,4 +1,4 @@
-"""Insulated cracks: which links they cut, and arrays whose conductivity is known."""
+"""Only here: cracks that cut other links than cross them, and arrays of them whose conductivity is known."""
 
 import math
 
@@ -65,20 +65,12 @@ def test_seams_are_mirrored_and_alone_beside_the_crack():
     assert_allclose(np.sum(inside) * step**2, math.pi * 0.2**2, rtol=0.03)
 
 
-@pytest.mark.parametrize("crack", [Disc((0.5, 0.5, 0.5), 0.25, (0, 0, 1)), Disc((0.1, 0.9, 0.02), 0.25, (0, 0, -2))])
-def test_an_array_of_discs(crack):
+def test_an_array_of_discs():
     """The loss is too large by a part of a particle's size at the rim: first order, halved by eight times as many."""
-    sure = 1 - discs(0.25).conductivity
+    crack, sure = Disc((0.1, 0.9, 0.02), 0.25, (0, 0, -2)), 1 - discs(0.25).conductivity
     coarse, fine = (1 - damage.solve(CELL, cracks=[crack], particles=n).conductivity for n in (500, 4000))
     assert 0 < fine / sure - 1 < 0.16
     assert 0.3 < (fine - sure) / (coarse - sure) < 0.7
-
-
-def test_a_disc_along_the_load_is_not_seen():
-    """What is linear stays exact on cells, also where no heat crosses them."""
-    found = damage.solve(CELL, cracks=[Disc((0.5, 0.5, 0.5), 0.3, (0, 1, 0))], particles=500)
-    # The disc has no thickness; links that cross it obliquely are cut, a few per mille of the heat.
-    assert abs(found.conductivity - 1) < 0.01
 
 
 def test_an_array_of_slits():

@@ -1,15 +1,12 @@
-"""Inclusions that have come off: which are drawn, and what methods make of them."""
+"""Only here: inclusions that have come off drawn anew by a larger share, or leaking heat."""
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere, gallery
 from demheat.damage import debonded
-from references import exact, fft, multipole
+from references import exact, multipole
 
 CELL = gallery.random_dispersion(8, fraction=0.15, gap=0.2, edge=1.0, seed=3)
 
@@ -36,12 +33,6 @@ def test_what_lies_in_an_inclusion_comes_off_with_it():
     assert debonded(debonded(scene, 1.0, seed=0, resistance=0.1), 1.0, seed=0, resistance=0.05).resistances[1] == 0.1
 
 
-def test_other_properties_stay():
-    made = Material(3.0, density=2.0, heat_capacity=5.0)
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 0.3, made)], gradient=(1.0, 0.0, 0.0))
-    assert debonded(scene, 1.0, seed=0).inclusions[0].material == replace(made, conductivity=0.0)
-
-
 def test_a_resistance_without_bound_is_a_pore():
     """Multipoles know both exactly; what is left falls as the inverse of the resistance."""
     pores = multipole.solve(debonded(CELL, 0.5, seed=1)).conductivity
@@ -53,7 +44,7 @@ def test_a_resistance_without_bound_is_a_pore():
     assert 0 < found[0] < 1e-3 and abs(found[1]) < 2e-6
 
 
-@pytest.mark.parametrize("R", [1e6, 1e12, 1e40])
+@pytest.mark.parametrize("R", [1e6, 1e40])
 def test_large_resistances_are_solved_right(R):
     """As pores of the same shape, up to the largest: by pairs of twins, and the closed form."""
     sphere = Sphere((0.5, 0.5, 0.5), 0.3, Material(10.0))
@@ -73,15 +64,6 @@ def test_a_layer_that_has_come_off_stops_the_heat():
     assert_allclose(exact.solve(debonded(scene, 1.0, seed=0, resistance=1e9)).conductivity, 0.0, atol=1e-9)
 
 
-def test_methods_beside_multipoles():
-    scene = debonded(CELL, 0.5, seed=2)
-    sure = multipole.solve(scene).conductivity
-    # Declared errors of these resolutions are below that; perfectly bonded it is some 30 % more.
-    for field in (demheat.solve(scene, particles=3000), fft.solve(scene, voxels=32)):
-        assert_allclose(field.conductivity, sure, rtol=0.02)
-    assert multipole.solve(CELL).conductivity > 1.15 * sure
-
-
 @pytest.mark.parametrize(
     ("share", "knobs", "match"),
     [
@@ -98,9 +80,3 @@ def test_bad_arguments(share, knobs, match):
         debonded(CELL, share, **{"seed": 0} | knobs)
     with pytest.raises(ValueError, match="scene = None"):
         debonded(None, 0.5, seed=0)
-
-
-def test_no_inclusions():
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), gradient=(1.0, 0.0, 0.0))
-    assert debonded(scene, 0.7, seed=0) == scene
-    assert np.array_equal(debonded(scene, 0.7, seed=0, resistance=1.0).resistances, [0.0])

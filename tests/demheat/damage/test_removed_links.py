@@ -1,4 +1,4 @@
-"""Links that are gone: beside a dense solution, what hangs together, and what theory says of lattices."""
+"""Only here: links gone from one end alone, or more of them than asked; lattices beside theory."""
 
 import numpy as np
 import pytest

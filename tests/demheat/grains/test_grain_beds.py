@@ -1,4 +1,4 @@
-"""Beds of grains: crystals by hand, and what any bed owes."""
+"""Only here: beds of grains beside crystals by hand, and what any bed owes."""
 
 import numpy as np
 import pytest
@@ -33,7 +33,7 @@ def test_crystals_of_touching_grains(kind):
     assert_allclose(found, expected * np.eye(3), atol=1e-12 * expected)
 
 
-@pytest.mark.parametrize("layers", [2, 5])
+@pytest.mark.parametrize("layers", [5])
 def test_a_cubic_array_between_walls_has_no_ends(layers):
     """Walls are mirrors: k = C / (2 R) by any number of layers, medium included, and with layers that are held."""
     bed = crystal("sc", (3, 3, layers), periodic=(True, True, False))

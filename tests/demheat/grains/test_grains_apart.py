@@ -1,4 +1,4 @@
-"""Grains that nothing joins, and walls of a packing that has none."""
+"""Only here: grains that nothing joins and nobody is told of, and walls of a packing that has none."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The command on two ranks where MPI and PETSc are installed, and one line where they are not."""
+"""Only here: the command on two ranks, where MPI and PETSc are installed; else one line that says so."""
 
 import re
 import shlex
@@ -54,11 +54,6 @@ def test_without_mpi_one_line_says_what_is_missing(folder, monkeypatch, capsys):
     told = capsys.readouterr()
     assert told.out == "" and told.err.count("\n") == 1
     assert told.err.startswith("demheat: demheat.mpi needs mpi4py and petsc4py, which this Python does not find")
-
-
-def test_an_unknown_option_is_one_line(capsys):
-    assert main(["scene.toml", "--particle", "5"]) == 2
-    assert capsys.readouterr().err.count("\n") == 1
 
 
 def small(text):

@@ -1,4 +1,4 @@
-"""The cycle of all ranks together, without PETSc: what is below the finest level is solved exactly here."""
+"""Only here: a multigrid cycle of all ranks that is not symmetric or takes more iterations; PETSc is stood in for."""
 
 import numpy as np
 import pytest
@@ -112,7 +112,7 @@ def iterations(scene, ranks):
 
 @pytest.mark.parametrize("scene", [WALLS, CELL], ids=["walls", "periodic"])
 def test_slabs_take_as_many_iterations_as_the_whole(scene):
-    one, *more = (iterations(scene, ranks) for ranks in (1, 2, 3))
+    one, *more = (iterations(scene, ranks) for ranks in (1, 3))
     assert one < 30
     # Aggregates end at the slabs' ends: a little is lost.
     assert max(more) <= one + 3

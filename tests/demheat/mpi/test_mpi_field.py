@@ -1,4 +1,4 @@
-"""The Field of all ranks is that of one process, by threads in place of ranks and a solution that is given."""
+"""Only here: a Field of all ranks that is not that of one process, by threads in place of ranks."""
 
 import numpy as np
 import pytest

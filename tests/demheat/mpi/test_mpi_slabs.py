@@ -1,4 +1,4 @@
-"""Slabs of a body hold the cells of the whole, and their rows its equations, whatever their number."""
+"""Only here: slabs of ranks whose rows are not the equations of the whole body."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def by_place(points, *columns):
 
 @pytest.mark.parametrize(
     ("scene", "knobs", "ranks"),
-    [(CELL, {}, 2), (CELL, {}, 3), (CELL, {"replicas": 1}, 1), (WALLS, {}, 3), (WALLS, {"replicas": 1}, 2)],
+    [(CELL, {}, 3), (CELL, {"replicas": 1}, 1), (WALLS, {"replicas": 1}, 2)],
 )
 def test_the_rows_of_all_ranks_are_those_of_the_whole(scene, knobs, ranks):
     number = 3000

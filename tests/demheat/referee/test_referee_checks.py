@@ -1,4 +1,4 @@
-"""What can be checked of one Field alone."""
+"""Only here: heat balances and bounds judged with another sign or scale."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Errors between Fields whose difference is known by construction."""
+"""Only here: errors of fields without their weights, level or scale, on differences known by construction."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Errors of numbers at hand, by hand."""
+"""Only here: errors of numbers with another sign, scale or row, by hand."""
 
 import math
 

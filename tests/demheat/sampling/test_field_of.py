@@ -1,4 +1,4 @@
-"""Which cell a point is in, where centres alone do not tell; what a wall's facets have in common."""
+"""Only here: points given to the nearest centre instead of the radical cell around them."""
 
 from types import SimpleNamespace
 

@@ -1,3 +1,5 @@
+"""Only here: fluxes of cells with too few facets, and mean fluxes of links with unequal ends."""
+
 from types import SimpleNamespace
 
 import numpy as np

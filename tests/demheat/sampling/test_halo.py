@@ -1,16 +1,11 @@
-"""Halo averages and the particle fluxes that they average."""
+"""Only here: a halo that misses a sample, a mirror of the wrong parity, a split of links that loses heat."""
 
 import dataclasses
-import os
-import subprocess
-import sys
-import textwrap
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-import demheat
 from demheat import Material, Scene, Sphere
 from demheat.build import network_of
 from demheat.calibration import calibration, calibration_scene
@@ -46,9 +41,15 @@ def twin(points, values, volumes, radius, size, periodic, at, phase=None, at_pha
         return weight @ values / weight.sum(axis=1)[:, None]
 
 
-@pytest.mark.parametrize("radius", [0.05, 0.21, 0.4])
-@pytest.mark.parametrize("periodic", [False, True, (True, False, True)])
-@pytest.mark.parametrize(("part", "fewest"), [(1 / 2, 8.0), (1 / 7, 0.05), (4.0, 1.0)])
+@pytest.mark.parametrize(
+    ("radius", "periodic", "part", "fewest"),
+    [
+        (0.05, False, 1 / 2, 8.0),
+        (0.21, True, 1 / 7, 0.05),
+        (0.4, (True, False, True), 1 / 7, 0.05),
+        (0.4, True, 4.0, 1.0),
+    ],
+)
 def test_averages_are_those_of_every_sample(radius, periodic, part, fewest, monkeypatch):
     """Whatever the cells: small ones are summed whole, with large ones every sample is looked at."""
     monkeypatch.setattr(halo, "PART", part)
@@ -80,12 +81,6 @@ def test_more_values_and_single_ones():
     assert edge[0] == 5.0
 
 
-def test_a_constant_stays():
-    points, _, volumes = cloud()
-    means = halo_average(points, np.full(700, 3.7), volumes, radius=0.37, size=SIZE, periodic=True)
-    assert_allclose(means, 3.7, rtol=1e-14)  # rounding of two sums of the same numbers
-
-
 def test_only_the_same_phase():
     points, values, volumes = cloud()
     phase = (points[:, 0] > 0.5).astype(int) + 3
@@ -100,40 +95,11 @@ def test_only_the_same_phase():
     assert np.isnan(means[at_phase == 2]).all() and np.isfinite(means[at_phase == 3]).any()
 
 
-def test_same_bits_for_one_and_two_threads():
-    code = """
-        import hashlib, numba, numpy as np
-        from demheat.sampling.halo import halo_average
-        numba.set_num_threads({threads})
-        rng = np.random.default_rng(0)
-        points, values = rng.random((5000, 3)), rng.normal(size=(5000, 3))
-        means = halo_average(points, values, rng.random(5000), radius=0.2, size=(1, 1, 1), periodic=True)
-        print(hashlib.sha256(means.tobytes()).hexdigest())
-    """
-    out = []
-    for threads in (1, min(2, os.cpu_count())):
-        words = [sys.executable, "-c", textwrap.dedent(code.format(threads=threads))]
-        out.append(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
-    assert out[0] == out[1] and len(out[0]) > 60
-
-
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"radius": 0.0}, "radius = 0.0"),
-        ({"radius": float("nan")}, "radius = nan"),
         ({"radius": 0.5, "periodic": True}, "radius = 0.5"),
-        ({"radius": "wide"}, "radius = 'wide'"),
-        ({"size": (1, 1)}, "size"),
-        ({"size": (1, 1, -1)}, "size"),
-        ({"periodic": 1}, "periodic = 1"),
-        ({"points": [[0, 0]]}, "points of shape"),
-        ({"points": np.empty((0, 3))}, "points of shape"),
         ({"points": [[2.0, 0, 0], [0, 0, 0]]}, r"points\[0\]"),
-        ({"values": [1.0]}, "values of shape"),
-        ({"values": [1.0, np.inf]}, "values of shape"),
-        ({"volumes": [1.0, -1.0]}, "volumes of shape"),
-        ({"volumes": [1.0]}, "volumes of shape"),
         ({"at": [[0.0, np.nan, 0.0]]}, "at of shape"),
         ({"phases": [0, 1, 2]}, "phases = .* a pair"),
         ({"phases": ([0], [0, 1])}, r"phases\[0\] = "),
@@ -360,18 +326,6 @@ def test_bad_split_and_arrays_of_another_packing():
         particle_flux(network, solution, split="third")
     with pytest.raises(ValueError, match="same particles"):
         particle_flux(other, solution)
-
-
-def test_halo_of_the_solver():
-    """From the public solve to the halo: the noise of contacts falls, its mean stays."""
-    scene = Scene(size=(1, 1, 1), matrix=Material(3.0), gradient=(0.0, 1.0, 0.0))
-    field = demheat.solve(scene, particles=2_000, law="calibrated")
-    raw, mean = field.samples.flux[:, 1], halo_flux(field, ratio=4.0)[:, 1]
-    # Spheres at 0.64 whose radii have a spread of 0.29: <R^3> = (1 + 3 * 0.29^2) <R>^3, to the scatter of 2000 radii.
-    right = np.cbrt(0.64 / (2_000 * 4 / 3 * np.pi * 1.25))
-    assert_allclose(field.stats["mean_radius"], right, rtol=0.02)
-    assert mean.std() < 0.25 * raw.std()
-    assert_allclose(mean.mean(), field.mean_flux[1], rtol=0.01)  # halos share out their volume unevenly
 
 
 def test_a_long_thin_box_takes_no_more_cells_than_samples():

@@ -1,4 +1,4 @@
-"""Kernels of halo averages beside a look at every sample."""
+"""Only here: kernels of halos beside a look at every sample."""
 
 import numpy as np
 import pytest

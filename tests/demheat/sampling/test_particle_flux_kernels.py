@@ -1,3 +1,5 @@
+"""Only here: parts of a link's heat that go to the other end."""
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose

@@ -1,4 +1,4 @@
-"""A function over many cases: rows in order, errors as rows, resumed from a file."""
+"""Only here: sweeps that lose rows, mix them up, or compute them again."""
 
 import csv
 import os
@@ -165,9 +165,3 @@ def test_a_file_of_something_else_is_left_alone(tmp_path, text):
 def test_what_cannot_be_found_again_is_not_kept(tmp_path, cases, words):
     with pytest.raises(ValueError, match=words):
         sweep(square, cases, out=tmp_path / "rows.csv")
-
-
-def test_scenes_may_be_cases():
-    scenes = [gallery.laminate(), gallery.slab()]
-    rows = sweep(exact.solve, {"scene": scenes})
-    assert [row["scene"] for row in rows] == scenes and rows[0]["conductivity"] == pytest.approx(55.0, rel=1e-12)

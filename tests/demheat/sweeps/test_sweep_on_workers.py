@@ -1,4 +1,4 @@
-"""Sweeps on a Dask cluster: the rows of this process, each from a fresh process of a worker."""
+"""Only here: sweeps on a Dask cluster whose rows are not those of this process, or that a crash ends."""
 
 import os
 import sys
