@@ -16,19 +16,27 @@ START, ALONE = 1.0, 0.3
 def seconds(study, path, cases):
     """What each of some cases takes, s, of two processors: those whose values alone count are made side by side.
 
-    Of a row that says so what it took. Else its wall time and `START`; where values alone count its CPU time, as it has
-    one thread.
+    Of a row that says so what it took, less what others took of it. Else its wall time and `START`; where values alone
+    count its CPU time, as it has one thread.
     """
     rows, alone = read_rows(path), uncosted(study)
     own, found = _own(rows), {}
     for key in map(case_key, cases):
         row = rows.get(key, {})
         if key in alone:
-            one = _first(_number(row, MADE), _first(_number(row, "cpu_s"), own.get(key, math.nan)) + ALONE)
+            one = _first(_made(row), _first(_number(row, "cpu_s"), own.get(key, math.nan)) + ALONE)
             found[key] = one / WORKERS
         else:
             found[key] = _first(_number(row, MADE), own.get(key, math.nan) + START)
     return found
+
+
+def _made(row):
+    """What a row for its values would have taken, s, beside one other alone: they are made whatever others do.
+
+    Each of so many threads as want a processor (the load) has the same share of two.
+    """
+    return _number(row, MADE) * WORKERS / max(_first(_number(row, "load"), 0.0), WORKERS)
 
 
 def told(lasting):

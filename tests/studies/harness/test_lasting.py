@@ -39,6 +39,13 @@ def test_values_alone_take_one_thread_of_two(tiny):
     assert found == [2.0 + lasting.START, (3.0 + lasting.ALONE) / 2, 2.5]
 
 
+def test_what_others_took_is_no_time_of_a_row(tiny):
+    rows = ({"made_s": 8.0, "load": 8.0}, {"made_s": 8.0, "load": 8.0}, {"made_s": 8.0, "load": 1.5})
+    study, path = stored(tiny, *rows, **VALUES)
+    # The first has costs: it was made on a quiet machine, or says that it was not.
+    assert list(lasting.seconds(study, path, study.CASES).values()) == [8.0, 8.0 / 4 / 2, 8.0 / 2]
+
+
 @pytest.mark.parametrize(
     ("seconds", "words"),
     [
