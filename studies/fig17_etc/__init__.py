@@ -9,7 +9,7 @@ those against the converged voxels. "Converged" is what a method's own rows lead
 voxels and particles extrapolated, of the finite elements the finest mesh. A fifth of spheres at full size is in
 `many_inclusions`, on the same cell, and between walls in `fig18_fields`. The paper's network stands here in all its
 packings, walls and calibrations, see `studies/common/paper_network.py`; the paper's figure has 8e6 particles, as has
-`many_inclusions`.
+`fig18_fields`.
 """
 
 from importlib import import_module
@@ -56,7 +56,7 @@ REASONS = {
 # Why claims on the stored rows fail.
 FAILS = {
     "worst error of its best variant": (
-        "not reproduced with 150000 particles, worst where spheres fill half; many_inclusions has 8e6 where a fifth is "
+        "not reproduced with 150000 particles, worst where spheres fill half; fig18_fields has 8e6 where a fifth is "
         "filled, and there it is; half was not tried with as many"
     ),
 }

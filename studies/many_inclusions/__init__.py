@@ -6,10 +6,8 @@ Rayleigh's multipole method at its highest degree here. The DEM's costs are thos
 its packing made on the spot, beyond two million particles as replicas of a smaller one. The steady solver stands
 beside plain pyamg on the matrix of such spheres between walls.
 
-The paper's network is here twice: "DEM as in the paper" on replicas of small relaxed packings that are made on the
-spot; and on packings of `studies/common/paper_network.py`, from the cache: 150 000 particles of both kinds, and 8e6,
-the paper's number, replicas of 125 000 hard spheres. The cell has no walls: what those change is in
-`fig14_single_inclusion` and `fig17_etc`.
+"DEM as in the paper" stands on replicas of small relaxed packings that are made on the spot. What its packings and
+walls change is in `fig17_etc`, on this cell, too; the paper's number of particles, 8e6, is in `fig18_fields`.
 """
 
 import math
@@ -18,25 +16,17 @@ from importlib import import_module
 
 from demheat import referee
 from studies.common import silica_epoxy
-from studies.common.paper_network import NAME, PACKINGS
-from studies.common.paper_network import cases as network_cases
-from studies.common.paper_variants import parted, values, variants
 from studies.harness import methods
 from studies.harness.converged import converged
 from studies.harness.pick import largest, pick, present
 from studies.harness.printed import printed
-from studies.many_inclusions.means import network_errors
 from studies.many_inclusions.scenes import FRACTION, inside, spheres
 
-# What rows of the paper's network, whose `NAME` is spelt out, and of solvers side by side run: others do not change
-# with their modules.
+# What rows of solvers side by side run: others do not change with its module.
 STEADY = "steady"
-MODULES = {"network": "studies.many_inclusions.rows", STEADY: "studies.common.peers"}
+MODULES = {STEADY: "studies.common.peers"}
 PARTICLES = (10_000, 30_000, 100_000, 8_000_000)
 NETWORKS = {1: 10_000, 2: 100_000}  # replicas along an edge, and particles, of the paper's law
-# Of its packings: replicas along an edge, the packings that are repeated, and of which kinds; the first are those of
-# `fig17_etc`. Of the paper's number there is one, of the paper's own kind.
-REPLICATED = {150_000: (1, (0,), PACKINGS), 8_000_000: (4, (0,), ("lsa",))}
 VOXELS = (64, 128, 256, 512)
 # Eyre and Milton's scheme is extrapolated in `fig17_etc`, and as near with as many voxels as the scalar one.
 COARSER = VOXELS[:-1]
@@ -50,7 +40,6 @@ REASONS = {
     "Multipoles: last degree": "small beside the least error that is judged by them",
     "peak memory, GiB": "what a machine of 16 GiB can give",
     "within the paper's 0.5 %": "the paper's own number is the limit",
-    "off FFT, 512^3": "the paper's own number is the limit",
     "CPU time over that of pyamg's": "to be no slower than the library is what is asked",
 }
 PAPER = printed("many_inclusions")
@@ -67,8 +56,6 @@ def _cases():
             knobs = [methods.at(method, value) for value in methods.spent(method, RESOLUTIONS)]
         yield from (methods.case(method.name, **each) for each in knobs)
     yield {"name": STEADY, "particles": SOLVED, "seed": 0, "method": STEADY}
-    for number, (replicas, seeds, packings) in REPLICATED.items():
-        yield from network_cases([number], held=["periodic"], packings=packings, seeds=seeds, replicas=replicas)
 
 
 CASES = list(_cases())
@@ -77,21 +64,15 @@ CASES = list(_cases())
 def QUICK(case):
     """Coarse rows of the one cell, without elements, which spheres make fine and a quick run of `fig17_etc` has.
 
-    Nor the steady solver beside pyamg, which a quick run of `speed_error` has, nor the network's packings, which one of
-    `fig14_single_inclusion` has.
+    Nor the steady solver beside pyamg, which a quick run of `speed_error` has.
     """
     if case["name"] == "multipole":
         return case["highest"] in DEGREES[:3]
-    if case["name"] in (STEADY, NAME):
+    if case["name"] == STEADY:
         return False
     method = methods.found()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return coarsest.items() <= case.items() and case["method"] != "fem"
-
-
-def VALUES(case):
-    """The paper's network on packings that are kept, of which only errors are shown."""
-    return case["name"] == NAME
 
 
 def run(name, highest=None, *, method, **knobs):
@@ -99,8 +80,6 @@ def run(name, highest=None, *, method, **knobs):
     if method == STEADY:
         walled = silica_epoxy.scene("walled", FRACTION, seed=0, boundary="walls")
         return import_module(MODULES[STEADY]).steady(**knobs, scene=walled)
-    if method in MODULES:
-        return import_module(MODULES[method]).network_row(**knobs)
     if highest is not None:
         knobs["order"] = highest
     # Nothing is kept: packings are part of the cost.
@@ -114,33 +93,19 @@ def warm_up(name, highest=None, replicas=None, *, method, **knobs):
     if method == STEADY:
         silica_epoxy.scene("walled", FRACTION, seed=0, boundary="walls")
         methods.warm_up("dem", **knobs)
-    elif method in MODULES:
-        import_module(MODULES[method]).warm_up(**knobs, replicas=replicas or 1)
     else:
         spheres()
         methods.warm_up(method, **knobs)
 
 
 def claims(df):
-    """Every method against the multipoles at full size, and what it costs; the paper's network in the paper's measure.
+    """Every method against the multipoles at full size, and what it costs.
 
     Limits of errors are two to three times what was found; that of the memory is what a machine of 16 GiB can give, and
-    those of elements per inclusion and of the paper's network are what the paper prints. Quick rows are coarse.
+    that of elements per inclusion is what the paper prints. Quick rows are coarse.
     """
-    network, df = parted(df)
     df = errors(df)
-    yield from present([*_witness(df), *_dem(df), *_network_claims(network, df), *_others(df)])
-
-
-def _network_claims(network, df):
-    """The printed 0.5 % is between DEM of 8e6 and FFT of 512^3."""
-    fft = pick(df, name="fft", voxels=VOXELS[-1], precision=None)["k_ratio"]
-    rows = pick(network, particles=max(REPLICATED))
-    for variant in variants(["periodic"]) if len(fft) and len(rows) else ():
-        k = values(rows, variant, "k_spheres")
-        off = 100 * abs(referee.value_error(k, float(fft.iloc[0]))).max() if len(k) else None
-        text = f"The paper's network, {max(REPLICATED)} particles, {variant.words}: off FFT, {VOXELS[-1]}^3, %"
-        yield text, off, PAPER["dem_fft"]
+    yield from present([*_witness(df), *_dem(df), *_others(df)])
 
 
 def errors(df):
@@ -199,11 +164,11 @@ def table(df):
     """
     from studies.many_inclusions.tables import lines
 
-    return lines(errors(parted(df)[1]))
+    return lines(errors(df))
 
 
 def notes(df):
-    """The paper's network on both packings; how many tetrahedra there are beside the paper's."""
+    """How many tetrahedra there are beside the paper's."""
     from studies.many_inclusions.tables import told
 
     return told(df, PAPER)
@@ -211,7 +176,7 @@ def notes(df):
 
 def words(df):
     """The error of the DEM with as many particles as the first page has for one sphere."""
-    rows = pick(errors(parted(df)[1]), name="dem", particles=100_000)
+    rows = pick(errors(df), name="dem", particles=100_000)
     return f"{largest(rows, 'error_percent'):.2g} %"
 
 
@@ -219,5 +184,4 @@ def plot(df):
     """Error against CPU time and memory; against elements per inclusion; in degrees and voxels."""
     from studies.many_inclusions.figure import draw
 
-    df = df[df["status"] == "ok"]
-    return draw(errors(parted(df)[1]), network_errors(df), PAPER)
+    return draw(errors(df[df["status"] == "ok"]), PAPER)

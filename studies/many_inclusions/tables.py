@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 
 from studies.common import silica_epoxy
-from studies.common.paper_variants import shown
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
-from studies.many_inclusions.means import network_errors
 
 SHOWN = ("unknowns", "iterations", "cpu_s")
 
@@ -60,10 +58,7 @@ def _steady(df):
 
 
 def told(df, paper):
-    """Sentences below the table, and the network's errors where there are rows."""
-    what = "on its own kind of packing and on relaxed ones, C_t of the periodic cell: errors, %"
-    said = shown(network_errors(df), {"spheres": "error, %"}, what, " where there are more than one")
+    """A sentence below the table."""
     most = pick(df, name="fem-p1")["elements"].max() if "elements" in df else math.nan
     if most == most:
-        said.append(f"The finest linear elements are {most:.3g} tetrahedra, the paper's {paper['tetrahedra']:.3g}.")
-    return said
+        yield f"The finest linear elements are {most:.3g} tetrahedra, the paper's {paper['tetrahedra']:.3g}."
