@@ -18,8 +18,8 @@ from studies.intervals.scenes import KINDS
 EACH = 22  # Scenes of a kind
 # Methods that cost more are asked for the first of each kind.
 FIRST = {"dem": 11, "fem": 11, "fft-em": 11}
-# Thin ones have twins as close as they are thin, minutes of them, or elements as fine.
-DEAR = {("dem", "layers"): 3, ("dem", "needles, discs"): 5, ("fem", "needles, discs"): 5}
+# Thin ones have twins as close as they are thin, minutes of them.
+DEAR = {("dem", "layers"): 3, ("dem", "needles, discs"): 5}
 SHOWN = ("array", "layers", "half-space")
 # Whose truth is not theirs: single spheres in a cell.
 BY_MULTIPOLES = ("array", "speck", "copies")
