@@ -63,12 +63,6 @@ REASONS = {
     "temperature, % of degrees Celsius": "a tenth of what the paper prints; of its network all of it",
     "conductivity off the multipoles'": "the paper's own number is the limit",
 }
-# Why claims on the stored rows fail.
-FAILS = {
-    "DEM, 300000 particles, gradient, worst point of Table 3: flux": (
-        "the flux at one point of one packing scatters: with a third of the particles, and between walls, it is nearer"
-    ),
-}
 PAPER = printed("fig18_fields")
 TIMEOUT = 3600.0
 
