@@ -14,7 +14,8 @@ from studies import contents
 from studies.harness import replay, runner
 from studies.harness.claims import judged
 from studies.harness.groups import group_of
-from studies.harness.store import TAIL, VALUES, add_rows, case_key, read_rows
+from studies.harness.sound import values_only
+from studies.harness.store import MADE, TAIL, VALUES, add_rows, case_key, read_rows
 from studies.harness.table import markdown, read_frame
 from studies.harness.tolerance import COUNTED, moved, value_columns
 
@@ -78,6 +79,9 @@ def renewed(study, case, stored, row):
     state = {name: row.get(name) for name in ("status", "note", "residual")}
     # What was said of the old values is not said of these.
     state |= dict.fromkeys(VALUES, "") | {"values_commit": row["commit"], "values_when": row["when"]}
+    if values_only(study, case):
+        # What a record takes: no cost of that day is asked for, and older code may have taken longer.
+        state |= {name: row.get(name, "") for name in (MADE, "load")}
     return {**case, **costs, **values, **old, **state}
 
 

@@ -108,6 +108,15 @@ def test_an_accepted_change_gives_moved_rows_new_values_and_leaves_costs_and_the
     assert ran(old, "accept") == 0 and old.replayed == []
 
 
+def test_rows_for_their_values_say_how_long_the_new_code_took(old):
+    old.write(CASES, **{"def run(": 'def VALUES(case):\n    return case["name"] == "slow"\n\ndef run('})
+    study, rows = runner.load(old.name), old.rows()
+    for case in study.CASES:
+        stored = rows[store.case_key(case)] | {"made_s": "50", "load": "9"}
+        row = acceptance.renewed(study, case, stored, stored | {"made_s": 2.0, "load": 1.0})
+        assert (row["made_s"], row["load"]) == ((2.0, 1.0) if case["name"] == "slow" else ("50", "9"))
+
+
 def test_a_row_that_cannot_be_made_again_stays(old, capsys):
     """The cheapest of its group has moved, and this one fails now: it must not give way to nothing."""
     old.write(CASES, **{"def run(name, x):": "def run(name, x):\n    x = x * 2 if x < 3 else 1 / (x - 3)"})
