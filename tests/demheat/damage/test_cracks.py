@@ -110,7 +110,6 @@ def test_what_is_smaller_than_particles_is_said(crack):
         (lambda: Disc((0, 0, 0), 0.0, (0, 0, 1)), r"Disc.radius = 0.0"),
         (lambda: Disc((0, 0, 0), 1.0, (0, 0, 0)), "Disc.normal = "),
         (lambda: Rectangle((0, 0, 0), (1, 0, 0), (1, 1, 0)), "right angles"),
-        (lambda: Rectangle((0, 0, 0), (1, 0, 0), (0, 0, 0)), "right angles"),
     ],
 )
 def test_bad_cracks(make, match):

@@ -42,17 +42,13 @@ TABLE = {'shape = "sphere"\ncenter_mm = [5, 5, 5]\nradius_mm = 3': 'file = "bead
 BROKEN = [
     # Numbers and units.
     ("radius_mm = 3", "radius_mm = -3", 10, r"inclusions\[0\].radius_mm = -3: must be a finite number > 0 m"),
-    ("radius_mm = 3", "radius = inf", 10, r"inclusions\[0\].radius = inf: must be a finite"),
     ("radius_mm = 3", "radius_mm = true", 10, r"radius_mm = true: must be a number"),
-    ("radius_mm = 3", 'radius_mm = "3 mm"', 10, r"radius_mm = '3 mm': must be a number"),
     ("radius_mm = 3", 'radius = "3"', 10, r"radius = '3': must be a number, or text of a number and a unit such as '3 m'"),
     ("radius_mm = 3", 'radius = "3 mmm"', 10, r"unit 'mmm' is not known"),
     ("radius_mm = 3", 'radius = "3 kg"', 10, r"unit 'kg' does not fit; must be one like m"),
-    ("radius_mm = 3", 'radius = "3,5 mm"', 10, r"unit ',5 mm' is not known"),
     ("radius_mm = 3", "radius_inch = 3", 10, r"radius_inch: no such key here; did you mean 'radius"),
     ("radius_mm = 3", "radius_mm = 1e60", 7, r"inclusions\[0\]: sphere of diameter 2e\+57 is larger than the box"),
     ("center_mm = [5, 5, 5]", "center_mm = [5, 5]", 9, r"center_mm = \[5, 5\]: must be three finite numbers"),
-    ("radius_mm = 3", "radius_mm = 3\nresistance = -1", 11, r"inclusions\[0\].resistance = -1: must be"),
     ('"25 degC"', "{coefficient = 0, temperature = 3}", 13, r"coefficient = 0: must be a finite number > 0"),
     ('"25 degC"', '{coefficient = "3 W/m2", temperature = 3}', 13, r"unit 'W/m2' does not fit; must be one like W/\(m2 K\)"),
     ('"25 degC"', "{temperature = 3}", 13, r"walls.y-: must have one of flux, coefficient, emissivity"),
@@ -66,13 +62,11 @@ BROKEN = [
     ("size_mm = [10, 10, 10]", "", 1, r"size is missing"),
     ('"0.2 W/(m K)"', '"0.2 W/mK"', 4, r"materials.resin.conductivity.*'W/mK' does not fit; must be one like W/\(m K\)"),
     ('"0.2 W/(m K)"', '"0.2 W/(m K"', 4, r"unit 'W/\(m K' is not finished"),
-    ('"0.2 W/(m K)"', '"0.2 BTU/h"', 4, r"is not known at 'BTU'"),
     ("conductivity = 1.4", "conductivity = 1.4\nconductivity_W_mK = 2", 7, r"conductivity_W_mK: is conductivity once more"),
     ("conductivity = 1.4", "conductivty = 1.4", 6, r"conductivty: no such key here; did you mean 'conductivity'"),
     # Temperatures.
     ('"35 degC"', '"35 degF"', 14, r"walls.y\+ = '35 degF': unit 'degF' is none of a temperature; must be K or degC"),
     ('"35 degC"', "35", 14, r"walls.y\+: is without a unit, and that in line 13 in degC; all temperatures"),
-    ('"35 degC"', '{flux = "5 W"}', 14, r"unit 'W' does not fit; must be one like W/m2"),
     ('"y+" =', '"q+" =', 14, r"walls.q\+: no such key here"),
     ('"y+" =', "y+ =", 14, r"no TOML: .*; a key with a plus needs quotes"),
     ('"25 degC"\n"y+" = "35 degC"', '1.0\n"y+" = 1.0000000000001', 12, r"walls = .*: rounding leaves little"),
@@ -81,7 +75,6 @@ BROKEN = [
     ('matrix = "resin"', 'matirx = "resin"', 2, r"matirx: no such key here; did you mean 'matrix'"),
     ('matrix = "resin"', 'matrix = "resin"\ndomain = "sphre"', 3, r"domain = 'sphre': must be one of .*did you mean 'sphere'"),
     ('shape = "sphere"', 'shape = "ball"', 8, r"shape = 'ball': must be one of 'sphere', 'layer'"),
-    ("radius_mm = 3", "radus_mm = 3", 10, r"radus_mm: no such key here; did you mean 'radius_mm'"),
     ("radius_mm = 3", "", 7, r"inclusions\[0\]: radius is missing"),
     ("[[inclusions]]", "[inclusions]", 7, r"inclusions = .*: must be an array of tables, \[\[inclusions\]\]"),
     ("[materials.resin]", "[materials]\nresin = 0.2\n[materials.other]", 4, r"materials.resin = 0.2: must be a table"),
@@ -90,7 +83,6 @@ BROKEN = [
     ("voxels = 32", "voxels = {a = 1}", 16, r"solve.fft.voxels = {'a': 1}: must be a number, text, a flag or an array"),
     ('matrix = "resin"', 'matrix = "resin"\naccuracy = 2', 3, r"accuracy = 2: must be a number from 1e-9 to below 1"),
     # TOML itself.
-    ("radius_mm = 3", "radius_mm = ", 10, r"no TOML: invalid value"),
     ("radius_mm = 3", "radius_mm = 3\nradius_mm = 4", 11, r"no TOML: cannot overwrite a value"),
     ("[walls]", "[walls", 12, r"no TOML: expected ']'"),
 ]  # fmt: skip
@@ -162,7 +154,6 @@ def test_two_inclusions_that_overlap_are_both_placed(tmp_path):
 TABLES = [
     ("", 1, r"is empty; must begin with a line of names"),
     ("x,y,z,radius\n", 1, r"has names and no rows"),
-    ("1,2,3,4\n", 1, r"must have x, y, z, radius among them"),
     ("x,y,radius\n1,2,3\n", 1, r"columns 'x, y, radius': must have z among them"),
     ("x,y,z,raduis\n1,2,3,4\n", 1, r"no such column, 'raduis'; did you mean 'radius'"),
     ("x,y,z,radius,diameter\n1,2,3,4,8\n", 1, r"columns radius and diameter; must be one of them"),
@@ -225,10 +216,8 @@ def test_a_broken_entry_of_a_file(tmp_path, more, line, words):
     [
         (b"\xff\xfes\0i\0z\0e\0", r"scene\.toml:1: zero bytes, as in a binary file or UTF-16"),
         (b"size = [1, 1, 1]\nmatrix = '\xe9'\n", r"scene\.toml:2: byte 0xe9 is no UTF-8"),
-        (b"\x89PNG\r\n\x1a\n\0\0", r"scene\.toml:3: zero bytes"),
         (b"", r"scene\.toml:1: size is missing"),
         (b"a = " + b"[" * 5000, r"scene\.toml(:1)?: no TOML"),
-        (b"a = " + b"9" * 5000, r"scene\.toml(:1)?: no TOML"),
     ],
 )
 def test_what_is_no_scene(tmp_path, text, words):

@@ -1,5 +1,7 @@
 """Only here: twins whose facets leave their interface, whose phases lack volume, or that meet in a gap."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -12,6 +14,7 @@ from demheat.packing.cache import relaxed
 from demheat.packing.conforming import GAP_SPACING, conform
 from demheat.packing.interfaces import fibonacci_sphere
 from demheat.packing.patterns import Tally
+from demheat.packing.tile import tiled
 
 MATRIX, OTHER = Material(1.0), Material(10.0)
 
@@ -175,3 +178,24 @@ def test_twins_beyond_the_other_side_are_none():
     normals = fibonacci_sphere(20)
     twins = conforming._Twins(0.5 + 0.01 * normals, normals, np.tile([0.003, 0.03], 10))
     assert conforming._in_place(twins, scene(Sphere((0.5, 0.5, 0.5), 0.01, OTHER))).tolist() == [True, False] * 10
+
+
+def test_twins_on_a_flat_interface_weigh_as_much_as_particles():
+    """So do cells on both sides of them: with another weight facets bulge where twins end."""
+    base = tiled(2000, size=(1.0, 1.0, 1.0), seed=1)
+    packing, radius = conform(base, scene(Layer(2, 0.3, 0.7, OTHER)), seed=1), base.radii[0]
+    away = np.minimum(np.abs(packing.centers[:, 2] - 0.3), np.abs(packing.centers[:, 2] - 0.7))
+    twins, far = np.abs(away - 0.5 * radius) < 1e-9, away > 4 * radius
+    assert np.sum(twins) == packing.provenance["twins"] and np.sum(far) > 100
+    # Squares taken and roots drawn: rounding.
+    assert_allclose(packing.radii[twins], packing.radii[far][0], rtol=1e-12)
+
+
+def test_twins_stay_off_what_does_not_face_them():
+    """Alone; at a quarter of the way to another surface, half of that to a wall, half of the depth behind them."""
+    far = np.full(4, np.inf)
+    ways = {name: far.copy() for name in ("width", "gap", "way_to_wall", "depth")} | {"bend": np.zeros(4)}
+    ways["gap"][1], ways["way_to_wall"][2], ways["depth"][3] = 0.4, 0.1, 0.12
+    interfaces = SimpleNamespace(**{name: lambda *_, each=each: each for name, each in ways.items()})
+    found = conforming._offsets(None, None, None, interfaces, 1.0)
+    assert_allclose(found, [conforming.OFFSET, 0.1, 0.05, 0.06], rtol=1e-15)
