@@ -67,6 +67,15 @@ SCENES = {
 }
 
 
+# One dispersion is enough for programs of others.
+SAME = "dispersion 0.1"
+
+
+def bodies(*less: str) -> tuple[str, ...]:
+    """Names of the bodies that programs of others are given, less some."""
+    return tuple(name for name in SCENES if name not in (SAME, *less))
+
+
 def scene(name: str) -> Scene:
     """A body."""
     return BEDS[name] if name in BEDS else SCENES[name][0]()

@@ -13,6 +13,7 @@ import numpy as np
 
 from references.mesh import Mesh, make
 from references.mesh.cells import Wall
+from studies.peers.given import bodies
 
 # Faces of the box: number and name in files, where "-" is no letter of a name.
 FACES = {
@@ -29,18 +30,7 @@ FIRST = 11
 TRIANGLES, TETRAHEDRA = {3: 2, 6: 9}, {4: 4, 10: 11}
 GMSH_ORDER = (0, 1, 2, 3, 4, 5, 6, 7, 9, 8)
 # What the rows ask for; linear elements of each size.
-BODIES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 1000",
-    "sphere 0.01",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+BODIES = bodies("pore")
 SIZES = (0.08, 0.05, 0.03)
 # Digits that give every number back.
 EXACT = "%.17g"

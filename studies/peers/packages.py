@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +13,11 @@ from studies.peers.given import image
 from studies.peers.outside import Found, asked, python_of
 
 SCRIPTS = Path(__file__).parent / "programs" / "scripts"
+
+
+def asked_of(name: str, get: str, *, module: str | None = None):
+    """A program's `missing` and `version`, where it is a package: of that name, unless a module of another has it."""
+    return partial(missing, name, get, module), partial(version, name, module or name, module)
 
 
 def missing(name: str, get: str, module: str | None = None) -> str | None:

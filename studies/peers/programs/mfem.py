@@ -9,6 +9,7 @@ Its documentation prints no value of a steady solution with its error that runs 
 from __future__ import annotations
 
 from studies.peers import packages
+from studies.peers.given import bodies
 
 TITLE = "MFEM"
 KIND = "image"
@@ -17,32 +18,11 @@ CANNOT = {
     "hypre's multigrid": "the package of the Python index is built without MPI, which its interface to hypre needs"
 }
 EXPLAINED = "stairs of voxels; energies of finite elements are too large at any order"
-SCENES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 1000",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies()
 # Voxels by order: as many unknowns on half of them.
 VOXELS = {1: (16, 32, 64), 2: (16, 32)}
 CASES = tuple({"scene": scene, "order": order, "n": n} for scene in SCENES for order in VOXELS for n in VOXELS[order])
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("mfem", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("mfem", "mfem")
+missing, version = packages.asked_of("mfem", GET)
 
 
 def solve(scene, *, n, order=1):

@@ -8,12 +8,12 @@ coordinates of the box; areas and volumes are computed here. Its documentation p
 from __future__ import annotations
 
 import tempfile
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 
-from studies.peers.outside import Found, asked, python_of, ran
+from studies.peers import packages
+from studies.peers.outside import Found, asked, python_of
 
 TITLE = "Voro++ (multivoro)"
 KIND = "packing"
@@ -33,18 +33,7 @@ EXPLAINED = "the error is that of the network, which is ours, to rounding"
 SCRIPT = Path(__file__).parent / "scripts" / "multivoro_cells.py"
 # Facets this small, in squared mean spacings, are rounding where more than four cells meet: as ours leaves them out.
 SLIVER = 1e-11
-
-
-def missing() -> str | None:
-    """None, or that it is not installed."""
-    return None if python_of("multivoro") else "multivoro is not installed (pip: multivoro)"
-
-
-@cache
-def version() -> str:
-    """Of the package."""
-    tell = "from importlib.metadata import version; print(version('multivoro'))"
-    return ran([python_of("multivoro"), "-c", tell])[0].strip()
+missing, version = packages.asked_of("multivoro", GET)
 
 
 def solve(scene, *, particles, conforming=True) -> Found:

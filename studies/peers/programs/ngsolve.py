@@ -14,23 +14,14 @@ from functools import singledispatch
 
 from demheat.scene import Layer, Shape, Sphere
 from studies.peers import packages
+from studies.peers.given import bodies
 
 TITLE = "NGSolve"
 KIND = "body"
 GET = "pip: ngsolve"
 CANNOT = {"other shapes": "only spheres and layers are drawn here, though its OpenCASCADE knows more"}
 EXPLAINED = "half 10: elements that bend into the gap at the walls, 0.008 of the edge, fold above an edge of 0.06"
-SCENES = (
-    "homogeneous",
-    "layers off the grid",
-    "sphere 10",
-    "sphere 1000",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies("layers across", "layers along")
 # Edges, in those of the cube, by order: few high elements, or many low ones.
 SIZES = {2: (0.2, 0.1, 0.06), 3: (0.2, 0.1, 0.06), 5: (0.2, 0.1)}
 CASES = tuple(
@@ -39,16 +30,7 @@ CASES = tuple(
     for order, sizes in SIZES.items()
     for size in sizes
 )
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("ngsolve", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("ngsolve", "ngsolve")
+missing, version = packages.asked_of("ngsolve", GET)
 
 
 def solve(scene, *, size, order=2):

@@ -11,6 +11,7 @@ https://github.com/BASE-Laboratory/OpenImpala, version 4.4.9.
 from __future__ import annotations
 
 from studies.peers import packages
+from studies.peers.given import bodies
 from studies.peers.outside import asked, python_of
 
 TITLE = "OpenImpala"
@@ -22,16 +23,7 @@ EXPLAINED = (
     "homogeneous body conducts n / (n - 1) of what it should, as its manual says. MLMG has a little too "
     "much flux where an insulator meets a wall"
 )
-SEVERAL = (
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 0.01",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SEVERAL = bodies("homogeneous", "sphere 1000", "pore")
 CASES = (
     *(
         {"scene": scene, "n": n, "solver": solver}
@@ -43,16 +35,7 @@ CASES = (
     # What it refuses.
     {"scene": "sphere 10", "n": 16, "solver": "mlmg"},
 )
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("openimpala", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("openimpala", "openimpala")
+missing, version = packages.asked_of("openimpala", GET)
 
 
 def solve(scene, *, n, solver="mlmg"):

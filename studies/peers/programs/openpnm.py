@@ -10,6 +10,7 @@ https://openpnm.org, version 3.6.4, and https://porespy.org, version 3.2.0.
 from __future__ import annotations
 
 from studies.peers import packages
+from studies.peers.given import bodies
 from studies.peers.outside import asked, python_of
 
 TITLE = "OpenPNM"
@@ -20,18 +21,7 @@ EXPLAINED = (
     "walls in the pores of the first and last slices are half a voxel inside, over n - 1 voxels: so does PoreSpy's "
     "tortuosity_fd. With boundary pores layers that end between voxels are exact"
 )
-SCENES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies("sphere 1000")
 CASES = (
     *({"scene": scene, "n": n, "by": "boundary pores"} for scene in SCENES for n in (16, 32, 64)),
     *({"scene": scene, "n": n, "by": "pores"} for scene in ("layers off the grid", "pore") for n in (16, 32, 64)),
@@ -39,16 +29,7 @@ CASES = (
     # What it refuses.
     {"scene": "sphere 10", "n": 16, "by": "tortuosity_fd"},
 )
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("openpnm", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("openpnm", "openpnm")
+missing, version = packages.asked_of("openpnm", GET)
 
 
 def solve(scene, *, n, by="boundary pores"):

@@ -17,16 +17,7 @@ GET = "apt: python3-petsc4py-real"
 CANNOT = {"pores": "particles without an equation, which only our own solver knows"}
 EXPLAINED = "all of it: the error is that of our network, whoever solves it"
 CASES = networks.cases(("gamg", "boomeramg"))
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("petsc", GET, "petsc4py")
-
-
-def version():
-    """Of the package."""
-    return packages.version("petsc", "petsc4py", "petsc4py")
+missing, version = packages.asked_of("petsc", GET, module="petsc4py")
 
 
 def solve(scene, *, particles, solver="gamg"):

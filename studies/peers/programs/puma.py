@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from studies.peers import packages
+from studies.peers.given import bodies
 from studies.peers.outside import asked, python_of
 
 TITLE = "PuMA"
@@ -22,18 +23,7 @@ EXPLAINED = (
     "its walls are at the centres of the first and last voxels: a body shorter by half a voxel at each end, over n - 1 "
     "voxels; a homogeneous body or equal halves do not show it"
 )
-SCENES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies("sphere 1000")
 # Those that mirror themselves in the middle between the walls, and so do not notice periods.
 MIRRORED = ("sphere 10", "half 10")
 CASES = (
@@ -46,16 +36,7 @@ CASES = (
     {"scene": "dispersion 10", "n": 16, "by": "fe"},
 )
 UNIT = 1e-6
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("pumapy", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("pumapy", "pumapy")
+missing, version = packages.asked_of("pumapy", GET)
 
 
 def solve(scene, *, n, by="fv", unit=UNIT):

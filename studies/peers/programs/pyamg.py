@@ -14,16 +14,7 @@ GET = "pip: pyamg"
 CANNOT = {"pores": "particles without an equation, which only our own solver knows"}
 EXPLAINED = "all of it: the error is that of our network, whoever solves it"
 CASES = networks.cases(("ruge_stuben", "smoothed_aggregation"))
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("pyamg", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("pyamg", "pyamg")
+missing, version = packages.asked_of("pyamg", GET)
 
 
 def solve(scene, *, particles, solver="ruge_stuben"):

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from studies.peers import packages
 from studies.peers.outside import Found, asked, python_of, ran
 
 TITLE = "spheropack"
@@ -29,18 +30,7 @@ EXPLAINED = "the error is that of the network, which is ours; packings matter wh
 SCRIPT = Path(__file__).parent / "scripts" / "spheropack_pack.py"
 # Fraction that packings between walls reach well before they jam, and growth rate, its default.
 DENSITY, GROWTH = 0.58, 0.02
-
-
-def missing() -> str | None:
-    """None, or that it is not installed."""
-    return None if python_of("spheropack") else "spheropack is not installed (pip: spheropack)"
-
-
-@cache
-def version() -> str:
-    """Of the package."""
-    tell = "from importlib.metadata import version; print(version('spheropack'))"
-    return ran([python_of("spheropack"), "-c", tell])[0].strip()
+missing, version = packages.asked_of("spheropack", GET)
 
 
 def solve(scene, *, particles, conforming, density=DENSITY, seed=0) -> Found:

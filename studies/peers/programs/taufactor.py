@@ -10,6 +10,7 @@ https://github.com/tldr-group/taufactor, version 1.2.1 with PyTorch 1.13.
 from __future__ import annotations
 
 from studies.peers import packages
+from studies.peers.given import bodies
 from studies.peers.outside import asked, python_of
 
 TITLE = "TauFactor"
@@ -21,18 +22,7 @@ EXPLAINED = (
     "last slices, and divides by n + 1 voxels: a laminate is wrong, a homogeneous body or equal halves are not. "
     "`Solver` has them on the faces"
 )
-SCENES = (
-    "homogeneous",
-    "layers across",
-    "layers off the grid",
-    "layers along",
-    "sphere 10",
-    "sphere 0.01",
-    "pore",
-    "half 10",
-    "coated",
-    "dispersion 10",
-)
+SCENES = bodies("sphere 1000")
 CASES = (
     *({"scene": scene, "n": n, "solver": "MultiPhaseSolver"} for scene in SCENES for n in (16, 32, 64)),
     {"scene": "sphere 10", "n": 128, "solver": "MultiPhaseSolver"},
@@ -43,16 +33,7 @@ CASES = (
 )
 # Voxels along an edge, and what single precision can reach with so many.
 TOLERANCES, BEYOND = ((32, 1e-4), (64, 3e-4)), 1e-3
-
-
-def missing():
-    """Why it cannot run here."""
-    return packages.missing("taufactor", GET)
-
-
-def version():
-    """Of the package."""
-    return packages.version("taufactor", "taufactor")
+missing, version = packages.asked_of("taufactor", GET)
 
 
 def solve(scene, *, n, solver="MultiPhaseSolver"):
