@@ -50,8 +50,8 @@ def _cases():
             yield {"name": name, "given": program(name).KIND, **case, "method": name}
     for name, kind, scene, knobs in ours():
         yield methods.case(name, given=kind, scene=scene, **knobs)
-    for scene, knobs in our_beds():
-        yield {"name": "grains", "given": "packing", "scene": scene, **knobs, "method": "grains"}
+    for case in our_beds():
+        yield {"name": "grains", "given": "packing", **case, "method": "grains"}
 
 
 CASES = thinned(list(_cases()))

@@ -172,6 +172,14 @@ ARRANGEMENTS = {
     "random bed": (_random, _by_elimination),
 }
 BEDS = {f"{name}, {law}": Scene(name, law) for name in ARRANGEMENTS for law in LAWS}
+# Layers of grains or cells that rows have, few and many where few do not tell; at random there is one size.
+LAYERS = {"chain": (10, 40), "unlike chain": (10,), "simple cubic": (8, 16), "body-centred": (6, 12), "random bed": ()}
+
+
+def cases(law, *, most=None):
+    """Scene and layers of all arrangements by a law, of each so many numbers of layers at most."""
+    for name, layers in LAYERS.items():
+        yield from ({"scene": f"{name}, {law}"} | knobs for knobs in [{"n": n} for n in layers[:most]] or [{}])
 
 
 @cache

@@ -2,6 +2,7 @@
 
 import math
 
+from studies.peers import beds
 from studies.peers.given import SCENES
 
 VOXELS = (16, 32, 64, 128)
@@ -17,9 +18,8 @@ ON_BODIES = {
     STRAIGHT: ("size", (0.08, 0.05)),
     "fft": ("voxels", (32, 64, 128)),
 }
-# Laws that programs of grains print, and layers of grains or cells; at random there is one size.
+# Laws that programs of grains print.
 PRINTED = ("root of area", "Hertz radius", "Hertz area", "whole grain", "cylinder")
-BED_LAYERS = {"chain": 10, "unlike chain": 10, "simple cubic": 8, "body-centred": 6, "random bed": None}
 # What refines a program, and the sign with which it does; bodies at every resolution, at two, and at one.
 REFINES = {"n": 1, "voxels": 1, "particles": 1, "size": -1}
 EVERY, TWO = ("sphere 10",), ("half 10", "dispersion 10")
@@ -53,10 +53,9 @@ def ours():
 
 
 def our_beds():
-    """Scene and layers of the beds that programs of grains have: the same by `demheat.grains`."""
+    """Cases of the beds that programs of grains have: the same by `demheat.grains`."""
     for law in PRINTED:
-        for arrangement, n in BED_LAYERS.items():
-            yield f"{arrangement}, {law}", {"n": n} if n else {}
+        yield from beds.cases(law, most=1)
 
 
 def thinned(cases):

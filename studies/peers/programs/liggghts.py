@@ -29,14 +29,7 @@ CANNOT = {
 }
 LAW = "root of area"
 CASES = (
-    {"scene": f"chain, {LAW}", "n": 10},
-    {"scene": f"chain, {LAW}", "n": 40},
-    {"scene": f"unlike chain, {LAW}", "n": 10},
-    {"scene": f"simple cubic, {LAW}", "n": 8},
-    {"scene": f"simple cubic, {LAW}", "n": 16},
-    {"scene": f"body-centred, {LAW}", "n": 6},
-    {"scene": f"body-centred, {LAW}", "n": 12},
-    {"scene": f"random bed, {LAW}"},
+    *beds.cases(LAW),
     {"scene": "chain, disc", "n": 10},
     {"scene": "random bed, disc"},
 )

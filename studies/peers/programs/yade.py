@@ -32,19 +32,8 @@ CANNOT = {
 }
 WHOLE, KERN = "whole grain", "cylinder"
 CASES = (
-    {"scene": f"chain, {WHOLE}", "n": 10},
-    {"scene": f"chain, {WHOLE}", "n": 40},
-    {"scene": f"unlike chain, {WHOLE}", "n": 10},
-    {"scene": f"simple cubic, {WHOLE}", "n": 8},
-    {"scene": f"simple cubic, {WHOLE}", "n": 16},
-    {"scene": f"body-centred, {WHOLE}", "n": 6},
-    {"scene": f"body-centred, {WHOLE}", "n": 12},
-    {"scene": f"random bed, {WHOLE}"},
-    {"scene": f"chain, {KERN}", "n": 10},
-    {"scene": f"unlike chain, {KERN}", "n": 10},
-    {"scene": f"simple cubic, {KERN}", "n": 8},
-    {"scene": f"body-centred, {KERN}", "n": 6},
-    {"scene": f"random bed, {KERN}"},
+    *beds.cases(WHOLE),
+    *beds.cases(KERN, most=1),
     {"scene": "random bed, disc"},
 )
 EXPLAINED = "of a disc between half-spaces: contacts as wide as the grain, or cylinders from centre to centre"
