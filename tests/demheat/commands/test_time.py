@@ -1,13 +1,11 @@
 """Only here: --seconds without effect, and what cannot be written said after the solve."""
 
 import csv
-from importlib import import_module
 
 import numpy as np
 import pytest
 
 from demheat import Image, Material, Scene, files, gallery
-from demheat.cheapest.answers import Answer
 from demheat.commands import compare, main, solve
 
 
@@ -73,21 +71,6 @@ def test_compare_goes_on_where_the_time_was_over(capsys, scene, tmp_path, monkey
 def test_effective_without_an_answer(capsys, scene):
     status, out, err = run(capsys, "effective", scene, "--method", "fft", "--seconds", "1e-9")
     assert (status, out) == (1, "") and "seconds = 1e-09 are over, in fft; no answer is done" in err
-
-
-def test_effective_with_a_wider_one(capsys, scene, monkeypatch):
-    halves = iter([1.2])
-
-    def answer(way, loads):
-        for half in halves:
-            return Answer(40 * np.eye(3), half * np.eye(3), "stub")
-        raise TimeoutError("seconds = 5 are over, in cells")
-
-    # The module has the name of its function.
-    monkeypatch.setattr(import_module("demheat.cheapest.effective"), "answer", answer)
-    status, out, err = run(capsys, "effective", scene, "--method", "fft", "--accuracy", "0.01", "--seconds", "5")
-    assert status == 1 and "40.0 +- 1" in out
-    assert err == "demheat: warning: effective: fft: seconds = 5 are over, in cells; accuracy is 0.03 only\n"
 
 
 def test_what_cannot_be_written_is_said_before_it_is_solved(capsys, scene, tmp_path, monkeypatch):

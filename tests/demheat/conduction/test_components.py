@@ -12,7 +12,7 @@ import demheat
 from demheat import Flux, Layer, Material, Scene
 from demheat.conduction import components
 from demheat.conduction import components_kernels as kernels
-from demheat.network.base import Network, image_shifts, without_links
+from demheat.network.base import image_shifts
 
 PORE, ONE = Material(0.0), Material(1.0)
 
@@ -95,29 +95,3 @@ def test_an_imposed_flux_passes_a_body_or_is_refused():
     field = demheat.solve(Scene((1, 1, 1), ONE, pore.inclusions, walls={"y-": 20.0, "y+": Flux(0.0)}), particles=500)
     assert_array_equal(field.temperature_at([[0.5, 0.1, 0.5], [0.5, 0.9, 0.5]]), [20.0, np.nan])
     assert np.isnan(field.wall_temperature["y+"]) and field.wall_heat == {"y-": 0.0, "y+": 0.0}
-
-
-def test_links_of_still_particles_go_both_ways():
-    links, places = random_links(30, seed=4)
-    empty = np.empty(0)
-    network = Network(
-        places.centers,
-        places.size,
-        links.indptr,
-        links.indices,
-        places.image,
-        links.conductance,
-        np.array([3, 4]),
-        np.array([0, 1]),
-        np.array([1.0, 2.0]),
-        empty,
-        empty,
-        np.ones(30),
-        np.zeros(30, int),
-    )
-    still = np.arange(30) < 4
-    cut = without_links(network, still)
-    for i, e, j, h in each_link(links):
-        assert cut.conductance[e] == (0.0 if still[i] or still[j] else h)
-    assert_array_equal(cut.wall_conductance, [0.0, 2.0])
-    assert_array_equal(network.conductance, links.conductance)

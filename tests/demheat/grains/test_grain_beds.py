@@ -190,3 +190,16 @@ def test_solids_and_places_that_make_no_sense():
     with pytest.raises(ValueError, match="layers of two walls share grains"):
         walls = {"x-": 1.0, "z-": 2.0}
         grains.solve(crystal("sc", periodic=False), K, walls=walls, gap=AIR, layer=1.01 * RADIUS)
+
+
+LONE = make_packing([[1, 1, 1], [3, 3, 3]], [0.4, 0.4], (4, 4, 4), True, {})
+
+
+def test_a_bed_that_conducts_nothing_says_so():
+    with pytest.warns(UserWarning, match="no two grains touch"):
+        assert grains.solve(LONE, 10.0, gradient=(0, 0, 1), gap=Gap(conductivity=0.2)).conductivity == 0
+
+
+def test_walls_of_a_periodic_packing():
+    with pytest.raises(ValueError, match="must be a gradient instead"):
+        grains.solve(LONE, 10.0, walls={"z-": 0.0, "z+": 1.0})

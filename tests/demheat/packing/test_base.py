@@ -1,7 +1,6 @@
 """Only here: a packing whose radii part from their centres, or that lies in memory as no neighbours do."""
 
 import numpy as np
-import pytest
 from numpy.testing import assert_allclose
 
 from demheat.packing.base import make_packing, morton_order, wrap
@@ -43,22 +42,3 @@ def test_phi_and_scaling():
     small = packing.scaled(0.1)
     assert_allclose(small.phi, np.pi / 6, rtol=1e-14)  # rounding
     assert_allclose(small.centers, 0.05, rtol=1e-15)
-
-
-def test_domains():
-    """Volumes by school formulas; a centre in a corner of the box is outside a round domain."""
-    center, corner = [[0.5, 0.5, 1.0]], [[0.05, 0.05, 1.0]]
-    for domain, size, volume in (
-        ("box", (1, 1, 2), 2.0),
-        ("cylinder-z", (1, 1, 2), np.pi * 0.25 * 2),
-        ("sphere", (2, 2, 2), 4 / 3 * np.pi),
-    ):
-        packing = make_packing(center, [0.1], size, False, {}, domain=domain)
-        assert_allclose(packing.volume, volume, rtol=1e-15)  # rounding
-        assert_allclose(packing.phi, 4 / 3 * np.pi * 1e-3 / volume, rtol=1e-14)  # rounding
-        if domain != "box":
-            with pytest.raises(ValueError, match="outside the domain"):
-                make_packing(corner, [0.1], size, False, {}, domain=domain)
-    make_packing(corner, [0.1], (1, 1, 2), False, {})
-    make_packing([[1.0, 0.05, 0.05]], [0.1], (2, 1, 1), (True, False, False), {}, domain="box")
-    make_packing([[0.1, 0.5, 0.5]], [0.1], (2, 1, 1), (True, False, False), {}, domain="cylinder-x")

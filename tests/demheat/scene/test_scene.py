@@ -232,25 +232,6 @@ def test_a_moving_source():
         made.require(steady=True)
 
 
-@pytest.mark.parametrize("periodic", [True, False])
-def test_phases_of_many_points_are_those_of_each_inclusion_asked_apart(periodic):
-    rng = np.random.default_rng(3)
-    load = {"gradient": (0, 1, 0)} if periodic else {"walls": {"y-": 0.0, "y+": 1.0}}
-    centers = (np.stack(np.meshgrid(*[np.arange(3)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5) / 3
-    balls = [Sphere(tuple(c + 0.02), r, Material(2.0)) for c in centers for r in (0.13, 0.1)]
-    scene = Scene(size=(1, 1, 1), matrix=Material(1.0), inclusions=balls, **load)
-    # Half of them in order, so that most blocks meet few spheres, and half at random.
-    points = rng.random((20_000, 3))
-    points[:10_000] = points[:10_000][np.lexsort((points[:10_000] * 6).astype(int).T)]
-    slow = np.zeros(len(points), dtype=int)
-    for number, ball in enumerate(balls, start=1):
-        away = points - ball.center
-        away -= np.round(away) if periodic else 0.0
-        slow[np.linalg.norm(away, axis=1) <= ball.radius] = number
-    assert np.array_equal(scene.phase_at(points), slow)
-    assert len(np.unique(slow)) == 55
-
-
 class TestExtremes:
     """What floating point cannot hold is refused: it gave zeros and not-a-number without a word."""
 
