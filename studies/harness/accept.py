@@ -15,7 +15,7 @@ from studies.harness import replay, runner
 from studies.harness.claims import judged
 from studies.harness.groups import group_of
 from studies.harness.sound import values_only
-from studies.harness.store import MADE, TAIL, VALUES, add_rows, case_key, read_rows
+from studies.harness.store import MADE, TAIL, VALUES, add_rows, case_key, number_of, read_rows
 from studies.harness.table import markdown, read_frame
 from studies.harness.tolerance import COUNTED, moved, value_columns
 
@@ -135,7 +135,7 @@ def _groups(name, study, rows, fresh):
     table = []
     for group, pairs in lines.items():
         errors, seconds = (
-            [[_number(row.get(name)) for row in side] for side in zip(*pairs, strict=True)]
+            [[number_of(row, name) for row in side] for side in zip(*pairs, strict=True)]
             for name in ("error_percent", "cpu_s")
         )
         table.append(
@@ -156,10 +156,3 @@ def _arrow(old, new):
 
 def _median(values):
     return sorted(map(abs, values))[len(values) // 2]
-
-
-def _number(value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan

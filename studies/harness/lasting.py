@@ -7,7 +7,7 @@ from datetime import datetime
 
 from studies.harness.replay import WORKERS
 from studies.harness.sound import uncosted
-from studies.harness.store import MADE, case_key, read_rows
+from studies.harness.store import MADE, case_key, number_of, read_rows
 
 # A row takes so long besides, s: its process, a warm-up and a look at what others do; and where values alone count.
 START, ALONE = 1.0, 0.3
@@ -24,10 +24,10 @@ def seconds(study, path, cases):
     for key in map(case_key, cases):
         row = rows.get(key, {})
         if key in alone:
-            one = _first(_made(row), _first(_number(row, "cpu_s"), own.get(key, math.nan)) + ALONE)
+            one = _first(_made(row), _first(number_of(row, "cpu_s"), own.get(key, math.nan)) + ALONE)
             found[key] = one / WORKERS
         else:
-            found[key] = _first(_number(row, MADE), own.get(key, math.nan) + START)
+            found[key] = _first(number_of(row, MADE), own.get(key, math.nan) + START)
     return found
 
 
@@ -36,7 +36,7 @@ def _made(row):
 
     Each of so many threads as want a processor (the load) has the same share of two.
     """
-    return _number(row, MADE) * WORKERS / max(_first(_number(row, "load"), 0.0), WORKERS)
+    return number_of(row, MADE) * WORKERS / max(_first(number_of(row, "load"), 0.0), WORKERS)
 
 
 def told(lasting):
@@ -57,7 +57,7 @@ def _own(rows):
     """What rows took themselves, s, by the case: a cost may be extrapolated, and then less time went by."""
     found, before = {}, -math.inf
     for now, key in sorted((_moment(row), key) for key, row in rows.items()):
-        wall = _first(_number(rows[key], "wall_s"), 0.0) * _first(_number(rows[key], "repeats"), 1.0)
+        wall = _first(number_of(rows[key], "wall_s"), 0.0) * _first(number_of(rows[key], "repeats"), 1.0)
         found[key], before = min(wall, _first(now - before, math.inf)), now
     return found
 
@@ -73,10 +73,3 @@ def _moment(row):
 def _first(*values):
     """The first that is a number."""
     return next((value for value in values if math.isfinite(value)), math.nan)
-
-
-def _number(row, name):
-    try:
-        return float(row.get(name) or math.nan)
-    except ValueError:
-        return math.nan

@@ -8,7 +8,7 @@ from collections import Counter
 
 from studies.harness.provenance import guest_case, of_this_code
 from studies.harness.quiet import NOISY
-from studies.harness.store import case_key, read_rows
+from studies.harness.store import case_key, number_of, read_rows
 
 DIRTY, NOISE = FAULTS = ("dirty", "noisy")
 # Commits that are named.
@@ -27,13 +27,13 @@ def faults(row):
     - noisy: others used more than a tenth of the processors around it, or nobody knows, or it compiled kernels in
       more than a tenth of its time; only rows with costs are.
     """
-    wrong = ("+" in str(row.get("commit")), math.isfinite(_number(row.get("cpu_s"))) and not _quiet(row))
+    wrong = ("+" in str(row.get("commit")), math.isfinite(number_of(row, "cpu_s")) and not _quiet(row))
     return tuple(name for name, yes in zip(FAULTS, wrong, strict=True) if yes)
 
 
 def _quiet(row):
-    compiled, wall = _number(row.get("compile_s")), _number(row.get("wall_s"))
-    return _number(row.get("noise")) <= NOISY and not compiled > NOISY * wall
+    compiled, wall = number_of(row, "compile_s"), number_of(row, "wall_s")
+    return number_of(row, "noise") <= NOISY and not compiled > NOISY * wall
 
 
 def values_only(study, case):
@@ -79,13 +79,6 @@ def cost_columns(study, df):
     """Names of a data frame's, or of a row's, columns that hold costs."""
     own = getattr(study, "COSTS", ())
     return [name for name in df if name in own or COSTS.fullmatch(name)]
-
-
-def _number(value):
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        return math.nan
 
 
 def total(found):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 import tempfile
 from contextlib import contextmanager
 from pathlib import Path
@@ -52,6 +53,14 @@ def read_rows(path):
     except (OSError, ValueError, csv.Error) as error:
         raise ValueError(f"{path}: must hold rows of a study as CSV: {error}; mend it or move it away") from None
     return {row["case"]: row for row in rows}
+
+
+def number_of(row, name):
+    """A cell of a row as a number; not-a-number if it is none or not there."""
+    try:
+        return float(row.get(name))
+    except (TypeError, ValueError):
+        return math.nan
 
 
 def check_writable(folder):
