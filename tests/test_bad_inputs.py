@@ -275,7 +275,6 @@ OTHERS = {
     "Tensor": "made by the bounds",
     "cached": "keeps what any function makes",
 }
-CALLS = [(row, argument) for row in range(len(TABLE)) for argument in TABLE[row][2]]
 
 
 def called(call, arguments):

@@ -8,7 +8,7 @@ from method_scenes import METHODS, allowed, answered
 from numpy.testing import assert_allclose
 
 import demheat
-from demheat import Dependence, Layer, Material, Scene, Sphere, dem, files, orthotropic
+from demheat import Dependence, Layer, Material, Scene, Sphere, dem, orthotropic
 from demheat.build import network_of
 from demheat.commands.bounds import bounds_of
 from demheat.conduction.steady import solve_steady
@@ -139,16 +139,3 @@ def test_between_walls_elements_and_voxels_agree():
 
 def test_no_bounds_are_claimed():
     assert bounds_of(bent()) == [] and bounds_of(warm()) == []
-
-
-def test_files_hold_both(tmp_path):
-    for number, scene in enumerate((bent(), warm(), bent(**CELL))):
-        files.write(scene, tmp_path / f"{number}.toml")
-        assert files.read(tmp_path / f"{number}.toml") == scene
-
-
-def test_they_can_be_looked_at():
-    for scene in (bent(), warm()):
-        assert scene.plot(pixels=5) is not None and "W/(m K)" in scene._repr_html_()
-    field = fft.solve(bent(**CELL), voxels=8)
-    assert np.isfinite(field.conductivity) and "conductivity" in repr(field)

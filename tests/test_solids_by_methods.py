@@ -16,8 +16,7 @@ from solid_shapes import LIMITS, MATRIX, TURN, ball, torus
 
 from demheat import Layer, Material, Scene, Sphere, files, solve
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
-from demheat.scene.negligible import negligible
-from references import bracket, exact, fem, fft, multipole
+from references import exact, fem, fft
 
 FRACTION = 0.3
 RADIUS = math.sqrt(FRACTION / math.pi)
@@ -72,13 +71,6 @@ def test_a_square_array_of_cylinders(way):
     # facets, voxels by their correction, FEM by second-order edges: 8 round a quarter turn, relative (pi/16)^4/20.
     assert_allclose(along.conductivity, 1 + 9 * FRACTION, rtol={"dem": 1e-4, "fft": 1e-7, "fem": 1e-4}[way])
     assert_allclose(along.fractions[1], FRACTION, rtol={"dem": 1e-4, "fft": 1e-12, "fem": 1e-4}[way])
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_where_in_the_cell_a_cylinder_lies_does_not_matter(way):
-    run, limit, depth = WAYS[way]
-    moved = run(array(10.0, depth=depth, center=(0.0, 0.93, 0.5)))
-    assert abs(moved.conductivity / rayleigh(FRACTION, 10.0) - 1) < limit
 
 
 def square(normal, load="x"):
@@ -192,31 +184,7 @@ def test_thin_arrays_of_ellipsoids(way, contrast):
     assert abs(found[0] / found[1] - 1) > 0.3
 
 
-def test_estimates_of_errors_hold():
-    for field in (solve(array(10.0), particles=1000), fft.solve(array(10.0), voxels=16, threads=1)):
-        assert field.error.lower < rayleigh(FRACTION, 10.0) < field.error.upper
-
-
-KNOWN = Cylinder((0.5, 0.5, 0.5), 0.3, (0, 0, 1), Material(10.0))
 RING = LevelSet(torus, LIMITS, Material(10.0))
-REFUSALS = {
-    "closed forms": (lambda: exact.solve(cube(RING)), "no closed form"),
-    "multipoles": (lambda: multipole.solve(cube(KNOWN)), r"a cylinder, Scene.inclusions\[0\]: multipole knows"),
-    "brackets": (lambda: bracket.solve(cube(KNOWN)), r"a cylinder, Scene.inclusions\[0\]: bounds are known on"),
-    "meshes of level sets": (lambda: fem.solve(cube(RING)), r"a level set, Scene.inclusions\[0\]: sizes of elements"),
-    "resistances on voxels": (
-        lambda: fft.solve(cube(Box((0.5,) * 3, (0.4, 3, 3), Material(10.0), resistance=0.1), walls={"x-": 0, "x+": 1})),
-        "resistance = 0.1",
-    ),
-}
-
-
-@pytest.mark.parametrize("name", REFUSALS)
-def test_what_does_not_know_them_refuses_them_in_one_line(name):
-    ask, words = REFUSALS[name]
-    with pytest.raises(NotImplementedError, match=words) as refused:
-        ask()
-    assert "\n" not in str(refused.value)
 
 
 def test_files_hold_all_but_functions(tmp_path):
@@ -239,28 +207,6 @@ def test_files_hold_all_but_functions(tmp_path):
         files.read(tmp_path / "scene.toml")
     with pytest.raises(ValueError, match=r"Scene.inclusions\[0\] = LevelSet.*in a file"):
         files.write(cube(RING), tmp_path / "ring.toml")
-
-
-def test_little_spheres_beside_them_may_be_left_out():
-    small = Sphere((0.02, 0.02, 0.5), 0.01, Material(10.0))
-    scene = Scene((1, 1, 1), MATRIX, [KNOWN, small], gradient=(1, 0, 0))
-    assert negligible(scene, 1e-3).inclusions == (1,)
-    # Of a level set only its limits are sure: in them nothing is far from it.
-    inside = Sphere((0.5, 0.5, 0.5), 0.01, Material(10.0))
-    outer = Box((0.5, 0.5, 0.5), (0.9, 0.9, 0.9), Material(2.0))
-    assert negligible(Scene((1, 1, 1), MATRIX, [outer, inside], gradient=(1, 0, 0)), 1e-3).inclusions == (1,)
-
-
-@pytest.mark.parametrize("way", WAYS)
-def test_what_reaches_far_beyond_the_walls_costs_no_more(way):
-    """A slab and a rod a thousand times as wide as the box: as a layer, and as a fibre."""
-    run, limit, _ = WAYS[way]
-    walls = {"walls": {"x-": 0.0, "x+": 1.0}}
-    slab = Box((0.45, 0.5, 0.5), (0.4, 1e3, 1e3), Material(10.0))
-    assert_allclose(run(cube(slab, **walls)).conductivity, 1 / (0.4 / 10 + 0.6), rtol=1e-6)
-    rod = Cylinder((0.5, 0.5, 0.5), RADIUS, (0, 0, 1), Material(10.0), length=1e3)
-    if way != "fem":
-        assert abs(run(cube(rod, **walls)).conductivity / rayleigh(FRACTION, 10.0) - 1) < limit
 
 
 def test_a_surface_that_resists_may_end_on_the_edge_of_a_held_wall():

@@ -52,9 +52,8 @@ def test_many_spheres_to_fewer_degrees():
 @pytest.mark.parametrize(
     "name, limit",
     [
-        *(("laminate-three", 1e-7), ("laminate-s1000", 1e-7), ("laminate-along", 1e-7), ("sc-third-s10", 2e-3)),
-        *(("bcc-f30-s10", 4e-3), ("fcc-f30-s0.1", 4e-3), ("coated-s10", 1e-2), ("fibres-hexagonal-f50-s10", 4e-3)),
-        *(("square-rods-s4", 4e-3), ("checkerboard-four", 5e-2), ("dispersion-20-s0.1", 1e-2)),
+        *(("laminate-s1000", 1e-7), ("fcc-f30-s0.1", 4e-3), ("coated-s10", 1e-2), ("fibres-hexagonal-f50-s10", 4e-3)),
+        *(("square-rods-s4", 4e-3), ("dispersion-20-s0.1", 1e-2)),
         ("sphere-in-layer", 5e-3),
     ],
 )
@@ -64,7 +63,7 @@ def test_voxels_find_the_conductivity(name, limit):
 
 
 @pytest.mark.filterwarnings("ignore:gaps beside inclusions")
-@pytest.mark.parametrize("name", ["bcc-f30-s10", "fibres-square-f50-s10", "coated-off-centre", "dispersion-walls"])
+@pytest.mark.parametrize("name", ["fibres-square-f50-s10", "coated-off-centre", "dispersion-walls"])
 def test_voxels_find_the_temperatures(name):
     """Less that of the first point in a periodic cell; the span is 1 K, and 32 voxels leave some thousandths of it."""
     scene, known = benchmark.load(name)
@@ -73,9 +72,7 @@ def test_voxels_find_the_temperatures(name):
     assert np.abs(found - known.temperature).max() < 0.01
 
 
-@pytest.mark.parametrize(
-    "name", ["sc-f50-s10", "sc-third-s0.01", "coated-s10", "fcc-f65-s10", "laminate-three", "dispersion-20-s10"]
-)
+@pytest.mark.parametrize("name", ["sc-third-s0.01", "fcc-f65-s10", "laminate-three", "dispersion-20-s10"])
 def test_certain_bounds_hold_the_value(name):
     scene, known = benchmark.load(name)
     found = bracket.voxels.solve(scene, voxels=12)

@@ -102,18 +102,6 @@ def test_rayleigh_is_the_cubic_array_to_his_order(contrast):
     assert_allclose(bounds.rayleigh(1.0, contrast, 0.4), lattice.conductivity("sc", contrast, 0.4), rtol=1.5e-2)
 
 
-@pytest.mark.parametrize("name", ["rayleigh", "bruggeman_differential", "lewis_nielsen", "agari_uno"])
-def test_dilute_limits(name):
-    estimate = getattr(bounds, name)
-    for contrast in (0.5, 1.0, 8.0):
-        assert estimate(2.0, 2.0 * contrast, 0.0) == 2.0
-        # First order: Maxwell's slope 3 beta; by construction another for the two empirical formulae.
-        slope = {"agari_uno": math.log(contrast), "lewis_nielsen": 2.5 * (contrast - 1) / (contrast + 1.5)}
-        slope = slope.get(name, 3 * (contrast - 1) / (contrast + 2))
-        # The second order is 1e-6 times a coefficient below 10.
-        assert_allclose((estimate(2.0, 2.0 * contrast, 1e-6) / 2 - 1) * 1e6, slope, atol=1e-4)
-
-
 def test_limits_of_the_differential_medium():
     # Pores: Archie's law with 3/2; perfect conductors: -3.
     assert_allclose(bounds.bruggeman_differential(1.0, 0.0, FRACTIONS), (1 - FRACTIONS) ** 1.5, rtol=1e-14)
@@ -137,17 +125,6 @@ def test_third_order_is_third_order():
     # Halving the step divides a fourth-order error by 16, less what the fifth order adds: 2 % of a tenth.
     assert np.all(errors[0] / errors[1] > 14)
     assert errors[0][0] < 0 < errors[0][1]
-
-
-@pytest.mark.parametrize(("k1", "k2"), [*PAIRS, (1.0, 0.0), (1.0, INF)])
-@pytest.mark.parametrize("p", [0.05, 0.5, 0.9])
-def test_torquato_stays_within_third_order_bounds(k1, k2, p):
-    for z in (0.0, 0.2, 0.5):
-        lower, upper = bounds.third_order(k1, k2, p, z)
-        # Rounding, some 100 times amplified at contrast 1e4.
-        assert lower * (1 - 1e-12) <= bounds.torquato(k1, k2, p, z) <= upper * (1 + 1e-12)
-    # Found 2e-14; contrasts of 1e3 lose three digits of rounding in either form.
-    assert_allclose(bounds.torquato(k1, k2, p, 0.5), upper, rtol=1e-11)
 
 
 @pytest.mark.parametrize("contrast", [0.0, 0.1, 10.0, INF])
@@ -188,22 +165,11 @@ def test_percolation_of_bruggeman():
 @pytest.mark.parametrize(
     ("call", "match"),
     [
-        (lambda: bounds.maxwell(-1.0, 1.0, 0.1), "k_matrix = -1.0: must be >= 0"),
-        (lambda: bounds.maxwell(1.0, math.nan, 0.1), "k_inclusion = nan"),
-        (lambda: bounds.hashin_shtrikman(1.0, 2.0, 1.1), "fraction = 1.1: must lie in 0 to 1"),
-        (lambda: bounds.bruggeman(1.0, 2.0, [0.1, math.nan]), "fraction = "),
-        (lambda: bounds.third_order(1.0, 2.0, 0.1, -0.1), "zeta2 = -0.1: must lie in 0 to 1"),
         (lambda: bounds.torquato(1.0, 10.0, 0.2, 0.9), "zeta2 = 0.9: must be <= 1/2"),
         (lambda: bounds.torquato(1.0, 0.0, 0.2, [0.1, 0.51]), "zeta2 = .*must be <= 1/2"),
-        (lambda: bounds.voigt([1.0, 2.0], [0.5, 0.4]), "fractions = .*must sum to 1"),
         (lambda: bounds.voigt(1.0, 1.0), "must sum to 1 along the last axis"),
-        (lambda: bounds.reuss([1.0, -2.0], [0.5, 0.5]), "conductivities = .*must be >= 0"),
         (lambda: bounds.rayleigh(1.0, 2.0, 0.53), "fraction = 0.53: must be <= pi/6"),
         (lambda: bounds.lewis_nielsen(1.0, 2.0, 0.65), "packing = 0.637: must be <= 1, and no fraction in 0.65"),
-        (lambda: bounds.lewis_nielsen(1.0, 2.0, 0.1, packing=1.5), "packing = 1.5: must be <= 1"),
-        (lambda: bounds.lewis_nielsen(1.0, 2.0, 0.1, shape=0.0), "shape = 0.0: must be a finite number > 0"),
-        (lambda: bounds.agari_uno(1.0, 2.0, 0.1, c2=1.5), "c2 = 1.5: must lie in 0 to 1"),
-        (lambda: bounds.agari_uno(1.0, 2.0, 0.1, c1=-1.0), "c1 = -1.0: must be a finite number > 0"),
         (lambda: bounds.agari_uno(0.0, INF, 0.1), "zero and infinity have no mean"),
         (lambda: bounds.zeta2_hard_spheres(0.7), "fraction = 0.7: must lie in 0 to 0.6"),
     ],

@@ -5,9 +5,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from demheat import Flux, Image, Material, Scene, gallery
+from demheat import Image, Material, Scene
 from demheat.tensor import conductivity_tensor
-from references import bracket, exact, fem, fft
+from references import bracket, fem, fft
 from references.voxels.links import links
 from references.voxels.paint import voxelise
 
@@ -133,16 +133,6 @@ def test_links_of_an_image(make):
             assert found[axis][place] == pytest.approx(expected, rel=1e-14)
 
 
-def test_heat_that_enters_leaves():
-    labels = drawn()
-    image = Image(labels, VOXEL, K)
-    field = fem.solve(Scene.of_image(image, walls={"x-": 10.0, "x+": Flux(500.0), "z-": 30.0}), tolerance=1e-11)
-    area = image.size[1] * image.size[2]
-    assert field.wall_heat["x+"] == pytest.approx(500 * area)
-    assert sum(field.wall_heat.values()) == pytest.approx(0, abs=1e-9 * max(map(abs, field.wall_heat.values())))
-    assert set(field.wall_temperature) == {"x-", "x+", "z-"}
-
-
 PORES = {0: Material(0.0), 1: Material(2.0)}
 
 
@@ -193,15 +183,3 @@ def test_what_elements_of_an_image_refuse():
         fft.solve(periodic(grains(), materials=PORES), rule="links")
     with pytest.raises(NotImplementedError, match="fill pores"):
         bracket.voxels.solve(periodic(grains(), materials=PORES))
-
-
-def test_spheres_of_an_image_converge_to_the_array():
-    """First order in the voxel is a quarter after two doublings; a third leaves room for the scatter of stairs."""
-    scene = gallery.simple_cubic(10.0, fraction=0.2)
-    true = exact.solve(scene).conductivity
-    errors = []
-    for n in (16, 32, 64):
-        phase = voxelise(scene, (n, n, n), laminate=False).phase
-        image = Image(phase, scene.size[0] / n, dict(enumerate(scene.materials)))
-        errors.append(abs(fft.solve(Scene.of_image(image, gradient=scene.gradient)).conductivity / true - 1))
-    assert errors[0] > errors[1] > errors[2] and errors[2] < errors[0] / 3

@@ -4,12 +4,7 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.dem import solve
-from demheat.laws import Calibrated
-from studies import ct_search as study
-from studies.common.block import CONDUCTIVITY, scene_of
-from studies.ct_search import means, rows
-from studies.harness import table
+from studies.ct_search import means
 
 
 def fitting(**more):
@@ -53,34 +48,3 @@ def test_misfits_are_in_tolerances(change, misfit):
     found = means.ranked(pd.DataFrame([fitting(**change)]))
     assert len(found) == len(means.WEIGHTINGS)
     assert found.iloc[0]["worst"] == pytest.approx(misfit)
-
-
-def test_the_claims_ask_all_sets():
-    """Together they fail unless one set gives everything, and C_t falls with spread and with links."""
-    grid = [case | {"cov_0": 100.0 + k} for k, case in enumerate(study.CASES)]
-    frame = [fitting(**case, cov_volume_0=100.0) for case in grid]
-    for row in frame:
-        row["ct_cell"] -= 0.1 * row["spread"] + 0.01 * row["links"]
-    judged = {claim.sentence: claim for claim in table.judged(study, pd.DataFrame(frame))}
-    together = next(claim for text, claim in judged.items() if text.startswith("All that is printed"))
-    assert not together.ok and all(claim.ok for claim in judged.values() if claim is not together)
-    frame[7] |= fitting()
-    frame[7]["spread"], frame[7]["links"], frame[7]["mean"] = 0.0, 8.0, "harmonic"
-    judged = [claim.sentence for claim in table.judged(study, pd.DataFrame(frame)) if not claim.ok]
-    assert not [text for text in judged if text.startswith("All that")] and len(judged) == 1
-
-
-# So few particles are wider than the gap beside the sphere.
-@pytest.mark.filterwarnings("ignore:gaps beside inclusions:UserWarning")
-def test_a_row_of_a_small_packing(monkeypatch):
-    monkeypatch.setattr(rows, "NUMBER", 300)
-    monkeypatch.setattr(rows, "RATIOS", (2.0,))
-    monkeypatch.setattr(rows, "CONTRASTS", (10.0,))
-    row = rows.of_one(0.2, 7.0, "harmonic", 3)
-    packing = rows.packed(0.2, 3, periodic=True)
-    law = Calibrated(gap=row["gap"], mean="harmonic", factor=row["ct_cell"])
-    # With its C_t the network has the material's conductivity: the solver's tolerance.
-    assert_allclose(solve(scene_of("periodic"), packing=packing, law=law).conductivity, CONDUCTIVITY, rtol=1e-6)
-    assert row["ct_block"] < row["ct_cell"] < 1.0
-    assert row["cov_2"] < row["cov_0"] and row["cov_volume_2"] < row["cov_volume_0"]
-    assert -50 < row["error_10"] < 50 and 0 <= row["under_2"] < 0.1

@@ -2,10 +2,9 @@
 
 import numpy as np
 import pandas as pd
-import pytest
 from numpy.testing import assert_allclose
 
-from studies.damage import means, rows, tables
+from studies.damage import means, rows
 
 
 def known(removed, k):
@@ -38,13 +37,3 @@ def test_shares_that_have_come_off():
 def test_a_lattice_fills_the_cell():
     made = rows.lattice(4)
     assert made.number == 64 and np.all(made.radii == 1 / 8)
-
-
-def test_tables_of_discs_and_links():
-    discs = [{"part": "cracks", "name": "dem", "radius": r, "particles": 1000, "error_percent": -r} for r in (0.1, 0.2)]
-    links = [{"part": "links", "body": "lattice", "number": 12, "removed": 0.3, "k_ratio": k} for k in (0.5, 0.6)]
-    df = pd.DataFrame([*discs, *links])
-    assert tables.of_discs(df)[["0.1", "0.2"]].to_numpy().tolist() == [[-0.1, -0.2]]
-    # Kirkpatrick's theory: 1 - 0.3 / (1 - 2 / 6).
-    assert tables.of_links(df)["0.3"].to_numpy() == pytest.approx([0.55, 0.55])
-    assert tables.of_spheres(df).empty and tables.of_links(df.iloc[:2]).empty

@@ -27,30 +27,6 @@ def test_nothing_is_compared_where_there_is_no_error():
     np.testing.assert_allclose(found, [3.0, 1.0])
 
 
-def judged(df):
-    asked = pd.DataFrame(
-        {"part": "effective", "inside": [True] * 100, "worst_percent": [0.05] * 100, "exact": np.nan, "status": "ok"}
-    )
-    found = estimates.claims(pd.concat([df, asked], ignore_index=True))
-    return {sentence: (value, limit) for sentence, value, limit in found}
-
-
-def held(value, limit):
-    return value >= float(limit[3:]) if limit.startswith(">=") else value <= float(limit[3:])
-
-
-def test_claims_fail_where_intervals_do():
-    good = rows(off=[0.1] * 100, half=[0.3] * 100)
-    assert all(held(*each) for each in judged(good).values())
-    narrow = rows(off=[0.1] * 100, half=[0.05] * 6 + [0.3] * 94)
-    assert not all(held(*each) for each in judged(narrow).values())
-    blankets = rows(off=[0.1] * 100, half=[0.6] * 100)
-    assert not all(held(*each) for each in judged(blankets).values())
-    # Scenes that constants were found on count for nothing.
-    tuned = pd.concat([good, rows(off=[0.1] * 100, half=[0.0] * 100, part="tuned")], ignore_index=True)
-    assert all(held(*each) for each in judged(tuned).values())
-
-
 @pytest.mark.parametrize("kind", KINDS)
 def test_drawn_scenes_have_an_exact_solution(kind):
     """Two of each kind; the same seed draws the same scene."""

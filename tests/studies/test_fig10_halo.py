@@ -10,7 +10,6 @@ from studies import fig10_halo
 from studies.fig10_halo import rows as halo_rows
 from studies.fig10_halo import statistics, tables
 from studies.fig10_halo.statistics import RATIOS, STATISTICS, long
-from studies.harness import table
 from studies.harness.cells import numbers
 
 LENGTH = halo_rows.LENGTH
@@ -53,31 +52,6 @@ def test_the_bulk_is_what_no_halo_reaches_a_wall_from(walls):
     assert_allclose(found["density_0"].sum(), 1.0, rtol=1e-11)
 
 
-@pytest.fixture(scope="module")
-def rows():
-    """Rows of each kind with 1000 particles."""
-    kinds = [(case["law"], case["split"], case["walls"]) for case in fig10_halo.CASES]
-    made = []
-    for law, split, walls in dict.fromkeys(kinds):
-        case = {"law": law, "split": split, "walls": walls, "particles": 1_000, "seed": 0, "method": "dem"}
-        made.append({"case": str(case), **case, **fig10_halo.run(**case), "status": "ok", "note": ""})
-    return pd.DataFrame(made)
-
-
-def test_rows_by_halo_radius(rows):
-    table_ = long(rows)
-    assert len(table_) == 4 * len(RATIOS) and set(STATISTICS) <= set(table_.columns)
-    cell = table_[table_["walls"] == "periodic"].set_index("ratio")
-    # A cell of 1000 is 20.5 mean radii wide: halos up to 10 fit; more particles, less scatter.
-    assert cell["cov"].notna().sum() == (np.array(RATIOS) < 10.2).sum()
-    assert (cell["cov"].dropna().diff().dropna() < 0).all()
-    assert cell.loc[9.0, "least"] < 1.0 < cell.loc[9.0, "most"]
-    held = table_[(table_["walls"] == "held") & (table_["law"] == "calibrated")]
-    assert held["cov"].notna().all() and (held["cov"] >= held["bulk_cov"].fillna(0)).mean() > 0.9
-    laguerre = table_[table_["law"] == "laguerre"]
-    assert laguerre["cov"].notna().sum() == 1 and laguerre["cov"].min() < 1e-6
-
-
 def test_the_flux_by_depth_below_a_wall():
     """Flux 1 within 3 mean radii of the walls across y, 2 beyond; none beside insulated faces."""
     radius = LENGTH / 40
@@ -106,25 +80,3 @@ def test_all_four_weightings_are_held_against_what_is_printed():
     assert_allclose(found[11.0], 0.5)
     (_, value, limit), *_ = fig10_halo._paper(long(pd.DataFrame([row])))
     assert value == 2.0 > limit
-
-
-def failing(rows):
-    return [claim.sentence for claim in table.judged(fig10_halo, rows) if not claim.ok]
-
-
-def test_claims_can_fail(rows):
-    good = rows.copy()
-    assert not [sentence for sentence in failing(good) if "Laguerre" in sentence or "Periodic" in sentence]
-    bad = rows.copy()
-    own = bad["law"] == "laguerre"
-    bad.loc[own, "cov"] = bad.loc[own, "cov"].str.replace(r"^\S+", "1e-5", regex=True)
-    assert [s for s in failing(bad) if s.startswith("Laguerre, no halo: largest CoV")]
-    bad = rows.copy()
-    bad.loc[own, "least"] = bad.loc[own, "least"].str.replace(r"^\S+", "0.9999999", regex=True)
-    assert [s for s in failing(bad) if s.startswith("Laguerre, no halo: any")]
-    bad = rows.copy()
-    bad["mean"] = bad["mean"].str.replace(r"^\S+", "1.00001", regex=True)
-    assert [s for s in failing(bad) if s.startswith("Periodic cell")]
-    bad = rows.copy()
-    bad["bulk_cov"] = bad["bulk_cov"].str.replace(r"^(\S+ \S+ \S+ \S+) \S+", r"\1 7.0", regex=True)
-    assert [s for s in failing(bad) if s.startswith("Halo of 4, bulk")]

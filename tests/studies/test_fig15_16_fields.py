@@ -7,7 +7,6 @@ from numpy.testing import assert_allclose
 from studies import fig15_16_fields as study
 from studies.common import field_errors
 from studies.fig15_16_fields import halos
-from studies.fig15_16_fields.tables import error_columns
 from studies.harness.cells import numbers, picture
 
 
@@ -48,31 +47,6 @@ def test_errors_in_the_papers_measure():
     assert found == pytest.approx(wanted)
 
 
-def test_a_halo_stands_in_for_the_flux_only(monkeypatch):
-    from demheat import dem
-
-    solved = []
-    monkeypatch.setattr(study, "GRID", 40)  # points that take time and tell nothing here
-    monkeypatch.setattr(dem, "solve", _kept(dem.solve, solved))
-    case = {"method": "dem", "law": "calibrated", "particles": 500, "seed": 5}
-    raw, smooth = (study.run("dem-calibrated", ratio=ratio, **case) for ratio in (None, 4.0))
-    assert raw["T_C"] == smooth["T_C"] and raw["temperature_rms"] == smooth["temperature_rms"]
-    field, points = solved[1], np.array([[0.05, 0.05, 0.05]])
-    samples = field.samples
-    near = np.linalg.norm(samples.points - points, axis=1) <= 4 * field.stats["mean_radius"]
-    mean = np.average(samples.flux[near, 1], weights=samples.volumes[near])
-    assert_allclose(smooth["q_A"], -mean, rtol=1e-12)  # one mean in two orders of summation
-    assert raw["q_A"] != smooth["q_A"] and raw["flux_rms_own"] > smooth["flux_rms_own"]
-
-
-def _kept(solve, solved):
-    def keeping(*args, **knobs):
-        solved.append(solve(*args, **knobs))
-        return solved[-1]
-
-    return keeping
-
-
 def test_orders_of_exact_second_and_first_order():
     import pandas as pd
 
@@ -81,20 +55,3 @@ def test_orders_of_exact_second_and_first_order():
     (_, flux, at_least), (_, warm, _) = study._orders(pd.DataFrame({"name": "dem", "particles": number} | errors))
     assert_allclose([flux, warm], [1.0, 2.0], rtol=1e-12)
     assert at_least == ">= 1.5"
-
-
-def test_claims_see_an_error():
-    import pandas as pd
-
-    columns = [
-        "flux_rms",
-        "flux_max",
-        "flux_rms_band",
-        *error_columns("q", study.POINTS),
-        *error_columns("T", study.POINTS),
-    ]
-    row = dict.fromkeys(columns, 0.01) | {"q_B_error": -0.7, "name": "dem", "particles": study.PAPERS}
-    row |= {"method": "dem", "heat_imbalance": 1e-9}
-    found = {text.split(": ")[1]: value for text, value, _ in study._laguerre(pd.DataFrame([row])) if value is not None}
-    assert found["largest error of a flux of Table 2, %"] == 0.7
-    assert found["largest error of a temperature of Table 2, K"] == 0.01

@@ -5,13 +5,12 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.gallery import sphere_in_cube
 from demheat.scene import Material, Scene, Sphere
 from studies import fig18_fields as study
 from studies.fig18_fields import errors as fig18_errors
 from studies.fig18_fields import rows as fig18_rows
 from studies.fig18_fields import tables as fig18_tables
-from studies.harness.cells import cell, numbers
+from studies.harness.cells import cell
 
 BOX = Scene(
     (0.1, 0.1, 0.1), Material(0.195),
@@ -73,16 +72,6 @@ def test_errors_are_those_put_in():
     assert_allclose([dem["flux_max_band"], dem["flux_rms_band"], dem["flux_max"]], [40.0, 40 / np.sqrt(8), 0.0])
 
 
-def test_claims_see_these_errors():
-    found = {text: (value, limit) for text, value, limit in study.claims(rows())}
-    text = f"DEM, {study.NUMBERS[-1]} particles, walls, worst point of Table 3: "
-    assert found[text + "temperature off the multipoles, % of the span"] == (pytest.approx(0.2), 0.03)
-    assert found[text + "flux off the multipoles, % of the local one"] == (pytest.approx(3.0), 1.0)
-    assert fig18_tables.told(rows(), study.PAPER) == [
-        "The points of Table 3 lie 1.50 bands and more from any interface."
-    ]
-
-
 def network(flux):
     """A row of the paper's network with C_t = 1 whose flux is everywhere so many W/m2 down y."""
     base = rows().iloc[1].to_dict() | {
@@ -117,20 +106,3 @@ def test_without_multipoles_the_finest_elements_are_the_witness():
     assert fig18_errors.witness(pd.concat([both, finer], ignore_index=True), "walls")["case"] == "c"
     assert fig18_errors.witness(rows(), "walls")["name"] == "multipole"
     assert fig18_errors.witness(rows(), "gradient") is None
-
-
-def test_temperatures_of_the_cell_are_level(monkeypatch):
-    monkeypatch.setattr(fig18_rows, "spheres_in", lambda boundary: cube(boundary))
-    row = study.run("fft", "gradient", method="fft", voxels=16)
-    values = numbers(row["slice_temperature"])
-    assert len(values) == fig18_rows.GRID**2
-    assert values.mean() == pytest.approx(50.0, abs=1e-3)  # rounded to three digits
-    walls = study.run("fft", "walls", method="fft", voxels=16)
-    witness = study.run("multipole", "walls", method="multipole", order=8)
-    # 16^3 voxels on one sphere: found 0.02 K and 2 %.
-    assert abs(walls["T_A"] - witness["T_A"]) < 0.1
-    assert walls["q_B"] == pytest.approx(witness["q_B"], rel=0.1)
-
-
-def cube(boundary):
-    return sphere_in_cube(7.0, periodic=boundary == "gradient")

@@ -1,20 +1,17 @@
 """Hard cases: what is drawn, what is true of it, and that a wrong answer is called so."""
 
-import json
 import math
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
-import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Layer, Material, Scene, Sphere
 from references import exact
-from studies import hard_cases
 from studies.common.answers import answer
-from studies.hard_cases import bodies, changes, means, rows, scenes, tables, verdicts, ways
+from studies.hard_cases import bodies, changes, rows, scenes, verdicts, ways
 
 CELL = {"size": (1.0, 1.0, 1.0), "gradient": (1.0, 0.0, 0.0)}
 BALL = Scene(matrix=Material(1.0), inclusions=[Sphere((0.5, 0.5, 0.5), 0.3, Material(10.0))], **CELL)
@@ -189,24 +186,3 @@ def test_a_broken_relation_is_seen():
     assert changes.holds("turned", 0.09, dem, BALL) and not changes.holds("turned", -0.11, dem, BALL)
     assert changes.holds("swapped", 5.0, fft, BALL) and not changes.holds("swapped", -0.11, fft, BALL)
     assert not changes.holds("units", 1e-3, dem, BALL)
-
-
-def frame(outcomes):
-    each = [verdicts.Verdict(name, outcome, 0.0, 0.05, "") for name, outcome in outcomes]
-    row = {"family": "gap", "seed": 0, "method": "all", "status": "ok", **rows.row_of(each, "exact")}
-    return pd.DataFrame([row])
-
-
-def test_claims_fail_where_a_number_is_silently_wrong():
-    good, bad = frame([("fem", "verified"), ("dem", "verified")]), frame([("fem", "verified"), ("dem", "wrong")])
-    wrong = [dict((claim[0], claim[1]) for claim in hard_cases.claims(df)) for df in (good, bad)]
-    assert [next(v for k, v in claims.items() if k.startswith("Silently")) for claims in wrong] == [0, 1]
-    assert wrong[1]["DEM: share of its answers that are verified"] == 0.0
-
-
-def test_table_counts_outcomes():
-    table = tables.lines(frame([("dem, euler", "verified"), ("dem", "warned"), ("fem", "refused"), ("scene", "open")]))
-    assert list(table["family"]) == ["gap", "all"]
-    assert list(table.iloc[1][["DEM", "FEM", "all"]]) == ["1 / 0 / 1 / 0", "0 / 1 / 0 / 0", "1 / 1 / 1 / 0"]
-    assert len(means.verdicts(frame([("dem", "open")]))) == 1
-    assert json.loads(frame([("dem", "open")])["verdicts"][0])[0][:2] == ["dem", "open"]

@@ -42,33 +42,6 @@ def test_a_dual_tells_where_nothing_else_does():
     assert means.held(each).tolist() == [True, False] and means.over(each).empty
 
 
-def failed(df):
-    """Claims that do not hold, by their first words."""
-    signs = {">=": float.__ge__, "<=": float.__le__, "=": float.__eq__}
-    found = []
-    for sentence, value, limit in intervals.claims(df):
-        sign, number = f"<= {limit}".split()[-2:] if not isinstance(limit, str) else limit.split()
-        # No number where there is nothing to look at.
-        if value == value and not signs[sign](float(value), float(number)):
-            found.append(sentence)
-    return found
-
-
-def test_claims_fail_where_intervals_do():
-    good = {"off": [0.1] * 100, "half": [0.3] * 100}
-    assert failed(frame(**good)) == []
-    narrow = failed(frame(off=[0.1] * 100, half=[0.05] * 3 + [0.3] * 97))
-    assert any("share of intervals that hold" in each for each in narrow)
-    assert any("median" in each for each in failed(frame(off=[0.1] * 100, half=[0.6] * 100)))
-    missed = {"off": [0.1] * 100, "half": [0.05] + [0.3] * 99}
-    (said,) = failed(frame(**missed, warned=[True] + [False] * 99))
-    assert "beside a warning" in said
-    seen = {"unseen": [True] + [False] * 99}
-    assert failed(frame(**good, **seen, reached=[True] + [np.nan] * 99)) == []
-    (short,) = failed(frame(**good, **seen, reached=[False] + [np.nan] * 99))
-    assert "not seen" in short
-
-
 @pytest.mark.parametrize("kind", scenes.KINDS)
 def test_what_is_drawn_is_drawn_again(kind):
     """Conductivities that are known lie between Wiener's bounds."""
@@ -81,16 +54,6 @@ def test_what_is_drawn_is_drawn_again(kind):
             found, k = known(), scene.conductivities
             assert k.min() <= found.upper and found.lower <= k.max() and found.lower <= found.upper
             assert value_error(found.upper, found.lower) < 1e-3
-
-
-@pytest.mark.parametrize("kind", ["layers", "plate", "half-space", "image"])
-def test_what_is_known_is_what_methods_find(kind):
-    """Where voxels or laminates are exact, or nearly so, and see all."""
-    for seed in range(3):
-        right, found = rows.known(kind, seed), rows.judged(kind, seed, "fft")
-        if found["unseen"] or kind == "image" and right["true_source"] != "laminate":
-            continue
-        assert right["true_lower"] * 0.7 <= found["conductivity"] <= right["true_upper"] * 1.3
 
 
 def test_parts_that_are_not_seen_are_told():

@@ -33,18 +33,3 @@ def test_neighbours_within_a_gap():
     z = packers._z_of_gap(cubic(radius=0.495))
     # Six at a distance of 1 / 0.99 contacts: a gap of 0.0101.
     assert z[packers.GAPS < 0.0101].max() == 0 and set(z[packers.GAPS > 0.0102]) == {6.0}
-
-
-def test_makers_get_the_same_radii():
-    first, _ = packers.packed("lsa", 200, "gaussian", 3, phi=0.5)
-    second, _ = packers.packed("relax", 200, "gaussian", 3, phi=0.5)
-    assert_allclose(np.sort(first.radii), np.sort(second.radii), rtol=1e-12)  # rounding of the growth
-
-
-def test_spheropack_gets_them_too():
-    pytest.importorskip("spheropack")
-    ours, _ = packers.packed("lsa", 200, "gaussian", 3, pressure=1e3)
-    theirs, row = packers.packed("spheropack", 200, "gaussian", 3, pressure=1e3)
-    ratio = np.sort(theirs.radii) / np.sort(ours.radii)
-    assert_allclose(ratio, ratio[0], rtol=1e-9)  # rounding of the growth
-    assert row["reached_pressure"] >= 1e3 and packers.overlap(theirs) < 1e-12

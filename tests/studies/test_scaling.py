@@ -5,8 +5,7 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from studies import scaling
-from studies.scaling import means, rows, tables
+from studies.scaling import means, rows
 
 
 def made_up():
@@ -65,42 +64,6 @@ def test_every_row_of_one_cell_has_its_error():
     assert_allclose(means.errors(cell_rows())["error_percent"], [0.0, -5.0, 1.0])
 
 
-def test_the_finest_cell_is_judged_by_the_multipoles():
-    def judged(df):
-        return {name: (value, limit) for name, value, limit in scaling.claims(df)}[
-            "DEM, 1e6: error against the multipoles, %"
-        ]
-
-    df = cell_rows()
-    value, limit = judged(df)
-    assert value == pytest.approx(1.0) and limit == 0.01
-    # Without them nothing is known, and nothing holds.
-    assert np.isnan(judged(df[df["name"] != "multipole"])[0])
-
-
-def test_the_page_has_the_share_of_bandwidth_and_short_notes():
-    failed = {"part": "elements", "name": "dem", "status": "failed", "note": "x" * 800, "particles": 10_000}
-    df = pd.concat([cell_rows(), pd.DataFrame([failed])], ignore_index=True)
-    made = tables.lines(df)
-    assert_allclose(made["of triad"].to_numpy(float), [np.nan, np.nan, 0.75, np.nan])
-    assert made["note"].str.len().max() == tables.NOTE
-    assert df["note"].str.len().max() == 800
-
-
-def test_the_page_tells_packings_that_repeat_one():
-    assert [tables._packing(number) for number in (130_000.0, 1e6, np.nan)] == ["whole", "8 times one", ""]
-
-
-def test_the_page_has_both_codes_and_says_why_their_conductivities_differ():
-    cost = {"cpu_s": 3.0, "wall_s": 2.0, "peak_mib": 2**10, "unknowns": 2**20, "k": 1.001}
-    before = {f"then_{key}": 2 * value for key, value in cost.items()} | {"then_k": 1.0, "then": "b4da0d3"}
-    row = {"part": "before", "name": "dem", "status": "ok", "note": ""} | cost | before
-    made = tables.lines(pd.concat([cell_rows(), pd.DataFrame([row])], ignore_index=True))
-    now, then = (line for _, line in made.iterrows() if line["what"] == "before")
-    assert (now["CPU, s"], then["CPU, s"], now["bytes each"]) == (3.0, 6.0, 1024)
-    assert now["note"].startswith("k +0.1000 %") and "margin" in now["note"] and then["of"] == "code of b4da0d3"
-
-
 def test_what_a_billion_takes_goes_on_from_the_largest_row():
     rows = [
         {"name": "dem", "part": "elements", "unknowns": n, "status": "ok", "cpu_s": 36e-6 * n, "wall_s": 1.0}
@@ -109,12 +72,6 @@ def test_what_a_billion_takes_goes_on_from_the_largest_row():
     ]
     (line,) = means.billion(pd.DataFrame(rows))
     assert_allclose([line["hours"], line["tib"] * 2**40], [10.0, 6e11])
-
-
-def test_every_part_has_rows_and_quick_ones_are_few():
-    parts = {case["part"] for case in scaling.CASES}
-    assert parts == {"inclusions", "goal", "elements", "before", "cutter", "start", "strong", "weak"}
-    assert 0 < sum(map(scaling.QUICK, scaling.CASES)) < 15
 
 
 @pytest.mark.parametrize("kind, ratio", [("equal", 1.0), ("polydisperse", 10.0)])

@@ -5,14 +5,11 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
-from blocks import DOCS
-from matplotlib import pyplot
 from numpy.testing import assert_allclose
 
 from studies import scaling
-from studies.harness import runner, table
-from studies.harness.claims import claim
-from studies.scaling import figure, model, ranks, tables
+from studies.harness import runner
+from studies.scaling import model, ranks, tables
 
 FIT = model.Fit(
     **{"twins": 2e-6, "packing": 3e-7, "cells": 1e-5, "setup": 8e-6, "share": 0.4, "field": 5e-7, "triad": 5e9},
@@ -99,32 +96,6 @@ def test_what_is_planned():
     # Every rank makes all twins, so more cores do not help there.
     assert_allclose(plan["twins"], 2e-6 * 12.0 * 1e6)
     assert plan["packing"] > plan["twins"]
-
-
-def test_claims_table_and_figure():
-    df = made_up()
-    claims = {name: (value, limit) for name, value, limit in scaling.claims(df)}
-    (limit,) = {limit for name, (_, limit) in claims.items() if "conductivity of two ranks" in name}
-    assert limit == 1e-8
-    # As they are: of rows that are made up no costs count.
-    judged = [claim(*each) for each in scaling.claims(df)]
-    assert len(judged) > 7 and [each for each in judged if not each.ok] == []
-    df.loc[(df["ranks"] == 2) & (df["part"] == "strong"), "k_body"] *= 1 + 2e-8
-    assert sum(not claim(*each).ok for each in scaling.claims(df)) == 2
-    lines = tables.lines(df)
-    assert set(lines["what"]) >= {"strong", "weak", "model, fitted", "model, bricks, not built", "literature"}
-    assert lines["note"].str.contains("64-bit").sum() == 4
-
-
-def test_the_figure_has_two_panels_more():
-    """Beside rows of other parts, those that are kept."""
-    kept = table.read_frame(scaling, DOCS.parent / "results" / "scaling.csv")
-    kept = kept[~kept["part"].isin(("strong", "weak"))]
-    assert len(figure.draw(kept).axes) == 4
-    drawn = figure.draw(pd.concat([kept, made_up()], ignore_index=True))
-    # Four lines for each size, and where its slabs end.
-    assert len(drawn.axes) == 6 and len(drawn.axes[5].lines) == 10
-    pyplot.close("all")
 
 
 def test_without_mpi_a_row_says_so(monkeypatch):

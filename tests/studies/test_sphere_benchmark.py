@@ -40,10 +40,9 @@ def _program(tmp_path, text):
         # Voxels of a sixteenth: stairs err by per cents, and not at all where layers end at their faces.
         *(
             (DIFFERENCES, "sc-third-s10", 2.0),
-            (DIFFERENCES, "bcc-f30-s10", 2.0),
             (DIFFERENCES, "laminate-across", 1e-6),
         ),
-        *((MAXWELL, "sc-f10-s10", 0.1), (MAXWELL, "sc-third-s10-r0.9", 1e-10), (MAXWELL, "dispersion-20-pores", 2.0)),
+        (MAXWELL, "sc-third-s10-r0.9", 1e-10),
     ],
 )
 def test_the_examples_are_asked(method, scene, limit):
@@ -56,7 +55,6 @@ def test_the_examples_are_asked(method, scene, limit):
         (DIFFERENCES, "sc-third-s10-r0.1", "resistance"),
         (DIFFERENCES, "nafems-t4", "conductivity alone"),
         (DIFFERENCES, "slab-step", "no evolve"),
-        (MAXWELL, "laminate-across", "Maxwell's formula is of spheres"),
         (MAXWELL, "ball-step", "conductivities alone"),
     ],
 )
@@ -136,13 +134,6 @@ def test_what_a_module_lacks_itself_is_its_own_error(tmp_path, monkeypatch):
         guests(name)
 
 
-def test_other_studies_take_no_guests(tmp_path, capsys):
-    assert main(["run", "crystal", "--method", DIFFERENCES, "--out", str(tmp_path)]) == 2
-    assert "study crystal takes no methods but ours" in capsys.readouterr().err
-    assert main(["run", "crystal", "needs", "--method", DIFFERENCES, "--out", str(tmp_path)]) == 2
-    assert "must be of one study" in capsys.readouterr().err
-
-
 def test_relations_are_seen_to_be_broken(tmp_path, monkeypatch):
     """A guess of 2 W/(m K), whatever the body: seven times the conductivities should give seven times as much."""
     way = ways.guest(_module(tmp_path, monkeypatch, "linear_guess", LINEAR), 0)
@@ -188,10 +179,3 @@ def test_rows_of_a_guest_stay_when_it_is_gone(tmp_path, monkeypatch):
     claims, page = table.render(STUDY, path)
     assert "| linear_guess" in page and "cases and" in page and path.with_suffix(".png").stat().st_size > 10_000
     assert not any(claim.ok is False and "can be" in claim.sentence for claim in claims)
-
-
-def test_a_row_of_a_guest_in_its_own_process(monkeypatch):
-    monkeypatch.chdir(ROOT)
-    (case,) = (each for each in guests(MAXWELL) if each["scene"] == "sc-third-s10")
-    row = runner.spawn_row("sphere_benchmark", STUDY, case)
-    assert row["status"] == "ok" and row["error_percent"] == pytest.approx(-0.0505, abs=1e-4) and row["cpu_s"] > 0

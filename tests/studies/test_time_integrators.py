@@ -5,12 +5,10 @@ import math
 import sys
 
 import numpy as np
-import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
 from demheat.packing.base import make_packing
-from studies import time_integrators
 from studies.common.slab import METAL
 from studies.time_integrators import lammps_peer
 from studies.time_integrators import rows as integrator_rows
@@ -52,15 +50,6 @@ def test_refused_where_lammps_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "lammps", None)
     with pytest.raises(NotImplementedError, match="lammps is not installed"):
         lammps_peer.beside(600)
-
-
-def test_claims_with_and_without_lammps():
-    rows = [case for case in time_integrators.CASES if case["integrator"] in time_integrators.PEERS]
-    assert len(rows) == 2 and not any(time_integrators.QUICK(row) for row in rows)
-    assert list(time_integrators._peer(pd.DataFrame([row | {"status": "unsupported"} for row in rows]))) == []
-    measured = [row | {"status": "ok", "difference": 0.5**k, "over_lammps": 10.0 + k} for k, row in enumerate(rows)]
-    values = [value for _, value, _ in time_integrators._peer(pd.DataFrame(measured))]
-    assert values == [1.0, 10.0, 11.0]
 
 
 @pytest.mark.parametrize("integrator", ["rkl2", "euler"])

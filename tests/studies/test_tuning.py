@@ -9,11 +9,10 @@ from demheat.packing import conforming, patterns
 from demheat.packing.cache import relaxed
 from demheat.packing.conforming import conform
 from demheat.scene import Material, Scene, Sphere
-from studies import tuning as study
 from studies.harness.cells import numbers
 from studies.tuning import means, order, scenes
 from studies.tuning.cases import OLD
-from studies.tuning.constants import BEFORE, CONSTANTS, MARGIN, constant_set
+from studies.tuning.constants import CONSTANTS, constant_set
 
 # Two spheres of one material, nearly touching: every constant has something to do.
 PAIR = Scene(
@@ -47,11 +46,6 @@ def test_a_constant_is_set_wherever_its_name_is_known_and_after_an_error_too():
         assert conforming.SPACING == patterns.SPACING == 2 * CONSTANTS["SPACING"].unit
         raise ZeroDivisionError
     assert conforming.SPACING == patterns.SPACING == CONSTANTS["SPACING"].unit
-
-
-def test_the_margin_of_before():
-    """Factor .372 is the other sign of EXCESS."""
-    assert_allclose(BEFORE / MARGIN, 0.372, atol=5e-4)  # three digits are given
 
 
 @pytest.mark.parametrize("family", scenes.FAMILIES)
@@ -92,33 +86,6 @@ def test_errors_are_those_against_the_witness_of_the_same_scene():
     assert_allclose(line["sem"], np.std([-0.1, 0.3, 0.2, 0.2], ddof=1) / 2, rtol=1e-9)
 
 
-def test_claims_see_a_constant_that_is_better_elsewhere_and_one_that_is_better_everywhere():
-    half = varied("OFFSET", 0.7, ("0.9995 2.003", "4.004 4.004"))
-    # Better where there are walls alone.
-    some = varied("SPACING", 1.4, ("0.9999 2.0001", "4.02 4.02"))
-    # Better everywhere, by a tenth.
-    little = varied("NARROW", 1.2, ("0.9991 2.0054", "4.0072 4.0072"))
-
-    def values(*others):
-        found = study.claims(made_up(*others))
-        return {text.split(": ")[1].split(" [")[0]: value for text, value, _ in found}
-
-    ratio = "median error as shipped over that of a constant's best value, worst constant"
-    assert study.words(made_up(some, little)).count("nothing") == 1
-    assert "OFFSET x 0.7 with 2000 particles" in study.words(made_up(half, some))
-    assert_allclose(values(half, some)[ratio], 2.0, rtol=1e-9)
-    assert values(some)[ratio] == 1.0
-
-
-def test_claims_see_a_bias():
-    """Of -.1, .3, .2 and .2 %: their standard deviation is .173 %."""
-    rows = made_up()
-    assert not any("mean error" in text for text, _, _ in study.claims(rows))
-    rows.loc[rows["part"] == "varied", "particles"] = 8000
-    value = next(value for text, value, _ in study.claims(rows) if "mean error" in text)
-    assert_allclose(value, 0.15 / (np.sqrt(0.03) / 2), rtol=1e-9)
-
-
 def test_two_powers_are_told_apart():
     particles = np.array([1000.0, 8000.0, 27000.0, 64000.0])
     h = particles ** (-1 / 3)
@@ -145,8 +112,3 @@ def test_an_error_is_its_two_parts():
     assert_allclose(error, quadrature - misfit, atol=3e-6)
     assert np.all(misfit > 0.05) and np.all(numbers(row["misfit_beside"]) < misfit)
     assert_allclose(numbers(row["volume"]), 0, atol=1e-8)
-
-
-def test_a_layer_has_no_error():
-    row = order.decomposed("layer", 10.0, 300, 2)
-    assert_allclose(numbers(row["error"]), 0, atol=1e-7)  # the solver's tolerance, in per cent

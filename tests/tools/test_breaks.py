@@ -49,15 +49,6 @@ def test_breaks_of_a_source():
     }
 
 
-def test_each_break_of_the_engine_is_another_program():
-    path = breaks.ROOT / "demheat" / "packing" / "conforming.py"
-    text = path.read_text(encoding="utf-8")
-    sound = ast.dump(ast.parse(text))
-    for each in mutants(text):
-        for mutant in each:
-            assert ast.dump(ast.parse(mutant.apply(text))) != sound, mutant
-
-
 def test_a_draw_is_repeated_and_begins_a_larger_one():
     few, many = (breaks.drawn(count, 5, packages=("demheat/scene",)) for count in (20, 60))
     assert many[:20] == few and len({each.key()[:3] for each in many}) > 40

@@ -55,36 +55,6 @@ def test_the_tensor_is_that_of_the_array(axis, kind, resistance):
     assert_allclose(sum(fields[0].fractions[1:]), fraction, rtol=1e-12)
 
 
-@pytest.mark.parametrize(
-    ("kind", "resistance", "contrast"), [("square", 0.0, 0.1), ("square", 0.15, 10.0), ("hexagonal", 0.1, 10.0)]
-)
-def test_the_field_obeys_the_equations(kind, resistance, contrast):
-    scene = array(1, kind=kind, resistance=resistance, fibre=Material(2.0 * contrast))
-    field, size = exact.solve(scene), np.array(scene.size)
-    points = np.random.default_rng(3).uniform(-1, 2, (400, 3)) * size
-    # From a cell to the next the temperature grows by the mean gradient, the flux not at all.
-    for step in np.diag(size):
-        grown = field.temperature_at(points + step) - field.temperature_at(points)
-        assert_allclose(grown, step @ OBLIQUE, rtol=0, atol=1e-8)
-        assert_allclose(field.flux_at(points + step), field.flux_at(points), rtol=0, atol=1e-6)
-    # Fourier's law, by differences of second order, away from surfaces.
-    h = 1e-4
-    distance = np.min([each.distance(points, period=size) ** 2 for each in scene.inclusions], axis=0)
-    clear = points[distance > (3 * h) ** 2]
-    slope = [(field.temperature_at(clear + e) - field.temperature_at(clear - e)) / (2 * h) for e in h * np.eye(3)]
-    k = scene.conductivities[scene.phase_at(clear)]
-    assert_allclose(field.flux_at(clear), -k[:, None] * np.transpose(slope), rtol=0, atol=1e-4)
-    # Flux and jump at the surface.
-    turn = np.linspace(0, 2 * math.pi, 19)
-    normals = np.column_stack([np.cos(turn), 0 * turn, np.sin(turn)])
-    inside, outside = (scene.inclusions[0].center + RADIUS * (1 + e) * normals for e in (-1e-10, 1e-10))
-    through = np.sum(field.flux_at(outside) * normals, axis=1)
-    within = 10 ** -field.stats["field_digits"] * 10 * np.linalg.norm(OBLIQUE)
-    assert_allclose(np.sum(field.flux_at(inside) * normals, axis=1), through, rtol=0, atol=within)
-    jump = field.temperature_at(inside) - field.temperature_at(outside)
-    assert_allclose(jump, resistance * through, rtol=0, atol=within)
-
-
 def test_a_fibre_in_the_middle_of_a_box_is_the_array():
     middle = replace(array(2).inclusions[0], center=(1.0, 1.0, 0.0))
     scene = Scene((EDGE, EDGE, HEIGHT), MATRIX, [middle], walls={"y-": 5.0, "y+": 1.0})

@@ -5,105 +5,15 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.sparse import coo_matrix, csr_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.sparse.linalg import spsolve
 
 from references.exact import fibres
 
 KINDS = ("square", "hexagonal")
 
 
-def spokes(kind, count):
-    """Corners of the cell around a fibre in units of the distance of neighbours, and points along its rim."""
-    sides = fibres.FOLD[kind]
-    turns = 2 * math.pi * (np.arange(sides + 1) - 0.5) / sides
-    corners = 0.5 / math.cos(math.pi / sides) * np.exp(1j * turns)
-    share = np.arange(count) / count
-    return np.concatenate([a + (b - a) * share for a, b in zip(corners, corners[1:], strict=False)])
-
-
-def by_elements(kind, contrast, fraction, resistance, count):
-    """k/k_m by bilinear elements along spokes from the centre of a fibre to the rim of its cell.
-
-    The circle has two nodes at each spoke, joined by what a resistance lets through.
-    """
-    rim, radius = spokes(kind, count), math.sqrt(fraction * fibres.AREA[kind] / math.pi)
-    around, layers = len(rim), count
-    circle = radius * rim / np.abs(rim)
-    steps = np.arange(layers + 1)[:, None] / layers
-    # The innermost ring is small: its hole carries nothing that counts.
-    core = np.maximum(steps, 1e-3) * circle
-    shell = circle + (rim - circle) * steps
-    z = np.concatenate([core.ravel(), shell.ravel()])
-    ring = np.arange(around)
-    rows, inner = np.arange(layers)[:, None] * around, len(core) * around
-    quads = np.stack(
-        [rows + ring, rows + np.roll(ring, -1), rows + around + np.roll(ring, -1), rows + around + ring], axis=-1
-    ).reshape(-1, 4)
-    elements = np.concatenate([quads, inner + quads])
-    k = np.repeat([contrast, 1.0], len(quads))
-    i, j, v = [], [], []
-    g = 1 / math.sqrt(3)
-    for x, y in ((-g, -g), (g, -g), (g, g), (-g, g)):
-        slopes = np.array([[-(1 - y), 1 - y, 1 + y, -(1 + y)], [-(1 - x), -(1 + x), 1 + x, 1 - x]]) / 4
-        corner = np.stack([z[elements].real, z[elements].imag], axis=-1)
-        jacobian = np.einsum("an,enc->eac", slopes, corner)
-        gradient = np.linalg.solve(jacobian, np.broadcast_to(slopes, (len(elements), 2, 4)))
-        area = np.abs(np.linalg.det(jacobian))
-        block = np.einsum("e,ean,eam->enm", k * area, gradient, gradient)
-        i.append(np.repeat(elements, 4, axis=1).ravel())
-        j.append(np.tile(elements, 4).ravel())
-        v.append(block.ravel())
-    here, there = layers * around + ring, inner + ring
-    merged = [] if resistance > 0 else list(zip(here, there, strict=True))
-    if resistance > 0:
-        # On each chord the mean over both ends, as for linear shape functions: 1/3, 1/6.
-        length = np.abs(np.roll(circle, -1) - circle) / (resistance * radius)
-        for a, b, share in ((0, 0, 1 / 3), (1, 1, 1 / 3), (0, 1, 1 / 6), (1, 0, 1 / 6)):
-            p, q = np.roll(ring, -a), np.roll(ring, -b)
-            for s, t, sign in ((here, here, 1), (there, there, 1), (here, there, -1), (there, here, -1)):
-                i.append(s[p])
-                j.append(t[q])
-                v.append(sign * share * length)
-    stiffness = coo_matrix((np.concatenate(v), (np.concatenate(i), np.concatenate(j))), shape=(len(z),) * 2).tocsr()
-    # A node of the rim is one with its images, and so is one of the circle where nothing resists.
-    last, half = inner + layers * around, fibres.FOLD[kind] // 2
-    edge = rim.reshape(-1, count)
-    ends = np.column_stack([edge, np.roll(rim, -count).reshape(-1, count)[:, :1]])
-    number = last + np.column_stack([ring.reshape(-1, count), np.roll(ring, -count).reshape(-1, count)[:, :1]])
-    for side in range(half):
-        other = side + half
-        shift = ends[side] - ends[other][::-1]
-        assert np.ptp(shift.real) + np.ptp(shift.imag) < 1e-12
-        merged += list(zip(number[side], number[other][::-1], strict=True))
-    a, b = np.array(merged).T
-    _, free = connected_components(coo_matrix((np.ones(len(a)), (a, b)), shape=(len(z),) * 2), directed=False)
-    lift = csr_matrix((np.ones(len(z)), (np.arange(len(z)), free)))
-    load = -lift.T @ (stiffness @ z.real)
-    matrix = (lift.T @ stiffness @ lift).tolil()
-    matrix[0, :] = 0
-    matrix[0, 0], load[0] = 1.0, 0.0
-    T = z.real + lift @ spsolve(matrix.tocsr(), load)
-    return float(T @ stiffness @ T / fibres.AREA[kind])
-
-
 @pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize(
-    ("contrast", "fraction", "resistance"), [(10.0, 0.3, 0.0), (0.05, 0.6, 0.0), (20.0, 0.5, 0.4), (3.0, 0.7, 5.0)]
-)
-def test_elements_on_a_cell(kind, contrast, fraction, resistance):
-    coarse, fine = (by_elements(kind, contrast, fraction, resistance, count) for count in (8, 16))
-    found = fibres.conductivity(kind, contrast, fraction, resistance=resistance)
-    best = fine + (fine - coarse) / 3
-    # Elements of second order: what is left after the extrapolation is of fourth, a sixteenth of what it took off.
-    assert_allclose(found, best, rtol=0, atol=max(abs(fine - coarse) / 16, 1e-5))
-    assert abs(found - fine) < 0.01 * found
-
-
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("fraction", [0.05, 0.4, 0.7, 0.77])
-@pytest.mark.parametrize("contrast", [2.0, 50.0, math.inf])
+@pytest.mark.parametrize("fraction", [0.05, 0.77])
+@pytest.mark.parametrize("contrast", [2.0, math.inf])
 def test_duality(kind, fraction, contrast):
     """Keller, J. Math. Phys. 5 (1964) 548: k(s) k(1/s) = 1 of what is isotropic in the plane."""
     other = 0.0 if math.isinf(contrast) else 1 / contrast

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from scipy.integrate import solve_ivp
 
 from demheat import Convection, Dependence, Flux, Layer, Material, Scene, Sphere
 from references import exact
@@ -45,26 +44,6 @@ def test_layers_each_with_their_own(resistance):
     ]
     assert_allclose(jumps, -flux * resistance, atol=1e-7)
     assert_allclose(field.temperature_at(np.array([[0.5, 0.0, 0.5], [0.5, 1.0, 0.5]])), [0.0, 100.0], atol=1e-10)
-
-
-def test_a_march_with_its_flux_ends_at_the_other_wall():
-    field = exact.solve(body(Layer(1, 0.5, 1.0, Material(0.5, dependence=FALLING))))
-    flux, warmth = field.mean_flux[1], 0.0
-    for start, stop, k, own in ((0.0, 0.5, 2.0, RISING), (0.5, 1.0, 0.5, FALLING)):
-        found = solve_ivp(lambda y, t, k=k, own=own: -flux / (k * own.factor(t)), (start, stop), [warmth], rtol=1e-10)
-        warmth = found.y[0, -1]
-    # Steps cross kinks of the factor.
-    assert_allclose(warmth, 100.0, rtol=1e-7)
-
-
-def test_hot_and_cold_change_places():
-    layer = Layer(1, 0.3, 0.7, Material(0.5, dependence=FALLING))
-    forth, mirrored = (
-        body(layer),
-        body(Layer(1, 0.3, 0.7, Material(0.5, dependence=FALLING)), **{"y-": 100.0, "y+": 0.0}),
-    )
-    assert_allclose(exact.solve(forth).mean_flux, -exact.solve(mirrored).mean_flux, rtol=1e-13)
-    assert exact.solve(body(layer, **{"y-": 30.0, "y+": 30.0})).mean_flux[1] == 0.0
 
 
 def test_what_follows_alike_is_linear_in_the_transform():

@@ -10,10 +10,9 @@ from scipy.integrate import solve_ivp
 from demheat import Flux, Layer, Material, MovingCylinder, Scene, UniformSource
 from references.exact.series import evolve
 
-# Haddad et al. (2021): steel of the slab, aluminium of the sphere; Terreros et al. (2013): aluminium of the beam.
-SLAB, SPHERE, BEAM = Material(33.0, 7800.0, 0.9), Material(185.0, 2700.0, 900.0), Material(134.0, 2790.0, 880.0)
+# Haddad et al. (2021): steel of the slab, aluminium of the sphere.
+SLAB, SPHERE = Material(33.0, 7800.0, 0.9), Material(185.0, 2700.0, 900.0)
 ONE = Material(2.0, 4.0, 0.25)  # diffusivity 2
-LENGTH, RADIUS = 2.184e-3, 0.116e-3
 
 
 def last(scene, time, **knobs):
@@ -60,20 +59,11 @@ def test_sphere_of_haddad():
     assert_allclose(found, (20.31666, 120.77809, 182.17817, 199.95631), rtol=0, atol=5e-6)  # as above
 
 
-@pytest.mark.parametrize("domain", ["box", "cylinder-x"])
-def test_beam_of_terreros(domain):
-    scene = Scene((LENGTH, 2 * RADIUS, 2 * RADIUS), BEAM, domain=domain, walls={"x-": 798.0}, initial=298.0)
-    end = np.array([LENGTH, RADIUS, 1.5 * RADIUS])
-    found = [field.temperature_at(end)[0] for field in evolve(scene, (0.01, 0.05, 0.1))]
-    assert_allclose(found, (334.582, 642.828, 760.178), rtol=0, atol=5e-4)  # as above
-
-
 @pytest.mark.parametrize("load", LOADS)
-@pytest.mark.parametrize("heated", [False, True])
-def test_against_finite_volumes(load, heated):
+def test_against_finite_volumes(load):
     """Two hundred cells, integrated to 1e-9 in time: their own error is the square of the cell."""
     walls, n, length, power = LOADS[load], 200, 2.0, 5.0
-    scene = slab(sources=[UniformSource(power)] if heated else (), **walls)
+    scene = slab(sources=[UniformSource(power)], **walls)
     h, k, capacity = length / n, ONE.conductivity, 1.0
 
     def rate(_, temperature):
@@ -83,7 +73,7 @@ def test_against_finite_volumes(load, heated):
             wall = walls.get(name, Flux(0.0))
             into = wall.value if isinstance(wall, Flux) else 2 * k * (wall - temperature[cell]) / h
             heat[end] = sign * into
-        return (-np.diff(heat) / h + power * heated) / capacity
+        return (-np.diff(heat) / h + power) / capacity
 
     times = [0.01, 0.1, 0.7]
     cells = solve_ivp(rate, (0, times[-1]), np.full(n, 3.0), "LSODA", times, rtol=1e-9, atol=1e-9, lband=1, uband=1)
@@ -92,26 +82,6 @@ def test_against_finite_volumes(load, heated):
     for field, expected in zip(evolve(scene, times), cells.y.T, strict=True):
         # h^2 / (8 * diffusivity * time) is 6e-4 at the first time, of steps up to 5 K; later less.
         assert_allclose(field.temperature_at(points), expected, rtol=0, atol=4e-3)
-
-
-@pytest.mark.parametrize("load", LOADS)
-@pytest.mark.parametrize("time", [0.005, 0.3])  # images, modes
-def test_walls_flux_and_heat_of_a_slab(load, time):
-    walls = LOADS[load]
-    scene = slab(sources=[UniformSource(5.0)], **walls)
-    field, area = last(scene, time), 0.75
-    for name, letter, y, sign in (("low", "y-", 0.0, 1), ("high", "y+", 2.0, -1)):
-        end = np.array([0.2, y, 0.4])
-        wall = walls.get(name, Flux(0.0))
-        into = sign * field.flux_at(end)[0, 1]
-        if isinstance(wall, Flux):
-            assert_allclose(into, wall.value, atol=1e-13)  # rounding
-        else:
-            assert_allclose(field.temperature_at(end), wall, rtol=1e-13)
-        if name in walls:
-            assert_allclose(field.wall_heat[letter], into * area, rtol=1e-12, atol=1e-13)
-            assert_allclose(field.wall_temperature[letter], field.temperature_at(end), rtol=1e-13)
-    assert set(field.wall_heat) == set(field.wall_temperature) == set(scene.walls)
 
 
 def slope(field, points, step=1e-5):
@@ -168,7 +138,7 @@ def test_heat_is_conserved(name):
     assert abs(entered) > 0.05
 
 
-@pytest.mark.parametrize("domain", ["box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"])
+@pytest.mark.parametrize("domain", ["box", "cylinder-y", "sphere"])
 def test_samples_fill_the_body_evenly(domain):
     field = last(Scene((2, 2, 2), ONE, domain=domain, initial=3.0), 0.1, points_per_axis=16)
     points, volumes, temperature, phase, flux = field.samples
@@ -189,12 +159,6 @@ def test_mean_flux_is_that_of_the_samples():
         assert_allclose(mean, field.mean_flux, atol=2e-3 * np.abs(field.samples.flux).max(), err_msg=name)
 
 
-def test_steady_slab_conducts_as_its_material():
-    field = last(slab(low=5.0, high=-2.0), 50.0)
-    assert_allclose(field.conductivity, 2.0, rtol=1e-14)
-    assert_allclose(field.wall_heat["y-"], 2.0 * 7.0 / 2.0 * 0.75, rtol=1e-13)
-
-
 def test_time_zero_and_outside():
     field = last(BODIES["sphere"], 0.0)
     assert field.temperature_at((0.5, 0.5, 0.5))[0] == 3.0 and field.wall_heat == {"round": math.inf}
@@ -204,11 +168,6 @@ def test_time_zero_and_outside():
     beam = last(slab(low=Flux(2.0), high=1.0), 0.0)
     assert beam.wall_heat == {"y-": 1.5, "y+": -math.inf}
     assert last(slab(low=3.0), 0.0).wall_heat == {"y-": 0.0}
-
-
-def test_painted_parts_of_the_same_material():
-    scene = Scene((1, 1, 1), ONE, [Layer(0, 0.25, 0.5, ONE)], walls={"y-": 1.0}, initial=0.0)
-    assert_allclose(last(scene, 0.1).fractions, [0.75, 0.25], rtol=1e-14)
 
 
 def moving():
@@ -233,16 +192,3 @@ def test_what_has_no_series_is_refused(change, words):
     scene = Scene(**{"size": (1, 1, 1), "matrix": ONE, "walls": {"y-": 1.0}, "initial": 0.0, **change})
     with pytest.raises(NotImplementedError, match=words):
         evolve(scene, [0.1])
-
-
-@pytest.mark.parametrize("times", [[0.1, 0.1], [0.2, 0.1], [-0.1], [float("nan")], ["soon"], [[0.1, 0.2]], []])
-def test_bad_times(times):
-    with pytest.raises(ValueError, match="must be increasing numbers, 0 or from 1e-50"):
-        evolve(slab(low=1.0), times)
-
-
-def test_other_bad_input():
-    with pytest.raises(ValueError, match="points_per_axis = 0"):
-        evolve(slab(low=1.0), [0.1], points_per_axis=0)
-    with pytest.raises(ValueError, match="Material.density"):
-        evolve(Scene((1, 1, 1), Material(1.0), walls={"y-": 1.0}, initial=0.0), [0.1])

@@ -8,7 +8,7 @@ from fem_scenes import ELEMENTS, KINDS, UNIT, cube, last, scene
 from numpy.testing import assert_allclose
 from scipy.optimize import brentq
 
-from demheat import Convection, Flux, Layer, Material, Radiation, Sphere, referee, solve
+from demheat import Convection, Flux, Layer, Material, Radiation, Sphere, referee
 from demheat.scene import STEFAN_BOLTZMANN
 from references import fem, mesh, series
 from references.fem.bricks import hexahedra
@@ -35,7 +35,7 @@ def test_slab_with_convection_is_exact(walls, elements):
 
 
 @pytest.mark.parametrize("elements", ELEMENTS)
-@pytest.mark.parametrize(("hot", "around"), [(1000.0, 300.0), (0.0, 900.0), (3.0, 5000.0)])
+@pytest.mark.parametrize(("hot", "around"), [(1000.0, 300.0), (3.0, 5000.0)])
 def test_slab_that_radiates(hot, around, elements):
     made = scene(matrix=100.0, walls={"x-": hot, "x+": Radiation(0.98, around)})
     field = fem.solve(made, size=COARSE, **elements)
@@ -48,15 +48,6 @@ def test_slab_that_radiates(hot, around, elements):
     assert_allclose(sum(field.wall_heat.values()), 0.0, atol=1e-7 * abs(field.wall_heat["x+"]))
 
 
-def test_a_composite_keeps_its_heat():
-    walls = {"x-": 400.0, "x+": Convection(3.0, 300.0), "y-": Flux(30.0), "z+": Radiation(0.9, 350.0)}
-    field = fem.solve(scene(Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0)), walls=walls), size=0.3)
-    total = sum(map(abs, field.wall_heat.values()))
-    # An edge where a held wall meets others shares no heat: reactions, films and fluxes balance to the tolerance.
-    assert abs(sum(field.wall_heat.values())) < 1e-7 * total and field.wall_heat["y-"] == pytest.approx(30.0, rel=1e-12)
-    assert_allclose(field.wall_heat["x+"], 3.0 * (300.0 - field.wall_temperature["x+"]), rtol=1e-9)
-
-
 def test_the_order_of_the_walls_does_not_matter():
     """Temperatures count from the first wall's: at an edge a held wall's nodes may be part of a film."""
     walls = {"x-": 400.0, "y-": Convection(3.0, 20.0), "x+": Flux(5.0)}
@@ -66,25 +57,6 @@ def test_the_order_of_the_walls_does_not_matter():
     for field in (one, other):
         assert_allclose(sum(field.wall_heat.values()), 0.0, atol=1e-6 * field.wall_heat["x-"])
     assert_allclose(one.wall_heat["y-"], other.wall_heat["y-"], rtol=1e-7)
-
-
-def test_the_error_of_such_a_field_and_the_dem_beside_it():
-    walls = {"x-": 400.0, "x+": Radiation(0.9, 300.0), "y-": Convection(2.0, 350.0)}
-    made = scene(Sphere((0.5, 0.5, 0.5), 0.3, Material(20.0)), walls=walls)
-    field, other = fem.solve(made, size=0.25), solve(made, particles=2000)
-    assert field.error.how == "coarser meshes" and 0 < field.error.temperature < 1.0
-    points = np.random.default_rng(5).random((300, 3))
-    # The declared error of the DEM at 2000 particles is .25 % of the span, here 100 K.
-    assert referee.rms(field.temperature_at(points) - other.temperature_at(points)) < 0.25 + field.error.temperature
-    # Of the heat that passes: what comes and goes by the wall that convects nearly cancels.
-    for name in walls:
-        assert_allclose(other.wall_heat[name], field.wall_heat[name], atol=0.01 * field.wall_heat["x-"])
-
-
-def test_radiation_alone_balances_a_flux():
-    field = fem.solve(scene(walls={"x-": Flux(5000.0), "x+": Radiation(0.3, 0.0)}), size=COARSE)
-    right = (5000.0 / 0.3 / STEFAN_BOLTZMANN) ** 0.25
-    assert_allclose([field.wall_temperature[name] for name in ("x+", "x-")], [right, right + 5000.0], rtol=1e-8)
 
 
 @pytest.mark.parametrize("load", [Convection(3.0, 20.0), Radiation(0.5, 20.0)])
@@ -144,15 +116,6 @@ def test_slab_in_time_against_the_series(walls, kind):
             assert_allclose(field.wall_temperature[name], right.wall_temperature[name], atol=0.01)
             assert_allclose(field.wall_heat[name], right.wall_heat[name], atol=0.05 * largest)
     assert field.stats["energy_error"] < 1e-8
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_lumped_body_radiates(kind):
-    made = cube(Material(1e6, 1000.0, 1.0), walls={"x-": Radiation(1.0, 0.0)}, initial=1000.0)
-    field = last(made, [5.0], size=0.5, **kind)
-    # As warm as one but for a Biot number of 2e-4.
-    assert_allclose(field.temperature_at(POINTS), (1e-9 + 3 * STEFAN_BOLTZMANN / 1000 * 5) ** (-1 / 3), rtol=3e-4)
-    assert field.stats["energy_error"] < 1e-7
 
 
 def test_surroundings_that_change():

@@ -77,21 +77,3 @@ def test_a_mapped_mesh_is_a_change_of_coordinates(order, load):
     powers = NodalField(bent, mapped, other.temperature).power(), NodalField(plain, mesh, one.temperature).power()
     assert_allclose(powers[0], powers[1], rtol=1e-8)
     assert_allclose(list(other.wall_heat.values()), list(one.wall_heat.values()), rtol=1e-7)
-
-
-def test_a_sphere_lies_between_the_bounds():
-    scene = body(Sphere((0.45, 0.5, 0.55), 0.3, Material(OTHER)))
-    fields = fem.solve_axes(scene, size=0.3)
-    found, f = conductivity_tensor(fields), fields[0].fractions
-    assert_allclose(found, found.T, atol=1e-6)
-    voigt = np.einsum("p,pij->ij", f, scene.tensors)
-    reuss = np.linalg.inv(np.einsum("p,pij->ij", f, np.linalg.inv(scene.tensors)))
-    assert np.linalg.eigvalsh(voigt - found).min() > 0 and np.linalg.eigvalsh(found - reuss).min() > 0
-
-
-def test_transients_refuse_tensors():
-    metal = Material(ONE, 1.0, 1.0)
-    scene = Scene((1.0, 1.0, 1.0), metal, walls={"x-": 0.0}, initial=1.0)
-    for elements in ("tetrahedra", "hexahedra"):
-        with pytest.raises(NotImplementedError, match="phase 0 is a tensor.*: in time finite elements know one number"):
-            list(fem.evolve(scene, [1.0], elements=elements))

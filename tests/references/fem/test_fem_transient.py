@@ -56,35 +56,6 @@ def test_slab_of_haddad(knobs, limit):
     assert_allclose([field.wall_heat["y-"], field.wall_heat["y+"]], exact, rtol=0.03)
 
 
-def test_sphere_of_haddad():
-    of = Scene((0.1,) * 3, Material(185.0, 2700.0, 900.0), walls={"round": 200.0}, initial=20.0, domain="sphere")
-    exact = [20.31666, 120.77809, 182.17817, 199.95631]
-    fields = list(fem.evolve(of, [1, 5, 10, 30], size=0.0125, accuracy=1e-4))
-    center = [f.temperature_at(np.full(3, 0.05))[0] for f in fields]
-    # Of a span of 180 K: this coarse mesh errs by .35 K, one of edges of 1 cm by .17 K.
-    assert_allclose(center, exact, atol=0.6)
-    surface = np.array([[0.05, 0.05, 0.1], [0.0, 0.05, 0.05], 0.05 + 0.05 / math.sqrt(3) * np.ones(3)])
-    # Beyond the quadratic surface the temperature goes on from inside.
-    assert_allclose(fields[0].temperature_at(surface), 200, atol=1.0)
-    with pytest.raises(ValueError, match="outside the sphere"):
-        fields[0].temperature_at(np.full((1, 3), 0.01))
-
-
-def test_beam_of_terreros():
-    length, radius = 2.184e-3, 0.116e-3
-    of = Scene(
-        (2 * radius, 2 * radius, length),
-        Material(134.0, 2790.0, 880.0),
-        walls={"z-": 798.0},
-        initial=298.0,
-        domain="cylinder-z",
-    )
-    fields = fem.evolve(of, [0.01, 0.05, 0.1], size=2 * radius, accuracy=1e-4)
-    end = [field.temperature_at(np.array([radius, radius, length]))[0] for field in fields]
-    # Of a span of 500 K: some .1 K of error in time at this accuracy and as much of the mesh; found .15 K off.
-    assert_allclose(end, [334.582, 642.828, 760.178], atol=0.25)
-
-
 # ---------------------------------------------------------------- orders
 
 
@@ -174,14 +145,6 @@ def test_heat_is_conserved(kind):
 
 
 @pytest.mark.parametrize("kind", KINDS)
-def test_uniform_heating_of_an_insulated_body_is_exact(kind):
-    of = cube(Material(2.0, 3.0, 4.0), sources=(UniformSource(24.0),), initial=7.0)
-    field = last(of, [0.0, 1.5], size=kind_size(kind), **kind)
-    assert_allclose(field.samples.temperature, 7 + 24 / 12 * 1.5, rtol=1e-9)  # linear tolerance
-    assert field.stats["steps"] < 20
-
-
-@pytest.mark.parametrize("kind", KINDS)
 def test_capacities_and_conductivities_of_layers(kind):
     layers = [Layer(1, 0.0, 0.3, Material(4.0, 2.0, 5.0)), Layer(1, 0.6, 0.9, Material(0.5, 1.0, 3.0))]
     of = cube(inclusions=layers, walls={"y-": 0.0, "y+": 1.0})
@@ -209,14 +172,6 @@ def test_field_at_the_start_and_temperatures_of_walls_in_time():
     assert_allclose(second.wall_heat["x+"], 2.0, rtol=1e-12)
 
 
-def test_flux_of_bricks_is_minus_conductivity_times_the_slope_of_their_temperature():
-    of = cube(Material(3.0, 1.0, 1.0), initial=lambda x: x @ [1.0, 2.0, -4.0])
-    (field,) = fem.evolve(of, [0.0], elements="hexahedra", size=0.3)
-    points = np.random.default_rng(0).random((50, 3))
-    assert_allclose(field.flux_at(points), np.tile([-3.0, -6.0, 12.0], (50, 1)), rtol=1e-10)
-    assert_allclose(field.mean_flux, [-3.0, -6.0, 12.0], rtol=1e-10)
-
-
 # ---------------------------------------------------------------- a round body
 
 
@@ -233,17 +188,8 @@ def test_flux_through_a_round_wall():
 @pytest.mark.parametrize(
     ("parts", "knobs", "words"),
     [
-        ({}, {"times": []}, r"times = \[\]: must be"),
-        ({}, {"times": [0.2, 0.1]}, r"times = \[0.2, 0.1\].*increasing"),
-        ({}, {"times": [-1.0]}, r"times = \[-1.0\].*, 0 or from 1e-50"),
-        ({}, {"times": "soon"}, "times = 'soon'"),
         ({}, {"order": 3}, "order = 3: must be 1 or 2 with tetrahedra"),
         ({}, {"order": 2, "elements": "hexahedra"}, "order = 2: must be 1 with hexahedra"),
-        ({}, {"elements": "prisms"}, "elements = 'prisms': must be"),
-        ({}, {"step": 0.0}, "step = 0.0: must be"),
-        ({}, {"accuracy": 1.0}, "accuracy = 1.0: must be"),
-        ({}, {"tolerance": "tight"}, "tolerance = 'tight': must be"),
-        ({}, {"elements": "hexahedra", "size": -1}, "size = -1: must be"),
         ({}, {"elements": "hexahedra", "size": 1e-3}, "size = 0.001 m: more than 2e"),
         ({"initial": None, "walls": {"x-": 0.0}}, {}, "Scene.initial = None"),
         ({"matrix": Material(1.0)}, {}, "Material.density = None in phase 0"),
@@ -295,11 +241,10 @@ def test_a_step_that_shrinks_to_nothing_is_an_error():
         last(of, [1.0], elements="hexahedra", size=0.5, accuracy=1e-9, tolerance=1e-12)
 
 
-@pytest.mark.parametrize("relaxations", [1e7, 1e17])
-def test_far_beyond_the_steady_state(relaxations):
+def test_far_beyond_the_steady_state():
     walls = {"walls": {"x-": 0.0, "x+": 1.0}, "initial": 0.0}
     scene = Scene((1.0, 1.0, 1.0), UNIT, **walls)
-    (field,) = fem.evolve(scene, [relaxations], elements="hexahedra", size=0.25)
+    (field,) = fem.evolve(scene, [1e17], elements="hexahedra", size=0.25)
     # Temperatures are linear there, which bricks are exactly; to the tolerance of the equations.
     assert field.wall_heat["x+"] == pytest.approx(1.0, rel=1e-8)
     assert field.stats["energy_error"] < 1e-12

@@ -6,12 +6,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fft_scenes import RULES, SCHEMES, dispersion, sphere_cell
+from fft_scenes import SCHEMES, dispersion, sphere_cell
 from numpy.testing import assert_allclose
 
-from demheat.scene import Flux, Layer, Material, Scene, Sphere
-from references import exact, fft
-from references.fft import eyre_milton, rules, solver
+from demheat.scene import Layer, Material, Scene, Sphere
+from references import fft
+from references.fft import eyre_milton, rules
 from references.voxels import links as voxel_links
 
 # Grids here are coarse on purpose.
@@ -26,7 +26,7 @@ pytestmark = [
 
 @pytest.mark.parametrize("scheme", SCHEMES)
 @pytest.mark.parametrize("walls", [False, True])
-@pytest.mark.parametrize("voxels", [1, 2, 3, 5, (1, 4, 7), (2, 1, 1), (9, 2, 3)])
+@pytest.mark.parametrize("voxels", [1, 2, (1, 4, 7), (9, 2, 3)])
 def test_tiny_and_odd_grids(scheme, walls, voxels):
     scene = dispersion(walls={"x-": 0.0, "x+": 1.0}) if walls else dispersion(gradient=(1.0, 0.0, 0.0))
     nx = np.atleast_1d(voxels)[0]
@@ -52,15 +52,6 @@ def test_single_precision(scheme, walls):
     assert_allclose(single.mean_flux, double.mean_flux, rtol=2e-6, atol=1e-6)
 
 
-@pytest.mark.parametrize("scheme", SCHEMES)
-def test_threads_do_not_change_the_answer(scheme):
-    scene = dispersion(gradient=(1.0, 0.0, 0.0))
-    one, two, all_ = (fft.solve(scene, voxels=9, scheme=scheme, threads=t).mean_flux for t in (1, 2, None))
-    # FFTW may plan another order of sums.
-    assert_allclose(two, one, rtol=1e-12, atol=1e-14)
-    assert_allclose(all_, one, rtol=1e-12, atol=1e-14)
-
-
 @pytest.mark.parametrize("rule", ["plain", "links"])
 def test_a_contrast_of_a_million_converges_to_its_own_limit(rule):
     loose, tight = (
@@ -81,14 +72,8 @@ def test_surfaces_kept_off_the_nodes_save_iterations(monkeypatch):
     assert 0 < exactly.conductivity / kept.conductivity - 1 < 2e-5
 
 
-def test_pores():
+def test_pores_are_refused_by_what_divides_by_conductivities():
     scene = Scene((1, 1, 1), Material(2.0), [Sphere((0.5,) * 3, 1 / 3, Material(0.0))], gradient=(0.0, 0.0, 1.0))
-    field = fft.solve(scene, voxels=32)
-    # Plain voxels: twice the 0.29 % found.
-    assert_allclose(field.conductivity, exact.solve(scene).conductivity, rtol=6e-3)
-    assert np.array_equal(np.isnan(field.samples.temperature), field.samples.phase == 1)
-    inside = np.linalg.norm(field.samples.points - 0.5, axis=1) < 0.28
-    assert np.all(field.samples.flux[inside] == 0)
     with pytest.raises(NotImplementedError, match="conductivity is 0"):
         fft.solve(scene, voxels=4, scheme="eyre-milton")
     with pytest.raises(NotImplementedError, match="conductivity is 0"):
@@ -120,11 +105,6 @@ def test_gaps_of_a_voxel_or_so_are_said(wide, said):
     assert [str(each.message).startswith("gaps beside inclusions [0, 1]") for each in caught] == [True] * said
 
 
-def test_a_body_without_conductivity_conducts_nothing():
-    field = fft.solve(Scene((1, 1, 1), Material(0.0), gradient=(1.0, 0.0, 0.0)), voxels=4)
-    assert np.array_equal(field.mean_flux, [0, 0, 0])
-
-
 @pytest.mark.parametrize("scheme", SCHEMES)
 def test_equal_walls_carry_no_heat(scheme):
     field = fft.solve(dispersion(walls={"x-": 7.0, "x+": 7.0}), voxels=6, scheme=scheme)
@@ -133,13 +113,6 @@ def test_equal_walls_carry_no_heat(scheme):
 
 
 # Convergence is never pretended
-
-
-@pytest.mark.parametrize(("scheme", "rule"), RULES)
-@pytest.mark.parametrize("walls", [False, True])
-def test_too_few_iterations_raise(scheme, rule, walls):
-    with pytest.raises(RuntimeError, match=r"3 iterations, relative residual \d"):
-        fft.solve(sphere_cell(30.0, walls=walls), voxels=8, scheme=scheme, rule=rule, max_iterations=3)
 
 
 # cg waits for two small decreases of the energy: two iterations more than its final check asks for.
@@ -170,49 +143,13 @@ def test_the_error_follows_the_tolerance(scheme):
 # Bad input
 
 
-@pytest.mark.parametrize(
-    ("knobs", "message"),
-    [
-        ({"scheme": "basic"}, "scheme = 'basic'"),
-        ({"rule": "voigt"}, "rule = 'voigt'"),
-        ({"scheme": "eyre-milton", "rule": "links"}, "rule = 'links'"),
-        ({"precision": "float16"}, "precision = 'float16'"),
-        ({"threads": 0}, "threads = 0"),
-        ({"threads": 1.5}, "threads = 1.5"),
-        ({"threads": True}, "threads = True"),
-        ({"max_iterations": True}, "max_iterations = True"),
-        ({"tolerance": 1e-300}, "tolerance = 1e-300: must be a number from 2.2e-16, the rounding of float64"),
-        ({"tolerance": 1e-9, "precision": "float32"}, "tolerance = 1e-09: must be a number from 1.2e-07"),
-        ({"tolerance": 0.0}, "tolerance = 0.0"),
-        ({"tolerance": float("nan")}, "tolerance = nan"),
-        ({"tolerance": "tight"}, "tolerance = 'tight'"),
-        ({"max_iterations": 0}, "max_iterations = 0"),
-        ({"max_iterations": 10.0}, "max_iterations = 10.0"),
-        ({"voxels": 0}, "voxels = 0"),
-        ({"voxels": 10**6}, "voxels = 1000000"),
-    ],
-)
-def test_bad_knobs(knobs, message, monkeypatch):
-    monkeypatch.setattr(solver, "voxelise", None)  # refused before the grid is made
-    with pytest.raises(ValueError, match=message):
-        fft.solve(sphere_cell(10.0), **knobs)
-
-
-@pytest.mark.parametrize(
-    "walls",
-    [{"x-": 1.0, "x+": Flux(2.0)}, {"x-": 1.0}, {"x-": 1.0, "y+": 2.0}, dict.fromkeys(("x-", "x+", "y-"), 1.0)],
-)
+@pytest.mark.parametrize("walls", [{"x-": 1.0}, {"x-": 1.0, "y+": 2.0}, dict.fromkeys(("x-", "x+", "y-"), 1.0)])
 def test_other_loads_are_refused(walls):
     with pytest.raises(NotImplementedError, match="two opposite walls"):
         fft.solve(Scene((1, 1, 1), Material(1.0), walls=walls), voxels=4)
 
 
-def test_a_load_that_fixes_no_temperature_is_bad_input():
-    with pytest.raises(ValueError, match="at least one wall with a temperature"):
-        fft.solve(Scene((1, 1, 1), Material(1.0), walls={"x-": Flux(1.0), "x+": Flux(-1.0)}), voxels=4)
-
-
-@pytest.mark.parametrize("conductivity, factor", [(100.0, 11.0), (0.01, 11.0), (4.0, 3.0)])
+@pytest.mark.parametrize("conductivity, factor", [(0.01, 11.0), (4.0, 3.0)])
 def test_what_is_left_of_equilibrium_is_bounded_by_the_contrast(monkeypatch, conductivity, factor):
     """Making fields compatible moves fluxes by the root of the contrast at most; more is not convergence."""
     scene = Scene((1, 1, 1), Material(1.0), [Sphere((0.5,) * 3, 0.3, Material(conductivity))], gradient=(0, 1, 0))

@@ -21,12 +21,6 @@ def cell(*shapes, k=ONE, **load):
     return Scene((1.0, 1.0, 1.0), Material(k), shapes, **(load or {"gradient": (1.0, 0.0, 0.0)}))
 
 
-@pytest.mark.parametrize("rule", ["plain", "laminate"])
-def test_a_homogeneous_cell_has_its_own_tensor(rule):
-    found = conductivity_tensor(fft.solve_axes(cell(), voxels=(5, 6, 4), rule=rule, **TIGHT))
-    assert_allclose(found, np.array(ONE), atol=1e-13)
-
-
 @pytest.mark.parametrize("axis", range(3))
 def test_layers_are_exact_in_laminate_voxels(axis):
     body = cell(
@@ -101,22 +95,6 @@ def test_a_stretched_box_is_a_change_of_coordinates(load):
         other = cg.solve(Problem(voxels=longer, gradient=gradient / stretch, **how))
         assert_allclose(other.mean_flux, one.mean_flux * stretch, rtol=1e-8, atol=1e-9)
         assert_allclose(other.state()[0], one.state()[0], atol=1e-8)
-
-
-REFUSED = {
-    "eyre-milton": ({"scheme": "eyre-milton"}, "Eyre and Milton's reference"),
-    "links": ({"rule": "links"}, "links along the axes"),
-}
-
-
-@pytest.mark.parametrize("what", REFUSED)
-def test_what_cannot_says_so(what):
-    knobs, words = REFUSED[what]
-    with pytest.raises(NotImplementedError, match=f"Material.conductivity in phase 0 is a tensor.*{words}") as error:
-        fft.solve(cell(), voxels=8, **knobs)
-    assert "\n" not in str(error.value)
-    with pytest.raises(NotImplementedError, match=words):
-        fft.solve_axes(cell(), voxels=8, **knobs)
 
 
 def test_pores_and_tensors_in_one_cell():

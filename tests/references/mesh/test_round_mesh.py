@@ -32,29 +32,6 @@ def test_round_bodies(domain, walls):
     assert 1e-3 < -straight.stats["volume_error"] < 0.03
 
 
-def test_a_failed_size_is_tried_again_then_refused(monkeypatch):
-    of = Scene((1.0,) * 3, UNIT, initial=0.0, domain="sphere")
-    attempt, calls = module._attempt, []
-
-    def fails_once(of, size, *knobs):
-        calls.append(size)
-        if len(calls) == 1:
-            raise Exception("no elements in volume 1")
-        return attempt(of, size, *knobs)
-
-    monkeypatch.setattr(module, "_attempt", fails_once)
-    made = make_round(of, size=0.4, order=1)
-    assert calls == [0.4, 0.93 * 0.4]
-    assert made.stats["attempts"] == 2 and made.stats["size"] == 0.93 * 0.4
-
-    def fails(*_):
-        raise Exception("PLC Error")
-
-    monkeypatch.setattr(module, "_attempt", fails)
-    with pytest.raises(RuntimeError, match="4 sizes.*0.4 m: PLC Error"):
-        make_round(of, size=0.4, order=1)
-
-
 def test_other_errors_are_not_tried_again(monkeypatch):
     calls = []
 

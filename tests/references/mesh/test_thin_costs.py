@@ -27,9 +27,7 @@ def coated(radius, thickness):
 @pytest.mark.parametrize(
     ("scene", "size"),
     [
-        (layers((0.3, 0.35)), 0.16),
         (layers((0.3, 0.35), (0.37, 0.4)), 0.12),
-        (layers((0.5, 0.55), (0.6, 0.65)), 0.06),
         (coated(0.3, 0.01), 0.16),
         (coated(0.3, 0.02), 0.16),
     ],

@@ -46,22 +46,11 @@ def test_walls_hold_their_temperature_and_sides_are_insulated(axis):
     assert field.wall_temperature == {names[0]: 25.0, names[1]: 35.0}
 
 
-def test_a_sphere_in_a_cube_is_the_simple_cubic_array():
-    scene = gallery.sphere_in_cube(10.0)
-    found, expected = multipole.solve(scene, order=16), exact.solve(scene)
-    assert_allclose(found.conductivity, expected.conductivity, rtol=1e-9)  # order 16 leaves 1e-10
-    points = np.random.default_rng(1).random((200, 3)) * scene.size
-    # Terms of degree 17 and more, as in the array.
-    assert_allclose(found.temperature_at(points), expected.temperature_at(points), rtol=0, atol=3e-7 * 10)
-    assert_allclose(found.flux_at(points), expected.flux_at(points), rtol=0, atol=2e-5 * 4000)
-    assert_allclose(found.fractions, expected.fractions, rtol=1e-14)
-
-
-@pytest.mark.parametrize("place", ["in two walls", "on four edges", "in eight corners"])
+@pytest.mark.parametrize("place", ["in two walls", "in eight corners"])
 def test_spheres_that_walls_cut_through_their_centres_are_whole_in_the_mirror(place):
     scene, array = gallery.sphere_in_cube(10.0), exact.solve(gallery.sphere_in_cube(10.0, periodic=True))
     whole, edge = scene.inclusions[0], scene.size[0]
-    ends = {"in two walls": [1], "on four edges": [0, 1], "in eight corners": [0, 1, 2]}[place]
+    ends = {"in two walls": [1], "in eight corners": [0, 1, 2]}[place]
     centers = np.full((2 ** len(ends), 3), edge / 2)
     centers[:, ends] = edge * np.array(list(product((0, 1), repeat=len(ends))))
     found = multipole.solve(replace(scene, inclusions=[replace(whole, center=tuple(c)) for c in centers]), order=12)
@@ -131,16 +120,6 @@ def test_a_box_without_symmetry_agrees_with_voxels():
     assert_allclose(mean, found.mean_flux, rtol=0, atol=0.01 * np.linalg.norm(found.mean_flux))  # midpoints of 24^3
 
 
-def test_reversing_the_walls_and_saying_that_sides_are_insulated():
-    there, back = multipole.solve(box(), order=4), multipole.solve(box(1, 35.0, 25.0, **{"x-": Flux(0.0)}), order=4)
-    points = np.random.default_rng(4).random((20, 3)) * SIZE
-    assert_allclose(back.temperature_at(points), 60.0 - there.temperature_at(points), rtol=1e-12)  # rounding
-    assert_allclose(back.mean_flux, -there.mean_flux, rtol=1e-12, atol=1e-12)
-    assert back.wall_heat["x-"] == pytest.approx(0.0, abs=1e-12)
-    same = multipole.solve(box(1, 25.0, 25.0), order=4)
-    assert_allclose(same.temperature_at(points), 25.0, rtol=1e-14)
-
-
 def test_a_sphere_that_touches_a_wall_is_one_material_with_its_image():
     field = multipole.solve(box(spheres=[Sphere((0.3, 0.2, 0.45), 0.2, Material(7.0)), SPHERES[1]]), order=4)
     # Points taken for points of the wall may lie beyond it by rounding, here in the image.
@@ -150,18 +129,10 @@ def test_a_sphere_that_touches_a_wall_is_one_material_with_its_image():
     assert field.stats["smallest_gap"] == pytest.approx(0.0, abs=1e-15)
 
 
-def test_without_spheres_the_temperature_is_linear():
-    field = multipole.solve(box(spheres=[]))
-    assert_allclose(field.temperature_at([(0.2, 0.275, 0.3)]), 27.5, rtol=1e-14)
-    assert_allclose(field.conductivity, 1.0, rtol=1e-14)
-
-
 @pytest.mark.parametrize(
     ("scene", "reason"),
     [
         (Scene(SIZE, Material(1.0), SPHERES, walls={"x-": 0.0}), r"walls \['x-'\]; only two opposite"),
-        (Scene(SIZE, Material(1.0), SPHERES, walls={"x-": 0.0, "y-": 1.0}), "only two opposite"),
-        (Scene(SIZE, Material(1.0), SPHERES, walls={"x-": 0.0, "x+": Flux(1.0)}), "only two opposite"),
         (box(**{"x-": 3.0}), "only two opposite"),
         (box(**{"x-": Flux(1.0)}), "only two opposite"),
         (box(spheres=[SPHERES[0], Sphere((0.75, 0.9, 0.6), 0.22, Material(2.0))]), r"inclusions\[1\] is cut by a wall"),

@@ -1,14 +1,13 @@
 """Spheres in a periodic cell by multipoles: against cubic arrays, plain sums, voxels, series and themselves."""
 
 import math
-from itertools import product
 
 import numpy as np
 import pytest
-from multipole_scenes import CUBIC, PARTS, SIZE, box, solved, tensor
+from multipole_scenes import CUBIC, PARTS, box
 from numpy.testing import assert_allclose
 
-from demheat import Layer, Material, Scene, Sphere, gallery
+from demheat import Material, Scene, Sphere, gallery
 from references import fft, multipole
 from references.exact import lattice
 
@@ -16,7 +15,7 @@ from references.exact import lattice
 
 
 @pytest.mark.parametrize("kind", CUBIC)
-@pytest.mark.parametrize(("contrast", "fraction"), [(10.0, 0.3), (0.0, 0.4), (1e6, 0.2)])
+@pytest.mark.parametrize(("contrast", "fraction"), [(0.0, 0.4), (1e6, 0.2)])
 def test_cubic_arrays_as_cells_of_one_two_and_four_spheres(kind, contrast, fraction):
     scene = CUBIC[kind](contrast, fraction=fraction, axis=1)
     found = multipole.solve(scene, order=20, tolerance=1e-12)
@@ -25,21 +24,6 @@ def test_cubic_arrays_as_cells_of_one_two_and_four_spheres(kind, contrast, fract
     assert_allclose(found.conductivity, expected, rtol=1e-8)
     assert_allclose(found.mean_flux[[0, 2]], 0, rtol=0, atol=1e-11 * abs(found.mean_flux[1]))  # rounding
     assert_allclose(found.fractions[1:].sum(), fraction, rtol=1e-14)
-
-
-def test_simple_cubic_array_as_eight_spheres():
-    scene = gallery.simple_cubic(10.0, fraction=0.3)
-    edge, sphere = scene.size[0], scene.inclusions[0]
-    spheres = [
-        Sphere(np.add(sphere.center, np.multiply(edge, cell)), sphere.radius, sphere.material)
-        for cell in product((0, 1), repeat=3)
-    ]
-    doubled = Scene((2 * edge,) * 3, scene.matrix, spheres, gradient=(30.0, 20.0, 10.0))
-    found = multipole.solve(doubled, order=14, tolerance=1e-12)
-    ratio = lattice.conductivity("sc", 10.0, 0.3, order=51, digits=10)
-    expected = -scene.matrix.conductivity * ratio * np.array(doubled.gradient)
-    # Order 14 leaves 8e-10.
-    assert_allclose(found.mean_flux, expected, rtol=3e-9)
 
 
 # Any spheres.
@@ -53,46 +37,7 @@ def test_an_arrangement_without_symmetry_agrees_with_voxels():
     assert 1.8 < (coarse - found) / (fine - found) < 4
 
 
-def test_tensor_is_symmetric_and_positive():
-    k = tensor(PARTS, 8)
-    # Tolerance of the solves, 1e-10; symmetry holds at any order.
-    assert_allclose(k, k.T, rtol=0, atol=1e-9)
-    assert abs(k[0, 1]) > 1e-4
-    assert np.linalg.eigvalsh(k).min() > 0.5
-
-
-def test_shifting_all_spheres_changes_nothing():
-    shift = (0.31, -0.77, 2.05)
-    here, there = solved(), multipole.solve(box((0.5, -1.0, 2.0), shift), order=14)
-    assert_allclose(there.mean_flux, here.mean_flux, rtol=1e-9)  # tolerance of the solves
-    points = np.random.default_rng(2).random((200, 3)) * SIZE
-    moved = there.temperature_at(points + shift) - np.dot((0.5, -1.0, 2.0), shift)
-    # Tolerance of the solves again; a point beside a surface could change sides by rounding, none does.
-    assert_allclose(moved, here.temperature_at(points), rtol=0, atol=1e-8)
-    assert_allclose(there.flux_at(points + shift), here.flux_at(points), rtol=0, atol=1e-7)
-
-
-def test_turning_the_cell_turns_the_flux():
-    turned = [(np.roll(center, 1), radius, k) for center, radius, k in PARTS]
-    scene = box(np.roll((0.5, -1.0, 2.0), 1), parts=turned, size=tuple(np.roll(SIZE, 1)))
-    found = multipole.solve(scene, order=14).mean_flux
-    assert_allclose(found, np.roll(solved().mean_flux, 1), rtol=1e-9)  # tolerance of the solves
-
-
-def test_dilute_spheres_of_two_materials():
-    parts = [((0.2, 0.3, 0.25), 0.04, 30.0), ((0.7, 0.8, 0.6), 0.06, 0.2), ((0.3, 0.9, 0.7), 0.05, 30.0)]
-    beta = np.array([(k - 1) / (k + 2) for _, _, k in parts])
-    phi = np.array([4 / 3 * math.pi * r**3 for _, r, _ in parts]) / np.prod(SIZE)
-    first = 3 * np.sum(phi * beta)
-    # Over the three axes dipoles act on each other only through their mean, as in Maxwell's formula at second order.
-    found = np.trace(tensor(parts, 4)) / 3
-    # Third order: fractions of 1e-3 times (radius/distance)^6, 1e-5 at most.
-    assert_allclose(found - 1, first + first**2 / 3, rtol=0, atol=3e-8)
-    assert abs(first**2 / 3) > 3e-7
-
-
-@pytest.mark.parametrize("radius", [1e-3, 1e-10, 1e-30])
-@pytest.mark.parametrize("size", [(1.0, 1.0, 1.0), (1.0, 0.1, 1.0)])
+@pytest.mark.parametrize(("radius", "size"), [(1e-3, (1.0, 1.0, 1.0)), (1e-30, (1.0, 0.1, 1.0))])
 def test_tiny_spheres_in_large_and_flat_cells(radius, size):
     """In the limit each is alone: a dipole in a matrix, the flux within it 3 k/(k + 2) times the matrix's."""
     spheres = [Sphere(np.multiply(where, size), radius, Material(5.0)) for where in ((0.5, 0.5, 0.5), (0.2, 0.3, 0.4))]
@@ -153,38 +98,3 @@ def test_touching_spheres_are_refused_or_their_error_is_said():
 
 
 # What is refused.
-
-
-def test_what_it_cannot_do_it_says():
-    material = Material(5.0)
-    layers = Scene((1.0,) * 3, Material(1.0), [Layer(0, 0.2, 0.4, material)], gradient=(1.0, 0.0, 0.0))
-    nested = Scene(
-        (1.0,) * 3,
-        Material(1.0),
-        [Sphere((0.5,) * 3, 0.4, material), Sphere((0.5,) * 3, 0.2, Material(2.0))],
-        gradient=(1.0, 0.0, 0.0),
-    )
-    for scene, reason in (
-        (layers, r"a layer, Scene.inclusions\[0\]: multipole knows disjoint spheres"),
-        (nested, r"Scene.inclusions\[1\], nested in \[0\]"),
-    ):
-        with pytest.raises(NotImplementedError, match=reason):
-            multipole.solve(scene)
-
-
-@pytest.mark.parametrize(
-    "knob",
-    [
-        {"order": 0},
-        {"order": 2.5},
-        {"order": True},
-        {"order": 1000},
-        {"accuracy": 0.0},
-        {"tolerance": math.nan},
-        {"points_per_axis": 0},
-        {"threads": 0},
-    ],
-)
-def test_bad_knobs(knob):
-    with pytest.raises(ValueError, match=f"{next(iter(knob))} = .*must be"):
-        multipole.solve(box(), **knob)

@@ -1,7 +1,7 @@
 """Temperature and flux of spheres in a periodic cell at any point."""
 
 import numpy as np
-from multipole_scenes import PARTS, SIZE, box, solved
+from multipole_scenes import PARTS, box, solved
 from numpy.testing import assert_allclose
 
 from demheat import gallery
@@ -57,25 +57,6 @@ def test_flux_is_the_slope_of_the_temperature():
         rises = [field.temperature_at(place + step) - field.temperature_at(place - step) for step in h * np.eye(3)]
         k = field.scene.conductivities[field.scene.phase_at(place)]
         assert_allclose(field.flux_at(place), -k[:, None] * np.transpose(rises) / (2 * h), rtol=0, atol=1e-6 * 20)
-
-
-def test_temperature_is_periodic_but_for_the_mean_gradient():
-    field, points = solved(), np.random.default_rng(4).random((50, 3)) * SIZE
-    away = points + np.array(SIZE) * (3, -2, 1)
-    rise = np.dot(np.array(SIZE) * (3, -2, 1), (0.5, -1.0, 2.0))
-    assert_allclose(field.temperature_at(away) - rise, field.temperature_at(points), rtol=0, atol=1e-12)  # rounding
-    assert_allclose(field.flux_at(away), field.flux_at(points), rtol=0, atol=1e-10)  # rounding
-
-
-def test_samples_average_to_the_mean_flux():
-    samples, field = solved().samples, solved()
-    assert_allclose(samples.volumes.sum(), field.scene.volume, rtol=1e-12)
-    mean = samples.volumes @ samples.flux / samples.volumes.sum()
-    # Midpoints of 20^3 cells, 1 in 10 cut by a surface at random.
-    assert_allclose(mean, field.mean_flux, rtol=0, atol=0.01 * np.linalg.norm(field.mean_flux))
-    periodic = samples.temperature - samples.points @ (0.5, -1.0, 2.0)
-    assert abs(samples.volumes @ periodic) < 1e-3 * np.abs(periodic).max() * field.scene.volume
-    assert_allclose(np.bincount(samples.phase) / len(samples.phase), field.fractions, rtol=0, atol=2e-3)
 
 
 def test_field_does_not_depend_on_the_splitting(monkeypatch):

@@ -108,13 +108,6 @@ def test_cut_voxels_against_a_million_points():
             assert abs(normal @ np.linalg.eigh(full)[1][:, 0]) > np.cos(0.04)
 
 
-def test_a_laminate_lies_between_its_phases_means():
-    scene = cell(*(Sphere(x, 0.2, GOOD) for x in np.random.default_rng(3).random((1, 3))))
-    grid = voxelise(scene, (10, 10, 10), laminate=True)
-    eigenvalues = np.linalg.eigvalsh(grid.tensor[:, [[0, 5, 4], [5, 1, 3], [4, 3, 2]]])
-    assert eigenvalues.min() >= 1 - 1e-12 and eigenvalues.max() <= 7 + 1e-12
-
-
 @pytest.mark.parametrize("walls", [None, {"y-": 0.0, "y+": 1.0}])
 def test_plain_voxels_have_the_phase_of_their_centre(walls):
     # Off the grid, so that no centre lies on a surface.
@@ -137,9 +130,3 @@ def test_plain_voxels_have_the_phase_of_their_centre(walls):
 )
 def test_grid_shape(voxels, shape):
     assert grid_shape(cell(size=(1.0, 2.0, 0.52)), voxels) == shape
-
-
-@pytest.mark.parametrize("voxels", [0, -3, 2.5, "8", None, (4, 4), (4, 4, 0), (4, 4, 4.0), [[4]], (4, (4, 4)), 2**11])
-def test_grid_shape_refuses(voxels):
-    with pytest.raises(ValueError, match="voxels = "):
-        grid_shape(cell(), voxels)

@@ -128,7 +128,7 @@ def test_cut_sphere(sphere):
     assert_allclose(direction, np.einsum("ma,mb->mab", normal, normal), atol=1e-12)
 
 
-@pytest.mark.parametrize("voxels", [3, 5, 7, 9, 11, 13, 15, 17, 25, 31, 49, 63])
+@pytest.mark.parametrize("voxels", [3, 7, 25, 49])
 @pytest.mark.parametrize(("radius", "cut"), [(0.51, 7), (0.75, 19), (0.8, 19), (0.86, 18)])
 def test_a_sphere_on_the_centre_of_a_voxel(voxels, radius, cut):
     # Rounding puts the centre on the voxel's or 1e-17 beside it: more voxels were cut than counted, and written beyond

@@ -56,15 +56,6 @@ def known(name):
     return (multipole if name.startswith("unlike") else exact).solve(scene).conductivity
 
 
-@pytest.mark.slow
-def test_a_good_conductor():
-    """A hundred times as good: walkers are long inside."""
-    scene = ball(100.0)
-    found = walkers.solve(scene, walks=800, radius=0.1, seed=1)
-    assert abs(found.conductivity - exact.solve(scene).conductivity) < 4 * found.error + found.bias
-    assert found.error < 0.02 * found.conductivity
-
-
 @pytest.mark.parametrize("name", KNOWN)
 def test_what_is_known(name):
     scene, walks, radius, _ = KNOWN[name]

@@ -1,13 +1,6 @@
 from studies.common import cutter
 
 
-def test_figures_of_the_cutter():
-    """A small packing: costs are there and agree, the machine's speed is nobody's promise."""
-    found = cutter.cells(1000, 0, True)
-    assert 0 < found["cpu_s"] and 0 < found["wall_s"] and found["again"] < 0.01
-    assert found["peer_cpu_s"] is None or found["peer_cpu_s"] > 0
-
-
 def test_figures_put_together(monkeypatch):
     runs = {1: {"cpu_s": 2.0, "wall_s": 2.0, "again": 0.0, "peer_cpu_s": 10.0}, 2: {"wall_s": 1.25}}
     monkeypatch.setattr(cutter, "_run", lambda particles, seed, threads: runs[threads])

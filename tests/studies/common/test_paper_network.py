@@ -91,14 +91,3 @@ def test_errors_are_means_with_students_interval_and_the_best_is_named():
     said, table = paper_variants.shown(made, {"10": "error"}, "here: errors, %", "; best: least")
     assert said.startswith("The paper's network here: errors, %, means") and said.endswith("(Student's); best: least.")
     assert table.count("best") == 1 and table.count("\n") == 4
-
-
-def test_without_rows_nothing_is_said():
-    df = rows(center=1.0).assign(name="dem")
-    network, others = paper_variants.parted(df)
-    assert len(network) == 0 and len(others) == 3
-    assert paper_variants.variant_errors(network, {"10": 1.0}) == {} and paper_variants.told_of({}) == ""
-    assert paper_variants.shown({}, {"10": "error"}, "here") == []
-    assert len(paper_variants.parted(df.drop(columns="name"))[1]) == 3
-    single = paper_variants.interval(np.array([2.0]))
-    assert single.number == 1 and np.isnan(single.half) and paper_variants.cell(single) == "+2.00"

@@ -1,7 +1,5 @@
 """Stored rows are made again: what moved is told, what did not is stamped, and a change is accepted by a command."""
 
-from types import SimpleNamespace
-
 import pytest
 
 from studies.__main__ import main
@@ -205,16 +203,6 @@ def test_a_leader_that_is_not_here_says_nothing_of_those_that_follow(dear, monke
     assert ran(dear, "accept") == 0
     assert [key.split(",")[0] for key in dear.replayed] == [f"name={name}" for name in looked]
     assert [row["name"] for row in dear.rows().values() if row.get("borne_commit")] == borne
-
-
-def test_costs_are_shown_where_all_new_rows_have_them():
-    cases = [{"name": name, "x": x} for name in ("plain", "second") for x in (1, 2)]
-    rows = {store.case_key(case): {"error_percent": f"-{case['x']}", "cpu_s": "0.5"} for case in cases}
-    fresh = {("tiny", key): {"error_percent": 3.0, "cpu_s": 0.25} for key in rows}
-    del fresh["tiny", "name=second,x=2"]["cpu_s"]
-    lines = acceptance._groups("tiny", SimpleNamespace(CASES=cases), rows, fresh).splitlines()[2:]
-    found = [[cell.strip() for cell in line.split("|")[1:-1]] for line in lines]
-    assert found == [["plain", "2", "2 -> 3", "2 -> 3", "1 -> 0.5"], ["second", "2", "2 -> 3", "2 -> 3", ""]]
 
 
 @pytest.mark.parametrize("action", ["replay", "accept", "check"])

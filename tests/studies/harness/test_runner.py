@@ -74,11 +74,6 @@ def test_bad_rows_do_not_stop_the_run(tiny, capsys):
     assert again == ["raises", "dies", "sleeps"]
 
 
-def test_a_refusal_fails_no_claim(tiny):
-    tiny.write('{"name": "refuses", "x": 3.0}')
-    assert tiny.run() == 0
-
-
 def test_a_killed_run_resumes(tiny):
     tiny.write(", ".join(f'{{"name": "slow", "x": {k}.0}}' for k in range(3, 7)))
     words = [sys.executable, "-m", "studies", "run", tiny.name, "--out", str(tiny.out), "--wait", "0"]
@@ -164,11 +159,6 @@ def test_two_runs_on_one_folder_lose_no_row(tiny):
     assert [row["name"] for row in tiny.rows().values()] == ["plain", "second"]
 
 
-def test_what_rows_must_agree_in():
-    """A row of another machine or with other threads has other costs, of other versions other numbers."""
-    assert set(provenance.SAME) == {"machine", "threads", "versions"}
-
-
 def test_a_folder_that_cannot_be_written_is_found_before_the_first_row(tiny, tmp_path, capsys, monkeypatch):
     def ran(*words):
         status = main(["run", tiny.name, *words])
@@ -205,21 +195,6 @@ def test_broken_results_are_named(tiny, capsys):
     path.write_text("case,status\na,ok\n")
     assert main(["render", tiny.name, "--out", str(tiny.out)]) == 2
     assert "lacks the columns ['note', " in capsys.readouterr().err
-
-
-def test_a_row_ends_with_all_that_it_started(tiny, tmp_path):
-    """A solver's own process, in the same session, must not go on when its row has run out of time."""
-    child = 'import subprocess; child = subprocess.Popen(["sleep", "60"]); _log(f"pid {child.pid}"); time.sleep(60)'
-    tiny.write('{"name": "sleeps", "x": 3.0}', **{"time.sleep(60)": child, "TIMEOUT = 60.0": "TIMEOUT = 8.0"})
-    study = runner.load(tiny.name)
-    assert runner.spawn_row(tiny.name, study, study.CASES[2])["status"] == "timeout"
-    assert _wait_for(lambda: not _alive(_logged_pid(tmp_path / "log")), seconds=5)
-
-
-def test_without_docstrings(tiny):
-    code = f"import studies.__main__ as m; m.study_names = lambda: ['{tiny.name}']; m.main(['list'])"
-    done = subprocess.run([sys.executable, "-OO", "-c", code], capture_output=True, text=True, check=True)
-    assert tiny.name in done.stdout.split("stored")[1]
 
 
 def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):

@@ -64,17 +64,6 @@ def test_errors_of_the_linear_solver_do_not_count():
     assert law.rows == 24
 
 
-def test_rows_that_failed_or_compare_tolerances_do_not_count():
-    rows = made()
-    extra = rows.iloc[[0, 1]].assign(status=["failed", "ok"], error_percent=99.0, tolerance=[np.nan, 1e-9])
-    assert len(laws.usable(pd.concat([rows, extra]))) == len(rows)
-
-
-def test_within_is_a_quantile_of_factors():
-    assert laws.within(np.array([1.0, 2.0, 0.5, 4.0]), 1.0) == pytest.approx(4.0)
-    assert laws.within(np.array([1.0, 2.0, 0.5]), 0.5) == pytest.approx(2.0)
-
-
 def test_what_is_written_is_read(tmp_path):
     found = laws.fitted(made())
     file = tmp_path / "laws.csv"

@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 import studies.speed_error as study
-from studies.speed_error import means, tables
+from studies.speed_error import means
 
 
 def row(name, scene, knob, value, **found):
@@ -57,17 +57,6 @@ def test_asking_for_the_field_costs_too(rows):
     assert best.loc["third", "name"] == "multipole" and best.loc["third", "cpu_s"] == 0.51
     # The first of the DEM's that lasts, with its packing made, and asked.
     assert best.loc["third", "dem"] == pytest.approx(1.5 / 0.51)
-
-
-def test_lines_say_what_any_shape_costs(rows):
-    lines = tables.lines(rows.assign(temperature_rms=1.0))
-    first = lines[(lines["scene"] == "third") & (lines["target, %"] == 0.1)].iloc[0]
-    assert first["cheapest"] == "multipoles" and first["any shape"].endswith(", 3 s")
-    assert first["DEM's cost over it"] == "3e+03"
-
-
-def test_notes_are_sentences_of_the_rows(rows):
-    assert len(study.notes(rows)) == 3 and "0.01 %" in study.notes(rows)[2]
 
 
 def test_sizes_are_told_in_lengths_of_their_scene():
