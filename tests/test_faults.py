@@ -1,4 +1,7 @@
-"""Runs that are killed, run at one time, or on machines that lack something: nothing lost, nothing wrong, one line."""
+"""What a row has started outlives no killed run; and Python started in odd ways makes the same rows.
+
+`tests/tools/try_faults.py` tries many more faults, and takes hours.
+"""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""Bounds and estimates: printed values, limits, orders and relations between them."""
+"""Bounds and estimates by hand, in limits of 0 and infinity, to their order, and in their order."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Images solved: exact laminates, certain bounds, turned images, pores, and spheres painted on ever finer voxels."""
+"""Images by voxels and elements: exact laminates, certain bounds, turned images, pores, edges."""
 
 from itertools import product
 

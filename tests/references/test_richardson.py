@@ -1,4 +1,4 @@
-"""Extrapolation to elements of no size."""
+"""Extrapolation finds what has the orders that it is told or shows; a study's limit would be off without a word."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The study of the sheet: when it stops, and what it reads off its rows."""
+"""The sheet's source ends where the papers' does; packings are held against bricks at the time of the largest error."""
 
 import numpy as np
 import pandas as pd

@@ -1,3 +1,5 @@
+"""Breaks are other programs, tried where tests are nearest, and what sees them is told."""
+
 import ast
 from pathlib import Path
 

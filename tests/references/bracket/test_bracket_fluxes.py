@@ -1,4 +1,4 @@
-"""The fields of an element: moments, energies, and the balanced flux of least energy."""
+"""The balanced flux of least energy, piece by piece; a face counted twice would still give a bound."""
 
 import fem_scenes  # noqa: F401, skips without gmsh
 import numpy as np

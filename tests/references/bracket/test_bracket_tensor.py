@@ -1,4 +1,4 @@
-"""Bounds of the whole tensor: of exact ones, of entries, and beside the bracket of one direction."""
+"""Bounds of all entries of a tensor, none along an axis of the box; the bracket of one direction is theirs."""
 
 import fem_scenes  # noqa: F401, skips without gmsh
 import numpy as np

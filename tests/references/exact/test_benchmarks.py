@@ -1,4 +1,4 @@
-"""Exact solutions of benchmarks: the printed values, their equations, and limits that are known otherwise."""
+"""Solutions that NAFEMS and others print, by their equations: no other code of ours knows them."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Ellipsoids apart: factors by another integral, limits that are known otherwise."""
+"""Ellipsoids apart: factors by another integral and in limits; no method is held against them elsewhere."""
 
 import math
 

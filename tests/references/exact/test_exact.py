@@ -1,4 +1,4 @@
-"""Closed forms against analysis by hand, printed numbers and the equations; refusals of all else."""
+"""What scenes get which closed form, in their own units and places: by hand, as printed; all else is refused."""
 
 import math
 from dataclasses import replace

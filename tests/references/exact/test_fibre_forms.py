@@ -1,4 +1,4 @@
-"""Arrays of fibres as scenes: the values of `fibres`, the equations, and refusals."""
+"""Arrays of fibres as scenes, turned and in units: the values of `fibres` end up along the right axes."""
 
 import math
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Arrays of fibres, against duality, series, asymptotics, and elements on a cell that know nothing of multipoles."""
+"""Values of arrays of fibres by duality, series, asymptotics and sums: other methods are held against these."""
 
 import math
 

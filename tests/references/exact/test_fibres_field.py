@@ -1,4 +1,4 @@
-"""Fields of arrays of fibres, against the equations."""
+"""Fields of arrays of fibres obey the equations on both sides of every surface; nothing else sees them so closely."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Conductivities and fields of cubic arrays, against printed numbers and against the equations."""
+"""Conductivities and fields of cubic arrays to the digits printed, and by the equations: all methods stand on them."""
 
 import functools
 import math

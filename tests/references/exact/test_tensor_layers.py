@@ -1,4 +1,4 @@
-"""Layers of tensors in closed form."""
+"""Layers of tensors by the textbook's formula and their own slopes: the witness of elements and voxels."""
 
 import numpy as np
 import pytest

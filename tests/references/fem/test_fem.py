@@ -1,4 +1,4 @@
-"""Finite elements: exact solutions, accuracy, what any linear conductor owes, pores, bad input."""
+"""What no suite asks of elements: walls with a flux, edges that walls share, pores at walls, rounding, gaps, bits."""
 
 import warnings
 

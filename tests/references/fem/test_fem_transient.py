@@ -1,4 +1,4 @@
-"""Finite elements in time: exact series, declared orders, conserved heat, a round body, bad input."""
+"""Elements in time: order in step and size, heat to the last digit, the error asked for; what is refused or ends."""
 
 import math
 

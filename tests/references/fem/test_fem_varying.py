@@ -1,4 +1,4 @@
-"""Finite elements whose conductivity follows the temperature, beside Kirchhoff's transform."""
+"""Elements whose k follows the temperature, beside Kirchhoff's transform: layers, spheres, resistances, walls."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The vector work of conjugate gradients beside whole arrays."""
+"""The vector work of conjugate gradients beside whole arrays, and the modes that it divides by."""
 
 import numpy as np
 import pytest

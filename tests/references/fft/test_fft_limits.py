@@ -1,4 +1,4 @@
-"""Solvers on voxels at their limits: tiny grids, single precision, pores, no convergence, bad input."""
+"""Solvers on voxels at their limits: odd grids, float32, contrasts, gaps; what has not converged is no answer."""
 
 import contextlib
 import warnings

@@ -1,4 +1,4 @@
-"""What fft.solve says of itself while it runs."""
+"""What fft.solve says of itself while it runs: a share of the way that a terminal can show."""
 
 import math
 

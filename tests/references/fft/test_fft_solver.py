@@ -1,4 +1,4 @@
-"""Voxels and Fourier transforms: closed forms, boxes with walls against periodic cells, symmetries."""
+"""Errors of a sphere rule by rule, which rule is chosen, and walls that are mirrors: signs of each transform."""
 
 import itertools
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""zeta_2 of the very microstructure: exact arrays and laminates, symmetries, a slow twin, and what is refused."""
+"""zeta_2 by voxels: its twin, arrays, laminates. A weight of cut voxels or the last power shows nowhere else."""
 
 from dataclasses import replace
 

@@ -1,4 +1,4 @@
-"""Fields of the solvers on voxels at any point of the box."""
+"""Fields on voxels between their centres: near interfaces, on walls and on insulated sides."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""gmsh in a process of its own: answers, errors, crashes, Ctrl-C, the same bits each time."""
+"""gmsh in a process of its own: what crashes, hangs, runs away, is interrupted or forked; the same bits each time."""
 
 import math
 import os

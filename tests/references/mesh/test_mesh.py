@@ -1,3 +1,5 @@
+"""Meshes of boxes with spheres and layers: phases, pairs of faces, sizes in gaps, curved elements that are sound."""
+
 import ctypes
 import importlib
 import math

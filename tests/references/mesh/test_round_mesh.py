@@ -1,4 +1,4 @@
-"""Meshes of cylinders and spheres: surfaces and volumes, and what is tried when gmsh fails."""
+"""Meshes of cylinders and spheres: areas of walls, volumes by the fourth power; errors of ours are not tried again."""
 
 import math
 

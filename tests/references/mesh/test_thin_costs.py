@@ -1,4 +1,4 @@
-"""What thin layers and coats cost is known before a mesh is begun."""
+"""What thin layers and coats cost is known within a factor of two before a mesh is begun, and refused if too much."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Boxes between two isothermal walls among their mirror images: against cubic arrays, voxels and what walls owe."""
+"""Mirror images between walls: which are needed, which only repeat the box, and what they cannot do."""
 
 from dataclasses import replace
 from itertools import product

@@ -1,4 +1,4 @@
-"""Spheres in a periodic cell by multipoles: against cubic arrays, plain sums, voxels, series and themselves."""
+"""Multipoles beside cubic arrays and voxels; the truncation they tell is no less than what is left."""
 
 import math
 

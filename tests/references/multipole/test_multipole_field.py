@@ -1,4 +1,4 @@
-"""Temperature and flux of spheres in a periodic cell at any point."""
+"""Fields of multipoles at any point: exact arrays, surfaces from both sides, slopes, whatever the splitting."""
 
 import numpy as np
 from multipole_scenes import PARTS, box, solved

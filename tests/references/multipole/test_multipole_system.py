@@ -1,4 +1,4 @@
-"""The linear system behind the multipoles: entries left out, threads, GMRES."""
+"""GMRES and the entries that are left out: neither scale nor threads change what is solved."""
 
 import math
 

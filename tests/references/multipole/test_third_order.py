@@ -1,4 +1,4 @@
-"""zeta_2 of dispersions by multipoles: against cubic arrays and the conductivity's own third order."""
+"""zeta_2 by multipoles is that of cubic arrays; orders beyond memory and numbers are refused."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""Laminates of tensors, and voxels that each have one."""
+"""Tensors of cut voxels between tensors: one gradient along, one flux across."""
 
 import numpy as np
 from numpy.testing import assert_allclose

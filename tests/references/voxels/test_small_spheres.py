@@ -1,4 +1,4 @@
-"""Spheres about as small as voxels, surfaces through corners, edges, faces and centres: volumes, bounds, no overrun."""
+"""Spheres about as small as voxels, through corners, faces and centres: volumes, parts that add up, no overrun."""
 
 import warnings
 

@@ -1,4 +1,4 @@
-"""Balls as arrays: images and windows beside those of one sphere after the other, and how much is looked at."""
+"""Many balls at once are painted as one after the other, and no more voxels are looked at."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Parts of the walkers, each beside a slow or an exact form of it."""
+"""Parts of the walkers beside slow or exact forms: a biased step would hide in the noise of whole walks."""
 
 import numpy as np
 import pytest

@@ -1,3 +1,5 @@
+"""Figures of the cutter are put together from runs with one thread and with two."""
+
 from studies.common import cutter
 
 
