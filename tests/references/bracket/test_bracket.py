@@ -15,14 +15,11 @@ from references.bracket import solver
 # Scenes whose conductivity is known to 1e-8 and better; each with a width that its coarse mesh reaches with a factor of
 # two to spare.
 KNOWN = {
-    "conducting": (gallery.sphere_in_cube(10.0), 5e-3),
     "insulating": (gallery.sphere_in_cube(0.01, periodic=True), 3e-3),
     "pore": (gallery.simple_cubic(0.0, fraction=0.3), 3e-3),
-    "body-centred": (gallery.body_centred(10.0, fraction=0.3), 1e-2),
     "contrast 1e6": (gallery.simple_cubic(1e6, fraction=0.3), 5e-2),
     "coated": (gallery.coated_sphere(), 2e-3),
     # Linear temperature and constant flux: what is left is the residual's margin.
-    "laminate": (gallery.laminate(), 1e-6),
     "slab": (gallery.slab(), 1e-6),
 }
 
