@@ -7,7 +7,7 @@ import numpy as np
 
 from demheat import Material, Scene, Sphere, evolve, solve
 
-THREADS = 3
+THREADS = 2
 BALL = [Sphere(center=(0.5, 0.5, 0.5), radius=0.3, material=Material(5.0, density=1.0, heat_capacity=1.0))]
 MATRIX = Material(1.0, density=1.0, heat_capacity=1.0)
 CELL = Scene(size=(1.0, 1.0, 1.0), matrix=MATRIX, inclusions=BALL, gradient=(1.0, 0.0, 0.0))

@@ -69,7 +69,13 @@ march(1e3)
 }
 
 
-@pytest.mark.parametrize("stage", STAGES)
+# Two CPU-seconds each; these two loops stop as that of halos does: `make test-slow`.
+SLOW = ("radial distribution", "two-point probability")
+
+
+@pytest.mark.parametrize(
+    "stage", [pytest.param(stage, marks=pytest.mark.slow) if stage in SLOW else stage for stage in STAGES]
+)
 def test_ctrl_c(stage, tmp_path):
     run = subprocess.Popen(
         [sys.executable, "-c", HEAD + STAGES[stage]],

@@ -35,9 +35,9 @@ def hand(name):
     return found
 
 
-# Six CPU-seconds each, and each is another method here but for a rule of its links, or its elements' sides: `make
-# test-slow`.
-SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem-straight")
+# Some CPU-seconds each, and each is another method here but for a rule of its links or voxels, its elements' sides, or,
+# bricks, what `test_methods` asks: `make test-slow`.
+SLOW = ("dem-arithmetic", "dem-mean", "dem-plain", "fem-straight", "fem-p1", "fem-bricks", "fft-em-plain")
 NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name for name in METHODS]
 
 

@@ -83,11 +83,11 @@ def tiny(tmp_path, monkeypatch):
         runner.run_study(name, out, say=lambda line: None, **options)
         return [line[4:] for line in (tmp_path / "log").read_text().split("\n") if line.startswith("run")]
 
-    def made():
-        """Rows of this process, without their costs: fast."""
+    def made(**options):
+        """The same with rows of this process, without their costs: fast."""
         for variable in ("NUMBA_THREADING_LAYER", "OMP_WAIT_POLICY"):
             monkeypatch.setenv(variable, "")
-        ran(compute=lambda name, study, case: runner.compute_row(study, case, warm=False))
+        return ran(compute=lambda name, study, case: runner.compute_row(study, case, warm=False), **options)
 
     def rows():
         return store.read_rows(out / f"{name}.csv")

@@ -29,15 +29,14 @@ def test_nothing_is_compared_where_there_is_no_error():
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_drawn_scenes_have_an_exact_solution(kind):
-    """Two of each kind; the same seed draws the same scene."""
-    for seed in (0, 1):
-        scene = scene_of(kind, seed)
-        assert scene == scene_of(kind, seed) != scene_of(kind, seed + 1)
-        k = scene.conductivities
-        found = exact_field(kind, scene).conductivity
-        assert k.min() * (1 - 1e-9) <= found <= k.max() * (1 + 1e-9)
-        if kind == "neutral spheres":
-            assert found == pytest.approx(1.0, abs=1e-12)
+    """The same seed draws the same scene."""
+    scene = scene_of(kind, 0)
+    assert scene == scene_of(kind, 0) != scene_of(kind, 1)
+    k = scene.conductivities
+    found = exact_field(kind, scene).conductivity
+    assert k.min() * (1 - 1e-9) <= found <= k.max() * (1 + 1e-9)
+    if kind == "neutral spheres":
+        assert found == pytest.approx(1.0, abs=1e-12)
     assert CLOSED[-1] == "neutral spheres"
 
 

@@ -41,7 +41,7 @@ def test_the_studies_are_there():
 
 
 # The rest are for `make test-slow`: `test_record.py` has some rows of each, and claims are judged on the stored ones.
-SHORT = ("crystal", "table1_platonic")
+SHORT = ("table1_platonic",)
 
 
 # Coarse packings may not resolve every gap of a random dispersion; the claims judge what that costs.

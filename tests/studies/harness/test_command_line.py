@@ -42,6 +42,7 @@ def test_row_prints_one_row_and_finds_it_by_number_or_key(tiny, capsys):
 
 def test_render_needs_the_csv_alone(tiny, capsys):
     assert main(["render", tiny.name, "--out", str(tiny.out)]) == 2
+    tiny.made()
     tiny.run()
     pages = [tiny.out / f"{tiny.name}.{end}" for end in ("md", "png")]
     before = pages[0].read_text()
@@ -72,7 +73,7 @@ def test_list_names_every_study(capsys):
 
 
 def test_list_says_what_is_stored(tiny, capsys, monkeypatch):
-    tiny.run("--quick")
+    tiny.made(quick=True)
     monkeypatch.setattr("studies.__main__.study_names", lambda: [tiny.name])
     assert main(["list", "--out", str(tiny.out)]) == 0
     assert "2 rows,   1 quick,    1 stored   A tiny study." in capsys.readouterr().out

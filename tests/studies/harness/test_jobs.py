@@ -31,7 +31,7 @@ def test_there_and_back(tiny, capsys):
 
 
 def test_a_failed_row_takes_no_good_ones_place(tiny, tmp_path, capsys):
-    tiny.ran()
+    tiny.made()
     before = tiny.rows()
     file = tmp_path / "row.json"
     file.write_text(json.dumps(next(iter(before.values())) | {"status": "failed"}))
@@ -40,7 +40,7 @@ def test_a_failed_row_takes_no_good_ones_place(tiny, tmp_path, capsys):
 
 
 def test_files_that_hold_no_row(tiny, tmp_path, capsys):
-    tiny.ran()
+    tiny.made()
     before, file = tiny.rows(), tmp_path / "row.json"
     for text in ("", "[]", "{}", '{"case": "x=1", "status": "ok"}', '{"case": ["x"], "status": "ok"}'):
         file.write_text(text)

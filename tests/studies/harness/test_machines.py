@@ -43,7 +43,7 @@ def test_rows_without_seconds_choose_no_machine():
 def test_pages_and_the_list_say_it(tiny, capsys, monkeypatch):
     from studies.__main__ import main
 
-    tiny.ran()
+    tiny.made()
     path = tiny.out / f"{tiny.name}.csv"
     study, rows = runner.load(tiny.name), list(tiny.rows().values())
     assert "machines" not in render(study, path)[1] and rows[0]["host"] == host()

@@ -242,7 +242,7 @@ def test_rows_of_another_version_are_not_lost(old):
 
 
 def test_rows_side_by_side_are_made_in_processes_of_one_thread(tiny, monkeypatch):
-    tiny.ran()
+    tiny.made()
     study = runner.load(tiny.name)
     with replay.side_by_side(2) as compute:
         rows = list(compute([(tiny.name, study, case) for case in study.CASES]))

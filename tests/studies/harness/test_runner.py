@@ -20,38 +20,38 @@ def test_warm_up_comes_first_and_in_the_same_process(tiny, tmp_path):
 
 
 def test_rows_are_reused_until_forced(tiny):
-    assert tiny.ran() == ["plain", "second"]
+    assert tiny.made() == ["plain", "second"]
     before = tiny.rows()
-    assert tiny.ran() == [] and tiny.rows() == before
-    assert tiny.ran(force=True) == ["plain", "second"]
+    assert tiny.made() == [] and tiny.rows() == before
+    assert tiny.made(force=True) == ["plain", "second"]
 
 
 def test_quick_is_a_subset_and_full_adds_the_rest(tiny):
-    assert tiny.ran(quick=True) == ["plain"]
-    assert tiny.ran() == ["second"]
-    assert tiny.ran(quick=True) == [] and len(tiny.rows()) == 2
+    assert tiny.made(quick=True) == ["plain"]
+    assert tiny.made() == ["second"]
+    assert tiny.made(quick=True) == [] and len(tiny.rows()) == 2
 
 
 def test_a_row_that_this_code_has_made_again_holds(tiny):
     """Whatever commit has measured its costs; a row whose values alone were made anew holds by these."""
-    tiny.ran()
+    tiny.made()
     path, here = tiny.out / f"{tiny.name}.csv", next(iter(tiny.rows().values()))["commit"]
     old = [row | {"commit": "1"} for row in tiny.rows().values()]
     for columns in (("replayed_commit", "values_commit"), ("borne_commit", "borne_commit")):
         store.write_rows(path, [row | {column: here} for row, column in zip(old, columns, strict=True)])
-        assert tiny.ran() == []
+        assert tiny.made() == []
     store.write_rows(path, [old[0] | {"replayed_commit": "2"}, old[1] | {"values_commit": "2"}])
-    assert tiny.ran() == ["plain", "second"]
+    assert tiny.made() == ["plain", "second"]
 
 
 @pytest.mark.parametrize("column", provenance.SAME)
 def test_another_machine_threads_or_versions_invalidate(tiny, column):
-    tiny.ran()
+    tiny.made()
     path = tiny.out / f"{tiny.name}.csv"
     rows = list(tiny.rows().values())
     rows[0][column] = "another"
     store.write_rows(path, rows)
-    assert tiny.ran() == ["plain"]
+    assert tiny.made() == ["plain"]
 
 
 def test_bad_rows_do_not_stop_the_run(tiny, capsys):
@@ -133,14 +133,14 @@ def _alive(pid):
 
 def test_metrics_must_not_replace_parameters(tiny):
     tiny.write(**{'"square": x * x': '"square": x * x, "x": 0.0'})
-    assert tiny.run() == 1
-    assert "parameters of its case" in tiny.rows()["name=plain,x=1.5"]["note"]
+    with pytest.raises(ValueError, match="parameters of its case"):
+        tiny.made()
 
 
 @pytest.mark.parametrize("value", ["x", "None"])
 def test_metrics_may_repeat_parameters_or_leave_them_open(tiny, value):
     tiny.write(**{'"square": x * x': f'"square": x * x, "x": {value}'})
-    tiny.run()
+    tiny.made()
     row = tiny.rows()["name=plain,x=1.5"]
     assert row["status"] == "ok" and float(row["x"]) == 1.5
 

@@ -6,9 +6,9 @@ import pytest
 from studies.harness import table
 
 
-@pytest.mark.parametrize("limit", [3, ">= 5", "= 0", ">= nan"])
-def test_a_failed_claim_gives_a_failing_status(tiny, limit, capsys):
-    tiny.write(limit=limit)
+def test_a_failed_claim_gives_a_failing_status(tiny, capsys):
+    tiny.write(limit=">= 5")
+    tiny.made()
     assert tiny.run() == 1
     assert "FAIL: squares are small" in capsys.readouterr().err
     assert "| FAIL | squares are small" in (tiny.out / f"{tiny.name}.md").read_text()
@@ -20,6 +20,7 @@ def test_what_cannot_be_judged_or_drawn_fails(tiny, broken, capsys):
         tiny.write(**{'df["square"].max()': broken})
     else:
         tiny.write(**{'axes.plot(df["x"]': 'axes.plot(df["nothing"]'})
+    tiny.made()
     assert tiny.run() == 1
     assert "KeyError" in capsys.readouterr().err
 
@@ -27,6 +28,7 @@ def test_what_cannot_be_judged_or_drawn_fails(tiny, broken, capsys):
 def test_a_table_that_cannot_be_made_is_a_claim_that_fails(tiny, capsys):
     """As of a run that was killed before the rows that a table is made of."""
     tiny.write(**{"def plot(df)": 'def table(df):\n    return df[["nothing"]]\n\ndef plot(df)'})
+    tiny.made()
     assert tiny.run() == 1
     page = (tiny.out / f"{tiny.name}.md").read_text()
     assert "| FAIL | the table can be made (KeyError" in page and "| ok   | squares are small" in page
