@@ -78,6 +78,13 @@ STEADY = {
     "laminate": _laminate,
 }
 IN_TIME = {"slab": _slab, "ball": _ball, "beam": _beam}
+# Bodies that tiles do not fit: their particles are packed.
+ROUND = ("ball", "beam")
+# Bodies, some at other contrasts, on which constants of the DEM were found (docs/decisions/twins.md).
+TUNED = (
+    *("third", "third at 0.01", "third at 1000", "third at infinity", "half", "half at 100"),
+    *("polydisperse", "83 spheres"),
+)
 # Times at which temperatures are compared, s: those of the papers' figures.
 TIMES = {"slab": (0.05, 0.1, 0.2), "ball": (1.0, 5.0, 10.0), "beam": (0.001, 0.01, 0.05, 0.1)}
 

@@ -30,33 +30,40 @@ def lines(df):
             "MiB": found["peak_mib"],
             "unknowns": found["unknowns"],
             "DEM's cost over it": found["dem"].map(_times),
-            "packing at hand": found["dem_cached"].map(_times),
+            "next": [_next(row) for row in found.itertuples()],
             "any shape": [second.get(key, "") for key in keys],
         }
     )
 
 
 def by_accuracy(df):
-    """One line for each scene, a column for each target: the cheapest method for any shape, and the DEM beside it."""
+    """One line for each scene, a column for each target: the cheapest method for any shape, and others beside it."""
     best = means.winners(means.without_multipoles(df))
-    best = best.assign(cell=[_beside_dem(row) for row in best.itertuples()])
+    best = best.assign(cell=[_cell(row) for row in best.itertuples()])
     wide = best.pivot(index="scene", columns="target", values="cell").reindex(best["scene"].unique())
+    wide.index = wide.index.map(means.starred)
     return wide[sorted(wide.columns, reverse=True)].rename(columns=lambda target: f"{target:g} %").reset_index()
 
 
-def _beside_dem(row):
-    """Such as "FEM: 0.23 s (DEM 2.1 times)"."""
-    cheapest = f"{means.label(row.name)}: {row.cpu_s:.2g} s"
-    if row.name == "dem":
-        return cheapest
+def _cell(row):
+    """Such as "FEM: 0.23 s (DEM 2.1 times)"; "tie of FEM and DEM: 0.23 s"; "DEM: 0.2 s (next FEM, 2.1 times)"."""
+    names = " and ".join(map(means.label, row.tied))
+    cheapest = f"{'tie of ' if len(row.tied) > 1 else ''}{names}: {row.cpu_s:.2g} s"
+    if "dem" in row.tied:
+        return cheapest + (f" ({_next(row)})" if row.next else "")
     return cheapest + (" (DEM: no)" if row.dem != row.dem else f" (DEM {row.dem:.2g} times)")
 
 
+def _next(row):
+    """The cheapest method that does not tie, and how many times as much it costs."""
+    return f"next {means.label(row.next)}, {row.margin:.2g} times" if row.next else ""
+
+
 def _any_shape(df, quantity, targets):
-    """The cheapest method that is not of spheres alone, by scene, quantity and target."""
+    """The cheapest methods that are not of spheres alone, by scene, quantity and target."""
     best = means.winners(means.without_multipoles(df), quantity, targets)
-    names = best["name"].map(means.label) + best["cpu_s"].map(lambda value: f", {value:.2g} s")
-    return pd.Series(names.to_numpy(), index=list(zip(best["scene"], best["quantity"], best["target"], strict=True)))
+    said = [f"{' or '.join(map(means.label, row.tied))}, {row.cpu_s:.2g} s" for row in best.itertuples()]
+    return pd.Series(said, index=list(zip(best["scene"], best["quantity"], best["target"], strict=True)), dtype=object)
 
 
 def _times(ratio):

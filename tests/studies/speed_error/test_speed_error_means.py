@@ -38,18 +38,29 @@ def test_an_error_that_crosses_zero_does_not_count(rows):
     assert list(found.index) == ["multipole", "fft", "dem"]
 
 
-def test_where_the_dem_loses(rows):
-    assert means.lost(rows, 0.1) == {"third": 10.0, "half": 1.0, "thin shell": np.inf}
+def test_where_the_dem_wins_and_loses(rows):
+    found = means.beside_dem(rows, 0.1)
+    # On "half" the FFT costs twice as much; on the first the DEM lasts from 30 s on, the FFT costs 3.
+    expected = {"wins": {"half": 2.0}, "ties": {}, "losses": {"third": 10.0}, "never": {"thin shell": np.inf}}
+    assert found == expected
     said = means.in_words(rows, 0.1)
-    assert (
-        "cheapest on half;" in said and "10 times on third;" in said and "not there" in said and "thin shell." in said
-    )
+    assert "on half 2;" in said and "dearer than the cheapest, so many times, on third 10;" in said
+    assert "not there" in said and "thin shell." in said
 
 
-def test_a_cached_packing_is_counted_apart(rows):
+def test_costs_within_a_factor_are_a_tie(rows):
+    rows.loc[(rows["name"] == "fft") & (rows["scene"] == "half"), "cpu_s"] = 2.0 * means.TIE
     best = means.winners(means.without_multipoles(rows), targets=(0.1,)).set_index("scene")
-    assert best.loc["third", "dem_cached"] == 3.0 and best.loc["half", "dem_cached"] == 0.5
-    assert np.isnan(best.loc["thin shell", "dem"])
+    assert best.loc["half", "tied"] == ("dem", "fft") and best.loc["half", "next"] == ""
+    assert means.beside_dem(rows, 0.1)["ties"] == {"half": 1.0}
+    assert "a tie of DEM and FFT, scalar on half" in means.counts_in_words(rows, 0.1)
+    assert "DEM and FFT, scalar: 2 s" in tables.by_accuracy(rows).set_index("scene").loc["half *", "0.1 %"]
+
+
+def test_costs_that_scatter_are_those_of_solves_without_a_packing(rows):
+    more = row("dem", "ball", "particles", 1000, error_percent=0.5, cpu_s=40.0, cached_cpu_s=1.0)
+    factors = means.run_twice(pd.concat([rows, pd.DataFrame([more])]))
+    assert sorted(factors.round(9)) == sorted([4.0, 4.0, round(30 / 9, 9), 2.0, 4.0])
 
 
 def test_asking_for_the_field_costs_too(rows):
