@@ -151,7 +151,7 @@ def packing(df):
     return means.packing_in_words(df)
 
 
-def verdicts(df):
+def who_wins(df):
     """Where the DEM wins and loses to each accuracy."""
     return " ".join(notes(df))
 
