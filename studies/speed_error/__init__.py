@@ -98,11 +98,12 @@ def claims(df):
 def table(df):
     """The cheapest way to an accuracy, with all costs counted and with the DEM's beside it.
 
-    Of each method that resolution counts from which on every finer one stays within the target. Errors of fields are
-    root mean squares at 400 random points, in % of the span and of the mean flux; their costs count the asking.
-    Seconds of the DEM count its packing, where one is made. "next" is the cheapest method that costs over 1.5 times as
-    much: costs nearer to each other than that are a tie. "any shape" is the cheapest without multipoles, which know
-    spheres alone, and all that tie with it.
+    Of each method that resolution counts from which on every finer one stays within the target. "At the target" are
+    CPU seconds that the target itself would cost, by a power law between that resolution and the next coarser one,
+    which misses it; all factors are of these. Errors of fields are root mean squares at 400 random points, in % of the
+    span and of the mean flux; their costs count the asking. Seconds of the DEM count its packing, where one is made.
+    "next" is the cheapest method that costs over 1.5 times as much: costs nearer to each other than that are a tie.
+    "any shape" is the cheapest without multipoles, which know spheres alone, and all that tie with it.
     """
     from studies.speed_error.tables import lines
 
