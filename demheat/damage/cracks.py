@@ -16,9 +16,9 @@ from demheat.network.base import Network, image_shifts, row_numbers
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.conforming import NEAR_WALL, OFFSET, margin
 from demheat.packing.patterns import SPACING
-from demheat.packing.solids import SQUARE
 from demheat.scene.inputs import finite, vector
 from demheat.scene.shapes.directions import across
+from demheat.scene.shapes.patterns import SQUARE
 
 # Side of the square that stands for one twin of an even pattern, in mean radii.
 # Particles nearer to a crack than so many mean radii give way.

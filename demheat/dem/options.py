@@ -14,7 +14,6 @@ from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
 from demheat.packing.gate import check_packing
-from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import FEWEST
 from demheat.packing.tile import fits, tiled
 from demheat.scene import Scene
@@ -50,8 +49,6 @@ class Particles:
 
     def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
         """How many replicas the packing has along each axis, (3,) int array."""
-        if law.conforming:
-            surfaces_of(scene)  # refuses shapes that twins do not know
         if self.packing is not None:
             _check_body(self.packing, scene)
             return np.ones(3, dtype=int)

@@ -1,11 +1,12 @@
 """A scene from the tables of a file: keys are the arguments of `Scene`, `Material`, `Sphere`, ... and their units.
 
-A new shape or source adds a line to its table here.
+Shapes say what of them is stored (`Shape.stored`); a new source adds a line to its table here.
 """
 
 from __future__ import annotations
 
 import re
+from dataclasses import MISSING, fields
 from functools import partial
 from typing import NamedTuple
 
@@ -29,68 +30,48 @@ from demheat.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
     WALLS,
-    Box,
     Convection,
-    Cylinder,
-    Ellipsoid,
     Flux,
-    HalfSpace,
-    Layer,
     MovingCylinder,
     Radiation,
     Scene,
-    Sphere,
     UniformSource,
-    Union,
+    shapes,
 )
+from demheat.scene.shapes.union import may_join
 
 AXES = ("x", "y", "z")
-# What each is made of, in the words of the file: numbers and vectors by their quantities, axes, flags, matrices.
-SHAPES = {
-    "sphere": (Sphere, {"center": (LENGTH, 3), "radius": (LENGTH, 1), "resistance": (RESISTANCE, 1)}),
-    "layer": (
-        Layer,
-        {"axis": "axis", "start": (LENGTH, 1), "stop": (LENGTH, 1), "resistance": (RESISTANCE, 1)},
-    ),
-    "cylinder": (
-        Cylinder,
-        {
-            "center": (LENGTH, 3),
-            "radius": (LENGTH, 1),
-            "axis": (PLAIN, 3),
-            "length": (LENGTH, 1),
-            "resistance": (RESISTANCE, 1),
-        },
-    ),
-    "ellipsoid": (
-        Ellipsoid,
-        {"center": (LENGTH, 3), "semi_axes": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
-    ),
-    "box": (
-        Box,
-        {"center": (LENGTH, 3), "sides": (LENGTH, 3), "rotation": "matrix", "resistance": (RESISTANCE, 1)},
-    ),
-    "half-space": (
-        HalfSpace,
-        {"point": (LENGTH, 3), "outward": (PLAIN, 3), "resistance": (RESISTANCE, 1)},
-    ),
-    "union": (Union, {"shapes": "members", "resistance": (RESISTANCE, 1)}),
+# What numbers of a field are, by the words of `Shape.stored` and of sources.
+FIELDS = {
+    "length": (LENGTH, 1),
+    "point": (LENGTH, 3),
+    "lengths": (LENGTH, 3),
+    "place": (LENGTH, 2),
+    "velocity": (VELOCITY, 2),
+    "power density": (POWER_DENSITY, 1),
+    "resistance": (RESISTANCE, 1),
+    "direction": (PLAIN, 3),
+    # No numbers: a letter, three rows, true or false, tables of members.
+    "axis": None,
+    "rotation": None,
+    "flag": None,
+    "members": None,
 }
-# Of a union, whose material they are of: no more than their own fields.
-MEMBERS = {name: SHAPES[name] for name in ("sphere", "cylinder", "ellipsoid", "box")}
-SOURCES = {
-    "uniform": (UniformSource, {"power_density": (POWER_DENSITY, 1)}),
-    "moving-cylinder": (
-        MovingCylinder,
-        {
-            "axis": "axis",
-            "diameter": (LENGTH, 1),
-            "power_density": (POWER_DENSITY, 1),
-            "start": (LENGTH, 2),
-            "velocity": (VELOCITY, 2),
-            "clip": "flag",
-        },
-    ),
+# Shapes by their names in files, those that a file can hold; which of them may be members of a union.
+SHAPES = {kind.kind: kind for kind in (getattr(shapes, name) for name in shapes.__all__) if kind.stored}
+MEMBERS = {name: kind for name, kind in SHAPES.items() if may_join(kind)}
+SOURCES = {"uniform": UniformSource, "moving-cylinder": MovingCylinder}
+# Of each, as of shapes in `Shape.stored`.
+STORED = {
+    UniformSource: {"power_density": "power density"},
+    MovingCylinder: {
+        "axis": "axis",
+        "diameter": "length",
+        "power_density": "power density",
+        "start": "place",
+        "velocity": "velocity",
+        "clip": "flag",
+    },
 }
 # Loads of walls that are no temperatures: known by the first of their keys.
 LOADS = {
@@ -104,8 +85,6 @@ KEYS = {"size": LENGTH, "gradient": GRADIENT, "initial": TEMPERATURE} | dict.fro
 )
 # What an image is itself.
 IMAGED = ("size", "matrix", "inclusions", "domain")
-# What may be left out.
-OPTIONAL = ("velocity", "clip", "resistance", "length", "rotation")
 LABEL = re.compile(r"-?\d+")
 NUMBERED = re.compile(r"(?:Scene\.)?inclusions\[(\d+)\](?:(?: and |, | is hidden by inclusions)\[(\d+)\])?")
 
@@ -229,29 +208,31 @@ def _inclusions(table, materials, size):
 
 def _parts(table, key, kinds, materials, material=None):
     """A shape or a source of a table: its kind, then what that is made of; of a union members of its own material."""
-    kind, fields = kinds[table.text(key, ..., among=tuple(kinds))]
-    names = {name: PLAIN if isinstance(what, str) else what[0] for name, what in fields.items()}
+    kind = kinds[table.text(key, ..., among=tuple(kinds))]
+    words = STORED[kind] if kinds is SOURCES else {**kind.stored, "resistance": "resistance"}
+    names = {name: (FIELDS[word] or (PLAIN,))[0] for name, word in words.items()}
     table.only({key: PLAIN, **names} | ({"material": PLAIN} if kinds is SHAPES else {}))
-    values = {}
-    for name, what in fields.items():
-        default = None if name in OPTIONAL else ...
-        if what == "axis":
-            values[name] = _axis(table, name)
-        elif what == "matrix":
-            values[name] = table.value(name, list, "three rows of three numbers", default)
-        elif what == "members":
-            material = _material(table, "material", materials)
-            values[name] = [_parts(each, "shape", MEMBERS, {}, material) for each in table.tables(name)]
-        elif what == "flag":
-            values[name] = table.value(name, bool, "true or false", default)
-        else:
-            quantity, length = what
-            values[name] = (table.number if length == 1 else table.vector)(name, quantity, default)
     if kinds is SHAPES:
-        values["material"] = _material(table, "material", materials)
-    if kinds is MEMBERS:
-        values["material"] = material
+        material = _material(table, "material", materials)
+    optional = {each.name for each in fields(kind) if each.default is not MISSING}
+    values = {} if kinds is SOURCES else {"material": material}
+    for name, word in words.items():
+        values[name] = _read(table, name, word, None if name in optional else ..., material)
     return table.made(kind, values)
+
+
+def _read(table, name, word, default, material):
+    """A field of a shape or a source."""
+    if word == "axis":
+        return _axis(table, name)
+    if word == "rotation":
+        return table.value(name, list, "three rows of three numbers", default)
+    if word == "members":
+        return [_parts(each, "shape", MEMBERS, {}, material) for each in table.tables(name)]
+    if word == "flag":
+        return table.value(name, bool, "true or false", default)
+    quantity, length = FIELDS[word]
+    return (table.number if length == 1 else table.vector)(name, quantity, default)
 
 
 def _axis(table, name):

@@ -109,18 +109,17 @@ def _material(material):
 
 
 def _inclusion(number, shape, names):
-    kind = next((name for name, (known, _) in SHAPES.items() if type(shape) is known), None)
-    if kind is None:
+    if SHAPES.get(shape.kind) is not type(shape):
         raise ValueError(f"Scene.inclusions[{number}] = {shape!r}: must be one of {', '.join(SHAPES)} in a file")
     changed = _axis(shape) | {"material": names[shape.material], "resistance": shape.resistance or None}
-    if kind == "union":
+    if "members" in shape.stored.values():
         # Of its material, without resistances: neither stands there again.
         changed["shapes"] = tuple(_inclusion(number, each, {each.material: None}) for each in shape.shapes)
-    return {"shape": kind, **_plain(shape, **changed)}
+    return {"shape": shape.kind, **_plain(shape, **changed)}
 
 
 def _source(source):
-    kind = next(name for name, (known, _) in SOURCES.items() if type(source) is known)
+    kind = next(name for name, known in SOURCES.items() if type(source) is known)
     return {"kind": kind, **_plain(source, **_axis(source))}
 
 

@@ -10,9 +10,8 @@ import numpy as np
 from demheat.powers import cubed
 from demheat.scene.bodies import ROUND_AXES, check_name, domain_volume, from_middle, round_radius
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals
+from demheat.scene.shapes.morton import morton_order
 
-# Morton keys take 21 bits per axis: more than any float coordinate of a packing needs to be near its neighbours.
-MORTON_BITS = 21
 # As of scenes: volumes beyond are zero or infinite.
 MODERATE = f"from {LEAST:g} to {MOST:g} m"
 
@@ -121,23 +120,3 @@ def wrap(centers, size, periodic):
     wrapped = centers - np.where(periodic, np.floor(centers / size) * size, 0.0)
     # A tiny negative x wraps to exactly `size` by rounding: that is 0.
     return np.where(periodic & (wrapped >= size), 0.0, wrapped)
-
-
-def morton_order(centers, size):
-    """Order of the points along a Morton (Z) curve, (n,) int array; the longest side has 2**21 steps."""
-    steps = np.clip(centers / np.max(size), 0.0, 1.0) * ((1 << MORTON_BITS) - 1)
-    x, y, z = (_spread_bits(column) for column in steps.astype(np.uint64).T)
-    return np.argsort(x | (y << np.uint64(1)) | (z << np.uint64(2)), kind="stable")
-
-
-def _spread_bits(bits):
-    """Put two zero bits between the 21 low bits of each number."""
-    for shift, mask in (
-        (32, 0x1F00000000FFFF),
-        (16, 0x1F0000FF0000FF),
-        (8, 0x100F00F00F00F00F),
-        (4, 0x10C30C30C30C30C3),
-        (2, 0x1249249249249249),
-    ):
-        bits = (bits | (bits << np.uint64(shift))) & np.uint64(mask)
-    return bits

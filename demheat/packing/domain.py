@@ -9,11 +9,12 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from demheat.limits import check_memory
-from demheat.packing.base import Packing, check_box, check_domain, make_packing, morton_order
+from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.gate import check_packing
 from demheat.powers import cube_root
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.scene.inputs import chosen, vector
+from demheat.scene.shapes.morton import morton_order
 
 KEEP = ("inside", "center")
 # Radii that reach beyond the domain by less than this part of its size lie inside: rounding of a packing's own walls.

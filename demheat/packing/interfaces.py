@@ -1,6 +1,6 @@
 """The interfaces of a scene as surfaces, found by `surfaces_of`: point patterns on them and distances to them."""
 
-from functools import singledispatch
+from dataclasses import dataclass
 from itertools import product
 from typing import NamedTuple
 
@@ -8,9 +8,9 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from demheat.packing import solids
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Layer, LevelSet, Scene, Shape, Sphere, Union
-from demheat.scene.shapes.base import TOUCH
+from demheat.scene import Scene, Shape
+from demheat.scene.shapes.base import TOUCH, shifts
+from demheat.scene.shapes.patterns import Room
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12
@@ -19,7 +19,7 @@ FEWEST = 12
 class SphereSurface(NamedTuple):
     """The surface of a spherical inclusion."""
 
-    shape: Sphere
+    shape: Shape
     scene: Scene
 
     # Such surfaces are asked all at once, by `demheat.packing.spheres`; others need not say that they are none.
@@ -158,79 +158,67 @@ class PlaneSurface(NamedTuple):
         return np.abs(offset)
 
 
-@singledispatch
-def surfaces(shape: Shape, scene: Scene) -> list:
-    """The surfaces of an inclusion on which facets are to lie: what the DEM must know of a shape.
+@dataclass(frozen=True)
+class ShapeSurface:
+    """The surface of any other shape, as the shape tells it; its methods are those of `SphereSurface`."""
 
-    Other shapes are registered with it by their type; a surface has the methods of `SphereSurface`.
+    shape: Shape
+    scene: Scene
 
-    Parameters
-    ----------
-    shape : Shape
-        One of the scene's inclusions.
-    scene : Scene
+    @property
+    def depth(self) -> float:
+        """How far inwards nothing is in the way, m."""
+        return self.shape.depth
 
-    Raises
-    ------
-    NotImplementedError
-        If the shape is not known.
-    """
-    raise NotImplementedError(
-        f"inclusions of shape {type(shape).__name__} have no conforming packing; pass conforming=False"
-    )
+    def ball(self):
+        """A ball that holds the surface: centre, (3,) float array, and radius, m; infinite where it has no end."""
+        return self.shape.ball()
 
+    def pattern(self, spacing, rng):
+        """Evenly spread points and outward normals, both (k, 3) float arrays."""
+        return self.shape.pattern(spacing, rng, self._room)
 
-@surfaces.register
-def _(shape: Sphere, scene):
-    return [SphereSurface(shape, scene)]
+    def touched(self, points, normals):
+        """The points moved onto planes that keep the volume, (k, 3) float array, m."""
+        return self.shape.facets(points, normals, self._room) if len(points) else points
 
+    def bend(self, points, normals, step):
+        """Sum of the principal curvatures at points, from normals beside them, (k,) float array, 1/m."""
+        bend = np.zeros(len(points))
+        first = np.cross(normals, np.eye(3)[np.argmin(np.abs(normals), axis=1)])
+        first /= np.linalg.norm(first, axis=1)[:, None]
+        for along in (first, np.cross(normals, first)):
+            ahead, behind = (self.shape.normal(points + sign * step * along) for sign in (1.0, -1.0))
+            bend += np.einsum("ij,ij->i", ahead - behind, along) / (2.0 * step)
+        return bend
 
-@surfaces.register
-def _(shape: Layer, scene):
-    length = scene.size[shape.axis]
-    slack = TOUCH * length
-    faces = (x for x in (shape.start, shape.stop) if scene.periodic or slack < x < length - slack)
-    return [PlaneSurface(shape.axis, x % length, scene) for x in faces]
+    def gap(self, points, *, skip_self=False):
+        """Distance of points to the surface, its periodic images included, (n,) float array, m."""
+        if not skip_self:
+            return np.abs(self.shape.distance(points, period=self.scene.period))
+        nearest = np.full(len(points), np.inf)
+        for shift in shifts(self.shape, self.scene.period):
+            nearest = np.minimum(nearest, np.abs(self.shape.distance(points - shift)))
+        return nearest
 
-
-@surfaces.register
-def _(shape: Cylinder, scene):
-    depth = shape.radius if shape.length is None else min(shape.radius, 0.5 * shape.length)
-    return [solids.SolidSurface(shape, scene, depth, solids.on_cylinder, solids.on_prism)]
-
-
-@surfaces.register
-def _(shape: Ellipsoid, scene):
-    return [solids.SolidSurface(shape, scene, min(shape.semi_axes), solids.on_smooth, solids.by_volume)]
-
-
-@surfaces.register
-def _(shape: LevelSet, scene):
-    # Its own opposite side is not told: twins that would lie beyond it are none.
-    return [solids.SolidSurface(shape, scene, np.inf, solids.on_smooth, solids.by_volume)]
-
-
-@surfaces.register
-def _(shape: Union, scene):
-    depth = min(surface.depth for member in shape.shapes for surface in surfaces(member, scene))
-    return [solids.SolidSurface(shape, scene, depth, solids.on_union, solids.by_faces)]
-
-
-@surfaces.register
-def _(shape: Box, scene):
-    return [solids.SolidSurface(shape, scene, 0.5 * min(shape.sides), solids.on_faces, solids.where_they_are)]
-
-
-@surfaces.register
-def _(shape: HalfSpace, scene):
-    return [solids.SolidSurface(shape, scene, np.inf, solids.on_plane, solids.where_they_are)]
+    @property
+    def _room(self):
+        return Room(self.scene.size, self.scene.periodic)
 
 
 def surfaces_of(scene: Scene) -> list:
     """Every surface of a scene's inclusions, and after them every plane between its layers, once each."""
-    found = [surface for shape in scene.inclusions if not shape.flat for surface in surfaces(shape, scene)]
-    planes = [plane for shape in scene.inclusions if shape.flat for plane in surfaces(shape, scene)]
+    bodies = [shape for shape in scene.inclusions if not shape.flat]
+    found = [(SphereSurface if shape.fills_ball else ShapeSurface)(shape, scene) for shape in bodies]
+    planes = [plane for shape in scene.inclusions if shape.flat for plane in _faces(shape, scene)]
     return found + _once(sorted(planes, key=lambda plane: (plane.axis, plane.position)), scene)
+
+
+def _faces(layer, scene):
+    length = scene.size[layer.axis]
+    slack = TOUCH * length
+    faces = (x for x in (layer.start, layer.stop) if scene.periodic or slack < x < length - slack)
+    return [PlaneSurface(layer.axis, x % length, scene) for x in faces]
 
 
 def _once(planes, scene):

@@ -16,8 +16,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.packing.base import Packing, check_box, morton_order
+from demheat.packing.base import Packing, check_box
 from demheat.powers import cube_root
+from demheat.scene.shapes.morton import morton_order
 
 FILE = Path(__file__).with_name("tile.npy")
 CHECKSUM = "3433fdf7fd2266cb23508c20928baf91ce7840b25baf042e1f35d2e84a0eed01"

@@ -99,8 +99,9 @@ def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[
         yield f"a {scene.domain}", ""
     if shapes == () and scene.inclusions:
         yield f"inclusions in a {scene.domain}", ""
-    if shapes is not None and scene.image is None and not scene.only(*shapes):
-        number = next(i for i, shape in enumerate(scene.inclusions) if not isinstance(shape, shapes))
+    known = shapes if callable(shapes) else lambda shape: shapes is None or isinstance(shape, shapes)
+    if not all(map(known, scene.inclusions)):
+        number = next(i for i, shape in enumerate(scene.inclusions) if not known(shape))
         kind = scene.inclusions[number].kind
         yield f"{'an' if kind[0] in 'aeio' else 'a'} {kind}, Scene.inclusions[{number}]", ""
     parents = np.zeros(1) if nested else scene.parents()

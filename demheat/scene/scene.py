@@ -337,7 +337,7 @@ class Scene:
         steady: bool | None = None,
         walls: str | None = None,
         domain: str | None = None,
-        shapes: tuple[type[Shape], ...] | None = None,
+        shapes: tuple[type[Shape], ...] | Callable[[Shape], bool] | None = None,
         nested: bool = True,
         pores: bool = True,
         takes: tuple[str, ...] = (),
@@ -355,8 +355,8 @@ class Scene:
             What walls it can have, a key of `demheat.scene.needs.WALLS`.
         domain : str, optional
             The only body it knows.
-        shapes : tuple of types of Shape, optional
-            Of the inclusions.
+        shapes : tuple of types of Shape, or callable Shape -> bool, optional
+            Of the inclusions: which it knows.
         nested : bool
             Whether inclusions may lie in others.
         pores : bool

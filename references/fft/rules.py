@@ -9,8 +9,6 @@ import numpy as np
 from demheat.scene.narrows import narrows
 from demheat.scene.thickness import coats, narrower
 from references.voxels.kernels import FULL
-from references.voxels.links import cut
-from references.voxels.paint import paint
 
 # Errors of the scalar scheme in % at 128^3, measured on a sphere with the radius a third of the cube's edge, against
 # log10 of its conductivity over the matrix's.  All rules are of first order in the voxel, so other grids choose alike.
@@ -46,13 +44,11 @@ FEWEST = 2.0
 def automatic(scheme, scene, shape) -> str:
     """The rule with the smallest measured error for the worst of the scene's interfaces.
 
-    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What cuts
-    voxels in a way not known here, or has no surface that is found, has the phase of their centres only, and an image
-    cuts none. A side of fewer than
+    Layers do not count: a laminate is exact for them, links are not where layers end between two nodes. What has no
+    surface that is found has the phase of voxels' centres only, and an image cuts none. A side of fewer than
     `LEAST_LINKED` voxels has no links.
     """
-    traceable = all(shape.traceable for shape in scene.inclusions)
-    if scene.image is not None or not (traceable and _registered(paint, scene) and _registered(cut, scene)):
+    if scene.image is not None or not all(shape.traceable for shape in scene.inclusions):
         return "plain"
     if scheme == "eyre-milton":
         return "laminate"
@@ -72,11 +68,6 @@ def automatic(scheme, scene, shape) -> str:
     if min(shape) < LEAST_LINKED:
         del worst["links"]
     return min(worst, key=worst.get)
-
-
-def _registered(function, scene):
-    """Whether the shapes of all inclusions are registered with a `singledispatch` function."""
-    return all(function.dispatch(type(shape)) is not function.dispatch(object) for shape in scene.inclusions)
 
 
 def warn_of_thin(scene, rule, shape) -> None:

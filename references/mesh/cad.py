@@ -7,19 +7,17 @@ reach gmsh, whose tolerances are absolute.
 
 from __future__ import annotations
 
-from functools import singledispatch
 from typing import NamedTuple
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.scene import WALLS, Layer, Shape, Sphere, check_scene
+from demheat.scene import WALLS, Shape, check_scene
 from demheat.scene.inputs import finite, flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.size_table import table
 from references.mesh.sizes import GROWTH, check_cost, checked_size, unit_lengths, wanted_sizes
-from references.mesh.solids import KNOWN, add
 from references.mesh.turns import turn
 
 # Unit lengths. OpenCASCADE's bounds of what splines end may be so much too wide (found: 5e-6).
@@ -32,11 +30,10 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     """Mesh a scene."""
     check_scene(scene)
     flag("curved", curved)
-    known = "cylinders, ellipsoids, boxes, half-spaces and unions of them"
-    text = f"sizes of elements are known on spheres and layers in a box, on {known}"
     # What surfaces resist and phases conduct does not change where they are.
     takes = ("resistance", "exchange", "anisotropy", "dependence")
-    scene.require(text, domain="box", shapes=(Sphere, Layer, *KNOWN), takes=takes)
+    text = "elements are known in a box, around shapes that have a volume of OpenCASCADE, `Shape.cad`"
+    scene.require(text, domain="box", shapes=lambda shape: type(shape).cad is not Shape.cad, takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)
@@ -102,7 +99,7 @@ def _tetrahedra(geometry, sizes, elements):
 def _cut_geometry(gmsh, geometry):
     """Cut box, layers and spheres into one another; {volume tag: phase}."""
     occ, box = gmsh.model.occ, geometry.box
-    tools = [(phase, (3, solid(shape, occ, box, geometry.scale))) for phase, shape in geometry.images]
+    tools = [(phase, (3, shape.cad(occ, box, geometry.scale))) for phase, shape in geometry.images]
     _turn_spheres(occ, geometry, [tag for _, (_, tag) in tools])
     body = (3, occ.addBox(0, 0, 0, *box))
     phases = {body[1]: 0}
@@ -120,41 +117,12 @@ def _turn_spheres(occ, geometry, tags):
     """Turn spheres about their centres, all images of one alike; layers cut none."""
     faces, turns = [np.array([0.0, length]) for length in geometry.box], {}
     for (phase, shape), tag in zip(geometry.images, tags, strict=True):
-        if ball := round_about(shape):
-            center, radius = (np.array(each) / geometry.scale for each in ball)
+        if shape.fills_ball:
+            center, radius = (each / geometry.scale for each in shape.ball())
             if phase not in turns:
                 turns[phase] = turn(center, radius, faces)
             *axis, angle = turns[phase]
             occ.rotate([(3, tag)], *center, *axis, angle)
-
-
-@singledispatch
-def round_about(shape: Shape):
-    """Centre and radius of a shape that looks alike from all sides, m; None of any other."""
-
-
-@round_about.register
-def _(shape: Sphere):
-    return shape.center, shape.radius
-
-
-@singledispatch
-def solid(shape: Shape, occ, box, scale: float) -> int:
-    """Add a shape to the geometry; shapes are registered by their type, and their sizes in `references.mesh.sizes`."""
-    return add(shape, occ, box, scale)
-
-
-@solid.register
-def _(shape: Layer, occ, box, scale):
-    low, span = np.zeros(3), box.copy()
-    start, stop = np.clip([shape.start / scale, shape.stop / scale], 0.0, box[shape.axis])
-    low[shape.axis], span[shape.axis] = start, stop - start
-    return occ.addBox(*low, *span)
-
-
-@solid.register
-def _(shape: Sphere, occ, box, scale):
-    return occ.addSphere(*(np.array(shape.center) / scale), shape.radius / scale)
 
 
 def _tie_faces(gmsh, box):

@@ -1,20 +1,16 @@
-"""Cylinders, ellipsoids, boxes, half-spaces and unions as gmsh makes them, and how fine a mesh must be beside them."""
+"""How fine a mesh must be beside the surfaces of shapes other than spheres and layers, by samples of them."""
 
 from __future__ import annotations
 
-from functools import partial, singledispatch
+from functools import partial
 from itertools import product
 
 import numpy as np
 
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Shape, Sphere, Union
 from demheat.scene.shapes.base import shifts
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.samples import surface_points
-from references.mesh.turns import GENERIC
 
-# What has a solid here, spheres and layers aside.
-KNOWN = (Cylinder, Ellipsoid, Box, HalfSpace, Union)
 # Samples of a surface along its least length, at least, and along the longest edge of the box, at most.
 ALONG, FINEST = 4, 200
 # Steps downhill, to where two surfaces are nearest.
@@ -23,72 +19,11 @@ ROUNDS = 60
 FACING = 0.9
 
 
-@singledispatch
-def add(shape: Shape, occ, box, scale: float) -> int:
-    """Add a shape to the geometry; see `references.mesh.cad.solid`."""
-    raise NotImplementedError(f"meshes around inclusions of shape {type(shape).__name__}: not known here")
-
-
-@add.register
-def _(shape: Cylinder, occ, box, scale):
-    points, _ = shape.hull(box * scale) if shape.length is None else (_ends(shape), 0.0)
-    start, stop = points / scale
-    tag = occ.addCylinder(*start, *(stop - start), shape.radius / scale)
-    # Its seam off the planes of symmetry, which may be faces of the box.
-    occ.rotate([(3, tag)], *start, *shape.axis, GENERIC[3])
-    return tag
-
-
-@add.register
-def _(shape: Ellipsoid, occ, box, scale):
-    tag = occ.addSphere(0, 0, 0, 1)
-    occ.rotate([(3, tag)], 0, 0, 0, *GENERIC)
-    occ.dilate([(3, tag)], 0, 0, 0, *(np.array(shape.semi_axes) / scale))
-    return _placed(occ, tag, shape.rotation, np.array(shape.center) / scale)
-
-
-@add.register
-def _(shape: Box, occ, box, scale):
-    sides = np.array(shape.sides) / scale
-    tag = occ.addBox(*(-sides / 2), *sides)
-    return _placed(occ, tag, shape.rotation, np.array(shape.center) / scale)
-
-
-@add.register
-def _(shape: HalfSpace, occ, box, scale):
-    wide = 2 * np.linalg.norm(box)
-    tag = occ.addBox(-wide, -wide, -2 * wide, 2 * wide, 2 * wide, 2 * wide)
-    normal = np.array(shape.outward)
-    # The point of its plane that is nearest to the middle: the box is then wide enough around it.
-    middle = box / 2 - shape.distance(scale * box[None] / 2)[0] / scale * normal
-    return _placed(occ, tag, np.stack([*across(normal), normal], axis=1), middle)
-
-
-@add.register
-def _(shape: Sphere, occ, box, scale):
-    # Of a union: its poles off the planes of symmetry.
-    center = np.array(shape.center) / scale
-    tag = occ.addSphere(*center, shape.radius / scale)
-    occ.rotate([(3, tag)], *center, *GENERIC)
-    return tag
-
-
-@add.register
-def _(shape: Union, occ, box, scale):
-    first, *rest = ((3, add(member, occ, box, scale)) for member in shape.shapes)
-    pieces, _ = occ.fuse([first], rest)
-    if len(pieces) != 1:
-        raise NotImplementedError(
-            f"a union of shapes at {shape.center} is {len(pieces)} pieces: meshes know one; give each piece for itself"
-        )
-    return pieces[0][1]
-
-
 def sized(scene, size: float, planes, rules) -> np.ndarray:
     """Balls in which edges must be short beside the surfaces of solids, and between them and others."""
     found = [np.zeros((0, 5))]
     for number, shape in enumerate(scene.inclusions):
-        if isinstance(shape, KNOWN):
+        if not (shape.flat or shape.fills_ball):
             found.append(_beside(scene, number, planes, rules, size))
     rows = np.concatenate(found)
     if scene.periodic and len(rows):
@@ -117,7 +52,7 @@ def _beside(scene, number, planes, rules, size):
     gap = np.minimum(gap, _to_planes(scene, shape, points, planes, narrowest))
     width = np.sqrt(gap * least)
     # Flat faces need no more than a layer does: one element through it.
-    along = min(min(part.sides) if isinstance(part, Box) else on * _least(part, box) for part in shape.parts)
+    along = min((2.0 if _faceted(part) else on) * _least(part, box) for part in shape.parts)
     edge = np.minimum(along, np.where(gap < far * least, in_gap * width, np.inf))
     return _thinned(points, edge, size)
 
@@ -190,7 +125,7 @@ def _to_planes(scene, shape, points, planes, narrowest):
             ends = np.array([low[axis], high[axis]]) - at
             ends -= length * np.round(ends / length) if scene.periodic and np.isfinite(low[axis]) else 0.0
             # Faces may lie in planes.
-            if np.abs(ends).min() < narrowest * max(scene.size) and not isinstance(shape, Box):
+            if np.abs(ends).min() < narrowest * max(scene.size) and not _faceted(shape):
                 raise NotImplementedError(
                     f"a {shape.kind} at {shape.center} touches the plane {'xyz'[axis]} = {at:.6g} m: the cusp between "
                     "touching surfaces has no valid elements; leave a gap"
@@ -206,29 +141,9 @@ def _in_box(scene, x):
 
 def _least(shape, box):
     """Least length that a mesh must follow, m: half the width of what has one."""
-    if isinstance(shape, Union):
-        return min(_least(member, box) for member in shape.shapes)
-    if shape.fills_ball:
-        return shape.ball()[1]
-    if isinstance(shape, Cylinder):
-        return shape.radius if shape.length is None else min(shape.radius, shape.length / 2)
-    if isinstance(shape, Ellipsoid):
-        return min(shape.semi_axes)
-    return min(shape.sides) / 2 if isinstance(shape, Box) else float(box.max())
+    return shape.depth if np.isfinite(shape.depth) else float(box.max())
 
 
-def _ends(shape):
-    half = 0.5 * shape.length * np.array(shape.axis)
-    return np.array(shape.center) + np.array([-half, half])
-
-
-def _placed(occ, tag, rotation, center):
-    """Turn a body at the origin and move it."""
-    from scipy.spatial.transform import Rotation
-
-    turn = Rotation.from_matrix(np.array(rotation)).as_rotvec()
-    angle = float(np.linalg.norm(turn))
-    if angle > 0:
-        occ.rotate([(3, tag)], 0, 0, 0, *(turn / angle), angle)
-    occ.translate([(3, tag)], *center)
-    return tag
+def _faceted(shape):
+    """Whether it ends, and all its faces are planes."""
+    return shape.bounded and shape.planes() is not None

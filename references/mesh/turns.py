@@ -12,8 +12,8 @@ from functools import cache
 
 import numpy as np
 
-# Axis and angle, rad, for spheres that nothing cuts: off symmetry planes.
-GENERIC = (1.0, 2.0, 3.0, 1.0)
+from demheat.scene.shapes.occ import GENERIC
+
 # Turns to choose from where a sphere is cut.
 CANDIDATES = 192
 # Points of the seam that are looked at, from pole to pole.

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
-
 import numpy as np
 
 from demheat.progress import stage
-from demheat.scene import Layer, Scene, Shape, Sphere
-from demheat.scene.shapes.solid import Solid
+from demheat.scene import Scene
 from references.voxels import kernels
 from references.voxels.paint import voxelise
 from references.voxels.solids import inside_parts
@@ -71,6 +68,7 @@ def _cut_group(group, resistance, axis, change, spacing):
         _cut_spheres(group, resistance, axis, change, spacing)
     else:
         number, shape = group
+        cut = _cut_layer if shape.flat else _cut_shape
         cut(shape, resistance, axis, change[number], spacing)
 
 
@@ -96,16 +94,8 @@ def _rounded(scene):
     return any(not shape.flat for shape in scene.inclusions)
 
 
-@singledispatch
-def cut(shape: Shape, resistance, axis: int, change: float, spacing) -> None:
-    """Add a shape's change of resistivity to the links along one axis; shapes are registered by their type."""
-    raise NotImplementedError(
-        f"links cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
-    )
-
-
 def _cut_spheres(spheres, resistance, axis, change, spacing):
-    """Add the changes of resistivity, one of each phase, of images of spheres, as `cut` does of one shape."""
+    """Add the changes of resistivity, one of each phase, of images of spheres, as `_cut_shape` does of one shape."""
     # The kernel sees the links' axis last.
     order = [a for a in range(3) if a != axis] + [axis]
     view = np.moveaxis(resistance, axis, 2)
@@ -114,22 +104,15 @@ def _cut_spheres(spheres, resistance, axis, change, spacing):
         kernels.cut_links_by_spheres(view, change[block.number], center, radius, spacing[order])
 
 
-@cut.register
-def _(shape: Sphere, resistance, axis, change, spacing):
-    one = Balls(np.zeros(1, np.int64), np.array([shape.center]), np.array([shape.radius]))
-    _cut_spheres(one, resistance, axis, np.array([change]), spacing)
-
-
-@cut.register
-def _(shape: Solid, resistance, axis, change, spacing):
+def _cut_shape(shape, resistance, axis, change, spacing):
+    """Add the change of resistivity of one image of any shape, by its distance along the links alone."""
     counts = tuple(n - (a == axis) for a, n in enumerate(resistance.shape))
     rows, inside = inside_parts(shape, counts, spacing, axis)
     np.moveaxis(resistance, axis, 2)[rows[:, 0], rows[:, 1]] += change * inside
 
 
-@cut.register
-def _(shape: Layer, resistance, axis, change, spacing):
-    # By the part of a link inside the layer, or by where a link parallel to it lies.
+def _cut_layer(shape, resistance, axis, change, spacing):
+    """The same of a layer: by the part of a link inside it, or by where a link parallel to it lies."""
     n, h = resistance.shape[shape.axis], spacing[shape.axis]
     if axis == shape.axis:
         ends = np.clip((np.arange(n + 1) - 0.5) * h, 0.0, (n - 1) * h)

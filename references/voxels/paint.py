@@ -10,14 +10,12 @@ Engrg. 294 (2015) 168-188.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import singledispatch
 from typing import NamedTuple
 
 import numpy as np
 
 from demheat.progress import stage
-from demheat.scene import Layer, Scene, Shape, Sphere
-from demheat.scene.shapes.solid import Solid
+from demheat.scene import Scene
 from references.voxels import kernels
 from references.voxels.cut import laminate_tensors, phase_parts
 from references.voxels.laminates import cut_tensors, packed
@@ -218,7 +216,8 @@ def _paint(scene, grid, spacing, cutting, planes):
                 continue
             number, shape = group
             if reaches(shape, planes, spacing[0]):
-                found.append(paint(shape, grid, spacing, number, cutting=cutting))
+                paint = _paint_layer if shape.flat else _paint_shape
+                found.append(paint(shape, grid, spacing, number, cutting))
             done(number / len(inclusions))
     return Cuts(*(np.concatenate(column) for column in zip(*found, strict=True)))
 
@@ -241,15 +240,14 @@ def _none():
     return Cuts(np.empty(0, np.int64), np.empty(0), np.empty((0, 6)), np.empty(0, np.int64))
 
 
-@singledispatch
-def paint(shape: Shape, grid, spacing, number: int, *, cutting: bool) -> Cuts:
-    """Paint one image of an inclusion; shapes of which more is known are registered by type."""
-    if cutting:
-        raise NotImplementedError(
-            f"voxels cut by inclusions of shape {type(shape).__name__}: not known here; in fft use rule='plain'"
-        )
+def _paint_shape(shape, grid, spacing, number, cutting):
+    """Paint one image of any shape, and find the voxels that its surface cuts, by its distance and normal alone."""
     _fill(shape, grid, spacing, number)
-    return _none()
+    if not cutting:
+        return _none()
+    index, fraction, moment = cut_voxels(shape, grid.shape, spacing)
+    cut = (fraction > kernels.FULL) & (fraction < 1 - kernels.FULL)
+    return Cuts(index[cut], fraction[cut], moment[cut], np.full(int(cut.sum()), number))
 
 
 def _fill(shape, grid, spacing, number):
@@ -263,25 +261,8 @@ def _fill(shape, grid, spacing, number):
         grid[tuple(points[inside].T)] = number
 
 
-@paint.register
-def _(shape: Solid, grid, spacing, number, *, cutting):
-    _fill(shape, grid, spacing, number)
-    if not cutting:
-        return _none()
-    index, fraction, moment = cut_voxels(shape, grid.shape, spacing)
-    cut = (fraction > kernels.FULL) & (fraction < 1 - kernels.FULL)
-    return Cuts(index[cut], fraction[cut], moment[cut], np.full(int(cut.sum()), number))
-
-
-@paint.register
-def _(shape: Sphere, grid, spacing, number, *, cutting):
-    one = Balls(np.array([number]), np.array([shape.center]), np.array([shape.radius]))
-    found = _paint_spheres(one, grid, spacing, cutting, lambda _: None)
-    return Cuts(*(np.concatenate(column) for column in zip(_none(), *found, strict=True)))
-
-
-@paint.register
-def _(shape: Layer, grid, spacing, number, *, cutting):
+def _paint_layer(shape, grid, spacing, number, cutting):
+    """Paint a layer, exactly."""
     axis, h = shape.axis, spacing[shape.axis]
     planes = np.arange(grid.shape[axis])
     middle = (planes + 0.5) * h

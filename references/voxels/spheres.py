@@ -42,8 +42,7 @@ class Windows(NamedTuple):
 
 def groups(inclusions: Sequence[tuple[int, Shape]], size, *, periodic: bool) -> Iterator[Balls | tuple[int, Shape]]:
     """Inclusions that meet the box: spheres that follow one another as arrays, images of other shapes one by one."""
-    # What only derives from a sphere may be registered with a painting of its own.
-    for spheres, group in groupby(inclusions, key=lambda pair: type(pair[1]) is Sphere):
+    for spheres, group in groupby(inclusions, key=lambda pair: pair[1].fills_ball):
         if spheres:
             yield images(list(group), size, periodic=periodic)
         else:

@@ -4,22 +4,21 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from itertools import product
+from typing import ClassVar
 
 import numpy as np
 
 from demheat.scene.inputs import moderate, number
 from demheat.scene.material import WITHIN, Material
+from demheat.scene.shapes.patterns import Room, even_points, level
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
-# What a class derived from a finished shape must leave as it is.
-GEOMETRY = {"center", "distance", "normal", "bounds", "volume", "turned", "contains", "bounded", "ball", "meets"}
-GEOMETRY |= {"images", "placed", "point_in", "volume_in", "fills_bounds", "fills_ball", "flat", "convex", "overhangs"}
-GEOMETRY |= {"parts", "width", "surface", "sure_distance", "reach", "hull", "planes", "encloses", "check_fit"}
-GEOMETRY |= {"traceable"}
+# What a class derived from a finished shape may say anew: the rest is its geometry.
+OWN = {"material", "resistance", "kind", "stored"}
 
 
 class Shape(ABC):
@@ -35,14 +34,14 @@ class Shape(ABC):
 
     Points on the surface count as inside. Where a `period` is given, the shape is repeated at whole multiples of it
     along each axis and the nearest image counts, which is that of the centre in shapes no larger than the period
-    (`nearest`). What a shape may override, where it has something sharper or faster, is `contains`, `ball`, `meets`,
-    `volume_in`, `width`, `fills_bounds` and `fills_ball`, and for pairs `reach`, `hull`, `planes` and `encloses`. One
-    that is not convex says so; one whose distance is not exact overrides `sure_distance`. `Solid` supplies most of it.
+    (`nearest`). `Solid` supplies most of it. That is enough for phases, voxels by any rule, links cut at the surface
+    and facets of the DEM on it. What a shape may supply besides, or where it has something sharper or faster:
 
-    That is enough for phases, voxels that belong to the phase of their centre, and the DEM without conforming facets.
-    What a method must know besides, it asks for by the shape's type, and refuses other shapes: `Scene.require`, and
-    the functions that shapes are registered with, `demheat.packing.interfaces.surfaces`,
-    `references.voxels.paint.paint`, `references.voxels.links.cut` and `references.mesh.cad.solid`.
+    - `cad`, for finite elements, which refuse shapes without it; `stored`, for scene files, which hold none without it;
+    - `pattern` and `facets` of the DEM, where evenly spread points are not the best there are;
+    - `contains`, `ball`, `meets`, `volume_in`, `width`, `depth`, `fills_bounds` and `fills_ball`;
+    - for pairs `reach`, `hull`, `planes` and `encloses`; one that is not convex says so, one whose distance is not
+      exact overrides `sure_distance`; `faces`, if it may be a member of a union.
     """
 
     center: tuple[float, float, float]
@@ -61,17 +60,24 @@ class Shape(ABC):
     overhangs = False
     # Whether its surface can be found: distances and normals are those to it.
     traceable = True
+    # What it is called in messages and in scene files: its class in small letters, if it says nothing else.
+    kind: ClassVar[str]
+    # What of it scene files have, besides material and resistance: fields, each with what its numbers are, a key of
+    # `demheat.files.scene_table.FIELDS`.
+    stored: ClassVar[Mapping[str, str]] = {}
 
     def __init_subclass__(cls, **knobs):
-        """Refuse a class that changes the geometry of a finished shape: what knows that by its type would not ask."""
+        """Name a class; refuse one that changes the geometry of a finished shape: who reads fields would not see."""
         super().__init_subclass__(**knobs)
+        cls.kind = vars(cls).get("kind", cls.__name__.lower())
+        geometry = {"center", *(name for name in vars(Shape) if not name.startswith("_"))} - OWN
         for base in cls.__mro__[1:]:
             finished = issubclass(base, Shape) and base is not Shape and not base.__abstractmethods__
-            changed = sorted(GEOMETRY & vars(cls).keys()) if finished else []
+            changed = sorted(geometry & vars(cls).keys()) if finished else []
             if changed:
                 raise TypeError(
-                    f"class {cls.__name__} changes {', '.join(changed)} of {base.__name__}, which methods know by its "
-                    "type: must derive from Shape instead"
+                    f"class {cls.__name__} changes {', '.join(changed)} of {base.__name__}, whose fields methods read: "
+                    "must derive from Shape instead"
                 )
 
     @abstractmethod
@@ -141,14 +147,14 @@ class Shape(ABC):
         return float(np.min(high[ends] - low[ends], initial=np.inf))
 
     @property
+    def depth(self) -> float:
+        """How far inwards of its surface nothing of it is in the way, m; infinite without another side."""
+        return 0.5 * self.width
+
+    @property
     def parts(self) -> tuple[Shape, ...]:
         """Shapes that it is the union of: itself, if it is none."""
         return (self,)
-
-    @property
-    def kind(self) -> str:
-        """What it is called in messages."""
-        return type(self).__name__.lower()
 
     @property
     def bounded(self) -> bool:
@@ -301,6 +307,32 @@ class Shape(ABC):
     def planes(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Outward normals (m, 3) and offsets (m,), m, of the planes that it is all of the inside of; None if none."""
         return None
+
+    @property
+    def faces(self) -> Sequence[Shape]:
+        """Convex shapes with smooth surfaces that it is all of the inside of, for unions; none if it is no member."""
+        return ()
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Points evenly all over its surface in a box, and maybe beyond, and outward normals, two (k, 3) arrays."""
+        return even_points(self, spacing, rng, room)
+
+    def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
+        """Points of a pattern moved along normals so that planes there keep the volume, (k, 3) float array, m."""
+        return points if self.planes() is not None else level(self, points, normals, room)
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """Add it to a geometry of OpenCASCADE, and give the tag of its volume.
+
+        Parameters
+        ----------
+        occ : gmsh.model.occ
+        box : (3,) float array
+            Edges of the scene's box over the scale: of what goes on beyond only that part need be right.
+        scale : float, m
+            By which lengths are divided.
+        """
+        raise NotImplementedError(f"a {self.kind} has no volume of OpenCASCADE")
 
     def encloses(self, other: Shape, shift: np.ndarray) -> bool:
         """Whether it surely holds another shape, by what both know of their own kind.

@@ -5,15 +5,19 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
 from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.rotations import IDENTITY, rotation, turned_rotation
-from demheat.scene.shapes.base import check_resistance
+from demheat.scene.shapes.base import Shape, check_resistance
 from demheat.scene.shapes.directions import corners
 from demheat.scene.shapes.ellipsoid import lengths
+from demheat.scene.shapes.half_space import HalfSpace
+from demheat.scene.shapes.occ import placed
+from demheat.scene.shapes.patterns import SQUARE, Room, grid
 from demheat.scene.shapes.solid import Solid
 
 
@@ -53,6 +57,8 @@ class Box(Solid):
     material: Material
     rotation: tuple[tuple[float, ...], ...] = field(default=IDENTITY, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
+
+    stored = {"center": "point", "sides": "lengths", "rotation": "rotation"}
 
     def __post_init__(self):
         object.__setattr__(self, "center", vector("Box.center", self.center))
@@ -99,6 +105,40 @@ class Box(Solid):
         """Those of its six faces; see `Shape.planes`."""
         normals = np.concatenate([np.array(self.rotation).T, -np.array(self.rotation).T])
         return normals, normals @ np.array(self.center) + np.tile(0.5 * np.array(self.sides), 2)
+
+    @property
+    def faces(self) -> list[Shape]:
+        """Half-spaces behind its faces; see `Shape.faces`."""
+        found = []
+        for (column, side), sign in product(zip(np.array(self.rotation).T, self.sides, strict=True), (-1, 1)):
+            normal = sign * column
+            found.append(HalfSpace(np.array(self.center) + 0.5 * side * normal, normal, self.material))
+        return found
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Squares on its faces, half a side from its edges; see `Shape.pattern`."""
+        turn, middle = np.array(self.rotation).T, 0.5 * np.array(room.size)
+        counts = np.maximum(1, np.rint(np.array(self.sides) / (SQUARE * spacing)).astype(int))
+        ticks = [((np.arange(n) + 0.5) / n - 0.5) * side for n, side in zip(counts, self.sides, strict=True)]
+        if not room.periodic:
+            # Of faces far beyond the walls, what is near.
+            near = np.linalg.norm(middle) + spacing
+            ticks = [t[np.abs(t - m) <= near] for t, m in zip(ticks, turn @ (middle - self.center), strict=True)]
+        points, normals = [], []
+        for axis, sign in product(range(3), (-1.0, 1.0)):
+            u, v = (k for k in range(3) if k != axis)
+            first, second = grid(ticks[u], ticks[v])
+            own = np.full((len(first), 3), sign * self.sides[axis] / 2)
+            own[:, u], own[:, v] = first, second
+            points.append(own)
+            normals.append(np.tile(sign * np.eye(3)[axis], (len(own), 1)))
+        return np.array(self.center) + np.concatenate(points) @ turn, np.concatenate(normals) @ turn
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A box of OpenCASCADE; see `Shape.cad`."""
+        sides = np.array(self.sides) / scale
+        tag = occ.addBox(*(-sides / 2), *sides)
+        return placed(occ, tag, self.rotation, np.array(self.center) / scale)
 
     def _own(self, offsets):
         own = offsets @ np.array(self.rotation)

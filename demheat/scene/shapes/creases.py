@@ -2,17 +2,9 @@
 
 from __future__ import annotations
 
-from functools import singledispatch
-from itertools import product
-
 import numpy as np
 
 from demheat.scene.shapes.base import Shape
-from demheat.scene.shapes.box import Box
-from demheat.scene.shapes.cylinder import Cylinder
-from demheat.scene.shapes.ellipsoid import Ellipsoid
-from demheat.scene.shapes.half_space import HalfSpace
-from demheat.scene.shapes.sphere import Sphere
 
 # Steps to a crease, each to where the tangent planes of two faces cross; found 5 to 8 between spheres.
 ROUNDS = 12
@@ -20,36 +12,6 @@ ROUNDS = 12
 ALIKE = 1e-6
 # Where to look instead, in their distances: no direction in particular.
 ASIDE = np.array([0.48, 0.6, 0.64]) / 2
-
-
-@singledispatch
-def faces(shape: Shape) -> list[Shape]:
-    """Convex shapes with smooth surfaces whose common part a member of a union is; empty for what cannot be one."""
-    return []
-
-
-@faces.register(Sphere)
-@faces.register(Ellipsoid)
-def _(shape):
-    return [shape]
-
-
-@faces.register
-def _(shape: Cylinder):
-    if shape.length is None:
-        return [shape]
-    half = 0.5 * shape.length * np.array(shape.axis)
-    ends = [HalfSpace(np.array(shape.center) + s * half, s * np.array(shape.axis), shape.material) for s in (-1, 1)]
-    return [Cylinder(shape.center, shape.radius, shape.axis, shape.material), *ends]
-
-
-@faces.register
-def _(shape: Box):
-    found = []
-    for (column, side), sign in product(zip(np.array(shape.rotation).T, shape.sides, strict=True), (-1, 1)):
-        normal = sign * column
-        found.append(HalfSpace(np.array(shape.center) + 0.5 * side * normal, normal, shape.material))
-    return found
 
 
 def crease(points: np.ndarray, one: Shape, other: Shape) -> np.ndarray:

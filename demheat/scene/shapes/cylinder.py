@@ -5,17 +5,23 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, number, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import TOUCH, check_resistance
+from demheat.scene.shapes.base import TOUCH, Shape, check_resistance
 from demheat.scene.shapes.directions import across, unit
+from demheat.scene.shapes.half_space import HalfSpace
+from demheat.scene.shapes.occ import GENERIC
+from demheat.scene.shapes.patterns import SQUARE, Room, grid, random_frame
 from demheat.scene.shapes.solid import Solid
 
 # Of the prism around a cylinder, whose corners lie in what holds it: 0.2 % too wide.
 SIDES = 48
+# Points round it, in a pattern on its surface, at least.
+FEWEST_ROUND = 8
 
 
 @dataclass(frozen=True)
@@ -53,6 +59,8 @@ class Cylinder(Solid):
     material: Material
     length: float | None = field(default=None, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
+
+    stored = {"center": "point", "radius": "length", "axis": "direction", "length": "length"}
 
     def __post_init__(self):
         object.__setattr__(self, "center", vector("Cylinder.center", self.center))
@@ -134,6 +142,82 @@ class Cylinder(Solid):
                 "y or z, or have a length"
             )
 
+    @property
+    def faces(self) -> list[Shape]:
+        """Itself without ends, and the half-spaces that end it; see `Shape.faces`."""
+        if self.length is None:
+            return [self]
+        out = np.array(self.axis)
+        ends = [HalfSpace(tip, way, self.material) for tip, way in zip(self._tips(), (-out, out), strict=True)]
+        return [replace(self, length=None, resistance=0.0), *ends]
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of points along it, which share their angles, and rings on its ends; see `Shape.pattern`."""
+        frame, side = random_frame(self.axis, rng), SQUARE * spacing
+        low, high = self._ends(room)
+        rows = max(1, round((high - low) / side))
+        columns = max(FEWEST_ROUND, round(2 * np.pi * self.radius / side))
+        heights = low + (np.arange(rows) + 0.5) * (high - low) / rows
+        if not room.periodic:
+            # Of a rod that reaches far beyond the walls, what is near.
+            middle = 0.5 * np.array(room.size)
+            heights = heights[np.abs(heights - (middle - self.center) @ frame[2]) <= np.linalg.norm(middle) + spacing]
+        height, angle = grid(heights, 2 * np.pi * np.arange(columns) / columns)
+        normals = np.outer(np.cos(angle), frame[0]) + np.outer(np.sin(angle), frame[1])
+        points = [self.radius * normals + np.outer(height, frame[2])]
+        normals = [normals]
+        for end in () if self.length is None else (low, high):
+            disc = _disc(self.radius, side) @ frame[:2]
+            points.append(disc + end * frame[2])
+            normals.append(np.tile(np.sign(end) * frame[2], (len(disc), 1)))
+        return np.array(self.center) + np.concatenate(points), np.concatenate(normals)
+
+    def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
+        """Points moved inwards, onto the prism of its volume with their tangent planes as sides; see `Shape.facets`.
+
+        The volume of what tangent planes enclose is that of the mean of 1/cos^2 of the angle to the nearest point.
+        """
+        from scipy.spatial import cKDTree
+
+        axis = np.array(self.axis)
+        around = np.abs(normals @ axis) < 0.5
+        if not around.any():
+            return points
+        own = points[around] - np.array(self.center)
+        height = own @ axis
+        count = 40 * len(own)
+        turn = np.pi * (1 + np.sqrt(5.0)) * np.arange(count)
+        frame = across(axis)
+        # Between the outermost rows: beyond them no point is nearer than those.
+        where = height.min() + (np.arange(count) + 0.5) / count * np.ptp(height)
+        out = np.outer(np.cos(turn), frame[0]) + np.outer(np.sin(turn), frame[1])
+        _, nearest = cKDTree(own).query(self.radius * out + np.outer(where, axis))
+        cosine = np.maximum(np.einsum("ij,ij->i", out, normals[around][nearest]), 0.25)
+        inner = float(np.mean(cosine**-2.0) ** -0.5)
+        moved = points.copy()
+        moved[around] = np.array(self.center) + np.outer(height, axis) + inner * self.radius * normals[around]
+        return moved
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A cylinder of OpenCASCADE; see `Shape.cad`."""
+        start, stop = (self.hull(box * scale)[0] if self.length is None else self._tips()) / scale
+        tag = occ.addCylinder(*start, *(stop - start), self.radius / scale)
+        # Its seam off the planes of symmetry, which may be faces of the box.
+        occ.rotate([(3, tag)], *start, *self.axis, GENERIC[3])
+        return tag
+
+    def _tips(self):
+        """Middles of its flat ends."""
+        half = 0.5 * self.length * np.array(self.axis)
+        return np.array(self.center) + np.array([-half, half])
+
+    def _ends(self, room):
+        """Ends along its axis, or of what is to have points, m from its centre."""
+        if self.length is not None:
+            return -0.5 * self.length, 0.5 * self.length
+        heights = (np.array(list(product(*((0.0, side) for side in room.size)))) - self.center) @ np.array(self.axis)
+        return heights.min(), heights.max()
+
     def _half(self, size):
         """Half its length; without ends that of all that can lie in a box."""
         if self.length is not None:
@@ -181,3 +265,14 @@ class Cylinder(Solid):
         beyond[flat] = np.stack([side >= end, side < end], axis=1)[flat]
         beyond /= np.linalg.norm(beyond, axis=1, keepdims=True)
         return beyond[:, :1] * outward + np.outer(beyond[:, 1] * np.where(along < 0, -1.0, 1.0), self.axis)
+
+
+def _disc(radius, side):
+    """Points on rings of a disc, (k, 2) float array, m."""
+    count = max(1, round(radius / side))
+    rings = []
+    for away in (np.arange(count) + 0.5) / count * radius:
+        number = max(3, round(2 * np.pi * away * count / radius))
+        angle = 2 * np.pi * (np.arange(number) + 0.5) / number
+        rings.append(away * np.stack([np.cos(angle), np.sin(angle)], axis=1))
+    return np.concatenate(rings)

@@ -13,6 +13,7 @@ from demheat.scene.material import Material, check_material
 from demheat.scene.rotations import IDENTITY, rotation, turned_rotation
 from demheat.scene.shapes.base import Shape, check_resistance
 from demheat.scene.shapes.directions import corners
+from demheat.scene.shapes.occ import GENERIC, placed
 from demheat.scene.shapes.solid import Solid
 
 # Newton steps to the foot of a point, at most: found 5 to 15; each at least halves what is far, where few count.
@@ -53,6 +54,8 @@ class Ellipsoid(Solid):
     material: Material
     rotation: tuple[tuple[float, ...], ...] = field(default=IDENTITY, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
+
+    stored = {"center": "point", "semi_axes": "lengths", "rotation": "rotation"}
 
     def __post_init__(self):
         object.__setattr__(self, "center", vector("Ellipsoid.center", self.center))
@@ -123,6 +126,18 @@ class Ellipsoid(Solid):
             a, b = least + (most - least) / 3, most - (most - least) / 3
             least, most = (least, b) if bound(a) < bound(b) else (a, most)
         return bool(bound(0.5 * (least + most)) <= 1 + 1e-12)
+
+    @property
+    def faces(self) -> list[Shape]:
+        """Itself; see `Shape.faces`."""
+        return [self]
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A ball of OpenCASCADE, stretched; see `Shape.cad`."""
+        tag = occ.addSphere(0, 0, 0, 1)
+        occ.rotate([(3, tag)], 0, 0, 0, *GENERIC)
+        occ.dilate([(3, tag)], 0, 0, 0, *(np.array(self.semi_axes) / scale))
+        return placed(occ, tag, self.rotation, np.array(self.center) / scale)
 
     def _columns(self):
         """Its semi-axes as the columns of a matrix, m."""

@@ -12,7 +12,9 @@ import numpy as np
 from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import check_resistance
-from demheat.scene.shapes.directions import unit
+from demheat.scene.shapes.directions import across, unit
+from demheat.scene.shapes.occ import placed
+from demheat.scene.shapes.patterns import Room, grid, random_frame
 from demheat.scene.shapes.sections import below
 from demheat.scene.shapes.solid import Solid
 
@@ -48,16 +50,14 @@ class HalfSpace(Solid):
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 
+    kind = "half-space"
+    stored = {"point": "point", "outward": "direction"}
+
     def __post_init__(self):
         object.__setattr__(self, "point", vector("HalfSpace.point", self.point))
         object.__setattr__(self, "outward", unit("HalfSpace.outward", self.outward))
         check_material("HalfSpace.material", self.material)
         check_resistance(self)
-
-    @property
-    def kind(self) -> str:
-        """What it is called in messages."""
-        return "half-space"
 
     @property
     def center(self) -> tuple[float, float, float]:
@@ -116,6 +116,25 @@ class HalfSpace(Solid):
         """Raise ValueError in a periodic cell; see `Shape.check_fit`."""
         if periodic:
             raise ValueError(f"{name}: half-space in a periodic cell does not repeat; must be in a box with walls")
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Triangles on its plane, beyond the box too; see `Shape.pattern`."""
+        frame, middle = random_frame(self.outward, rng), 0.5 * np.array(room.size)
+        middle = middle - self.distance(middle[None])[0] * frame[2]
+        count = int(np.ceil(0.5 * np.linalg.norm(room.size) / (np.sqrt(0.75) * spacing))) + 1
+        i, j = grid(np.arange(-count, count + 1), np.arange(-count, count + 1))
+        start = rng.uniform(-0.5, 0.5, 2)
+        places = np.stack([i + 0.5 * (j % 2) + start[0], np.sqrt(0.75) * (j + start[1])], axis=1) * spacing
+        return middle + places @ frame[:2], np.tile(frame[2], (len(places), 1))
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A box of OpenCASCADE, wide around the scene's; see `Shape.cad`."""
+        wide = 2 * np.linalg.norm(box)
+        tag = occ.addBox(-wide, -wide, -2 * wide, 2 * wide, 2 * wide, 2 * wide)
+        normal = np.array(self.outward)
+        # The point of its plane that is nearest to the middle: the box is then wide enough around it.
+        middle = box / 2 - self.distance(scale * box[None] / 2)[0] / scale * normal
+        return placed(occ, tag, np.stack([*across(normal), normal], axis=1), middle)
 
     def _distance(self, offsets):
         return offsets @ np.array(self.outward)

@@ -42,6 +42,7 @@ class Layer(Shape):
 
     fills_bounds = True
     flat = True
+    stored = {"axis": "axis", "start": "length", "stop": "length"}
 
     def __post_init__(self):
         object.__setattr__(self, "axis", whole("Layer.axis", self.axis, "0, 1 or 2", lambda v: 0 <= v <= 2))
@@ -102,6 +103,13 @@ class Layer(Shape):
     def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
         """Volume of the part in a box, m3; see `Shape.volume_in`."""
         return (self.stop - self.start) * math.prod(size) / size[self.axis]
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A box of OpenCASCADE that ends with the scene's; see `Shape.cad`."""
+        low, span = np.zeros(3), box.copy()
+        start, stop = np.clip([self.start / scale, self.stop / scale], 0.0, box[self.axis])
+        low[self.axis], span[self.axis] = start, stop - start
+        return occ.addBox(*low, *span)
 
     def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
         """Raise ValueError unless it lies in a box; see `Shape.check_fit`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -69,7 +70,10 @@ class LevelSet(Solid):
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 
+    kind = "level set"
     convex = False
+    # Its own opposite side is not told: twins that would lie beyond it are none.
+    depth = math.inf
     _made_from = None
 
     def __post_init__(self):
@@ -85,11 +89,6 @@ class LevelSet(Solid):
         check_material("LevelSet.material", self.material)
         check_resistance(self)
         self._check_function()
-
-    @property
-    def kind(self) -> str:
-        """What it is called in messages."""
-        return "level set"
 
     @property
     def center(self) -> tuple[float, float, float]:

@@ -42,6 +42,7 @@ class Sphere(Shape):
     resistance: float = field(default=0.0, kw_only=True)
 
     fills_ball = True
+    stored = {"center": "point", "radius": "length"}
 
     def __post_init__(self):
         object.__setattr__(self, "center", vector("Sphere.center", self.center))
@@ -74,6 +75,20 @@ class Sphere(Shape):
     def volume(self) -> float:
         """Volume, m3."""
         return 4 / 3 * math.pi * self.radius**3
+
+    @property
+    def width(self) -> float:
+        """Its diameter, m."""
+        return 2 * self.radius
+
+    @property
+    def faces(self) -> list[Shape]:
+        """Itself; see `Shape.faces`."""
+        return [self]
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """A ball of OpenCASCADE, with its poles along z; see `Shape.cad`."""
+        return occ.addSphere(*(np.array(self.center) / scale), self.radius / scale)
 
     def turned(self, order: Sequence[int]) -> Sphere:
         """The same sphere with axes order[0], order[1], order[2] as axes 0, 1, 2."""

@@ -12,7 +12,9 @@ import numpy as np
 
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import Shape, check_resistance
-from demheat.scene.shapes.creases import crease, faces
+from demheat.scene.shapes.creases import crease
+from demheat.scene.shapes.occ import GENERIC
+from demheat.scene.shapes.patterns import SPREAD, Room, lifted, sampled, sampled_between, spread
 from demheat.scene.shapes.samples import volume_by_cells
 from demheat.scene.shapes.solid import Solid
 
@@ -60,6 +62,7 @@ class Union(Solid):
     resistance: float = field(default=0.0, kw_only=True)
 
     convex = False
+    stored = {"shapes": "members"}
 
     def __post_init__(self):
         valid = "must be a sequence of two or more of Sphere, Cylinder, Ellipsoid and Box"
@@ -72,7 +75,7 @@ class Union(Solid):
         check_resistance(self)
 
     def _check_member(self, name, shape, valid):
-        if not faces(shape):
+        if not (isinstance(shape, Shape) and may_join(type(shape))):
             raise ValueError(f"{name} = {shape!r}: {valid}")
         if shape.material != self.material or shape.resistance:
             raise ValueError(
@@ -163,12 +166,12 @@ class Union(Solid):
     @cached_property
     def faces(self) -> list[Shape]:
         """Of all members: smooth surfaces, of parts of which the union's is made."""
-        return [face for shape in self.shapes for face in faces(shape)]
+        return [face for shape in self.shapes for face in shape.faces]
 
     @cached_property
     def _creases(self):
         """Pairs of faces, by their numbers, of members that are near each other."""
-        owners = [number for number, shape in enumerate(self.shapes) for _ in faces(shape)]
+        owners = [number for number, shape in enumerate(self.shapes) for _ in shape.faces]
         balls = [shape.ball() for shape in self.shapes]
         near = [[not np.linalg.norm(a - b) > r + s for b, s in balls] for a, r in balls]
         pairs = combinations(range(len(owners)), 2)
@@ -191,6 +194,51 @@ class Union(Solid):
         """
         away = self._nearness(points + self._on * normals)
         return (away > 0) & (away < 1.1 * self._on)
+
+    def pattern(self, spacing: float, rng: np.random.Generator, room: Room) -> tuple[np.ndarray, np.ndarray]:
+        """Points spread out on each face, so that half a spacing is left to its edges; see `Shape.pattern`."""
+        samples, areas = sampled(self, room, spacing / SPREAD)
+        own, found = self._faced(samples), [(np.empty((0, 3)), np.empty((0, 3)))]
+        for number in np.unique(own):
+            mine = own == number
+            count = max(1, round(areas[mine].sum() / (np.sqrt(0.75) * spacing**2)))
+            points, normals = spread(self.faces[number], samples[mine], areas[mine], count, rng)
+            bare = self.bare(points, normals)
+            found.append((points[bare], normals[bare]))
+        return tuple(np.concatenate(column) for column in zip(*found, strict=True))
+
+    def facets(self, points: np.ndarray, normals: np.ndarray, room: Room) -> np.ndarray:
+        """Each face for itself: across a crease planes are others; see `Shape.facets`."""
+        samples, areas = sampled_between(self, points, room)
+        own, there, moved = self._faced(points), self._faced(samples), points.copy()
+        for number in np.unique(own):
+            mine, near = own == number, there == number
+            moved[mine] = lifted(self.faces[number], points[mine], normals[mine], samples[near], areas[near])
+        return moved
+
+    def cad(self, occ, box: np.ndarray, scale: float) -> int:
+        """The members, fused by OpenCASCADE; see `Shape.cad`."""
+        first, *rest = ((3, self._member_cad(shape, occ, box, scale)) for shape in self.shapes)
+        pieces, _ = occ.fuse([first], rest)
+        if len(pieces) != 1:
+            raise NotImplementedError(
+                f"a union of shapes at {self.center} is {len(pieces)} pieces: meshes know one; give each piece for "
+                "itself"
+            )
+        return pieces[0][1]
+
+    @staticmethod
+    def _member_cad(shape, occ, box, scale):
+        tag = shape.cad(occ, box, scale)
+        if shape.fills_ball:
+            # Its poles off the planes of symmetry.
+            occ.rotate([(3, tag)], *(np.array(shape.center) / scale), *GENERIC)
+        return tag
+
+    def _faced(self, points):
+        """The face that each point of the surface lies on, the first of those that go on in each other."""
+        away = np.stack([np.abs(face.distance(points)) for face in self.faces])
+        return np.argmax(away <= away.min(axis=0) + ON * self.width, axis=0)
 
     def _nearness(self, points):
         return np.min([shape.distance(points) for shape in self.shapes], axis=0)
@@ -240,3 +288,8 @@ class Union(Solid):
 
     def _normal(self, offsets):
         return self._surface(offsets)[1]
+
+
+def may_join(kind: type[Shape]) -> bool:
+    """Whether shapes of a type may be members of a union: convex ones that know their faces."""
+    return kind.convex and kind.faces is not Shape.faces

@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.testing import assert_allclose
 
-from demheat.packing.base import make_packing, morton_order, wrap
+from demheat.packing.base import make_packing, wrap
+from demheat.scene.shapes.morton import morton_order
 
 
 def some(number=50, seed=0):

@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat.packing.base import make_packing, morton_order
+from demheat.packing.base import make_packing
 from demheat.packing.domain import cut, replicate
 from demheat.packing.neighbours import contacts, neighbours
 from demheat.packing.relax import relax
+from demheat.scene.shapes.morton import morton_order
 
 
 @pytest.fixture(scope="module")
