@@ -18,6 +18,7 @@ from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, vo
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
 from references.mesh.size_table import table
 from references.mesh.sizes import GROWTH, check_cost, checked_size, unit_lengths, wanted_sizes
+from references.mesh.solids import known
 from references.mesh.turns import turn
 
 # Unit lengths. OpenCASCADE's bounds of what splines end may be so much too wide (found: 5e-6).
@@ -33,7 +34,7 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     # What surfaces resist and phases conduct does not change where they are.
     takes = ("resistance", "exchange", "anisotropy", "dependence")
     text = "elements are known in a box, around shapes that have a volume of OpenCASCADE, `Shape.cad`"
-    scene.require(text, domain="box", shapes=lambda shape: type(shape).cad is not Shape.cad, takes=takes)
+    scene.require(text, domain="box", shapes=known, takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
     wanted = wanted_sizes(scene, size, coarser=coarser)

@@ -7,7 +7,7 @@ from itertools import product
 
 import numpy as np
 
-from demheat.scene.shapes.base import shifts
+from demheat.scene.shapes.base import Shape, shifts
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.samples import surface_points
 
@@ -19,11 +19,16 @@ ROUNDS = 60
 FACING = 0.9
 
 
+def known(shape: Shape) -> bool:
+    """Whether a shape has a volume of OpenCASCADE."""
+    return type(shape).cad is not Shape.cad
+
+
 def sized(scene, size: float, planes, rules) -> np.ndarray:
     """Balls in which edges must be short beside the surfaces of solids, and between them and others."""
     found = [np.zeros((0, 5))]
     for number, shape in enumerate(scene.inclusions):
-        if not (shape.flat or shape.fills_ball):
+        if known(shape) and not (shape.flat or shape.fills_ball):
             found.append(_beside(scene, number, planes, rules, size))
     rows = np.concatenate(found)
     if scene.periodic and len(rows):
