@@ -3,7 +3,7 @@
 import numpy as np
 
 from demheat import Material
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Torus
 
 MATRIX, OTHER = Material(1.0), Material(5.0)
 
@@ -39,5 +39,8 @@ FIBRE = Cylinder((0.1, 0.7, 1.9), 0.3, (0, 0, 2), OTHER)
 ROD = Cylinder((0.1, 0.7, 1.9), 0.2, (1, 2, 3), OTHER, length=0.5)
 EGG = Ellipsoid((0.1, 0.7, 1.9), (0.4, 0.3, 0.2), OTHER, rotation=TURN)
 BRICK = Box((0.1, 0.7, 1.9), (0.4, 0.3, 0.2), OTHER, rotation=TURN)
+HOOP = Torus((0.1, 0.7, 1.9), 0.28, 0.12, (1, 2, 3), OTHER)
+# A shape that derives from `Solid` adds one of it here: suites ask all of them the same.
+SOLIDS = {"fibre": FIBRE, "rod": ROD, "egg": EGG, "brick": BRICK, "hoop": HOOP}
 HALF = HalfSpace((0.3, 0.4, 0.5), (1, 2, 3), OTHER)
 RING = LevelSet(torus, LIMITS, OTHER)

@@ -9,7 +9,7 @@ import pytest
 from blocks import DOCS
 
 from demheat import Convection, Image, Layer, Material, Radiation, Scene, Sphere, evolve, gallery, orthotropic, solve
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Union
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Torus, Union
 from references import bracket, exact, fem, fft, multipole, series
 
 (TABLE,) = re.findall(
@@ -39,6 +39,7 @@ SCENES = {
     "cylinders": body(Cylinder(MIDDLE, 0.25, (0, 1, 1), G, length=0.4)),
     "ellipsoids": body(Ellipsoid(MIDDLE, (0.4, 0.3, 0.3), G, rotation=(0.0, 0.0, 0.5))),
     "boxes": body(Box(MIDDLE, (0.5, 0.4, 0.4), G, rotation=(0.0, 0.0, 0.5))),
+    "tori": body(Torus(MIDDLE, 0.25, 0.15, (0.0, 1.0, 1.0), G)),
     "half-spaces": body(HalfSpace(MIDDLE, (1.0, 0.5, 0.0), G)),
     "level sets": body(LevelSet(ball, ((0.1,) * 3, (0.9,) * 3), G)),
     "unions": body(Union([Sphere((0.4, 0.5, 0.5), 0.25, G), Box((0.65, 0.5, 0.5), (0.4, 0.3, 0.3), G)], G)),

@@ -30,9 +30,9 @@ def check_pairs(shapes: Sequence[Shape], size: Sequence[float], *, periodic: boo
 
     Exact for spheres, layers and what fills its bounds, and for one of these or a half-space beside a shape whose
     distance is exact. Of other convex shapes it takes those pairs that a plane is found to part, or of which one holds
-    balls or corners around the other; of what is not convex, those whose bounds are apart or in the other; of
-    unions each member for itself. What it
-    takes is certain, what it refuses may only be too near to tell.
+    balls or corners around the other; of what is not convex, those whose bounds are apart or in the other, and balls in
+    it or beside it; of unions each member for itself. What it takes is certain, what it refuses may only be too near to
+    tell.
     """
     box = np.array(size)
     cell = _Cell(box, box if periodic else None, TOUCH * box.max())
@@ -122,12 +122,12 @@ def _holds(outer, inner, cell):
         return True
     if not _told(outer, inner) and nested(outer, inner, cell.box, cell.period, cell.tolerance):
         return True
-    if not inner.bounded or not outer.convex:
+    if not inner.bounded:
         return False
     center, radius = inner.ball()
     if outer.sure_distance(center[None], period=cell.period)[0] <= cell.tolerance - radius:
         return True
-    return outer.bounded and _holds_corners(outer, inner, cell)
+    return outer.convex and outer.bounded and _holds_corners(outer, inner, cell)
 
 
 def _holds_corners(outer, inner, cell):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
@@ -12,11 +13,13 @@ from demheat.scene.inputs import number, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import check_resistance
 from demheat.scene.shapes.directions import across, unit
-from demheat.scene.shapes.occ import GENERIC, placed
+from demheat.scene.shapes.occ import placed
 from demheat.scene.shapes.solid import Solid
 
 # Points of its circle: as corners of a polygon around it, 0.2 % too wide, and where a box is looked for.
 SIDES, PLACES = 48, 720
+# Angles at which its patches meet, rad: off the planes of symmetry, which may be faces of the box.
+OFF = 0.6
 
 
 @dataclass(frozen=True)
@@ -107,10 +110,18 @@ class Torus(Solid):
         return self._circle(SIDES, self.radius / math.cos(math.pi / SIDES)), self.tube
 
     def cad(self, occ, box: np.ndarray, scale: float) -> int:
-        """A torus of OpenCASCADE; see `Shape.cad`."""
-        tag = occ.addTorus(0, 0, 0, self.radius / scale, self.tube / scale)
-        # Its seam off the planes of symmetry, which may be faces of the box.
-        occ.rotate([(3, tag)], 0, 0, 0, 0, 0, 1, GENERIC[3])
+        """Four patches of OpenCASCADE, sewn; see `Shape.cad`.
+
+        Of a torus in one piece, whose face ends in its own seams, gmsh cannot mesh what faces of a periodic cell leave.
+        """
+        large, small, patches = self.radius / scale, self.tube / scale, []
+        for start, turn in product((OFF, OFF + math.pi), repeat=2):
+            arc = [(1, occ.addCircle(large, 0, 0, small, -1, start, start + math.pi))]
+            occ.rotate(arc, 0, 0, 0, 1, 0, 0, math.pi / 2)
+            occ.rotate(arc, 0, 0, 0, 0, 0, 1, turn)
+            patches += [tag for dim, tag in occ.revolve(arc, 0, 0, 0, 0, 0, 1, math.pi) if dim == 2]
+        tag = occ.addVolume([occ.addSurfaceLoop(patches, sewing=True)])
+        occ.remove([(2, patch) for patch in patches], recursive=True)
         frame = np.stack([*across(np.array(self.axis)), self.axis], axis=1)
         return placed(occ, tag, frame, np.array(self.center) / scale)
 

@@ -6,25 +6,19 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.spatial import cKDTree
-from solid_shapes import LIMITS, MATRIX, OTHER, TURN, torus
+from solid_shapes import MATRIX, OTHER, RING, SOLIDS
 
 from demheat import Scene, solve
 from demheat.packing.conforming import conform
 from demheat.packing.interfaces import surfaces_of
 from demheat.packing.relax import relax
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
+from demheat.scene import Cylinder, Ellipsoid, HalfSpace
 from demheat.scene.shapes.samples import surface_points
 
 SPACING = 0.08
 MIDDLE = (0.5, 0.5, 0.5)
-SHAPES = {
-    "fibre": Cylinder(MIDDLE, 0.3, (0, 0, 1), OTHER),
-    "rod": Cylinder(MIDDLE, 0.2, (1, 2, 3), OTHER, length=0.5),
-    "egg": Ellipsoid(MIDDLE, (0.4, 0.3, 0.2), OTHER, rotation=TURN),
-    "brick": Box(MIDDLE, (0.4, 0.3, 0.2), OTHER, rotation=TURN),
-    "half": HalfSpace(MIDDLE, (1, 2, 3), OTHER),
-    "ring": LevelSet(torus, LIMITS, OTHER),
-}
+SHAPES = {name: each.placed(MIDDLE) for name, each in SOLIDS.items()}
+SHAPES |= {"half": HalfSpace(MIDDLE, (1, 2, 3), OTHER), "ring": RING}
 
 
 def scene(shape):
@@ -51,7 +45,7 @@ def test_patterns_lie_on_the_surface_and_cover_it(name):
     assert_allclose(inside.sum(), areas.sum() / (math.sqrt(0.75) * SPACING**2), rtol=0.15)  # whole rows and rings
 
 
-@pytest.mark.parametrize("name", ["fibre", "egg"])
+@pytest.mark.parametrize("name", ["fibre", "egg", "hoop"])
 def test_planes_keep_the_volume(name):
     """By rays from inside along normals: what planes hold beyond the surface less what they leave, over the area."""
     surface, points, normals = pattern(name)

@@ -1,4 +1,4 @@
-"""Meshes around cylinders, ellipsoids, boxes and half-spaces: phases, volumes, cells that repeat, narrow gaps."""
+"""Meshes around cylinders, ellipsoids, boxes, tori and half-spaces: phases, volumes, cells that repeat, narrow gaps."""
 
 import math
 from dataclasses import replace
@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from solid_shapes import MATRIX, OTHER, TURN
 
 from demheat import Layer, Scene, Sphere
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, Torus
 from references.mesh import make
 from references.mesh.sizes import wanted_sizes
 
@@ -20,6 +20,7 @@ SHAPES = {
     "fibre": Cylinder(AWAY, 0.25, (0, 1, 0), OTHER),
     "egg": Ellipsoid(AWAY, (0.46, 0.44, 0.42), OTHER, rotation=TURN),
     "brick": Box(AWAY, (0.5, 0.4, 0.3), OTHER, rotation=TURN),
+    "hoop": Torus(AWAY, 0.25, 0.2, (1, 2, 3), OTHER),
     "rod": Cylinder(AWAY, 0.3, (1, 2, 3), OTHER, length=0.6),
 }
 

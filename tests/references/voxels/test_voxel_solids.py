@@ -5,10 +5,10 @@ import math
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from solid_shapes import LIMITS, MATRIX, OTHER, TURN, torus
+from solid_shapes import MATRIX, OTHER, RING, SOLIDS, TURN
 
 from demheat import Layer, Scene, Sphere
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
+from demheat.scene import Box, Ellipsoid, HalfSpace
 from references.voxels.links import links
 from references.voxels.paint import voxelise
 
@@ -40,13 +40,7 @@ def test_an_ellipsoid_of_equal_axes_is_painted_like_a_sphere(center, walls):
 
 @pytest.mark.parametrize(
     "shape",
-    [
-        Cylinder((0.1, 0.9, 0.5), 0.31, (0, 1, 0), OTHER),
-        Cylinder((0.5, 0.5, 0.5), 0.2, (1, 2, 3), OTHER, length=0.6),
-        Ellipsoid((0.0, 0.1, 0.93), (0.4, 0.3, 0.2), OTHER, rotation=TURN),
-        Box((0.1, 0.5, 0.9), (0.5, 0.3, 0.2), OTHER, rotation=TURN),
-        LevelSet(torus, LIMITS, OTHER),
-    ],
+    [*(each.placed((0.1, 0.9, 0.5)) for each in SOLIDS.values()), RING],
     ids=lambda shape: shape.kind,
 )
 def test_volumes_on_voxels_are_right_in_all(shape):
