@@ -28,7 +28,7 @@ REFUSED = "says no, or ends what takes too long: tests of its own"
 READ = "read, written or asked in a terminal: compared to the letter or the bit by tests of its own"
 DRAWN = "drawn"
 LARGE = "several processes or less memory: compared with the plain way by tests of its own"
-BODIES = "unions, and sets known by their inside alone, are in no quick row: beside bodies told otherwise, by own tests"
+BODIES = "unions, tori and sets known by their inside alone are in no quick row: beside other bodies, by own tests"
 FORMS = "no study asks for it: held against limits and other forms by tests of its own"
 WALKS = "no study asks for it yet: held against exact values by tests of its own"
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
@@ -63,10 +63,12 @@ NO_ROWS = {
     "demheat/fresh.py": LARGE,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,
+    "demheat/scene/shapes/occ.py": LARGE,
     "references/mesh/size_kernels.py": LARGE,
     "demheat/scene/shapes/traced.py": BODIES,
     "demheat/scene/shapes/creases.py": BODIES,
     "demheat/scene/shapes/parted.py": BODIES,
+    "demheat/scene/shapes/torus.py": BODIES,
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
     "references/exact/inclined.py": FORMS,
