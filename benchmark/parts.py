@@ -58,7 +58,7 @@ def _shape(table, materials):
     values = {name: value for name, value in table.items() if name not in ("shape", "material")}
     if values.get("axis") in AXES:
         values["axis"] = AXES.index(values["axis"])
-    return SHAPES[table["shape"]][0](**values, material=materials[table["material"]])
+    return SHAPES[table["shape"]](**values, material=materials[table["material"]])
 
 
 def _image(table, materials, path):
@@ -106,7 +106,6 @@ def _plain(part):
 
 
 def _inclusion(shape, materials):
-    kind = next(name for name, (known, _) in SHAPES.items() if type(shape) is known)
     values = _plain(shape) | {"material": materials.index(shape.material)}
     # What is as usual is left out.
     for name, usual in (("resistance", 0.0), ("rotation", IDENTITY)):
@@ -114,7 +113,7 @@ def _inclusion(shape, materials):
             del values[name]
     if isinstance(values.get("axis"), int):
         values["axis"] = AXES[values["axis"]]
-    return {"shape": kind, **values}
+    return {"shape": shape.kind, **values}
 
 
 def _wall(load):
