@@ -139,6 +139,7 @@ TABLE = [
     (demheat.Box, {"center": (0.5,) * 3, "sides": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "sides": VECTOR, "material": MATERIAL, "rotation": TURN}),
     (demheat.Cylinder, {"center": (0.5,) * 3, "radius": 0.2, "axis": (0, 0, 1), "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "axis": VECTOR, "material": MATERIAL, "length": or_none(POSITIVE)}),
     (demheat.Ellipsoid, {"center": (0.5,) * 3, "semi_axes": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "semi_axes": VECTOR, "material": MATERIAL, "rotation": TURN}),
+    (demheat.Torus, {"center": (0.5,) * 3, "radius": 0.3, "tube": 0.1, "axis": (0, 0, 1), "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "tube": POSITIVE, "axis": VECTOR, "material": MATERIAL}),
     (demheat.HalfSpace, {"point": (0.5,) * 3, "outward": (0, 0, 1), "material": OTHER}, {"point": VECTOR, "outward": VECTOR, "material": MATERIAL}),
     (demheat.LevelSet, {"function": round_set, "limits": ((0.2,) * 3, (0.8,) * 3), "material": OTHER}, {"function": (None, 1.0, "a"), "limits": (None, "a", 0.5, ((0.2,) * 3,), ((0.8,) * 3, (0.2,) * 3)), "material": MATERIAL}),
     (demheat.Union, {"shapes": (demheat.Sphere((0.5,) * 3, 0.2, OTHER),) * 2, "material": OTHER}, {"shapes": (None, "ab", 0.5, (), (1, 2), (demheat.Sphere((0.5,) * 3, 0.2, OTHER),), (demheat.Layer(0, 0.2, 0.4, OTHER),) * 2), "material": (*MATERIAL, METAL)}),
