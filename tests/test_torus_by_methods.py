@@ -1,7 +1,4 @@
-"""A ring by every method that takes one: their intervals meet; spheres in its hole and its tube; files; refusals.
-
-Its own geometry is asked with that of all solids (`solid_shapes.SOLIDS`).
-"""
+"""Only here: a ring that one method takes for another body than the others do, or in whose hole nothing may lie."""
 
 import math
 from dataclasses import replace
