@@ -2,7 +2,6 @@
 
 import numpy as np
 import pandas as pd
-import pytest
 from numpy.testing import assert_allclose
 
 from studies.scaling import means, rows
@@ -51,19 +50,6 @@ def test_errors_are_those_against_the_multipoles_of_the_same_spheres():
     assert_allclose(means.errors(df)["error_percent"], [0.0, 1.0, np.nan])
 
 
-def cell_rows():
-    """One cell, by the multipoles and by the DEM; its finest row is a hundredth off."""
-    same = {"part": "elements", "status": "ok", "cpu_s": 1.0, "wall_s": 1.0, "peak_mib": 1.0, "note": ""}
-    dem = same | {"name": "dem", "packing_cpu_s": 0.1, "packing_wall_s": 0.1, "unknowns": 9e6}
-    exact = same | {"name": "multipole", "k_ratio": 2.0, "number": np.nan, "kind": np.nan, "fraction": np.nan}
-    finest = {"particles": 1_000_000, "k_ratio": 2.02, "product_gbs": 6.0, "triad_here_gbs": 8.0}
-    return pd.DataFrame([exact, dem | {"particles": 10_000, "k_ratio": 1.9}, dem | finest])
-
-
-def test_every_row_of_one_cell_has_its_error():
-    assert_allclose(means.errors(cell_rows())["error_percent"], [0.0, -5.0, 1.0])
-
-
 def test_what_a_billion_takes_goes_on_from_the_largest_row():
     rows = [
         {"name": "dem", "part": "elements", "unknowns": n, "status": "ok", "cpu_s": 36e-6 * n, "wall_s": 1.0}
@@ -72,14 +58,6 @@ def test_what_a_billion_takes_goes_on_from_the_largest_row():
     ]
     (line,) = means.billion(pd.DataFrame(rows))
     assert_allclose([line["hours"], line["tib"] * 2**40], [10.0, 6e11])
-
-
-@pytest.mark.parametrize("kind, ratio", [("equal", 1.0), ("polydisperse", 10.0)])
-def test_scenes_have_the_sizes_that_they_say(kind, ratio):
-    spheres = rows.scene_of(200, kind, 0.2).inclusions
-    radii = [sphere.radius for sphere in spheres]
-    # Rounding of radii that are scaled to the fraction.
-    assert_allclose(max(radii) / min(radii), ratio, rtol=1e-12)
 
 
 def test_peaks_and_sums_of_stages():

@@ -8,8 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from studies import scaling
-from studies.harness import runner
-from studies.scaling import model, ranks, tables
+from studies.scaling import model, ranks
 
 FIT = model.Fit(
     **{"twins": 2e-6, "packing": 3e-7, "cells": 1e-5, "setup": 8e-6, "share": 0.4, "field": 5e-7, "triad": 5e9},
@@ -46,13 +45,6 @@ def test_constants_of_rows_that_are_made_of_them():
     assert len(rows) == 6 and rows["unknowns"].min() > 4e5
     assert_allclose(model.fitted(rows), FIT, rtol=1e-6)  # rounding of least squares
     assert_allclose(model.left_out(rows), 0.0, atol=1e-4)
-
-
-def test_a_row_that_does_not_belong_shows():
-    rows = model.rows_of(made_up()).reset_index(drop=True)
-    rows.loc[2, ["wall_s", "cells_wall_s"]] += rows.loc[2, "wall_s"]
-    off = model.left_out(rows)
-    assert_allclose(off[2], -50.0, atol=0.1)
 
 
 def test_blocks():
@@ -96,27 +88,6 @@ def test_what_is_planned():
     # Every rank makes all twins, so more cores do not help there.
     assert_allclose(plan["twins"], 2e-6 * 12.0 * 1e6)
     assert plan["packing"] > plan["twins"]
-
-
-def test_without_mpi_a_row_says_so(monkeypatch):
-    monkeypatch.setattr(ranks, "missing", lambda: "no mpiexec here")
-    case = next(case for case in scaling.CASES if case["part"] == "strong")
-    row = runner.compute_row(scaling, case)
-    assert (row["status"], row["note"]) == ("unsupported", "no mpiexec here")
-    lines = tables.lines(pd.DataFrame([row]).assign(cpu_s=np.nan, wall_s=np.nan, kind=np.nan, fraction=np.nan))
-    assert lines["note"].tolist() == ["no mpiexec here"]
-
-
-@pytest.mark.parametrize("named", ["nowhere/python", None])
-def test_a_python_without_petsc_is_none(named, monkeypatch, tmp_path):
-    ranks.python.cache_clear()
-    monkeypatch.setattr(ranks, "HOMES", tmp_path)
-    if named:
-        monkeypatch.setenv("DEMHEAT_MPI_PYTHON", str(tmp_path / named))
-    else:
-        monkeypatch.delenv("DEMHEAT_MPI_PYTHON", raising=False)
-    assert ranks.python() is None
-    ranks.python.cache_clear()
 
 
 def test_a_row_of_spheres():

@@ -118,15 +118,6 @@ def test_nothing_conducts():
     assert found.upper < 1e-9
 
 
-def test_a_width_beyond_any_mesh_is_refused_after_one(monkeypatch):
-    scene, calls = gallery.sphere_in_cube(10.0), []
-    once = solver._once
-    monkeypatch.setattr(solver, "_once", lambda *of: calls.append(of) or once(*of))
-    with pytest.raises(ValueError, match=r"^width = 1e-12: takes some .* tetrahedra, .* must be >= \d"):
-        bracket.solve(scene, size=scene.size[0] / 3, width=1e-12)
-    assert len(calls) == 1
-
-
 @pytest.mark.parametrize(
     ("change", "error", "says"),
     [

@@ -344,27 +344,3 @@ def test_pairs_looked_at_grow_like_the_spheres():
     rng = np.random.default_rng(0)
     outer, inner = sizes._near(rng.random((50, 3)), np.r_[0.3, np.full(49, 0.01)], 0.01)
     assert np.all(outer[np.flatnonzero(outer == 0)] == 0) and not np.any(inner == 0)
-
-
-def test_wide_gaps_are_none():
-    two = [Sphere((x, 0.5, 0.5), 0.01, Material(2.0)) for x in (0.45, 0.55)]
-    of = Scene((1.0,) * 3, Material(1.0), two, walls={"x-": 0.0, "x+": 1.0})
-    # Eight radii between them: elements grow from 0.33 radii on each to the size, with nothing in the middle.
-    assert len(sizes.wanted_sizes(of, 0.25).balls) == 2
-
-
-def test_coarser_is_not_slower():
-    """Of images and gaps ever more were looked at: a size of the box took ten times as long as an eighth of it."""
-    rng = np.random.default_rng(1)
-    some = [
-        Sphere(tuple(c), r, Material(2.0))
-        for c, r in zip(rng.random((5, 3)), (0.15, 0.1, 0.08, 0.06, 0.05), strict=True)
-    ]
-    of = Scene((1.0,) * 3, Material(1.0), some, gradient=(1.0, 0.0, 0.0))
-    made = [mesh.make(of, size=size, order=1) for size in (0.2, 1.0, 1e6)]
-    count = [len(each.cells) for each in made]
-    # Features ask for the most of it; gmsh's own scatter is some per cent.
-    assert count[1] <= 1.2 * count[0] and count[2] == count[1]
-    features = [len(sizes.wanted_sizes(of, sizes.checked_size(of, size, 1)).balls) for size in (0.2, 1.0, 1e6)]
-    # Only images near the box count, however coarse the mesh.
-    assert features[1] == features[2] <= 8 * features[0]

@@ -64,19 +64,6 @@ def test_volumes_fill_the_box_and_curved_elements_the_sphere(order, curved, low,
         assert all(set(t) <= set(made.cells[o]) for t, o in zip(triangles[:20], owners[:20], strict=True))
 
 
-def test_middle_nodes_lie_on_the_sphere_and_in_the_middle_of_their_edge():
-    made = mesh.make(scene(ball()), size=0.12)
-    corners = made.points[made.cells[:, :4]]
-    on = np.abs(np.linalg.norm(corners - 0.5, axis=2) - 1 / 3) < 1e-9  # OpenCASCADE's rounding
-    assert on.sum() > 500
-    for (a, b), c in mesh.EDGE_COLUMN.items():
-        middle = made.points[made.cells[:, c]]
-        both, straight = on[:, a] & on[:, b], ~made.curved
-        # Facet edges on the sphere: most are on it, the rest are chords through its inside.
-        assert np.mean(np.abs(np.linalg.norm(middle[both] - 0.5, axis=1) - 1 / 3) < 1e-9) > 0.7
-        assert_allclose(middle[straight], ((corners[:, a] + corners[:, b]) / 2)[straight], atol=1e-12)
-
-
 def test_phases_of_nested_cut_and_layered_inclusions():
     layer = Layer(0, 0.6, 1.0, Material(2.0))
     shell, core = ball((0.25, 0.5, 0.5), 0.2), ball((0.25, 0.5, 0.55), 0.1, Material(3.0))

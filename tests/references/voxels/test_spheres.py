@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from numpy.testing import assert_allclose
 
 from demheat.scene import Layer, Material, Scene, Sphere
 from references.voxels import kernels, paint
@@ -120,21 +119,3 @@ def test_voxels_looked_at_do_not_grow_with_the_number_of_spheres():
         across = 2 * 64 / (3 * n)
         # Cubes around the spheres, and up to two voxels more on each side; those of images overlap at the faces.
         assert looked_at <= n**3 * (across + 4) ** 3 * (1 + 2 / n)
-
-
-def test_kernels_are_called_for_many_spheres_at_once(monkeypatch):
-    calls = []
-    for name in ("paint_spheres", "cut_spheres", "cut_links_by_spheres"):
-        kernel = getattr(kernels, name)
-
-        def counted(*arguments, kernel=kernel, name=name):
-            calls.append(name)
-            return kernel(*arguments)
-
-        monkeypatch.setattr(kernels, name, counted)
-    scene = lattice(6)
-    grid = paint.voxelise(scene, (32, 32, 32), laminate=True)
-    links(scene, (32, 32, 32), phase=grid.phase)
-    assert calls == ["paint_spheres", "cut_spheres", *["cut_links_by_spheres"] * 3]
-    # Quadrature in voxels half as large as a sphere; found 4e-5.
-    assert_allclose(grid.fractions[1:].sum(), 4 / 3 * np.pi / 27, rtol=1e-3)

@@ -9,7 +9,7 @@ import pytest
 
 from studies import contents
 from studies.__main__ import main, study_names
-from studies.harness import claims, report, store
+from studies.harness import store
 
 RESULTS = Path(__file__).parents[3] / "results"
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -94,14 +94,6 @@ def test_headlines_are_those_of_the_claims(reported):
     page = Page((reported.out / "index.html").read_text(encoding="utf-8"))
     assert "ok squares are small: 4limit <= 100; " in page.text and "no claims with these words" in page.text
     assert len(short.splitlines()) < 60 and f"[{reported.name}]({reported.name}.md) | A tiny" in short
-
-
-def test_words_of_two_claims_are_no_headline():
-    two = [claims.claim(name, 1.0, 2.0) for name in ("error of a", "error of b")]
-    chapter = report.Chapter("one", "", two, "", 0, {})
-    ((_, found),) = report.headlines([chapter], [("one", "error")])
-    assert found.why == "2 claims with these words" and not found.failed
-    assert report.headlines([chapter], [("one", "of b")])[0][1] == two[1]
 
 
 def test_a_claim_that_failed_fails_the_report(reported, capsys):

@@ -28,7 +28,6 @@ def columns_moved(column, stored, found, here=None, **origin):
 @pytest.mark.parametrize(
     ("column", "stored", "found", "differs"),
     [
-        ("k_ratio", "1.3943256949", 1.3943256949, False),
         ("k_ratio", "1.3943256949", 1.3943256949 * (1 + 5e-9), False),
         ("k_ratio", "1.3943256949", 1.3943256949 * (1 + 5e-8), True),
         ("k_ratio", "1.3943256949", float("nan"), True),
@@ -45,12 +44,10 @@ def columns_moved(column, stored, found, here=None, **origin):
         ("unknowns", "1337", 1338, True),
         ("iterations", "59", 60, False),
         ("iterations", "59", 65, True),
-        ("profile", "1.0 2.0 3.0", "1.0 2.0 3.00000001", False),
         ("profile", "1.0 2.0 3.0", "1.0 2.0 3.001", True),
         ("profile", "1.0 2.0 3.0", "1.0 2.0", True),
         ("integrator", "euler", "rkl2", True),
         ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "warned", -0.5912864124158449]]', False),
-        ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "warned", -0.5912864]]', True),
         ("verdicts", '[["dem", "warned", -0.5912864124158446]]', '[["dem", "wrong", -0.5912864124158446]]', True),
         ("k", "nan", "1.0", True),
         # Costs, and how the row was made.
@@ -58,7 +55,6 @@ def columns_moved(column, stored, found, here=None, **origin):
         ("ratio", "1.0", 2.0, False),
         ("packing_cached", "True", False, False),
         ("fft_note", "one", "another", False),
-        ("commit", "one", "another", False),
     ],
 )
 def test_what_is_compared_and_how(column, stored, found, differs):
