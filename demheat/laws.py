@@ -34,9 +34,9 @@ class Laguerre:
     interface : {"harmonic", "arithmetic"}
         Rule for links between materials (Haddad et al. 2021, eq. 24).
     gap_spacing : float
-        Distance between mirrored particles in a gap or a coat, over its width, if that is less than elsewhere. Smaller
-        resolves gaps better, at the inverse square of the cost; more than 0.88 lets facets cross interfaces. Only with
-        `conforming`.
+        Distance between mirrored particles in a gap, over its width, if that is less than elsewhere. Smaller resolves
+        gaps better, at the inverse square of the cost; more than 0.88 lets facets cross interfaces. Layers and coats
+        between concentric spheres need no closer ones. Only with `conforming`.
 
     Raises
     ------

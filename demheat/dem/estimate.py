@@ -80,10 +80,10 @@ def _fine(field, number, law):
 
 
 def _in_gaps(field):
-    """Whether twins stand closer than even ones anywhere: fewer particles leave these as they are."""
+    """Whether twins stand closer than even ones, or in columns of shells: fewer particles leave these as they are."""
     packing = field.stats["packing"]
     made = packing.get("of", packing)
-    return made.get("twins", 0) > made.get("even_twins", 0)
+    return made.get("twins", 0) > made.get("even_twins", 0) or made.get("shells", 0) > 0
 
 
 def _by_cells(field, *, wanted, answer) -> Estimate:

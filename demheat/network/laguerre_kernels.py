@@ -242,7 +242,21 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
         if distance >= cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
             return OK, count, planes
         if ended:
-            return UNSECURED, 0, 0
+            return UNSECURED, count, planes
+
+
+@njit(**ONCE)
+def _secured(i, sites, found, farthest):
+    """Whether no site of any level that lies beyond one image of the box to either side might still cut the cell."""
+    for level in range(len(sites.heaviest)):
+        find_home(i, level, sites, found)
+        ring, ended = 1, False
+        while not ended:
+            ring += 1
+            distance, ended = ring_distance(ring, level, sites, found)
+        if distance < cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
+            return False
+    return True
 
 
 @njit(**PLAIN)
@@ -254,12 +268,19 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
     first = _nearest(center, tangents, wall)
     if first >= 0:
         state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents[first : first + 1], -1)
-    for level in range(len(sites.heaviest)):
+    # Sites of its own level are all round it, those of others perhaps far away: the cell is small when they are met.
+    own, wide = np.searchsorted(sites.heaviest, sites.weights[i]), False
+    for turn in range(len(sites.heaviest)):
+        level = own if turn == 0 else turn - 1 if turn <= own else turn
         if state != OK or count == 0:
             return state, 0, 0
         state, count, planes = _cut_level(i, level, sites, cell, count, planes, found, eps)
+        if state == UNSECURED and len(sites.heaviest) > 1:
+            state, wide = OK, True
     if state != OK or count == 0:
         return state, 0, 0
+    if wide and not _secured(i, sites, found, _farthest(cell, count)):
+        return UNSECURED, 0, 0
     if len(wall.normals):
         skip = tangents[first] if first >= 0 else -1
         state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)

@@ -31,6 +31,9 @@ EXCESS = 1.0 - OFFSET**2
 NARROW, LESS = 2.9, 0.7
 # Twins nearer to a wall than this part of their offset are left out.
 NEAR_WALL = 0.3
+# Of a mean radius: offsets in columns of twins, whose cells are prisms, may be as small as rounding allows, and two
+# surfaces' twins that are nearer to each other than this are one.
+LEAST_COLUMN, ONE = 1e-6, 1e-9
 # In a gap, over its width: as `demheat.Laguerre` has it.
 GAP_SPACING = 0.85
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
@@ -46,7 +49,9 @@ MOST_TWINS = 300
 class _Twins(NamedTuple):
     points: np.ndarray  # (k, 3) touch points on the interface, m
     normals: np.ndarray  # (k, 3) unit vectors
-    offsets: np.ndarray  # (k,) m
+    offsets: np.ndarray  # (k, 2) m, against the normal and along it
+    reach: np.ndarray  # (k, 2) m, how far their cells go from the interface
+    weights: np.ndarray  # (k, 2) m2
 
 
 class Part(NamedTuple):
@@ -73,21 +78,26 @@ def conform(
     check_packing(packing)
     check_scene(scene)
     if not scene.inclusions:
-        return packing._replace(provenance={**packing.provenance, "twins": 0, "even_twins": 0, "pairs_left_out": 0})
+        none = dict.fromkeys(("twins", "even_twins", "pairs_left_out", "shells"), 0)
+        return packing._replace(provenance={**packing.provenance, **none})
     if part is None:
         part = Part(packing.radii.mean(), packing.radii.max(), lambda points: np.ones(len(points), dtype=bool))
         _check_number(packing, scene, part.radius)
     radius = part.radius
-    interfaces = Interfaces(scene, _reach(part, gap_spacing))
-    tally = Tally(radius)
+    columns = {"close": SPACING / GAP_SPACING * radius, "least": LEAST_SPACING * radius}
+    interfaces = Interfaces(scene, _reach(part, gap_spacing), closer=gap_spacing / GAP_SPACING, **columns)
+    tally = Tally()
     twins, number, left_out = _twins_on(interfaces, part, seed, tally, gap_spacing)
-    centers, weights = np.concatenate(_sides(twins)), np.tile(twins.offsets**2 + EXCESS * radius**2, 2)
+    centers, weights = np.concatenate(_sides(twins)), twins.weights.T.ravel()
+    if interfaces.stacks.members:
+        centers, weights = _once(packing, centers, weights, radius)
     near = interfaces.gap(packing.centers)
     keep = near > _cleared(packing, twins, radius, near)
     kept = np.minimum(packing.radii**2, near**2 - margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
     raised = np.concatenate([kept, weights]) + max(0.0, 0.01 * radius**2 - kept.min(initial=np.inf))
     counts = {"twins": number, "even_twins": tally.even, "pairs_left_out": left_out}
+    counts["shells"] = int(np.count_nonzero(np.isfinite(interfaces.stacks.spacing)))
     provenance = packing.provenance | counts
     return make_packing(
         np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
@@ -123,17 +133,22 @@ def _reach(part, gap_spacing):
 
 def _twins_on(interfaces, part, seed, tally, gap_spacing):
     """Pairs that fit on all surfaces and belong to the part; of the whole the twins, and the pairs that do not fit."""
-    parts, number, left_out = [_Twins(np.empty((0, 3)), np.empty((0, 3)), np.empty(0))], 0, 0
+    parts, number, left_out = [_Twins(*map(np.empty, ((0, 3), (0, 3), (0, 2), (0, 2), (0, 2))))], 0, 0
     radius = part.radius
     with stage("twins") as done:
         for points, normals, own in patterns(interfaces, radius, seed, tally, gap_spacing):
             done((own.max(initial=-1) + 1) / len(interfaces))
-            points = interfaces.touched(points, normals, own)
+            facets = interfaces.touched(points, normals, own)
+            lift, points = np.linalg.norm(points - facets, axis=1), facets
             offsets = _offsets(points, normals, own, interfaces, radius)
-            fits = offsets >= LEAST_OFFSET * radius
+            offsets = _in_columns(offsets, lift, points, normals, own, interfaces, radius)
+            apart = interfaces.stacks.apart[own]
+            fits = np.all(offsets >= np.where(np.isfinite(apart), LEAST_COLUMN, LEAST_OFFSET) * radius, axis=1)
             width = interfaces.width(points[~fits], normals[~fits], own[~fits])
             left_out += int(np.sum(width < LEAST_SPACING * radius))
-            twins = _Twins(points[fits], normals[fits], offsets[fits])
+            reach = np.minimum(2.0 * OFFSET * radius, np.where(np.isfinite(apart), 0.5 * apart, 2.0 * offsets))
+            weights = offsets**2 + EXCESS * radius**2 + interfaces.stacks.rise[own, None]
+            twins = _Twins(*(column[fits] for column in (points, normals, offsets, reach, weights)))
             good = _in_place(twins, interfaces.scene)
             number += 2 * int(good.sum())
             good &= part.holds(twins.points)
@@ -153,21 +168,40 @@ def margin(radius: float) -> float:
 
 
 def _offsets(points, normals, own, interfaces, radius):
-    """Offset of each twin: by the bend of its surface, or in the middle of the half of a gap that is its own."""
+    """Offset of both twins: by the bend of their surface, or in the middle of the half of a gap that is their own."""
     bent = np.abs(interfaces.bend(points, normals, own, STEP * radius)) * radius
     offset = np.maximum(OFFSET - BEND * bent, 0.5 * OFFSET) * radius
     width = interfaces.width(points, normals, own)
     offset = np.where(width < (NARROW - LESS * bent) * radius, 0.25 * width, offset)
     # Of what does not face it, a wall that cuts it or the surface's own other side, a twin stays off as far.
     offset = np.minimum(offset, 0.25 * interfaces.gap(points, own))
-    offset = np.minimum(offset, 0.5 * interfaces.way_to_wall(points, normals))
+    offset = np.minimum(offset, 0.5 * interfaces.way_to_wall(points, normals, own))
     return np.minimum(offset, 0.5 * interfaces.depth(own))
+
+
+def _in_columns(offsets, lift, points, normals, own, interfaces, radius):
+    """Offsets against the normal and along it, (k, 2): those in columns by what is between their surfaces."""
+    apart, offsets = interfaces.stacks.apart[own], np.stack([offsets, offsets], axis=1)
+    here = np.isfinite(apart)
+    if here.any():
+        # Polyhedra about one centre are all as much smaller than their spheres.
+        smaller = 1.0 - 0.5 * lift * interfaces.bend(points, normals, own, STEP * radius)
+        offsets[here] = (interfaces.stacks.share[own] * apart * smaller[:, None])[here]
+    return offsets
 
 
 def _sides(twins):
     """Centres of the twins within the interfaces and of those outside, two (k, 3) float arrays."""
-    shift = twins.offsets[:, None] * twins.normals
-    return twins.points - shift, twins.points + shift
+    inwards, outwards = twins.offsets.T[:, :, None] * twins.normals
+    return twins.points - inwards, twins.points + outwards
+
+
+def _once(packing, centers, weights, radius):
+    """Centres and weights of twins without those that are also another surface's."""
+    box = np.where(packing.periodic, packing.size, 0.0)
+    places = np.where(packing.periodic, centers % packing.size % packing.size, centers)
+    pairs = cKDTree(places, boxsize=box).query_pairs(ONE * radius, output_type="ndarray")
+    return np.delete(centers, pairs[:, 1], axis=0), np.delete(weights, pairs[:, 1])
 
 
 def _in_place(twins, scene):
@@ -175,8 +209,8 @@ def _in_place(twins, scene):
     inner, outer = _sides(twins)
     good = scene.phase_at(inner) != scene.phase_at(outer)
     if not scene.periodic:
-        near = NEAR_WALL * twins.offsets[:, None]
-        for side in (inner, outer):
+        for side, offset in zip((inner, outer), twins.offsets.T, strict=True):
+            near = NEAR_WALL * offset[:, None]
             good &= np.all((side > near) & (side < scene.size - near), axis=1)
     return good
 
@@ -189,5 +223,8 @@ def _cleared(packing, twins, radius, near):
         box = packing.size if packing.periodic.all() else None
         tree = cKDTree(twins.points % packing.size if box is not None else twins.points, boxsize=box)
         _, nearest = tree.query(packing.centers[close])
-        cleared[close] = np.minimum(2.0 * twins.offsets[nearest], cleared[close])
+        way = packing.centers[close] - twins.points[nearest]
+        way -= packing.size * np.round(way / packing.size) if box is not None else 0.0
+        outside = np.einsum("ij,ij->i", way, twins.normals[nearest]) > 0
+        cleared[close] = twins.reach[nearest, outside.astype(int)]
     return cleared

@@ -14,6 +14,8 @@ from demheat.scene.shapes.patterns import Room
 
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12
+# Cosine between two normals below which a surface that is nearest to a point of another lies beside it.
+BESIDE = 0.1
 
 
 class SphereSurface(NamedTuple):
@@ -196,10 +198,26 @@ class ShapeSurface:
         """Distance of points to the surface, its periodic images included, (n,) float array, m."""
         if not skip_self:
             return np.abs(self.shape.distance(points, period=self.scene.period))
-        nearest = np.full(len(points), np.inf)
+        nearest, normals = np.full(len(points), np.inf), self.shape.normal(points) if self._meets_itself() else None
         for shift in shifts(self.shape, self.scene.period):
-            nearest = np.minimum(nearest, np.abs(self.shape.distance(points - shift)))
+            away = self.shape.distance(points - shift) if normals is None else self._facing(points - shift, normals)
+            nearest = np.minimum(nearest, np.abs(away))
         return nearest
+
+    def _meets_itself(self):
+        """Whether it reaches from face to face of a periodic cell along an axis along which it has ends."""
+        low, high = self.shape.bounds()
+        ends = np.isfinite(low)
+        return self.scene.periodic and bool(np.any((high - low)[ends] >= (1 - TOUCH) * np.array(self.scene.size)[ends]))
+
+    def _facing(self, points, normals):
+        """Distance of points on an image, with its normals, to the surface; infinite on it, and where it lies beside.
+
+        A body goes on in an image that it meets: nothing is between them.
+        """
+        away, outward = self.shape.surface(points)
+        beside = np.abs(np.einsum("ij,ij->i", outward, normals)) < BESIDE
+        return np.where(beside | (np.abs(away) <= TOUCH * max(self.scene.size)), np.inf, away)
 
     @property
     def _room(self):

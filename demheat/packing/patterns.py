@@ -30,29 +30,40 @@ MOST_SPHERES, MOST_POINTS = 256, 1 << 20
 
 def patterns(interfaces, radius, seed, tally, gap_spacing):
     """Touch points on all surfaces of a scene, chunk by chunk."""
-    turns = _Turns(seed)
-    wanted = partial(_spacing, interfaces, radius, gap_spacing)
-    for numbers in _chunks(interfaces.spheres, radius):
-        yield _on_spheres(numbers, interfaces, radius, turns, tally, wanted)
+    turns, leads = _Turns(seed), interfaces.stacks.leads()
+    usual = np.minimum(interfaces.stacks.spacing, SPACING * radius)
+    wanted = partial(_spacing, interfaces, radius, gap_spacing, usual)
+    for numbers in _chunks(interfaces.spheres, np.flatnonzero(leads[: len(interfaces.spheres)]), radius):
+        found = _on_spheres(numbers, interfaces, radius, turns, tally, usual, wanted)
+        columns = [np.concatenate(column) for column in zip(found, *_columns(interfaces, found), strict=True)]
+        yield _taken(columns, np.argsort(columns[2], kind="stable"))
     rng = turns.after()
-    for number, other in enumerate(interfaces.others, start=len(interfaces.spheres)):
-        yield _on_other(number, other, interfaces, radius, rng, tally, wanted)
+    for number in len(interfaces.spheres) + np.flatnonzero(leads[len(interfaces.spheres) :]):
+        other = interfaces.others[number - len(interfaces.spheres)]
+        found = _on_other(number, other, interfaces, radius, rng, tally, usual, wanted)
+        yield found
+        yield from _columns(interfaces, found)
+
+
+def _columns(interfaces, found):
+    """Points of the other surfaces of stacks, above and below those of the leaders."""
+    return [columns[1:] for columns in interfaces.columns(*found) if len(columns[0])]
 
 
 class Tally:
     """How many twins are to be expected, `twins`, and how many there would be without narrow gaps, `even`."""
 
-    def __init__(self, radius):
-        self.radius, self.twins, self.even = radius, 0.0, 0
+    def __init__(self):
+        self.twins, self.even = 0.0, 0
 
-    def add(self, spacing) -> None:
-        """Count those that an even pattern becomes where it has to be closer; refuse more than memory holds.
+    def add(self, closer, sizes) -> None:
+        """Count those that an even pattern becomes where it has to be closer by factors; refuse more than memory holds.
 
         Points thinned to THINNING of their spacing are as many as those of an even pattern with it, or a quarter
-        more.
+        more. Each stands for the points of so many surfaces.
         """
-        self.even += 2 * len(spacing)
-        self.twins += 2 * float(np.sum((SPACING * self.radius / spacing) ** 2))
+        self.even += 2 * int(np.sum(np.broadcast_to(sizes, closer.shape)))
+        self.twins += 2 * float(np.sum(sizes * np.minimum(closer, 1.0) ** -2.0))
         check_memory("twins, most of them in narrow gaps,", int(self.twins), BYTES * self.twins)
 
 
@@ -77,19 +88,19 @@ class _Turns:
         return rng
 
 
-def _chunks(spheres, radius):
-    """Numbers of the spheres in runs of a limited number of points to choose from."""
-    total = np.cumsum(pattern_count(spheres.radii, FINE * radius))
+def _chunks(spheres, numbers, radius):
+    """Numbers of spheres in runs of a limited number of points to choose from."""
+    total = np.cumsum(pattern_count(spheres.radii[numbers], FINE * radius))
     begin = 0
-    while begin < len(spheres):
+    while begin < len(numbers):
         before = total[begin - 1] if begin else 0
         end = int(np.searchsorted(total, before + MOST_POINTS, side="right"))
         end = min(max(end, begin + 1), begin + MOST_SPHERES)
-        yield np.arange(begin, min(end, len(spheres)))
+        yield numbers[begin:end]
         begin = end
 
 
-def _on_spheres(numbers, interfaces, radius, turns, tally, wanted):
+def _on_spheres(numbers, interfaces, radius, turns, tally, usual, wanted):
     """Pattern of some spheres.
 
     Each takes its turn from the stream, and one more for its closer pattern if it needs one: which turns those after it
@@ -98,21 +109,22 @@ def _on_spheres(numbers, interfaces, radius, turns, tally, wanted):
     spheres, refined = interfaces.spheres, np.zeros(len(numbers), dtype=bool)
     while True:
         turn = turns.used + np.arange(len(numbers)) + np.cumsum(refined) - refined
-        even = _inside(interfaces.scene, *spheres.pattern(numbers, SPACING * radius, turns.matrices(turn)))
+        even = _inside(interfaces.scene, *spheres.pattern(numbers, usual[numbers], turns.matrices(turn)))
         spacing = wanted(*even)
-        close = np.isin(numbers, even[2][spacing < SPACING * radius])
+        close = np.isin(numbers, even[2][spacing < usual[even[2]]])
         if np.array_equal(close, refined):
             break
         refined = close
-    tally.add(spacing)
+    tally.add(spacing / usual[even[2]], interfaces.stacks.sizes()[even[2]])
     turns.used += len(numbers) + int(refined.sum())
     chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
     # Fibonacci points descend along the axis of their sphere.
-    fine = _Fine(*spheres.pattern(chosen, FINE * radius, matrices), chosen, -matrices[:, :, 2])
-    return _refined(interfaces, even, spacing, fine, radius, wanted)
+    side = np.minimum(FINE * radius, 0.5 * usual[chosen])
+    fine = _Fine(*spheres.pattern(chosen, side, matrices), chosen, -matrices[:, :, 2])
+    return _refined(interfaces, even, spacing, fine, usual, wanted)
 
 
-def _on_other(number, surface, interfaces, radius, rng, tally, wanted):
+def _on_other(number, surface, interfaces, radius, rng, tally, usual, wanted):
     """Pattern of a surface that is not a sphere."""
 
     def pattern(spacing):
@@ -121,13 +133,13 @@ def _on_other(number, surface, interfaces, radius, rng, tally, wanted):
 
     even = _inside(interfaces.scene, *pattern(SPACING * radius))
     spacing = wanted(*even)
-    tally.add(spacing)
+    tally.add(spacing / (SPACING * radius), interfaces.stacks.sizes()[number])
     if np.all(spacing >= SPACING * radius):
         return even
     points, normals, own = pattern(FINE * radius)
     longest = np.eye(3)[[np.argmax(np.ptp(points, axis=0))]]
     fine = _Fine(points, normals, own, np.array([number]), longest)
-    return _refined(interfaces, even, spacing, fine, radius, wanted)
+    return _refined(interfaces, even, spacing, fine, usual, wanted)
 
 
 class _Fine(NamedTuple):
@@ -138,12 +150,12 @@ class _Fine(NamedTuple):
     axes: np.ndarray  # (m, 3) unit vectors, along which its points are sought
 
 
-def _refined(interfaces, even, spacing, fine, radius, wanted):
+def _refined(interfaces, even, spacing, fine, usual, wanted):
     """An even pattern where its spacing is not too wide, elsewhere what is chosen from a fine one."""
     more = _inside(interfaces.scene, *fine[:3])
     wanted = wanted(*more)
-    narrow = np.flatnonzero(wanted < SPACING * radius)
-    even, more = _taken(even, np.flatnonzero(spacing >= SPACING * radius)), _taken(more, narrow)
+    narrow = np.flatnonzero(wanted < usual[more[2]])
+    even, more = _taken(even, np.flatnonzero(spacing >= usual[even[2]])), _taken(more, narrow)
     # Small spheres keep points all round.
     wanted = np.minimum(wanted[narrow], interfaces.widest_spacing(more[2]))
     # Equal ones come at random, the same in any unit: in their own order a third more would be chosen.
@@ -172,9 +184,11 @@ def _inside(scene, points, normals, own):
     return points[good], normals[good], own[good]
 
 
-def _spacing(interfaces, radius, gap_spacing, points, normals, own):
-    """Distance between twins at points of surfaces: no more than the gap's width asks."""
+def _spacing(interfaces, radius, gap_spacing, usual, points, normals, own):
+    """Distance between twins at points of surfaces: no more than the width of the narrowest gap at a column asks."""
     width = interfaces.width(points, normals, own)
+    for there, *others in interfaces.columns(points, normals, own):
+        width[there] = np.minimum(width[there], interfaces.width(*others))
     # Where a gap is equally wide all round, as in a coat, rounding must not say which points come first.
     spacing = np.clip(np.round(gap_spacing * width / radius, DIGITS), LEAST_SPACING, SPACING)
     return spacing * radius

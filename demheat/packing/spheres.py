@@ -46,11 +46,11 @@ class Spheres:
             inner[k] = self.surfaces[numbers[k]].inner_radius(normals[facets])
         return self.centers[own] + np.repeat(inner, count)[:, None] * self.radii[own][:, None] * normals
 
-    def gap(self, points, own):
-        """Distance of points to the nearest of the surfaces, periodic images included, (n,) float array, m."""
+    def gap(self, points, own, kin, leader):
+        """Distance of points to the nearest surface that is no kin, periodic images included, (n,) float array, m."""
         gaps = np.full(len(points), np.inf)
         if len(self):
-            kernels.nearest_gaps(points, own, self.balls, self.bins, self.reach, gaps)
+            kernels.nearest_gaps(points, kin, leader[: len(self)], self.balls, self.bins, self.reach, gaps)
         for number in self.lonely:
             mine = np.flatnonzero(own == number)
             if len(mine):

@@ -62,14 +62,16 @@ def _image(d, side, per_side):
 
 
 @njit(parallel=True, cache=True, error_model="numpy")
-def nearest_gaps(points, own, balls, bins, reach, gaps):
+def nearest_gaps(points, own, kin, balls, bins, reach, gaps):
     """Distance of points to the nearest spherical surface but their own, nearest image; infinite beyond a reach.
 
     Parameters
     ----------
     points : (n, 3) float array, m
     own : (n,) int array
-        The sphere that each point belongs to, which does not count; any other number for none.
+        The kin of spheres that each point belongs to, which do not count; any other number for none.
+    kin : (m,) int array
+        Of each sphere.
     balls : (m, 4) float array, m
         Centres and radii.
     bins : BallBins
@@ -94,7 +96,7 @@ def nearest_gaps(points, own, balls, bins, reach, gaps):
             key = key * dims[level, 2] + _cell(pz / z, dims[level, 2], bins.periodic) + first[level]
             for entry in range(start[key], start[key + 1]):
                 ball = bins.balls[entry]
-                if ball == own[p]:
+                if kin[ball] == own[p]:
                     continue
                 dx = _image(px - balls[ball, 0], x, ix)
                 dy = _image(py - balls[ball, 1], y, iy)

@@ -43,7 +43,7 @@ FAILS = {
     "DEM: half of the interval": (
         "15 and more for spheres, whose errors are much smaller than the changes between coarser runs, 2 beside edges"
     ),
-    "beside a warning": "the DEM on a board, whose edges meet, and on layers a thousandth thick: not mended",
+    "beside a warning": "the DEM on a board, whose edges meet: not mended",
     "FEM: share of intervals that hold": EDGES,
     "FEM: the same of scenes for judging only": EDGES,
     "FFT, scalar, by itself: half of the interval": (

@@ -8,6 +8,7 @@ from scipy.spatial import ConvexHull
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import _matched, drop_empty_cells, laguerre, tessellated
 from demheat.packing.base import make_packing
+from demheat.packing.interfaces import fibonacci_sphere
 
 
 def cloud(n=600, *, spread=0.6, seed=0, size=(1.0, 1.0, 1.0)):
@@ -192,3 +193,15 @@ def test_bad_input(change, words):
 def test_too_few_points_in_a_periodic_box():
     with pytest.raises(RuntimeError, match="reach across the periodic box"):
         laguerre(np.array([[0.5, 0.5, 0.5], [0.2, 0.3, 0.4]]), np.zeros(2), (1, 1, 1))
+
+
+def test_many_light_points_in_one_place_leave_far_cells_secured():
+    """Cells of the few heavy ones reach farther than the light ones tell: those of their own size are looked at first.
+
+    Any cell that is not secured is refused; so are cells that do not fill the box.
+    """
+    rng = np.random.default_rng(5)
+    places = np.concatenate([0.5 + 0.1 * fibonacci_sphere(4000), rng.random((150, 3))])
+    weights = np.concatenate([np.zeros(4000), np.full(150, 0.02)])
+    facets = laguerre(places, weights, np.ones(3))
+    assert_allclose(facets.volumes.sum(), 1.0, rtol=1e-12)  # rounding of some thousand cells

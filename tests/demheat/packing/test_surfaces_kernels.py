@@ -44,7 +44,7 @@ def test_nearest_gaps_are_those_to_all_spheres(periodic, number, ratio):
     points, own = size * rng.uniform(0.0, 1.0, (3000, 3)), rng.integers(-1, number, 3000)
     reach, gaps = 0.07, np.full(3000, np.nan)
     bins = ball_bins(balls[:, :3], balls[:, 3] + reach, size, periodic=periodic)
-    kernels.nearest_gaps(points, own, balls, bins, reach, gaps)
+    kernels.nearest_gaps(points, own, np.arange(number), balls, bins, reach, gaps)
     wanted = slow_gaps(points, own, balls, size, periodic)
     assert np.any(wanted > reach) and np.any(wanted < reach)
     # Rounding of distances of order 1.
@@ -60,7 +60,7 @@ def test_distances_taken_do_not_grow_with_the_number_of_spheres(ratio):
         reach = 0.3 * number ** (-1 / 3)
         bins = ball_bins(balls[:, :3], balls[:, 3] + reach, np.ones(3), periodic=True)
         none, gaps = np.full(3000, -1), np.empty(3000)
-        taken.append(kernels.nearest_gaps(rng.random((3000, 3)), none, balls, bins, reach, gaps))
+        taken.append(kernels.nearest_gaps(rng.random((3000, 3)), none, np.arange(number), balls, bins, reach, gaps))
     assert 0 < taken[1] < 1.3 * taken[0]
 
 
