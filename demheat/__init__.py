@@ -7,14 +7,14 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 from typing import TYPE_CHECKING
 
 from demheat import terminal  # noqa: F401 - first, so that a command is interrupted without a traceback from here on
-from demheat.deadline import budget
 from demheat.field import Field, Samples
 from demheat.io.fields import write as _write
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.lazy import lazy_names
 from demheat.pictures import plot_field as _plot_field
 from demheat.pictures import plot_scene as _plot_scene
-from demheat.progress import on_progress
+from demheat.runtime.deadline import budget
+from demheat.runtime.progress import on_progress
 from demheat.scene import (
     Convection,
     Dependence,

@@ -8,7 +8,6 @@ import numpy as np
 
 from demheat.calibration import calibration, calibration_scene, cube_like
 from demheat.laws import LAWS, ON_FACETS, Calibrated, Laguerre, Platonic, check_numbers
-from demheat.limits import check_memory
 from demheat.network.base import Network
 from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
@@ -17,7 +16,8 @@ from demheat.network.platonic import platonic_facets
 from demheat.packing.base import Packing
 from demheat.packing.conforming import conform
 from demheat.packing.gate import check_packing
-from demheat.progress import stage
+from demheat.runtime.limits import check_memory
+from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.narrows import STRONG, narrows
 from demheat.scene.resistances import between

@@ -11,7 +11,7 @@ import time
 from contextlib import contextmanager, suppress
 from importlib import import_module
 
-from demheat.limits import check_memory, free_memory
+from demheat.runtime.limits import check_memory, free_memory
 
 NEEDED = (
     "demheat.mpi needs {needed}, which this Python does not find ({reason}): see the page mpi of the manual for their "

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.field import Field, check_field
-from demheat.limits import check_memory
+from demheat.runtime.limits import check_memory
 from demheat.scene import check_scene
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import axis_number, finite, reals, whole

@@ -22,7 +22,6 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from demheat.compiled import ROOT, is_kept
 from demheat.conduction import steady_kernels
 from demheat.conduction.multigrid import preconditioner
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
@@ -32,7 +31,8 @@ from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.network.links_kernels import links_of
 from demheat.packing.base import Packing
-from demheat.progress import stage
+from demheat.runtime.compiled import ROOT, is_kept
+from demheat.runtime.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Material, Scene
 

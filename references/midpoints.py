@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.limits import check_memory
+from demheat.runtime.limits import check_memory
 from demheat.scene.inputs import whole
 
 # Least bytes that a sample takes: place, volume, temperature, phase and flux.

@@ -9,7 +9,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import studies
-from demheat import fresh
+from demheat.runtime import fresh
 from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
 from studies import contents
 from studies.harness import jobs, lasting, quiet, replay, runner, sound

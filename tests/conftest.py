@@ -25,7 +25,7 @@ def compiled_once(tmp_path_factory):
     import numba
     from numba.core.dispatcher import Dispatcher
 
-    import demheat.threads  # noqa: F401 - chooses the layer before threads start
+    import demheat.runtime.threads  # noqa: F401 - chooses the layer before threads start
 
     numba.set_num_threads(1)
     root = tmp_path_factory.getbasetemp()

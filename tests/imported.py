@@ -13,10 +13,10 @@ HOMES = {
     "meshio": ("references.mesh",),
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
-    # Before the first kernel is compiled the threading layer is chosen, by demheat.threads, and where it is kept.
+    # Before a kernel is compiled its threading layer is chosen, by demheat.runtime.threads, and where to keep it.
     # The harness loads it once for all rows, and counts what it compiles.
     "numba": (
-        *("*kernels", "demheat.threads", "demheat.compiled", "demheat.warm"),
+        *("*kernels", "demheat.runtime.threads", "demheat.runtime.compiled", "demheat.warm"),
         *("studies.harness.forked", "studies.harness.quiet"),
     ),
     "pandas": ("studies",),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.links_kernels import Links, Places
 
 SIZE = np.array([1.0, 1.3, 0.8])

@@ -4,11 +4,9 @@ ABOVE = {
     # What methods cost and how far they are off, and the cheapest of them.
     "demheat.cheapest": (
         "demheat.scene",
-        "demheat.deadline",
+        "demheat.runtime",
         "demheat.tensor",
-        "demheat.limits",
         "demheat.method",
-        "demheat.process_state",
         "demheat.dem",
         "references.bracket",
         "references.exact",
@@ -21,12 +19,8 @@ ABOVE = {
     "demheat.sweeps": (
         "demheat.scene",
         "demheat.field",
-        "demheat.paths",
-        "demheat.progress",
-        "demheat.machine",
+        "demheat.runtime",
         "demheat.version",
-        "demheat.process_state",
-        "demheat.fresh",
         "demheat.cluster",
         "demheat.cheapest.effective",
         "demheat.sweeps",
@@ -37,9 +31,8 @@ ABOVE = {
         "demheat.scene",
         "demheat.field",
         "demheat.vtk",
-        "demheat.paths",
+        "demheat.runtime",
         "demheat.laws",
-        "demheat.limits",
         "demheat.method",
         "demheat.packing.io",
         "demheat.declared",
@@ -48,15 +41,13 @@ ABOVE = {
     # The commands of the terminal.
     "demheat.commands": (
         "demheat.scene",
-        "demheat.deadline",
+        "demheat.runtime",
         "demheat.field",
         "demheat.laws",
         "demheat.method",
         "demheat.slices",
-        "demheat.paths",
         "demheat.pictures",
         "demheat.version",
-        "demheat.process_state",
         "demheat.io",
         "demheat.cheapest",
         "demheat.declared",
@@ -79,11 +70,10 @@ ABOVE = {
     # The front of the package: what it shows, and what it gives to fields and scenes.
     "demheat": (
         "demheat.scene",
-        "demheat.deadline",
+        "demheat.runtime",
         "demheat.field",
         "demheat.laws",
         "demheat.lazy",
-        "demheat.progress",
         "demheat.version",
         "demheat.io",
         "demheat.pictures",
@@ -113,5 +103,5 @@ ABOVE = {
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("demheat.fresh", "demheat.terminal", "studies"),
+    "studies.__main__": ("demheat.runtime", "demheat.terminal", "studies"),
 }

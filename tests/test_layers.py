@@ -19,7 +19,7 @@ def refused(name, source, modules=MODULES, is_package=False):
         library = target.split(".")[0]
         if library in OURS:
             fits = any(below(target, other) for other in allowed)
-            beside = name.endswith("kernels") and (target.endswith("kernels") or target == "demheat.compiled")
+            beside = name.endswith("kernels") and (target.endswith("kernels") or target == "demheat.runtime.compiled")
             # Kernels share helpers among themselves and know nothing else.
             if not (fits or beside):
                 wrong.append(f"{name} imports {target}")

@@ -69,8 +69,8 @@ REQUESTS = {
 def test_twins_beyond_memory_are_refused(monkeypatch):
     """In a gap of a quarter of a particle there are many more twins than particles were asked for; none is made."""
     monkeypatch.setattr("demheat.packing.patterns.kernels.thinned", None)
-    monkeypatch.setattr("demheat.limits.SMALL", 0)
-    monkeypatch.setattr("demheat.limits.free_memory", lambda: 1e6)
+    monkeypatch.setattr("demheat.runtime.limits.SMALL", 0)
+    monkeypatch.setattr("demheat.runtime.limits.free_memory", lambda: 1e6)
     layer = Layer(0, 0.49, 0.51, Material(10.0))
     scene = Scene((1.0, 1.0, 1.0), Material(1.0), [layer], walls={"x-": 0.0, "x+": 1.0})
     with pytest.raises(ValueError, match=r"^twins, most of them in narrow gaps, = [0-9]+: takes"):
@@ -80,6 +80,6 @@ def test_twins_beyond_memory_are_refused(monkeypatch):
 @pytest.mark.parametrize("said", REQUESTS)
 def test_too_much_is_refused(said, monkeypatch):
     # What is refused here is so on any machine up to 32 GiB: larger ones are not asked.
-    monkeypatch.setattr("demheat.limits.free_memory", lambda: 2.0**35)
+    monkeypatch.setattr("demheat.runtime.limits.free_memory", lambda: 2.0**35)
     with pytest.raises(ValueError, match="^" + re.escape(said.strip())):
         REQUESTS[said]()

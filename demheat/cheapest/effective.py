@@ -14,9 +14,9 @@ import numpy as np
 from demheat.cheapest.answers import answer, certain, excess
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.ways import HOMES, Way, finer, knobs_of, ways
-from demheat.deadline import budget, look
-from demheat.limits import free_memory
-from demheat.process_state import cpu_seconds
+from demheat.runtime.deadline import budget, look
+from demheat.runtime.limits import free_memory
+from demheat.runtime.process_state import cpu_seconds
 from demheat.scene import Scene
 from demheat.scene.frozen import read_only
 from demheat.scene.inputs import chosen, finite, one_line

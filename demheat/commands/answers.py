@@ -8,10 +8,10 @@ import warnings
 from typing import NamedTuple
 
 from demheat.commands.knobs import Asked
-from demheat.deadline import look
 from demheat.declared import load
 from demheat.field import Field
-from demheat.process_state import cpu_seconds
+from demheat.runtime.deadline import look
+from demheat.runtime.process_state import cpu_seconds
 from demheat.scene.inputs import one_line
 
 

@@ -18,10 +18,10 @@ from demheat.commands.answers import answered
 from demheat.commands.bounds import bounds_of
 from demheat.commands.knobs import Asked, asked
 from demheat.commands.words import aligned, names, scene_line, spread
-from demheat.deadline import budget
 from demheat.declared import found
 from demheat.files.write import text_of_scene
-from demheat.paths import replaced
+from demheat.runtime.deadline import budget
+from demheat.runtime.paths import replaced
 from demheat.scene.inputs import one_line
 from demheat.slices import on_plane
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from demheat.commands.answers import Answer
 from demheat.commands.knobs import Asked
 from demheat.declared import HOMES
-from demheat.paths import locked, replaced
+from demheat.runtime.paths import locked, replaced
 
 # What a row depends on: it is used again only if all of these are the same.
 KEY = ("method", "knobs", "with_interval", "scene", "code")

@@ -9,10 +9,10 @@ from pathlib import Path
 from demheat.commands.answers import answered
 from demheat.commands.knobs import asked
 from demheat.commands.words import costs, interval, names, scene_line
-from demheat.deadline import budget
 from demheat.io.fields import check_target
 from demheat.method import SIZE
-from demheat.paths import replaced
+from demheat.runtime.deadline import budget
+from demheat.runtime.paths import replaced
 
 
 def run(file, options) -> int:

@@ -9,7 +9,7 @@ from demheat.commands.answers import answered
 from demheat.commands.compare import OUT
 from demheat.commands.knobs import asked
 from demheat.commands.words import names
-from demheat.paths import replaced
+from demheat.runtime.paths import replaced
 
 
 def run(file, options) -> int:

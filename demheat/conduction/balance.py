@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.robin import RobinWalls, robin_of
 from demheat.network.base import SIDES, Network

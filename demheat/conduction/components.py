@@ -10,7 +10,7 @@ import numpy as np
 from demheat.conduction import components_kernels as kernels
 from demheat.network.base import SIDES
 from demheat.network.links_kernels import links_of
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 
 # Particles of one compiled call: a tenth of a second.
 BLOCK = 500_000

@@ -2,9 +2,9 @@
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.blocks import blocks
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import steady_kernels as kernels
+from demheat.runtime.blocks import blocks
 
 # Iterations of the first block; those that follow are as many as last a tenth of a second.
 FIRST = 4

@@ -9,7 +9,7 @@ import numpy as np
 from scipy import sparse
 
 from demheat.conduction import multigrid_kernels as kernels
-from demheat.process_state import seeded
+from demheat.runtime.process_state import seeded
 
 # Particles of an aggregate at most; found 8 on average. With 6 the iterations are as many and the set-up twice as long.
 MOST = 16

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import components
 from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.balance import at_walls, conducted, level_of, linear_start, residual, system_of, throughput
@@ -16,8 +16,8 @@ from demheat.conduction.preconditioned import preconditioned
 from demheat.conduction.robin import COLDEST, hottest, radiated, robin_of
 from demheat.network.base import SIDES, without_links
 from demheat.network.links_kernels import links_of
-from demheat.process_state import one_blas_thread
-from demheat.progress import stage
+from demheat.runtime.process_state import one_blas_thread
+from demheat.runtime.progress import stage
 from demheat.scene import Radiation
 
 SOLVERS = ("auto", "cg", "amg", "amg-single")

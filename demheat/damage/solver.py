@@ -10,12 +10,12 @@ from demheat.conduction.steady import check_solver, solve_checked
 from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
-from demheat.deadline import budget
 from demheat.dem.options import Particles, check_fits
 from demheat.field import Field
 from demheat.laws import Calibrated, Choices, Laguerre, Platonic
 from demheat.packing.base import Packing
-from demheat.progress import stage
+from demheat.runtime.deadline import budget
+from demheat.runtime.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import whole

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from demheat.laws import Calibrated, Laguerre, Law, Platonic
-from demheat.limits import check_memory
 from demheat.packing.base import Packing
 from demheat.packing.cache import relaxed, replicated
 from demheat.packing.domain import replica_counts
 from demheat.packing.gate import check_packing
 from demheat.packing.relax import FEWEST
 from demheat.packing.tile import fits, tiled
+from demheat.runtime.limits import check_memory
 from demheat.scene import Scene
 from demheat.scene.inputs import flag, whole
 

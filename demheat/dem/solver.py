@@ -16,7 +16,6 @@ from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_check
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
-from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, expected, unknowns
 from demheat.dem.options import Particles, check_fits
@@ -24,7 +23,8 @@ from demheat.dem.trial import check_contrast
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Choices, Laguerre, Platonic
 from demheat.packing.base import Packing
-from demheat.progress import announced, stage
+from demheat.runtime.deadline import budget
+from demheat.runtime.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads

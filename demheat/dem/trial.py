@@ -9,7 +9,7 @@ from functools import partial
 from demheat.conduction.steady import HIGH_CONTRAST, Unsolved, contrast_of
 from demheat.dem.options import Particles
 from demheat.error import quietly
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene import Scene
 
 # Particles of a trial, its iterations at most (found: 700), and by how much it may miss the tolerance, as more of them

@@ -26,7 +26,7 @@ from demheat.files.units import (
     TEMPERATURE,
     VELOCITY,
 )
-from demheat.paths import checked_path
+from demheat.runtime.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
     WALLS,

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from demheat.files.lines import lines_of
-from demheat.paths import checked_path
+from demheat.runtime.paths import checked_path
 
 try:
     import tomllib

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 from demheat.files.source import nearest, nearest_file, shown, text_of
 from demheat.files.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
-from demheat.limits import free_memory
-from demheat.paths import checked_path
+from demheat.runtime.limits import free_memory
+from demheat.runtime.paths import checked_path
 from demheat.scene import Sphere
 
 TABLES = (".csv", ".tsv", ".txt")

@@ -8,7 +8,7 @@ from dataclasses import fields
 import numpy as np
 
 from demheat.files.scene_table import AXES, LOADS, SHAPES, SOURCES
-from demheat.paths import checked_path, replaced
+from demheat.runtime.paths import checked_path, replaced
 from demheat.scene import Scene, check_scene
 
 BARE = re.compile(r"[A-Za-z0-9_-]+")

@@ -9,8 +9,8 @@ import numpy as np
 
 from demheat.addition import MOST_FILLED, add_spheres
 from demheat.gallery.cells import AXIS, EDGE, TEMPERATURES, cube, loaded
-from demheat.limits import check_memory
 from demheat.powers import power
+from demheat.runtime.limits import check_memory
 from demheat.scene import Material, Scene, Sphere
 from demheat.scene.inputs import finite, flag, whole
 

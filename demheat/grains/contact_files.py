@@ -8,7 +8,7 @@ import numpy as np
 
 from demheat.grains.pairs import Contacts
 from demheat.packing.io.text import Lines, broken, read_table, whole
-from demheat.paths import checked_path
+from demheat.runtime.paths import checked_path
 
 FORCE = ("fx", "fy", "fz")
 KNOWN = ("id1", "id2", "radius", "area", *FORCE)

@@ -12,7 +12,7 @@ import numpy as np
 from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
-from demheat.paths import checked_path, replaced
+from demheat.runtime.paths import checked_path, replaced
 from demheat.scene.frozen import ReadOnly, read_only
 from demheat.scene.html import table_of
 

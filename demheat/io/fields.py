@@ -21,8 +21,8 @@ from pathlib import Path
 import numpy as np
 
 from demheat.field import Field, check_field
-from demheat.limits import check_memory
-from demheat.paths import checked_path, replaced
+from demheat.runtime.limits import check_memory
+from demheat.runtime.paths import checked_path, replaced
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import whole
 from demheat.vtk import Blocks, put_down

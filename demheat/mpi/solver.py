@@ -20,8 +20,8 @@ from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Ghosts, linked, numbers_of
 from demheat.ranks import Costs, check_fits, cores, give_back, here
+from demheat.runtime.threads import limited
 from demheat.scene import Scene
-from demheat.threads import limited
 from demheat.tiles.checks import check
 from demheat.tiles.places import NOBODY
 from demheat.tiles.slabs import slabs_of

@@ -1,3 +1,3 @@
 """Transmission surfaces, interface rules and the network they make."""
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)

@@ -10,9 +10,9 @@ from demheat.network.gather_kernels import Gathered, gather_facets
 from demheat.network.links_kernels import match_links
 from demheat.network.sites_kernels import Sites
 from demheat.packing.base import check_domain
-from demheat.progress import stage
+from demheat.runtime.progress import stage
+from demheat.runtime.threads import shared_out
 from demheat.scene import domain_volume
-from demheat.threads import shared_out
 
 # Rows cut at once, some tenths of a second: bounds the scratch memory and the wait for an interrupt.
 BLOCK = 65536

@@ -3,7 +3,7 @@
 `relax`, `lsa` and `neighbours` are modules here; their functions are imported from them.
 """
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 from demheat.packing.base import Packing, make_packing
 from demheat.packing.cache import grown, relaxed
 from demheat.packing.domain import cut, replicate

@@ -15,7 +15,7 @@ from demheat.packing.base import Packing, make_packing
 from demheat.packing.gaps import Interfaces
 from demheat.packing.gate import check_packing
 from demheat.packing.patterns import LEAST_OFFSET, LEAST_SPACING, SPACING, Tally, patterns
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
 
 # In mean radii R of the packing. On a flat interface twins stand OFFSET from it. On one whose principal curvatures sum

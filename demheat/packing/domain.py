@@ -8,10 +8,10 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from demheat.limits import check_memory
 from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.gate import check_packing
 from demheat.powers import cube_root
+from demheat.runtime.limits import check_memory
 from demheat.scene.bodies import ROUND_AXES, check_name, from_middle, round_radius
 from demheat.scene.inputs import chosen, vector
 from demheat.scene.shapes.morton import morton_order

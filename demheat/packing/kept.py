@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from demheat.packing.base import Packing
-from demheat.paths import replaced
+from demheat.runtime.paths import replaced
 
 # Layout of the files. Raise it when the arrays stored or their meaning change.
 FORMAT = 4

@@ -13,14 +13,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from demheat.limits import check_memory
 from demheat.packing.base import Packing, check_box, check_domain, make_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.motion import Motion
 from demheat.packing.radii import Gaussian, Listed, distribution
 from demheat.packing.relax import FEWEST, relax
 from demheat.powers import cube_root, cubed
-from demheat.progress import stage
+from demheat.runtime.limits import check_memory
+from demheat.runtime.progress import stage
 from demheat.scene.inputs import finite, flag, reals, whole
 
 # Packing fraction at which spheres begin to move, and the most it may be of the one asked for. Started denser, the

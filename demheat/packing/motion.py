@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import lsa_kernels as kernels
 from demheat.packing.base import wrap
 from demheat.packing.neighbours import near_rows

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.blocks import blocks
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import cells_kernels as kernels
 from demheat.packing.base import Packing, wrap
 from demheat.packing.gate import check_packing
 from demheat.packing.walls import bulk
 from demheat.powers import cube_root
+from demheat.runtime.blocks import blocks
 from demheat.scene.inputs import finite, flag
 
 # Cells hold about this many particles of their level: smaller ones cost rows, larger ones cost candidates.

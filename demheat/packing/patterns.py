@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from demheat.limits import check_memory
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
+from demheat.runtime.limits import check_memory
 
 # Of twins along an interface, in mean radii of the packing; found best together with their offsets, see
 # `demheat.packing.conforming`.

@@ -13,14 +13,14 @@ from itertools import product
 
 import numpy as np
 
-from demheat.limits import check_memory, check_steps
 from demheat.packing import relax_kernels as kernels
 from demheat.packing.base import Packing, check_box, check_domain, make_packing, wrap
 from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import near_rows
 from demheat.packing.radii import Gaussian, distribution
 from demheat.powers import cube_root, cubed
-from demheat.progress import stage
+from demheat.runtime.limits import check_memory, check_steps
+from demheat.runtime.progress import stage
 from demheat.scene.bodies import ROUND_AXES, across, domain_volume, from_middle, round_radius
 from demheat.scene.inputs import finite, flag, whole
 from demheat.scene.shapes.morton import morton_order

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
 from demheat.scene.shapes.bins import ball_bins

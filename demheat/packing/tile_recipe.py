@@ -16,7 +16,7 @@ from scipy.spatial import Voronoi
 from demheat.packing.radii import Gaussian
 from demheat.packing.relax import relax
 from demheat.packing.tile import PARTS, numbers
-from demheat.paths import replaced
+from demheat.runtime.paths import replaced
 
 # Steps of Lloyd's method: particles then move by less than a hundredth of their distance in one more.
 STEPS = 150

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.blocks import blocks
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.field import Field, Samples, check_field
 from demheat.network.bins_kernels import bin_points
-from demheat.progress import stage
+from demheat.runtime.blocks import blocks
+from demheat.runtime.progress import stage
 from demheat.sampling import halo_kernels as kernels
 from demheat.scene import ROUND_AXES, STEFAN_BOLTZMANN, Convection
 from demheat.scene.bodies import inside

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.base import link_distances, wall_normals
 from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling import particle_flux_kernels as kernels

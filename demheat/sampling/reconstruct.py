@@ -11,8 +11,8 @@ remains. A jump within a cell, as at a wall heated at once, overshoots by up to 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.process_state import one_blas_thread
-from demheat.progress import stage
+from demheat.runtime.process_state import one_blas_thread
+from demheat.runtime.progress import stage
 
 # Cells of a fit, and the part of their weights that holds it to the linear temperature of the cell. Found on a sphere
 # of contrast 10 with 3000, 8000 and 64 000 particles and on 83 spheres with 8000 and 27 000, flux error rms: 1.12, .57,

@@ -10,14 +10,14 @@ import numpy as np
 from demheat import dem
 from demheat.build import warn_of_twins
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
-from demheat.deadline import budget
 from demheat.dem.estimate import estimator_of
 from demheat.dem.memory import MIB, unknowns
 from demheat.dem.options import Particles
 from demheat.field import Field
 from demheat.laws import Laguerre
-from demheat.limits import check_memory, check_room
-from demheat.progress import announced, stage
+from demheat.runtime.deadline import budget
+from demheat.runtime.limits import check_memory, check_room
+from demheat.runtime.progress import announced, stage
 from demheat.scene import Scene
 from demheat.scene.inputs import whole
 from demheat.streamed.equations import joined, number_all

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.network.base import Network
-from demheat.paths import replaced
+from demheat.runtime.paths import replaced
 from demheat.scene import Scene
 from demheat.tiles.cells import Cells
 from demheat.tiles.slabs import Slabs

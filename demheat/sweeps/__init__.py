@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene.inputs import finite
 from demheat.sweeps import kept
 from demheat.sweeps.alone import on_workers

@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from demheat.paths import checked_path, locked, replaced
+from demheat.runtime.paths import checked_path, locked, replaced
 from demheat.sweeps.cases import key_of
 from demheat.sweeps.rows import CASE, TAIL
 

@@ -12,8 +12,8 @@ import numpy as np
 
 from demheat.cheapest.effective import Effective
 from demheat.field import Field
-from demheat.machine import host, machine
-from demheat.process_state import cpu_seconds
+from demheat.runtime.machine import host, machine
+from demheat.runtime.process_state import cpu_seconds
 from demheat.scene.inputs import one_line, shown
 from demheat.version import __version__
 

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, diags
 from scipy.sparse.csgraph import connected_components
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from references.bracket.faces import CORNERS, number_faces
 from references.bracket.fluxes import answers, assemble, blocks, masses

@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 from scipy.sparse import coo_matrix, csr_matrix
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.bracket.faces import CORNERS
 from references.fem.elements import shapes
 from references.fem.quadrature import rule

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from demheat.deadline import budget
 from demheat.gate import check_bracket
-from demheat.limits import free_memory
-from demheat.process_state import cpu_seconds, one_blas_thread
+from demheat.runtime.deadline import budget
+from demheat.runtime.limits import free_memory
+from demheat.runtime.process_state import cpu_seconds, one_blas_thread
 from demheat.scene import Layer, Scene, Sphere, check_scene
 from demheat.scene.inputs import finite
 from references.bracket.energies import flux_energies, temperature_energies

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from demheat.deadline import budget
-from demheat.process_state import one_blas_thread
+from demheat.runtime.deadline import budget
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene
 from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.equations import balanced_flux, linear_temperature

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.sparse import csr_matrix, dia_matrix
 
 from demheat.field import Samples
-from demheat.limits import check_memory
+from demheat.runtime.limits import check_memory
 from demheat.scene import WALLS, Layer, Scene
 from demheat.scene.inputs import finite
 from references.fem.robin import Surface

@@ -8,7 +8,7 @@ from skfem.element import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 
 # By the number of nodes; scikit-fem orders the nodes as `Mesh.cells` and `Wall.triangles` do.
 ELEMENTS = {4: ElementTetP1(), 10: ElementTetP2(), 3: ElementTriP1(), 6: ElementTriP2()}

@@ -16,7 +16,7 @@ from scipy.sparse import coo_matrix, csr_matrix, diags
 from scipy.sparse.csgraph import connected_components
 
 from demheat.field import Field
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.fem import components
 from references.fem.bricks import Bricks, bricks, nodes_of, stiffness, wall_nodes
 from references.fem.multigrid import conjugate_gradients, multigrid

@@ -11,8 +11,8 @@ from pyamg.multilevel import MultilevelSolver
 from pyamg.relaxation.smoothing import change_smoothers
 from scipy.sparse import csr_matrix, diags
 
-from demheat.process_state import seeded
-from demheat.progress import stage
+from demheat.runtime.process_state import seeded
+from demheat.runtime.progress import stage
 from references.mesh import EDGE_COLUMN
 
 MOST_ITERATIONS = 500

@@ -15,7 +15,7 @@ import numpy as np
 from demheat import ranks
 from demheat.field import Field
 from demheat.petsc import solver_of
-from demheat.process_state import one_blas_thread
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite
 from references.fem.estimate import estimated

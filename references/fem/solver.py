@@ -7,9 +7,9 @@ from functools import partial
 
 import numpy as np
 
-from demheat.deadline import budget
 from demheat.field import Field
-from demheat.process_state import one_blas_thread
+from demheat.runtime.deadline import budget
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.scene.narrows import narrows

@@ -9,8 +9,8 @@ from functools import partial
 import numpy as np
 
 from demheat.field import Field
-from demheat.limits import check_steps
-from demheat.process_state import one_blas_thread
+from demheat.runtime.limits import check_steps
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.functions import initial_at
 from demheat.scene.inputs import chosen, finite, whole

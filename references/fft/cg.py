@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.fft import cg_kernels as kernels
 from references.fft.cg_kernels import Symbol, Vectors
 from references.fft.hexahedron_kernels import Body, Sums, conduct_voxels, voxel_state

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.fft import eyre_milton_kernels as kernels
 from references.fft import projection_kernels
 from references.fft.eyre_milton_kernels import Sums

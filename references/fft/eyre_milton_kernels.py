@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 
 compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})
 

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numba
 import numpy as np
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 
 # Sums may be reordered and fused; NaN and infinity keep their meaning, so a diverging solve is noticed.
 compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "arcp", "nsz"})

@@ -8,10 +8,10 @@ from functools import cache, partial
 
 import numpy as np
 
-from demheat.deadline import budget
 from demheat.field import Field
-from demheat.limits import check_memory
-from demheat.progress import announced
+from demheat.runtime.deadline import budget
+from demheat.runtime.limits import check_memory
+from demheat.runtime.progress import announced
 from demheat.scene import Scene
 from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads

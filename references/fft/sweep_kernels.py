@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numba
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 
 compiled = numba.njit(cache=True, nogil=True)
 

@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 import pyfftw
 
-from demheat.process_state import open_after_fork
+from demheat.runtime.process_state import open_after_fork
 from references.fft.sweeps import Plans, Transform, Worker
 
 # CPU time of estimated over measured plans of planes and of columns: 1.5 and 1.4 at 128^3, 1.1 and 1.7 at 512^3.

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.limits import check_memory
+from demheat.runtime.limits import check_memory
 from demheat.scene import Material, Scene, check_scene
 from demheat.scene.inputs import flag
 from references.fft.transforms import fourier

@@ -18,7 +18,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from demheat.process_state import count_elsewhere
+from demheat.runtime.process_state import count_elsewhere
 
 # Part of the work at which estimates of the time stay.
 LAST = 0.95

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.mesh.apart import run_apart
 
 # Debian and Ubuntu packages of the libraries that gmsh's wheel links to and a bare system lacks (readelf -d, dpkg -S).

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.limits import free_memory
+from demheat.runtime.limits import free_memory
 from demheat.scene.inputs import finite, whole
 from references.mesh.solids import sized
 

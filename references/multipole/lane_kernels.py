@@ -10,7 +10,7 @@ import math
 
 import numba
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 
 OPTIONS = {"cache": True, "nogil": True, "fastmath": {"reassoc", "contract", "arcp", "nsz"}}
 compiled = numba.njit(**OPTIONS)

@@ -14,10 +14,10 @@ import math
 
 import numpy as np
 
-from demheat.deadline import budget
 from demheat.error import known
 from demheat.field import Field, Samples
-from demheat.process_state import one_blas_thread
+from demheat.runtime.deadline import budget
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.tensor import axis_loads

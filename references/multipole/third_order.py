@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from demheat.process_state import one_blas_thread
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.fast import FastMultipole, plan

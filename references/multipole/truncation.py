@@ -7,7 +7,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.multipole.arrangement import Arrangement, smallest_gap
 from references.multipole.exchange import exchange
 from references.multipole.fast import FastMultipole, plan

@@ -7,7 +7,7 @@ import math
 import numba
 import numpy as np
 
-import demheat.compiled  # noqa: F401 (where compiled kernels are kept)
+import demheat.runtime.compiled  # noqa: F401 (where compiled kernels are kept)
 
 # A cut voxel is integrated exactly along one direction and by two-point Gauss on this many intervals along the others,
 # which reach no further than a sphere that is smaller than the voxel.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from references.voxels import kernels
 from references.voxels.paint import voxelise

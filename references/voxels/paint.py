@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from references.voxels import kernels
 from references.voxels.cut import laminate_tensors, phase_parts

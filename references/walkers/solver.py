@@ -6,9 +6,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from demheat.deadline import budget, look
-from demheat.process_state import one_blas_thread
-from demheat.progress import stage
+from demheat.runtime.deadline import budget, look
+from demheat.runtime.process_state import one_blas_thread
+from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.scene.symmetry import alike_axes

@@ -10,7 +10,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from demheat.process_state import cpu_seconds
+from demheat.runtime.process_state import cpu_seconds
 
 MIB = 2**20
 

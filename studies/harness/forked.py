@@ -21,7 +21,7 @@ import traceback
 from contextlib import contextmanager, suppress
 from functools import cache, partial
 
-from demheat import fresh
+from demheat.runtime import fresh
 from studies.harness import provenance, quiet, runner
 
 # What most rows load, whatever their method.

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from demheat.machine import host, machine
+from demheat.runtime.machine import host, machine
 from studies.harness.methods import path_of
 from studies.harness.threads import threads
 

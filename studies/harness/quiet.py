@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import NamedTuple
 
-from demheat.process_state import cpu_seconds
+from demheat.runtime.process_state import cpu_seconds
 from studies.harness.cost import triad_gbs
 
 STAT = Path("/proc/stat")

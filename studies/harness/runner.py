@@ -38,8 +38,8 @@ import traceback
 from functools import partial
 from pathlib import Path
 
-from demheat import fresh
-from demheat.progress import stage
+from demheat.runtime import fresh
+from demheat.runtime.progress import stage
 from studies.harness import quiet
 from studies.harness.beside import counted
 from studies.harness.cost import measured

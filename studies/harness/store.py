@@ -8,8 +8,8 @@ import tempfile
 from contextlib import contextmanager
 from pathlib import Path
 
-from demheat import paths
-from demheat.paths import locked
+from demheat.runtime import paths
+from demheat.runtime.paths import locked
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
@@ -101,7 +101,7 @@ def write_rows(path, rows):
 
 @contextmanager
 def replaced(path):
-    """As `demheat.paths.replaced`, in a folder that is made if it is not there."""
+    """As `demheat.runtime.paths.replaced`, in a folder that is made if it is not there."""
     path = Path(path)
     path.parent.mkdir(parents=True, exist_ok=True)
     with paths.replaced(path) as temporary:

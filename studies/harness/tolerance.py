@@ -13,7 +13,7 @@ import math
 import re
 from typing import NamedTuple
 
-from demheat.machine import machine
+from demheat.runtime.machine import machine
 from studies.harness.provenance import versions
 from studies.harness.sound import cost_columns
 from studies.harness.store import TAIL

@@ -78,8 +78,8 @@ def dem_row(scene, particles, seed, *, cores=None):
     from demheat.network.laguerre import drop_empty_cells, laguerre
     from demheat.packing.cache import replicated
     from demheat.packing.conforming import conform
+    from demheat.runtime.threads import limited
     from demheat.sampling.field_of import field_of
-    from demheat.threads import limited
 
     counts = [math.ceil((particles / REPLICA) ** (1 / 3))] * 3
     box = {"size": scene.size, "periodic": True}

@@ -146,7 +146,7 @@ def _kept(name):
         with np.load(path) as stored:
             return dict(stored)
     found = _worked_out(name)
-    from demheat.paths import replaced
+    from demheat.runtime.paths import replaced
 
     path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as temporary:

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import numpy as np
 
-import demheat.threads
+import demheat.runtime.threads
 from demheat.conduction.integrators import control, euler
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.network.base import Network, row_numbers
@@ -203,7 +203,7 @@ def temperatures(program, particles):
 
 @contextmanager
 def _one_thread():
-    numba = demheat.threads.numba
+    numba = demheat.runtime.threads.numba
     before = numba.get_num_threads()
     numba.set_num_threads(1)
     try:

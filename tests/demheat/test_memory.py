@@ -2,9 +2,10 @@
 
 import pytest
 
-from demheat import Laguerre, Layer, Material, Scene, gallery, limits, on_progress, progress, solve
+from demheat import Laguerre, Layer, Material, Scene, gallery, on_progress, solve
 from demheat.dem.memory import expected, unknowns
 from demheat.dem.options import Particles
+from demheat.runtime import limits, progress
 
 SCENE = gallery.sphere_in_cube(5.0)
 

@@ -36,7 +36,7 @@ INLINED = "compiled into kernels that rows do execute, and called by nothing els
 SHIPPED = "made the tiles that are shipped: a test makes one again"
 CLAIMS = "claims extrapolate rows by it; no row does"
 NO_ROWS = {
-    "demheat/deadline.py": REFUSED,
+    "demheat/runtime/deadline.py": REFUSED,
     "demheat/dem/trial.py": REFUSED,
     "demheat/scene/edges.py": REFUSED,
     "demheat/commands": READ,
@@ -60,7 +60,7 @@ NO_ROWS = {
     "references/fft/pencils.py": LARGE,
     "references/fft/ranks.py": LARGE,
     "references/fft/slabs.py": LARGE,
-    "demheat/fresh.py": LARGE,
+    "demheat/runtime/fresh.py": LARGE,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,
     "demheat/scene/shapes/occ.py": LARGE,

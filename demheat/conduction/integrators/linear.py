@@ -11,7 +11,7 @@ from demheat.conduction.integrators import transient_kernels
 from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import CYCLE
 from demheat.network.base import row_numbers
-from demheat.process_state import one_blas_thread, seeded
+from demheat.runtime.process_state import one_blas_thread, seeded
 
 MOST = 5000
 # A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.

@@ -10,8 +10,8 @@ from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
 from demheat.conduction.integrators.pace import ANY, STEP, Pace
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
-from demheat.limits import check_steps
 from demheat.network.base import SIDES
+from demheat.runtime.limits import check_steps
 from demheat.scene.inputs import LEAST, MOST, chosen, finite, moderate, reals
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}

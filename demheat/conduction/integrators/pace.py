@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.limits import check_steps
+from demheat.runtime.limits import check_steps
 
 # Least seconds that a step takes.
 STEP = 1e-5

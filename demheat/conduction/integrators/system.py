@@ -11,7 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction.integrators import transient_kernels as kernels
 from demheat.conduction.robin import loaded_areas, radiating_walls, with_convection
 from demheat.network.base import SIDES, row_numbers

@@ -21,8 +21,8 @@ from collections.abc import Mapping
 
 from demheat.files.images import nrrd, raw, tiff, zarr
 from demheat.files.images.base import check_there
-from demheat.limits import check_free
-from demheat.paths import checked_path
+from demheat.runtime.limits import check_free
+from demheat.runtime.paths import checked_path
 from demheat.scene import Image, Material
 
 # What a folder is called that zarr reads.

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from demheat.files.source import nearest_file
-from demheat.limits import ALWAYS
+from demheat.runtime.limits import ALWAYS
 from demheat.scene.inputs import one_line
 
 # What an array takes while it is read, over what it needs itself.

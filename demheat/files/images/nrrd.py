@@ -10,7 +10,7 @@ import numpy as np
 
 from demheat.files.images.base import check_there, mapped, told_in_one_line
 from demheat.files.images.packed import unpacked
-from demheat.limits import check_free
+from demheat.runtime.limits import check_free
 
 # Bytes of a header, and of a line that is passed over at once.
 LONGEST = 2**20

@@ -11,7 +11,7 @@ import numpy as np
 
 from demheat.files.images.base import mapped, most_of, told_in_one_line
 from demheat.files.images.packed import INFLATION, beyond, check_expansion
-from demheat.limits import check_free
+from demheat.runtime.limits import check_free
 from demheat.scene.inputs import one_line
 
 # How pages may be packed, by the number that TIFF gives it; who unpacks the last is told how much there must be.

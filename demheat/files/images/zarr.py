@@ -17,7 +17,7 @@ import numpy as np
 
 from demheat.files.images.base import most_of, told_in_one_line
 from demheat.files.images.packed import INFLATION, beyond, check_expansion
-from demheat.limits import check_free
+from demheat.runtime.limits import check_free
 
 # Bytes of a file of metadata, and the least version of zarr: before 3 any codec that is installed is run.
 LONGEST, LEAST = 2**20, 3

@@ -33,7 +33,7 @@ from demheat.packing.gate import check_packing
 from demheat.packing.io import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
 from demheat.packing.io.found import rank_of, to_packing
 from demheat.packing.io.text import Lines, broken
-from demheat.paths import checked_path, replaced
+from demheat.runtime.paths import checked_path, replaced
 from demheat.scene.bodies import check_name
 
 __all__ = ["ids", "read", "write"]

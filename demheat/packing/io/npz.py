@@ -9,8 +9,8 @@ import zipfile
 import numpy as np
 from numpy.lib import format as npy
 
-from demheat.limits import check_free
 from demheat.packing.io.source import length_of, most_of
+from demheat.runtime.limits import check_free
 
 CHECKSUM = "checksum"
 # Kinds of NumPy's types: numbers (no complex ones, no dates), flags, text.

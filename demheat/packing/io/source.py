@@ -8,7 +8,7 @@ import os
 import stat
 from pathlib import Path
 
-from demheat.limits import ALWAYS, check_free
+from demheat.runtime.limits import ALWAYS, check_free
 
 # What is packed may expand to so many times its length, and to `ALWAYS` in any case. Rows of a packing shrink to a
 # third or so, those of a dump with columns of zeros to a tenth; what was made to be large, to a thousandth.

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.limits import ALWAYS, check_free
 from demheat.packing.io.source import text_of
+from demheat.runtime.limits import ALWAYS, check_free
 
 # Rows formatted at once, and read: their Python objects stay few, and what they take is looked at.
 CHUNK, PIECE = 10_000, 100_000

@@ -10,10 +10,10 @@ import zlib
 
 import numpy as np
 
-from demheat.limits import ALWAYS, check_free
 from demheat.packing.io.found import Found
 from demheat.packing.io.source import length_of, most_of
 from demheat.packing.io.text import broken
+from demheat.runtime.limits import ALWAYS, check_free
 from demheat.scene.bodies import ROUND_AXES
 
 TYPES = {"Float64": "f8", "Float32": "f4", "UInt8": "u1", "Int8": "i1", "String": "u1"}

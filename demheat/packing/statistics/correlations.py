@@ -8,8 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
-from demheat.blocks import blocks
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing.base import Packing
 from demheat.packing.cells_kernels import Reach
 from demheat.packing.gate import check_packing
@@ -17,7 +16,8 @@ from demheat.packing.neighbours import build_grid, wrapped
 from demheat.packing.statistics import correlations_kernels as kernels
 from demheat.packing.statistics.regions import core_volume, inscribed_box, spheres_in_box
 from demheat.packing.walls import check_margin, wall_distances
-from demheat.progress import stage
+from demheat.runtime.blocks import blocks
+from demheat.runtime.progress import stage
 from demheat.scene.inputs import finite, flag, reals, whole
 
 # The axes and the four body diagonals of a cube: the directions farthest from them.

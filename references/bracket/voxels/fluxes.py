@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from demheat.progress import stage
+from demheat.runtime.progress import stage
 from references.bracket.voxels import voxel_kernels as kernels
 from references.bracket.voxels.descent import descend
 from references.bracket.voxels.voxel_kernels import Cells, Modes

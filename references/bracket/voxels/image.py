@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.limits import check_memory
-from demheat.process_state import one_blas_thread
+from demheat.runtime.limits import check_memory
+from demheat.runtime.process_state import one_blas_thread
 from demheat.scene.inputs import LEAST, MOST, finite, reals, vector, whole
 from references.bracket.solver import ROUNDING, Bracket
 from references.bracket.voxels import fluxes, temperatures

@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.deadline import budget
 from demheat.gate import check_bracket
-from demheat.limits import check_memory
-from demheat.progress import stage
+from demheat.runtime.deadline import budget
+from demheat.runtime.limits import check_memory
+from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from demheat.scene.symmetry import mirrors
 from references.bracket.solver import Bracket, check

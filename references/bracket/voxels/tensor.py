@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from demheat.deadline import budget
+from demheat.runtime.deadline import budget
 from demheat.scene import Scene
 from references.bracket.solver import ROUNDING
 from references.bracket.tensor import Tensor

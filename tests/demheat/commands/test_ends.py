@@ -11,7 +11,7 @@ import pytest
 
 from demheat import files, gallery
 from demheat.commands import compare, main
-from demheat.paths import replaced
+from demheat.runtime.paths import replaced
 
 ROOT = Path(__file__).parents[3]
 COMMANDS = {

@@ -54,7 +54,7 @@ def test_compare_goes_on_where_the_time_was_over(capsys, scene, tmp_path, monkey
 
     def second_is_late(of, each, **how):
         if each.method.name == "rayleigh":
-            monkeypatch.setattr("demheat.deadline.time.monotonic", lambda: 1e18)
+            monkeypatch.setattr("demheat.runtime.deadline.time.monotonic", lambda: 1e18)
         return answered(of, each, **how)
 
     words = "compare", scene, "--methods", "maxwell,rayleigh,bruggeman", "--out", tmp_path / "out"

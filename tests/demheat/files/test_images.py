@@ -248,8 +248,8 @@ def test_a_library_that_is_not_there(make, library, tmp_path, monkeypatch):
 
 
 def test_what_does_not_fit_is_not_read(tmp_path, monkeypatch):
-    monkeypatch.setattr("demheat.limits.free_memory", lambda: 10.0)
-    monkeypatch.setattr("demheat.limits.ALWAYS", 1)
+    monkeypatch.setattr("demheat.runtime.limits.free_memory", lambda: 10.0)
+    monkeypatch.setattr("demheat.runtime.limits.ALWAYS", 1)
     for make in (npy, tiff_packed, nrrd_file):
         with pytest.raises(ValueError, match="GiB of memory or more"):
             read_image(make(tmp_path), materials=MATERIALS, voxel=1.0)

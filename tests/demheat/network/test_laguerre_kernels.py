@@ -7,7 +7,7 @@ import pytest
 from brute_polyhedron import measured
 from numpy.testing import assert_allclose
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.curved import round_wall, tangents_within
 from demheat.network.gather_kernels import Gathered, gather_facets

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network import sites_kernels as kernels
 from demheat.network.laguerre import filed
 

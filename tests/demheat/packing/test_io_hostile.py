@@ -15,9 +15,9 @@ import numpy as np
 import pytest
 from packing_files import ASE, DUMP, VTK_ASCII, awkward, put
 
-from demheat import limits
 from demheat.packing import io
 from demheat.packing.io import extxyz, npz, source, text
+from demheat.runtime import limits
 
 XYZ = "1\nProperties=pos:R:3:radius:R:1:{}\n0 0 0 1\n"
 # Bytes that a refusal may take: far below what the files promise or expand to.

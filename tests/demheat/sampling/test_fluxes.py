@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 from numpy.testing import assert_allclose
 
-import demheat.threads  # noqa: F401 (chooses the threading layer)
+import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction.steady import Solution
 from demheat.network.base import Network
 from demheat.sampling.fluxes import cell_fluxes, mean_flux

@@ -5,7 +5,8 @@ import weakref
 import numpy as np
 import pytest
 
-from demheat import Image, Layer, Material, Radiation, Scene, Sphere, gallery, limits, solve, streamed
+from demheat import Image, Layer, Material, Radiation, Scene, Sphere, gallery, solve, streamed
+from demheat.runtime import limits
 from demheat.streamed import solver
 from demheat.streamed.memory import expected, on_disk
 from demheat.streamed.store import Store

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from demheat import cluster, sweep
-from demheat.machine import host
+from demheat.runtime.machine import host
 
 pytest.importorskip("distributed")
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from demheat import progress
+from demheat.runtime import progress
 from demheat.scene import Material, Scene, Sphere
 from references import fft
 from references.fft.problem import converged

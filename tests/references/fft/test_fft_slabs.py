@@ -155,7 +155,7 @@ def test_images_and_tensors_are_shared_out_too(on_threads):
 )
 def test_what_is_not_done_is_refused_before_anything_heavy(knobs, kind, told, on_threads, monkeypatch):
     monkeypatch.setattr(ranks, "painted", None)
-    monkeypatch.setattr(demheat.limits, "free_memory", lambda: 2.0**30)
+    monkeypatch.setattr(demheat.runtime.limits, "free_memory", lambda: 2.0**30)
 
     def work():
         with pytest.raises(kind, match=told):

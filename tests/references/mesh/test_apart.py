@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from demheat.process_state import cpu_seconds
+from demheat.runtime.process_state import cpu_seconds
 from demheat.scene import Layer, Material, Scene, Sphere
 from references import mesh
 from references.mesh import apart, cad, sizes
@@ -191,7 +191,7 @@ class Told(subprocess.Popen):
         super().__init__(*a, **k)
         print(self.pid, flush=True)
 subprocess.Popen = Told
-from demheat import progress
+from demheat.runtime import progress
 from demheat.scene import Material, Scene, Sphere
 from references import fem
 progress.SILENT = 0.0
@@ -222,7 +222,7 @@ def test_ctrl_c_ends_meshing_and_the_mesher():
 
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_the_mesher_ends_with_its_parent():
-    begun, _ = SCRIPT.split("from demheat import progress")
+    begun, _ = SCRIPT.split("from demheat.runtime import progress")
     script = (
         begun
         + """

@@ -6,7 +6,7 @@ import subprocess
 import pandas as pd
 import pytest
 
-from demheat.machine import host
+from demheat.runtime.machine import host
 from studies.harness import beside, machines, runner, store
 from studies.harness.table import read_frame, render
 

@@ -5,7 +5,7 @@ from types import ModuleType
 import pytest
 
 import studies.hard_cases as hard_cases
-from demheat.machine import machine
+from demheat.runtime.machine import machine
 from studies.harness.provenance import versions
 from studies.harness.tolerance import Tolerance, moved, value_columns
 

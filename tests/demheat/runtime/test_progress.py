@@ -7,7 +7,8 @@ import time
 import numpy as np
 import pytest
 
-from demheat import Material, Scene, Sphere, evolve, on_progress, progress, solve
+from demheat import Material, Scene, Sphere, evolve, on_progress, solve
+from demheat.runtime import progress
 
 
 @pytest.fixture

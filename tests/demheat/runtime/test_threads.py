@@ -7,9 +7,9 @@ import time
 
 import pytest
 
-from demheat.threads import limited, shared_out
+from demheat.runtime.threads import limited, shared_out
 
-CODE = "import demheat.threads, numba; print(numba.config.THREADING_LAYER)"
+CODE = "import demheat.runtime.threads, numba; print(numba.config.THREADING_LAYER)"
 
 
 @pytest.mark.parametrize("asked, given", [(None, "workqueue"), ("omp", "omp")])

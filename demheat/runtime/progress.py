@@ -18,7 +18,7 @@ from contextlib import contextmanager, nullcontext
 from functools import partial
 from typing import NamedTuple
 
-from demheat.deadline import limited, look
+from demheat.runtime.deadline import limited, look
 
 # Seconds that a stage may last in silence, between two reports of it, and until somebody else speaks for it.
 SILENT, PAUSE, WAIT = 2.0, 0.2, 1.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_limits
 
-from demheat.process_state import _counts_by_thread, _numbers, _set_all, one_blas_thread, seeded
+from demheat.runtime.process_state import _counts_by_thread, _numbers, _set_all, one_blas_thread, seeded
 
 
 def test_seeded_is_the_same_each_time_and_leaves_no_trace():

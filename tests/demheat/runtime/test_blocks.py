@@ -1,7 +1,7 @@
 """Only here: loops in blocks that leave out a part, or are too long for a deadline."""
 
-from demheat import blocks as module
-from demheat.blocks import blocks
+from demheat.runtime import blocks as module
+from demheat.runtime.blocks import blocks
 
 
 def cut(monkeypatch, number, first, seconds_of):

@@ -8,9 +8,10 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat import damage, deadline, effective, gallery, progress, solve
+from demheat import damage, effective, gallery, solve
 from demheat.cheapest.answers import Answer
 from demheat.dem import solve_axes
+from demheat.runtime import deadline, progress
 from references import bracket, fem, fft, multipole
 from references.bracket import voxels
 
@@ -41,7 +42,7 @@ def test_methods_end_when_the_time_is_over(name, monkeypatch):
     with pytest.raises(TimeoutError, match=r"^seconds = 1e-09 are over, in \w+"), demheat.budget(1e-9):
         METHODS[name]()
     looked = []
-    for home in ("demheat.progress", "demheat.blocks"):
+    for home in ("demheat.runtime.progress", "demheat.runtime.blocks"):
         monkeypatch.setattr(f"{home}.look", looked.append)
     with demheat.budget(1000.0):
         METHODS[name]()

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from demheat import limits
+from demheat.runtime import limits
 
 
 def told(root, meminfo=None, cgroup=None, **groups):

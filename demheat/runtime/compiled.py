@@ -29,10 +29,10 @@ import numba
 import numpy as np
 from numba.core import event, types
 
-from demheat.progress import in_parts
+from demheat.runtime.progress import in_parts
 
 # Sources are ours below this folder, in these packages.
-ROOT, OURS = Path(__file__).resolve().parents[1], ("demheat", "references", "studies")
+ROOT, OURS = Path(__file__).resolve().parents[2], ("demheat", "references", "studies")
 VERSIONS = (sys.version, numba.__version__, llvmlite.__version__, np.__version__)
 # Layout of the files, see `_keep_with_care`.
 FORMAT = 2

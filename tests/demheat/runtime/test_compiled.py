@@ -8,9 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from demheat import compiled, on_progress, progress
+from demheat import on_progress
+from demheat.runtime import compiled, progress
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 
 
 def package(folder, **files):
@@ -122,7 +123,7 @@ def test_an_unwritable_home_is_passed_over_in_silence_for_the_package(tmp_path):
     (tmp_path / "file").touch()
     below = str(tmp_path / "file" / "home")
     (place,), said = run(PLACE, HOME=below, XDG_CACHE_HOME=below)
-    assert Path(place).parent == ROOT / "demheat" / "__pycache__" / "kernels" and said == ""
+    assert Path(place).parent == ROOT / "demheat" / "runtime" / "__pycache__" / "kernels" and said == ""
 
 
 def test_old_machine_code_is_thrown_away(tmp_path):

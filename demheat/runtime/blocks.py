@@ -2,7 +2,7 @@
 
 import time
 
-from demheat.deadline import look
+from demheat.runtime.deadline import look
 
 # Seconds that a block should last.
 SECONDS = 0.1
