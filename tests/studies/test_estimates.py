@@ -27,7 +27,8 @@ def test_nothing_is_compared_where_there_is_no_error():
     np.testing.assert_allclose(found, [3.0, 1.0])
 
 
-@pytest.mark.parametrize("kind", KINDS)
+# Of spheres that multipoles know only the two-phase bounds would be asked here: the study's own rows have them.
+@pytest.mark.parametrize("kind", CLOSED)
 def test_drawn_scenes_have_an_exact_solution(kind):
     """The same seed draws the same scene."""
     scene = scene_of(kind, 0)

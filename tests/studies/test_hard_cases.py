@@ -116,6 +116,7 @@ def test_bounds_of_a_drawn_scene_hold_its_exact_value():
     assert not known.wide and known.upper < known.lower * (1 + verdicts.NARROW)
 
 
+@pytest.mark.slow
 def test_touching_spheres_have_bounds_too():
     pair = [Sphere((x, 0.5, 0.5), 0.2, Material(5.0)) for x in (0.3, 0.7)]
     known = verdicts.truth(Scene(matrix=Material(1.0), inclusions=pair, **CELL))

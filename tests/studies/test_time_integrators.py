@@ -52,9 +52,8 @@ def test_refused_where_lammps_is_missing(monkeypatch):
         lammps_peer.beside(600)
 
 
-@pytest.mark.parametrize("integrator", ["rkl2", "euler"])
-def test_error_is_against_a_finer_run(integrator):
-    row = integrator_rows.marched("slab", 500, integrator, None if integrator == "euler" else 1e-2)
+def test_error_is_against_a_finer_run(integrator="rkl2"):
+    row = integrator_rows.marched("slab", 500, integrator, 1e-2)
     system, start = integrator_rows.system_of("slab", 500)
     coarse, fine = (
         integrator_rows._integrated(system, start, 0.2, name, accuracy).temperature

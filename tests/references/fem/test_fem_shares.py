@@ -14,7 +14,7 @@ from references.mesh import make, twins
 CELL = Scene((1.0, 1.3, 0.9), Material(1.0), [Sphere((0.5, 0.6, 0.4), 0.3, Material(7.0))], gradient=(1.0, 0.5, 0.0))
 
 
-@pytest.mark.parametrize(("scene", "size", "order"), [(CELL, 0.45, 2), (gallery.sphere_in_cube(5.0), 0.04, 1)])
+@pytest.mark.parametrize(("scene", "size", "order"), [(CELL, 0.7, 2), (gallery.sphere_in_cube(5.0), 0.04, 1)])
 def test_rows_of_all_ranks_are_those_of_the_whole(scene, size, order):
     mesh = make(scene, size=size, order=order)
     dof, given = twins(len(mesh.points), mesh.pairs), given_part(scene, mesh, np.ones(len(mesh.cells), dtype=bool))

@@ -102,7 +102,7 @@ def test_errors_fall_with_the_degree_as_is_said():
     spheres, order = random_spheres(), 4
     gradient = np.array([0.3, -1.0, 0.5])
     expected = solve_order(spheres, translation(spheres, 2 * order), gradient, order, tolerance=1e-13)
-    for precision in (1e-4, 1e-7, 1e-10):
+    for precision in (1e-4, 1e-10):
         degree = far_degree(SIZE / SHAPE, precision)
         fast = FastMultipole(spheres, forced(SHAPE, degree, precision))
         found = solve_order(spheres, fast, gradient, order, tolerance=1e-13)

@@ -101,7 +101,7 @@ def test_a_number_of_workers_that_is_none(number, capsys):
 def test_rows_of_another_machine_hold_where_rows_may_be_made_anywhere(tiny):
     from studies.harness import store
 
-    tiny.ran()
+    tiny.made()
     path = tiny.out / f"{tiny.name}.csv"
     store.write_rows(path, [row | {"machine": "another", "threads": "64"} for row in tiny.rows().values()])
     asked = []
