@@ -23,8 +23,10 @@ pytestmark = pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 OBLIQUE = (3.0, 0.0, -4.0)
 # Two spheres with room around them, in a cell without any symmetry: few elements do.
 SPHERES = [Sphere((0.3, 0.35, 0.25), 0.2, Material(20.0)), Sphere((0.7, 0.8, 0.5), 0.2, Material(0.2))]
-# Those with a solve of their own; an evolve or a formula has no set-up to share. Finite elements have one way for all.
-STEADY = sorted(name for name, method in METHODS.items() if method.call == "solve" and not name.startswith("fem-"))
+# Those with a solve of their own; an evolve or a formula has no set-up to share. Finite elements have one way for all,
+# and so have rules of links or voxels.
+ALIKE = ("fem-", "dem-arithmetic", "dem-mean", "dem-plain", "fft-plain", "fft-em-plain")
+STEADY = sorted(name for name, method in METHODS.items() if method.call == "solve" and not name.startswith(ALIKE))
 SMALL = {
     dem: {"particles": 500, "tolerance": 1e-12},
     fem: {"size": 0.3, "tolerance": 1e-12},

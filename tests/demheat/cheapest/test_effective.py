@@ -126,6 +126,7 @@ def test_recommendations_say_why():
     assert recommend(ASKEW, 1e-3, memory=1.0).method == ""
 
 
+@pytest.mark.filterwarnings("ignore:gaps beside inclusions")
 @pytest.mark.parametrize(("contrast", "rule"), [(10.0, "laminate"), (1000.0, "links"), (0.0, "plain")])
 def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     """Laminates, which it leaves at high contrast, would have needed 1800 CPU-s and 14 GB at contrast 1000."""
@@ -134,7 +135,8 @@ def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     part = measures(loads_of(scene).parts[0])
     law = {"laminate": "fft"}.get(rule, f"fft-{rule}")
     assert told.error == laws.predicted(law, part, laws.needed(law, part, 1e-3 / ways.INTERVAL, sure=False)).error
-    field = fft.solve(scene, voxels=told.knobs["voxels"])
+    # The rule for pores is the same in few voxels.
+    field = fft.solve(scene, voxels=told.knobs["voxels"] if contrast else 8)
     assert field.stats["rule"] == rule
     if contrast:  # what is said of pores is an upper end
         assert told.cpu_s < 2.0 and told.bytes < 2**23

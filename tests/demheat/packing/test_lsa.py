@@ -239,7 +239,7 @@ def test_the_estimate_of_collisions():
 @pytest.mark.parametrize(("begun", "phi"), [(0.06, 0.1), (0.18, 0.3), (0.2, 0.22)])
 def test_the_estimate_of_collisions_of_a_fluid(begun, phi):
     """Not fewer than are found, nor half as many more: found 1.2 to 1.3 times as many, as spheres are unequal."""
-    made = lsa(start=lsa(300, phi=begun, seed=3), phi=phi, growth=1e-3, seed=4)
+    made = lsa(start=lsa(120, phi=begun, seed=3), phi=phi, growth=1e-3, seed=4)
     assert 1.0 < 1e3 * _in_fluid(begun, phi) / made.provenance["collisions"] < 1.5
 
 

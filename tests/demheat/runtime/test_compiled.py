@@ -77,12 +77,17 @@ def run(code, **environment):
 PLACE = "from demheat.packing import cells_kernels as k; print(k.fill_cells._cache.cache_path)"
 
 
-def test_kernels_are_kept_in_the_users_folder_or_the_one_asked_for(tmp_path):
+def test_kernels_are_kept_in_the_users_folder_or_the_one_asked_for(tmp_path, monkeypatch):
     (place,), said = run(PLACE, XDG_CACHE_HOME=str(tmp_path))
     assert Path(place).parent == tmp_path / "demheat" / "kernels" and Path(place).name.startswith("cells_kernels-")
     assert said == ""
-    (place,), _ = run(PLACE, XDG_CACHE_HOME=str(tmp_path), NUMBA_CACHE_DIR=str(tmp_path / "asked"))
-    assert Path(place).parent == tmp_path / "asked"
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "asked"))
+    compiled.base_folder.cache_clear()
+    try:
+        assert compiled.base_folder() == tmp_path / "asked"
+    finally:
+        compiled.base_folder.cache_clear()
 
 
 def test_without_any_folder_kernels_are_compiled_for_this_run_and_a_line_says_so(tmp_path, monkeypatch):

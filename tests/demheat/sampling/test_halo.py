@@ -154,7 +154,7 @@ def test_mirrors_carry_on_the_field_beyond_walls(load):
     walls = {"y-": 0.0, "y+": 0.0 if load is None else Flux(load)}
     scene = Scene(size=(1, 1, 1), matrix=Material(1.0), walls=walls)
     rng = np.random.default_rng(0)
-    points, volumes = rng.random((500, 3)), rng.uniform(0.5, 2.0, 500)
+    points, volumes = rng.random((200, 3)), rng.uniform(0.5, 2.0, 200)
     field = made(scene, points, volumes, waving(points, load))
     all_round, copies = points, volumes
     for axis in range(3):

@@ -53,7 +53,7 @@ def test_no_point_of_the_surface_is_nearer(shape):
     low, high = shape.bounds()
     pitch = 0.02
     surface, areas = surface_points(shape, low, high, pitch)
-    points = np.random.default_rng(1).uniform(low - 0.3, high + 0.3, (300, 3))
+    points = np.random.default_rng(1).uniform(low - 0.3, high + 0.3, (100, 3))
     nearest = np.linalg.norm(points[:, None] - surface, axis=2).min(axis=1)
     distance = np.abs(shape.distance(points))
     assert np.all(distance <= nearest + 1e-12) and np.all(nearest <= distance + 1.5 * pitch)
