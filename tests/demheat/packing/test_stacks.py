@@ -105,7 +105,7 @@ def stacks(*inclusions, close, periodic=True, least=0.0):
 
 
 def test_which_planes_are_a_stack():
-    layers = [Layer(0, a, b, OTHER) for a, b in ((0.1, 0.12), (0.15, 0.5), (0.7, 0.71))]
+    layers = [Layer(0, a, b, OTHER) for a, b in ((0.1, 0.12), (0.15, 0.5), (0.56, 0.57))]
     found, inf = stacks(*layers, close=0.04), np.inf
     assert found.leader.tolist() == [0, 0, 0, 3, 4, 4]
     assert [column.tolist() for column in found.members] == [[1, -1, -1, -1, 5, -1], [2, -1, -1, -1, -1, -1]]
