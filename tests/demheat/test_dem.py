@@ -127,14 +127,17 @@ def test_gaps_that_particles_do_not_resolve_are_warned_of():
         demheat.solve(ball(radius=0.4995), particles=1000)
 
 
-@pytest.mark.parametrize("knobs", [{}, {"conforming": False}, {"law": "calibrated"}])
-def test_an_inclusion_without_particles_is_warned_of(knobs):
-    film = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[Layer(1, 0.5, 0.50005, TEN)], walls={"y-": 0.0, "y+": 1.0})
+FILM, SPECK = Layer(1, 0.5, 0.50005, TEN), Sphere((0.5, 0.5, 0.5), 5e-4, TEN)
+
+
+@pytest.mark.parametrize("tiny, knobs", [(SPECK, {}), (FILM, {"conforming": False}), (FILM, {"law": "calibrated"})])
+def test_an_inclusion_without_particles_is_warned_of(tiny, knobs):
+    film = Scene(size=(1, 1, 1), matrix=ONE, inclusions=[tiny], walls={"y-": 0.0, "y+": 1.0})
     with pytest.warns(UserWarning) as caught:
         demheat.solve(film, particles=500, **knobs)
     words = [str(each.message) for each in caught]
     assert any("no particle lies in inclusions [0]" in each for each in words)
-    # Twins do not fit into the film either.
+    # Twins do not fit into the speck either.
     assert all("no particle lies" in each or "do not fit into gaps" in each for each in words)
 
 

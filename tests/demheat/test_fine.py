@@ -3,6 +3,7 @@
 import math
 import warnings
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
@@ -53,13 +54,11 @@ def test_change_without_inclusions_is_that_of_what_may_be_left_out():
 
 def test_a_layer_that_no_particle_sees_may_do_what_bounds_allow():
     scene = cell(Layer(1, 0.5, 0.501, Material(1e-3)))
-    field, said = quietly(solve, scene, particles=1000)
+    plain, said = quietly(solve, scene, particles=1000, conforming=False)
     assert any("take no part" in each for each in said)
-    assert_allclose(field.conductivity, 1.0, rtol=1e-12)  # rounding
+    assert_allclose(plain.conductivity, 1.0, rtol=1e-12)  # rounding
     # In series, which is the lower bound: 1 / (.999 + 1).
-    assert_allclose(field.error.lower, 1 / 1.999, rtol=1e-8)
-    plain, _ = quietly(solve, scene, particles=1000, conforming=False)
-    assert holds(plain.error, 1 / 1.999 * (1 + 1e-12))
+    assert_allclose(plain.error.lower, 1 / 1.999, rtol=1e-8)
 
 
 def test_layers_that_twins_resolve_keep_their_narrow_interval():
@@ -69,7 +68,9 @@ def test_layers_that_twins_resolve_keep_their_narrow_interval():
 
 @pytest.mark.parametrize("knobs", [{"method": fft.solve, "voxels": 24}, {"method": solve, "particles": 1000}])
 def test_a_coat_that_is_not_seen_may_do_what_bounds_allow(knobs):
-    scene = cell(Sphere(MIDDLE, 0.3535, Material(1e-3)), Sphere(MIDDLE, 0.35, Material(20.0)))
+    # A hair off its centre: no twins stand above each other.
+    aside = np.array(MIDDLE) + 1e-5
+    scene = cell(Sphere(MIDDLE, 0.3535, Material(1e-3)), Sphere(aside, 0.35, Material(20.0)))
     field, said = quietly(**knobs, scene=scene)
     assert said
     # A coat of 1 % is a resistance on the core, to some per cent of what it does.

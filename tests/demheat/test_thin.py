@@ -127,9 +127,9 @@ def test_twins_and_thick_inclusions_are_not_warned_of():
 
 
 def test_many_more_twins_than_particles():
-    """A gap of a fourth of a particle is followed by twins as close as that."""
+    """A gap of a fourth of a particle, of uneven width, is followed by twins as close as that."""
     with pytest.warns(UserWarning, match=r"^[0-9]+ twins at interfaces, .* stand beside 216 particles: memory"):
-        field = demheat.solve(cell(Layer(0, 0.4, 0.421, OTHER)), packing=crystal())
+        field = demheat.solve(cell(ball(0.4), Sphere((0.501, 0.5, 0.5), 0.379, OTHER)), packing=crystal())
     assert field.stats["unknowns"] > 6 * 216
 
 
