@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from solid_shapes import MATRIX, RING
 
-from demheat import Material, Scene, Sphere, Torus, files, solve
+from demheat import Cylinder, Material, Scene, Sphere, Torus, files, solve
 from references import bracket, exact, fem, fft, multipole
 
 MIDDLE = (0.5, 0.5, 0.5)
@@ -79,6 +79,9 @@ def test_spheres_lie_in_its_hole_and_in_its_tube():
     for wrong in (replace(hole, radius=0.1601), replace(bead, radius=0.1201), replace(bead, center=(0.7, 0.5, 0.5))):
         with pytest.raises(ValueError, match="overlap partially"):
             cell(ring(5.0), wrong)
+    # All corners around it lie in the tube, and its middle in the hole.
+    with pytest.raises(ValueError, match="overlap partially"):
+        cell(ring(5.0), Cylinder(MIDDLE, 0.02, (1, 0, 0), MATRIX, length=0.56))
 
 
 def test_a_box_in_its_hole_is_outside():
@@ -86,9 +89,11 @@ def test_a_box_in_its_hole_is_outside():
     with pytest.raises(ValueError, match="lies outside the box"):
         cell(Torus(MIDDLE, 2.0, 1.0, (0, 0, 1), MATRIX), **walls)
     # A wall cuts its tube beside the circle.
-    cut = cell(ring(5.0, (0.5, 0.5, -0.1)), **walls)
-    point = cut.inclusions[0].point_in(cut.size, periodic=False)
-    assert cut.inclusions[0].contains(point[None])[0] and np.all((point >= 0) & (point <= 1))
+    for cut in (ring(5.0, (0.5, 0.5, -0.1)), ring(5.0, (0.5, 0.5, -0.25), (1, 0, 1)), ring(5.0, (0.5, 0.5, 0.5))):
+        point = cell(cut, **walls).inclusions[0].point_in((1, 1, 1), periodic=False)
+        assert cut.contains(point[None])[0] and np.all((point >= 0) & (point <= 1))
+    away = ring(5.0, (0.9, 0.1, 0.0))
+    assert away.contains(away.point_in((1, 1, 1), periodic=True)[None], period=np.ones(3))[0]
 
 
 @pytest.mark.parametrize(

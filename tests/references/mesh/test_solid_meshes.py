@@ -83,5 +83,7 @@ def test_a_box_in_a_corner_has_faces_in_walls():
     box = Box((0.2, 0.2, 0.25), (0.4, 0.4, 0.5), OTHER)
     mesh = make(cell(box, walls={"x-": 0.0, "x+": 1.0}), size=0.25)
     assert_allclose(np.bincount(mesh.phase, mesh.volumes)[1], 0.08, rtol=1e-9)
+    # Flat faces need one edge along the shortest of them.
+    assert_allclose(wanted_sizes(cell(replace(box, center=MIDDLE, sides=(0.1, 0.2, 0.3))), 0.3).balls[:, 4].min(), 0.1)
     flipped = replace(box, rotation=((0, -1, 0), (1, 0, 0), (0, 0, 1)))
     assert flipped.fills_bounds
