@@ -15,7 +15,8 @@ from demheat.scene.shapes.patterns import Room
 # Points of an even pattern on a sphere, at least: facets that enclose it.
 FEWEST = 12
 # Cosine between two normals below which a surface that is nearest to a point of another lies beside it.
-BESIDE = 0.1
+# Of the box: how far behind it a body is looked for.
+BESIDE, STEP = 0.1, 1e-6
 
 
 class SphereSurface(NamedTuple):
@@ -211,13 +212,16 @@ class ShapeSurface:
         return self.scene.periodic and bool(np.any((high - low)[ends] >= (1 - TOUCH) * np.array(self.scene.size)[ends]))
 
     def _facing(self, points, normals):
-        """Distance of points on an image, with its normals, to the surface; infinite on it, and where it lies beside.
+        """Distance of points on an image, with its normals, to the surface; infinite on it, and where it goes on there.
 
-        A body goes on in an image that it meets: nothing is between them.
+        Nothing is between a body and an image in which it goes on. One that meets it with an edge does not.
         """
         away, outward = self.shape.surface(points)
-        beside = np.abs(np.einsum("ij,ij->i", outward, normals)) < BESIDE
-        return np.where(beside | (np.abs(away) <= TOUCH * max(self.scene.size)), np.inf, away)
+        step = STEP * max(self.scene.size)
+        beyond = points - (away + np.copysign(step, away))[:, None] * outward - step * normals
+        on = self.shape.contains(beyond, period=np.array(self.scene.size))
+        on &= np.abs(np.einsum("ij,ij->i", outward, normals)) < BESIDE
+        return np.where(on | (np.abs(away) <= TOUCH * max(self.scene.size)), np.inf, away)
 
     @property
     def _room(self):
