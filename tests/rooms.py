@@ -69,12 +69,10 @@ ENGINE = {
     "demheat.field": ("demheat.scene", "demheat.gate", "demheat.error"),
     "demheat.tensor": ("demheat.scene", "demheat.gate", "demheat.field"),
     "demheat.laws": ("demheat.scene",),
-    # Ranks of an MPI run, for whoever computes on them.
-    "demheat.ranks": ("demheat.runtime",),
-    "demheat.petsc": (),
-    "demheat.vtk": (),
+    # Ranks of an MPI run, and workers of Dask, for whoever computes on them.
+    "demheat.beyond": ("demheat.runtime",),
+    "demheat.io.vtk": (),
     "demheat.terminal": (),
-    "demheat.cluster": (),
     "demheat.version": (),
     "demheat.lazy": (),
     "demheat.method": (),
@@ -82,13 +80,13 @@ ENGINE = {
     "demheat.slices": ("demheat.scene", "demheat.field", "demheat.runtime"),
     # Nouns know nothing of those who draw and store them: the front gives them `plot` and `write`.
     "demheat.pictures": ("demheat.scene", "demheat.field", "demheat.slices"),
-    "demheat.io": ("demheat.scene", "demheat.field", "demheat.runtime", "demheat.vtk"),
+    "demheat.io": ("demheat.scene", "demheat.field", "demheat.runtime", "demheat.io.vtk"),
     "demheat.packing": (
         "demheat.powers",
         "demheat.addition",
         "demheat.scene",
         "demheat.runtime",
-        "demheat.vtk",
+        "demheat.io.vtk",
         "demheat.packing",
     ),
     "demheat.gallery": (
@@ -225,8 +223,7 @@ ENGINE = {
         "demheat.sampling",
         "demheat.build",
         "demheat.dem",
-        "demheat.ranks",
-        "demheat.petsc",
+        "demheat.beyond",
         "demheat.tiles",
         "demheat.lazy",
         "demheat.mpi",

@@ -21,11 +21,11 @@ from pathlib import Path
 import numpy as np
 
 from demheat.field import Field, check_field
+from demheat.io.vtk import Blocks, put_down
 from demheat.runtime.limits import check_memory
 from demheat.runtime.paths import checked_path, replaced
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import whole
-from demheat.vtk import Blocks, put_down
 
 # Tetrahedra of so many nodes, by VTK's number; their order of nodes is VTK's.
 TETRAHEDRA = {4: 10, 10: 24}

@@ -15,7 +15,7 @@ from importlib.util import find_spec
 
 import numpy as np
 
-from demheat import ranks
+from demheat.beyond import ranks
 from demheat.commands.options import Parser
 from demheat.declared import found, load, path_of
 from demheat.files import read

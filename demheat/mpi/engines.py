@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from demheat import ranks
+from demheat.beyond import ranks
 
 
 def world():

@@ -11,12 +11,12 @@ import math
 import numpy as np
 from scipy import sparse
 
+from demheat.beyond.petsc import PREFIX, conjugate_gradients, know
 from demheat.conduction import multigrid_kernels, steady_kernels
 from demheat.conduction.balance import System, residual, throughput
 from demheat.conduction.multigrid import aggregated, cycle
 from demheat.mpi.numbers import Ghosts
 from demheat.network.links_kernels import Links
-from demheat.petsc import PREFIX, conjugate_gradients, know
 
 # Solved anew so often: the heat that passes, which sets the limit, is known only once the solution nearly is.
 ROUNDS, MOST = 10, 20_000

@@ -7,7 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from demheat import dem, ranks
+from demheat import dem
+from demheat.beyond import ranks
+from demheat.beyond.ranks import Costs, check_fits, cores, give_back, here
 from demheat.conduction.balance import at_walls, linear_start, system_of
 from demheat.conduction.steady import Solution
 from demheat.dem.estimate import estimator_of
@@ -19,7 +21,6 @@ from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Ghosts, linked, numbers_of
-from demheat.ranks import Costs, check_fits, cores, give_back, here
 from demheat.runtime.threads import limited
 from demheat.scene import Scene
 from demheat.tiles.checks import check

@@ -10,7 +10,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
-from demheat.cluster import completed, row_environment
+from demheat.beyond.cluster import completed, row_environment
 from demheat.runtime import fresh
 from demheat.sweeps.rows import failed, row_of
 

@@ -12,9 +12,9 @@ from functools import partial
 
 import numpy as np
 
-from demheat import ranks
+from demheat.beyond import ranks
+from demheat.beyond.petsc import solver_of
 from demheat.field import Field
-from demheat.petsc import solver_of
 from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite

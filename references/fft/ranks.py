@@ -11,7 +11,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from demheat import ranks
+from demheat.beyond import ranks
 from demheat.field import Field
 from demheat.scene import Scene
 from demheat.scene.turned import turned as turned_scene

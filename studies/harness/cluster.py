@@ -5,7 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from functools import cache
 
-from demheat.cluster import cluster, completed, row_environment
+from demheat.beyond.cluster import cluster, completed, row_environment
 from studies.harness import runner
 from studies.harness.cost import triad_gbs
 from studies.harness.provenance import provenance

@@ -75,7 +75,7 @@ def _packed(scene, given, comm):
 
 def _forget_peak():
     """What was in memory before at its peak would hide as much of what the solve takes (Linux)."""
-    from demheat.ranks import give_back
+    from demheat.beyond.ranks import give_back
 
     give_back()
     with suppress(OSError):

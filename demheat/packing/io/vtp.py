@@ -1,15 +1,15 @@
 """ParaView's PolyData (.vtp): points with radius, links as lines (docs.vtk.org, VTK XML file formats).
 
-Written by hand, see `demheat.vtk`.
+Written by hand, see `demheat.io.vtk`.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from demheat.io.vtk import Blocks, put_down
 from demheat.packing.base import Packing
 from demheat.packing.io.links import Drawn
-from demheat.vtk import Blocks, put_down
 
 
 def write(packing: Packing, stream, drawn: Drawn | None) -> None:

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from demheat import cluster, sweep
+from demheat import sweep
+from demheat.beyond import cluster
 from demheat.runtime.machine import host
 
 pytest.importorskip("distributed")

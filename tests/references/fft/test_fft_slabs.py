@@ -8,7 +8,7 @@ from fft_scenes import dispersion
 from ranks import on_ranks
 from scipy import fft as scipy_fft
 
-import demheat.ranks
+import demheat.beyond.ranks
 from demheat import Image, Material, Scene
 from demheat.scene import Cylinder
 from references import fft
@@ -67,7 +67,7 @@ def on_threads(monkeypatch):
     here = threading.local()
     monkeypatch.setattr(ranks, "world", lambda: here.comm)
     monkeypatch.setattr(ranks, "Pencils", Gathered)
-    monkeypatch.setattr(demheat.ranks, "here", lambda comm: comm.size)
+    monkeypatch.setattr(demheat.beyond.ranks, "here", lambda comm: comm.size)
 
     def run(number, work):
         def rank(comm):

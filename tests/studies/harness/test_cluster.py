@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from demheat import cluster
+from demheat.beyond import cluster
 from studies.__main__ import main
 from studies.harness import runner
 from studies.harness.cluster import spread_over

@@ -9,7 +9,7 @@ import time
 
 import pytest
 
-from demheat import cluster
+from demheat.beyond import cluster
 
 pytest.importorskip("distributed")
 
