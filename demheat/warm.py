@@ -22,8 +22,8 @@ from pathlib import Path
 import numba
 import numpy as np
 
-from demheat.conduction import steady_kernels
 from demheat.conduction.multigrid import preconditioner
+from demheat.conduction.products import advance, apply, dot
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
 from demheat.network import laguerre_kernels
 from demheat.network.base import Facets
@@ -135,9 +135,8 @@ def steady():
     solution = solve_checked(network, scene, solver="cg", tolerance=1e-8)
     field_of(scene, network, solution, stats={})
     x, r = np.ones_like(solution.temperature), np.ones_like(solution.temperature)
-    steady_kernels.direct(0.5, r, x)
-    steady_kernels.apply(links_of(network), x, x, r)
-    steady_kernels.advance(steady_kernels.dot(x, r), x, r, x.copy(), r.copy())
+    apply(links_of(network), x, x, r)
+    advance(dot(x, r), x, r, x.copy(), r.copy())
 
 
 # The longest first. The second process begins there, the first one at the other end.

@@ -1,8 +1,9 @@
 """Small random networks, as kernels take them: nothing but compressed rows, every link in both of its rows."""
 
+from types import SimpleNamespace
+
 import numpy as np
 
-import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.links_kernels import Links, Places
 
 SIZE = np.array([1.0, 1.3, 0.8])
@@ -29,6 +30,20 @@ def random_links(n, *, per_row=6, seed=0, single=False):
     links = Links(indptr, np.concatenate([there, here])[order].astype(np.uint32), np.tile(conductance, 2)[order])
     codes = np.concatenate([image, 26 - image])[order].astype(np.uint8)
     return links, Places(rng.random((n, 3)) * SIZE, SIZE, codes)
+
+
+def balanced(n, seed=0):
+    """Links and a diagonal that makes a positive matrix; the last point has no link and no equation."""
+    links, _ = random_links(n, seed=seed)
+    total = np.add.reduceat(np.append(links.conductance, 0.0), links.indptr[:-1]) * (np.diff(links.indptr) > 0)
+    diagonal = total + np.where(np.arange(n) % 7 == 0, 0.5, 0.0)
+    diagonal[-1] = 0.0
+    return links, diagonal
+
+
+def network_of(links, places, area):
+    """What products take of a network."""
+    return SimpleNamespace(**links._asdict(), **places._asdict(), area=area)
 
 
 def each_link(links):

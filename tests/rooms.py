@@ -115,7 +115,7 @@ ENGINE = {
         "demheat.field",
         "demheat.runtime",
         "demheat.network",
-        "demheat.conduction.steady_kernels",
+        "demheat.conduction.products",
         "demheat.sampling",
     ),
     "demheat.calibration": (

@@ -4,11 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
-from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.products import apply, flows, row_sums
 from demheat.conduction.robin import RobinWalls, robin_of
 from demheat.network.base import SIDES, Network
-from demheat.network.links_kernels import links_of, places_of
+from demheat.network.links_kernels import links_of
 
 
 class System(NamedTuple):
@@ -30,8 +29,7 @@ def system_of(network, scene, reached, robin=None):
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
     diagonal = conducted(network)
     if scene.periodic:
-        received = np.empty(n)
-        kernels.flows(links_of(network), places_of(network), gradient, np.zeros(n), received, np.empty(n))
+        received, _, _ = flows(network, gradient, np.zeros(n))
         return System(network, diagonal, received, gradient, np.empty(0), np.empty(0), 0.0)
     robin = robin_of(network, scene) if robin is None else robin
     ties = robin.ties(network.wall_conductance)
@@ -68,9 +66,7 @@ def linear_start(network, scene, reached):
 
 def conducted(network):
     """Sum of the conductances of each particle's links, (n,) float array, W/K."""
-    total = np.empty(len(network.volumes))
-    kernels.row_sums(links_of(network), total)
-    return total
+    return row_sums(network.indptr, network.conductance)
 
 
 def _imposed(network, scene):
@@ -81,15 +77,16 @@ def _imposed(network, scene):
 def residual(system, x):
     """Heat that each particle receives in excess, (n,) float array, W; components without an equation get none."""
     r = np.empty_like(x)
-    kernels.residual(links_of(system.network), system.diagonal, system.heat, x, r)
+    apply(links_of(system.network), system.diagonal, x, r)
+    np.subtract(system.heat, r, out=r)
     r[system.diagonal == 0.0] = 0.0
     return r
 
 
 def throughput(system, x):
     """Heat that passes through each particle, (n,) float array, W."""
-    network, received, through = system.network, np.empty_like(x), np.empty_like(x)
-    kernels.flows(links_of(network), places_of(network), system.gradient, x, received, through)
+    network = system.network
+    _, through, _ = flows(network, system.gradient, x)
     if len(system.ties):
         particle = network.wall_particle
         through += np.bincount(particle, np.abs(system.ties * (system.held - x[particle])), minlength=len(x))

@@ -9,7 +9,9 @@ import numpy as np
 from scipy import sparse
 
 from demheat.conduction import multigrid_kernels as kernels
+from demheat.conduction.products import ROWS
 from demheat.runtime.process_state import seeded
+from demheat.runtime.threads import shared_out
 
 # Particles of an aggregate at most; found 8 on average. With 6 the iterations are as many and the set-up twice as long.
 MOST = 16
@@ -36,21 +38,22 @@ def preconditioner(links, diagonal, coarse=np.float64):
 def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None):
     """One symmetric cycle on the finest level, by what solves on the aggregates."""
     level, n, single = level_of(links, diagonal, scale), len(diagonal), np.float32
+    blocks = -(-n // kernels.ROWS)
     load, y, x = np.empty(n, single), np.empty(n, single), np.zeros(n if seen is None else seen, single)
     received = np.empty(len(aggregates.start) - 1)
 
     def apply(r, norm, z):
-        kernels.scaled(r, 1.0 / norm, load)
-        kernels.forward(level, load, x)
+        np.multiply(r, 1.0 / norm, out=load, casting="same_kind")
+        shared_out(kernels.forward, blocks, level, load, x, piece=1)
         if beside:
             beside(x)
-        kernels.defect(level, x, y)
-        kernels.restrict(aggregates, y, received)
-        kernels.correct(aggregates, coarse(received), ENLARGED, x)
+        shared_out(kernels.defect, n, level, x, y, piece=ROWS)
+        shared_out(kernels.restrict, len(received), aggregates, y, received, piece=ROWS)
+        shared_out(kernels.correct, n, aggregates, coarse(received), ENLARGED, x, piece=4 * ROWS)
         if beside:
             beside(x)
-        kernels.backward(level, load, x, y)
-        kernels.scaled(y, scale * norm, z)
+        shared_out(kernels.backward, blocks, level, load, x, y, piece=1)
+        np.multiply(y, scale * norm, out=z, dtype=float)
 
     return apply
 
@@ -58,7 +61,7 @@ def cycle(links, diagonal, scale, aggregates, coarse, *, seen=None, beside=None)
 def aggregated(links, n):
     """Join the particles of n rows to aggregates."""
     top, owner = np.empty(n), np.empty(n, np.int32)
-    kernels.strongest(links, top)
+    shared_out(kernels.strongest, n, links, top, piece=ROWS)
     return kernels.members(owner, kernels.aggregate(links, top, MOST, owner))
 
 
@@ -69,7 +72,7 @@ def level_of(links, diagonal, scale):
     small, m = np.min_scalar_type(int(np.diff(links.indptr).max(initial=0))), len(links.indices)
     ends, place, values = np.empty((n, 2), small), np.empty(m, small), np.empty(m, np.float32)
     level = kernels.Level(links.indptr, links.indices, ends, place, values, inverse)
-    kernels.arrange(links, scale, level)
+    shared_out(kernels.arrange, -(-n // kernels.ROWS), links, scale, level, piece=1)
     return level
 
 

@@ -1,13 +1,16 @@
 """Compiled finest level of the multigrid preconditioner: aggregates, their Galerkin matrix, and Gauss-Seidel sweeps.
 
-Sweeps run within fixed blocks of rows and take the rest as it was, so that bits do not depend on the number of threads.
-Links may lead beyond the rows, to particles that are another's: vectors that are read there are longer than the rows.
+Sweeps run within fixed blocks of rows and take the rest as it was, so that bits do not depend on the number of threads,
+which do rows, or blocks of them, from `first` to `last`. Links may lead beyond the rows, to particles that are
+another's: vectors that are read there are longer than the rows.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
+
+from demheat.network.links_kernels import IN_PIECES
 
 # Rows swept one after the other. Neighbours in space are near in memory: less than a tenth of the links leave a block.
 ROWS = 65536
@@ -61,20 +64,22 @@ class Level(NamedTuple):
     inverse: np.ndarray
 
 
-@njit(cache=True, parallel=True)
-def strongest(links, top):
+@njit(**IN_PIECES)
+def strongest(first, last, links, top):
     """Find the largest conductance of each row.
 
     Parameters
     ----------
+    first, last : int
+        Rows.
     links : Links
     top : (n,) float array, W/K, out
         Zero for rows without links.
     """
     indptr, _, conductance = links
-    for i in prange(len(top)):
+    for i in range(np.uint64(first), np.uint64(last)):
         most = 0.0
-        for e in range(indptr[i], indptr[i + 1]):
+        for e in range(np.uint64(indptr[i]), np.uint64(indptr[i + np.uint64(1)])):
             most = max(most, conductance[e])
         top[i] = most
 
@@ -233,12 +238,14 @@ def galerkin(links, diagonal, scale, aggregates):
     return pointers, columns, values
 
 
-@njit(cache=True, parallel=True)
-def arrange(links, scale, level):
+@njit(**IN_PIECES)
+def arrange(first, last, links, scale, level):
     """Copy links into the order of a Level.
 
     Parameters
     ----------
+    first, last : int
+        Blocks.
     links : Links
     scale : float, K/W
         Values are scale times conductance.
@@ -247,34 +254,35 @@ def arrange(links, scale, level):
     """
     indptr, indices, conductance = links
     ends, place, values = level.ends, level.place, level.values
-    n = len(ends)
-    for block in prange((n + ROWS - 1) // ROWS):
-        first, last = block * ROWS, min(n, (block + 1) * ROWS)
-        for i in range(first, last):
+    for block in range(first, last):
+        head, end = block * ROWS, min(len(ends), (block + 1) * ROWS)
+        for i in range(head, end):
             begin = indptr[i]
             low, high = begin, indptr[i + 1]
             for e in range(begin, indptr[i + 1]):
                 j = indices[e]
-                if first <= j < i:
+                if head <= j < i:
                     place[low], values[low] = e - begin, scale * conductance[e]
                     low += 1
-                elif i < j < last:
+                elif i < j < end:
                     high -= 1
                     place[high], values[high] = e - begin, scale * conductance[e]
             ends[i, 0], ends[i, 1] = low - begin, high - begin
             for e in range(begin, indptr[i + 1]):
                 j = indices[e]
-                if not (first <= j < last) or j == i:
+                if not (head <= j < end) or j == i:
                     place[low], values[low] = e - begin, scale * conductance[e]
                     low += 1
 
 
-@njit(cache=True, parallel=True)
-def forward(level, r, x):
+@njit(**IN_PIECES)
+def forward(first, last, level, r, x):
     """One forward Gauss-Seidel sweep from zero, within blocks.
 
     Parameters
     ----------
+    first, last : int
+        Blocks.
     level : Level
     r : (n,) float32 array
         Right-hand side.
@@ -282,7 +290,7 @@ def forward(level, r, x):
     """
     indptr, indices, ends, place, values, inverse = level
     n = len(r)
-    for block in prange((n + ROWS - 1) // ROWS):
+    for block in range(first, last):
         for i in range(block * ROWS, min(n, (block + 1) * ROWS)):
             flow, begin = r[i], np.uint64(indptr[i])
             for e in range(begin, begin + ends[i, 0]):
@@ -290,66 +298,74 @@ def forward(level, r, x):
             x[i] = flow * inverse[i]
 
 
-@njit(cache=True, parallel=True)
-def defect(level, x, d):
+@njit(**IN_PIECES)
+def defect(first, last, level, x, d):
     """What is left of the equation after a forward sweep: r - A x, which is what the links that it left out bring.
 
     Parameters
     ----------
+    first, last : int
+        Rows.
     level : Level
     x : (n,) float32 array
         Of `forward`.
     d : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, _ = level
-    for i in prange(len(d)):
+    for i in range(np.uint64(first), np.uint64(last)):
         flow, begin = np.float32(0.0), np.uint64(indptr[i])
-        for e in range(begin + ends[i, 0], np.uint64(indptr[i + 1])):
+        for e in range(begin + ends[i, 0], np.uint64(indptr[i + np.uint64(1)])):
             flow += values[e] * x[indices[begin + place[e]]]
         d[i] = flow
 
 
-@njit(cache=True, parallel=True)
-def restrict(aggregates, d, coarse):
+@njit(**IN_PIECES)
+def restrict(first, last, aggregates, d, coarse):
     """Add up values over each aggregate.
 
     Parameters
     ----------
+    first, last : int
+        Aggregates.
     aggregates : Aggregates
     d : (n,) float32 array
     coarse : (aggregates,) float array, out
     """
     _, start, rows = aggregates
-    for c in prange(len(coarse)):
+    for c in range(first, last):
         total = 0.0
         for s in range(start[c], start[c + 1]):
             total += np.float64(d[rows[s]])
         coarse[c] = total
 
 
-@njit(cache=True, parallel=True)
-def correct(aggregates, coarse, weight, x):
+@njit(**IN_PIECES)
+def correct(first, last, aggregates, coarse, weight, x):
     """Add the value of its aggregate, times a weight, to each particle's.
 
     Parameters
     ----------
+    first, last : int
+        Rows.
     aggregates : Aggregates
     coarse : (aggregates,) float array
     weight : float
     x : (n,) float32 array, in and out
     """
     owner, _, _ = aggregates
-    for i in prange(len(owner)):
+    for i in range(np.uint64(first), np.uint64(last)):
         if owner[i] >= 0:
             x[i] += np.float32(weight * coarse[owner[i]])
 
 
-@njit(cache=True, parallel=True)
-def backward(level, r, x, y):
+@njit(**IN_PIECES)
+def backward(first, last, level, r, x, y):
     """One backward Gauss-Seidel sweep, within blocks.
 
     Parameters
     ----------
+    first, last : int
+        Blocks.
     level : Level
     r : (n,) float32 array
         Right-hand side.
@@ -359,7 +375,7 @@ def backward(level, r, x, y):
     """
     indptr, indices, ends, place, values, inverse = level
     n = len(r)
-    for block in prange((n + ROWS - 1) // ROWS):
+    for block in range(first, last):
         for i in range(min(n, (block + 1) * ROWS) - 1, block * ROWS - 1, -1):
             flow, begin = r[i], np.uint64(indptr[i])
             for e in range(begin, begin + ends[i, 1]):
@@ -367,17 +383,3 @@ def backward(level, r, x, y):
             for e in range(begin + ends[i, 1], np.uint64(indptr[i + 1])):
                 flow += values[e] * y[indices[begin + place[e]]]
             y[i] = flow * inverse[i]
-
-
-@njit(cache=True, parallel=True)
-def scaled(r, scale, out):
-    """Scale and cast.
-
-    Parameters
-    ----------
-    r : (n,) float array
-    scale : float
-    out : (n,) float array of another precision, out
-    """
-    for i in prange(len(r)):
-        out[i] = scale * r[i]

@@ -1,8 +1,8 @@
-"""Conjugate gradients preconditioned by multigrid, on the rows of a network."""
+"""Preconditioned conjugate gradients on the rows of a network."""
 
 import numpy as np
 
-from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.products import advance, apply, dot
 
 
 def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
@@ -12,7 +12,7 @@ def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
     precision, is symmetric to its rounding only.
     """
     z, q = np.empty_like(r), np.empty_like(r)
-    norm, p, rz = np.sqrt(kernels.dot(r, r)), np.zeros_like(r), 1.0
+    norm, p, rz = np.sqrt(dot(r, r)), np.zeros_like(r), 1.0
     alpha = 0.0
     first = norm
     for iteration in range(most):
@@ -20,12 +20,26 @@ def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
             return iteration
         done(_share(norm, first, limit))
         precondition(r, norm, z)
-        beta = -alpha * kernels.dot(q, z) / rz if iteration else 0.0
-        rz = kernels.dot(r, z)
-        kernels.direct(beta, z, p)
-        alpha = rz / kernels.apply(links, diagonal, p, q)
-        norm = np.sqrt(kernels.advance(alpha, p, q, x, r))
+        beta = -alpha * dot(q, z) / rz if iteration else 0.0
+        rz = dot(r, z)
+        p *= beta
+        p += z
+        product = apply(links, diagonal, p, q)
+        if not product > 0.0:  # rounding has made the matrix indefinite
+            return iteration + 1
+        alpha = rz / product
+        norm = np.sqrt(advance(alpha, p, q, x, r))
     return most
+
+
+def by_diagonal(diagonal):
+    """The preconditioner of Jacobi; rows with zero have no equation."""
+    inverse = np.divide(1.0, diagonal, out=np.zeros_like(diagonal), where=diagonal > 0)
+
+    def precondition(r, _, z):
+        np.multiply(inverse, r, out=z)
+
+    return precondition
 
 
 def _share(norm, first, limit):

@@ -6,13 +6,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy import sparse
 
-import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.conduction import components
-from demheat.conduction import steady_kernels as kernels
 from demheat.conduction.balance import at_walls, conducted, level_of, linear_start, residual, system_of, throughput
-from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import preconditioner
-from demheat.conduction.preconditioned import preconditioned
+from demheat.conduction.preconditioned import by_diagonal, preconditioned
+from demheat.conduction.products import dot, spread
 from demheat.conduction.robin import COLDEST, hottest, radiated, robin_of
 from demheat.network.base import SIDES, without_links
 from demheat.network.links_kernels import links_of
@@ -138,7 +136,7 @@ def imbalance(network, scene, solution) -> float:
 def _relative(system, x):
     """Norm of the residual over that of the heat that passes, the residual, and the latter norm."""
     r = residual(system, x)
-    norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
+    norm, passing = math.sqrt(dot(r, r)), _passing(system, x)
     return norm / passing if passing > 0 else float(norm > 0), r, passing if passing > 0 else norm
 
 
@@ -172,7 +170,7 @@ def _radiation_left(system, scene, x):
     by_tangents = robin.conductance[tied] * (robin.outside - surface)[tied]
     missing = radiated(network, scene, surface)[tied] - by_tangents
     r = residual(system, x) + np.bincount(network.wall_particle[tied], missing, minlength=len(x))
-    norm, passing = math.sqrt(kernels.dot(r, r)), _passing(system, x)
+    norm, passing = math.sqrt(dot(r, r)), _passing(system, x)
     return surface, norm / passing if passing > 0 else float(norm > 0)
 
 
@@ -205,7 +203,11 @@ def _reached(network, scene):
     held = [SIDES.index(name) for name in scene.imposed_temperatures]
     reached = np.zeros(len(network.volumes), dtype=bool)
     reached[network.wall_particle[np.isin(network.wall_side, held) & (network.wall_conductance > 0)]] = True
-    kernels.spread(links_of(network), reached)
+    if network.cells and network.whole and network.conductance.min(initial=np.inf) > 0:
+        # Cells fill the body: facets that conduct join all of them.
+        reached[:] = reached.any()
+    else:
+        spread(links_of(network), reached)
     return reached
 
 
@@ -225,15 +227,20 @@ def _iterate(system, x, solver, tolerance, most, kept):
 def _passing(system, x):
     """Norm of the heat that passes through the particles."""
     through = throughput(system, x)
-    return math.sqrt(kernels.dot(through, through))
+    return math.sqrt(dot(through, through))
 
 
 def _jacobi(system):
-    links = links_of(system.network)
+    return _by(system, by_diagonal(system.diagonal))
+
+
+def _by(system, precondition):
+    """Conjugate gradients with a preconditioner."""
+    links, diagonal = links_of(system.network), system.diagonal
 
     def solve(r, x, limit, most):
-        with stage("equations"):
-            return jacobi(links, system.diagonal, r, x, limit, most), x
+        with one_blas_thread(), stage("equations") as done:
+            return preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
 
     return solve
 
@@ -249,19 +256,13 @@ def matrix(network, diagonal):
 
 def _multigrid(system, kept, coarse):
     """Conjugate gradients by multigrid, which is kept for another load that leads to the very same matrix."""
-    links, diagonal = links_of(system.network), system.diagonal
+    diagonal = system.diagonal
     conductance, same = kept.get("matrix", (None, diagonal))
     if conductance is not system.network.conductance or not _serves(same, diagonal, kept.get("serves", 1.0)):
         with one_blas_thread():
-            kept["precondition"] = preconditioner(links, diagonal, coarse)
+            kept["precondition"] = preconditioner(links_of(system.network), diagonal, coarse)
         kept["matrix"] = system.network.conductance, diagonal
-    precondition = kept["precondition"]
-
-    def solve(r, x, limit, most):
-        with one_blas_thread(), stage("equations") as done:
-            return preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
-
-    return solve
+    return _by(system, kept["precondition"])
 
 
 def _serves(one, other, factor):

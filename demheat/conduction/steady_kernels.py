@@ -1,113 +1,55 @@
-"""Compiled conjugate gradients on a network, and its heat flows.
+"""Compiled products and sums over the rows of a network.
 
-The matrix of a network is A = diag(diagonal) - conductance. Sums are taken over fixed blocks of rows and added in
-order, so that bits do not depend on the number of threads.
+The matrix of a network is A = diag(diagonal) - conductance. Threads do rows, or blocks of rows, from `first` to `last`
+(`demheat.conduction.products` shares them out); sums over all are those of blocks, so that bits do not depend on the
+number of threads. Numbers that count rows and links are unsigned: of others Numba asks whether they count from the end,
+a third of the time.
 """
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-from demheat.network.links_kernels import rise_along
+from demheat.network.links_kernels import IN_PIECES, rise_along
 
 BLOCK = 2048
 
 
-@njit(cache=True, parallel=True)
-def direct(beta, z, p):
-    """Turn a direction of descent: p becomes z + beta p.
+@njit(**IN_PIECES)
+def apply(first, last, links, diagonal, p, q, partial):
+    """Multiply by the matrix: q becomes A p.
 
     Parameters
     ----------
-    beta : float
-    z : (n,) float array, K
-        Preconditioned residual.
-    p : (n,) float array, K, in and out
+    first, last : int
+        Blocks.
+    links : Links
+    diagonal : (n,) float array, W/K
+    p : (n,) float array, K
+        Or longer, where links lead beyond the rows.
+    q : (n,) float array, W, out
+    partial : (blocks,) float array, W K, out
+        Sums of p q.
     """
-    for i in prange(len(p)):
-        p[i] = z[i] + beta * p[i]
-
-
-@njit(cache=True, parallel=True)
-def _dots(a, b, partial):
-    for block in prange(len(partial)):
-        total = 0.0
-        for i in range(block * BLOCK, min(len(a), (block + 1) * BLOCK)):
-            total += a[i] * b[i]
-        partial[block] = total
-
-
-@njit(cache=True)
-def dot(a, b):
-    """Sum of a b.
-
-    Parameters
-    ----------
-    a, b : (n,) float arrays
-
-    Returns
-    -------
-    float
-    """
-    partial = np.empty((len(a) + BLOCK - 1) // BLOCK)
-    _dots(a, b, partial)
-    return partial.sum()
-
-
-@njit(cache=True, parallel=True)
-def _apply(links, diagonal, p, q, partial):
-    """q = A p and the block sums of p.q."""
     indptr, indices, conductance = links
-    n = len(q)
-    for block in prange(len(partial)):
+    for block in range(first, last):
         total = 0.0
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
+        for i in range(np.uint64(block * BLOCK), np.uint64(min(len(q), (block + 1) * BLOCK))):
             flow = diagonal[i] * p[i]
-            for e in range(indptr[i], indptr[i + 1]):
+            for e in range(np.uint64(indptr[i]), np.uint64(indptr[i + np.uint64(1)])):
                 flow -= conductance[e] * p[indices[e]]
             q[i] = flow
             total += p[i] * flow
         partial[block] = total
 
 
-@njit(cache=True)
-def apply(links, diagonal, p, q):
-    """Multiply by the matrix: q becomes A p.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-    p : (n,) float array, K
-        Or longer, where links lead beyond the rows.
-    q : (n,) float array, W, out
-
-    Returns
-    -------
-    float, W K
-        p.q.
-    """
-    partial = np.empty((len(q) + BLOCK - 1) // BLOCK)
-    _apply(links, diagonal, p, q, partial)
-    return partial.sum()
-
-
-@njit(cache=True, parallel=True)
-def _steps(alpha, p, q, x, r, partial):
-    for block in prange(len(partial)):
-        rr = 0.0
-        for i in range(block * BLOCK, min(len(p), (block + 1) * BLOCK)):
-            x[i] += alpha * p[i]
-            r[i] -= alpha * q[i]
-            rr += r[i] * r[i]
-        partial[block] = rr
-
-
-@njit(cache=True)
-def advance(alpha, p, q, x, r):
+@njit(**IN_PIECES)
+def advance(first, last, alpha, p, q, x, r, partial):
     """Go along a direction: x grows by alpha p, r falls by alpha q.
 
     Parameters
     ----------
+    first, last : int
+        Blocks.
     alpha : float
     p : (n,) float array, K
     q : (n,) float array, W
@@ -115,156 +57,52 @@ def advance(alpha, p, q, x, r):
     x : (n,) float array, K, in and out
     r : (n,) float array, W, in and out
         Residual.
-
-    Returns
-    -------
-    float, W2
-        r.r after the step.
+    partial : (blocks,) float array, W2, out
+        Sums of r r after the step.
     """
-    partial = np.empty((len(p) + BLOCK - 1) // BLOCK)
-    _steps(alpha, p, q, x, r, partial)
-    return partial.sum()
-
-
-@njit(cache=True, parallel=True)
-def _advance(alpha, p, q, inverse, x, r, z, sums):
-    """Step of length alpha, and the block sums of r.z and r.r as the rows of `sums`."""
-    n = len(p)
-    for block in prange(sums.shape[1]):
-        rz, rr = 0.0, 0.0
-        for i in range(block * BLOCK, min(n, (block + 1) * BLOCK)):
+    for block in range(first, last):
+        rr = 0.0
+        for i in range(np.uint64(block * BLOCK), np.uint64(min(len(p), (block + 1) * BLOCK))):
             x[i] += alpha * p[i]
             r[i] -= alpha * q[i]
-            z[i] = inverse[i] * r[i]
-            rz += r[i] * z[i]
             rr += r[i] * r[i]
-        sums[0, block] = rz
-        sums[1, block] = rr
+        partial[block] = rr
 
 
-@njit(cache=True)
-def conjugate_gradients(links, diagonal, r, x, limit, most, p, rz):
-    """Solve A dx = r by Jacobi-preconditioned conjugate gradients, adding dx to x in place, or go on with it.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-        Rows with zero have no equation: r must be zero there.
-    r : (n,) float array, W
-        Overwritten.
-    x : (n,) float array, K, in and out
-    limit : float, W
-        Stop when |r| is at most this.
-    most : int
-        Iterations at most.
-    p : (n,) float array, K, in and out
-        Direction of the next iteration.
-    rz : (1,) float array, W K, in and out
-        0 to begin; else p, rz, r and x are those of the call before.
-
-    Returns
-    -------
-    int
-        Iterations done; negative if r is still larger than the limit.
-    """
-    n = len(x)
-    blocks = (n + BLOCK - 1) // BLOCK
-    partial, sums = np.empty(blocks), np.empty((2, blocks))
-    inverse = np.empty(n)
-    for i in range(n):
-        inverse[i] = 1.0 / diagonal[i] if diagonal[i] > 0.0 else 0.0
-    z, q = np.empty(n), np.empty(n)
-    if rz[0] == 0.0:
-        for i in range(n):
-            p[i] = inverse[i] * r[i]
-        rz[0] = np.sum(r * p)
-        if np.sqrt(np.sum(r * r)) <= limit:
-            return 0
-    for iteration in range(1, most + 1):
-        _apply(links, diagonal, p, q, partial)
-        pq = partial.sum()
-        if pq <= 0.0:
-            return -iteration
-        _advance(rz[0] / pq, p, q, inverse, x, r, z, sums)
-        if np.sqrt(sums[1].sum()) <= limit:
-            return iteration
-        before = rz[0]
-        rz[0] = sums[0].sum()
-        direct(rz[0] / before, z, p)
-    return -most
-
-
-@njit(cache=True, parallel=True)
-def row_sums(links, total):
-    """Add up the conductances of each row.
-
-    Parameters
-    ----------
-    links : Links
-    total : (n,) float array, W/K, out
-    """
-    indptr, _, conductance = links
-    for i in prange(len(total)):
-        here = 0.0
-        for e in range(indptr[i], indptr[i + 1]):
-            here += conductance[e]
-        total[i] = here
-
-
-@njit(cache=True)
-def spread(links, reached):
+@njit(**IN_PIECES)
+def spread(links, reached, queue, number):
     """Mark all particles that conducting links join, over any number of others, to those already marked.
 
     Parameters
     ----------
     links : Links
     reached : (n,) bool array, in and out
+    queue : (n,) uint32 array, in and out
+        At first those marked.
+    number : int
+        Of them.
     """
     indptr, indices, conductance = links
-    front = np.flatnonzero(reached).astype(np.uint32)
-    while len(front):
-        following = np.empty(len(front) + 1024, np.uint32)
-        number = 0
-        for i in front:
-            for e in range(indptr[i], indptr[i + 1]):
-                j = indices[e]
-                if reached[j] or conductance[e] <= 0.0:
-                    continue
-                reached[j] = True
-                if number == len(following):
-                    following = np.concatenate((following, np.empty(number, np.uint32)))
-                following[number] = j
-                number += 1
-        front = following[:number]
-
-
-@njit(cache=True, parallel=True)
-def residual(links, diagonal, b, x, r):
-    """Find what is left of an equation: r becomes b - A x.
-
-    Parameters
-    ----------
-    links : Links
-    diagonal : (n,) float array, W/K
-    b : (n,) float array, W
-    x : (n,) float array, K
-    r : (n,) float array, W, out
-    """
-    indptr, indices, conductance = links
-    for i in prange(len(x)):
-        flow = b[i] - diagonal[i] * x[i]
+    head = 0
+    while head < number:
+        i = queue[head]
+        head += 1
         for e in range(indptr[i], indptr[i + 1]):
-            flow += conductance[e] * x[indices[e]]
-        r[i] = flow
+            j = indices[e]
+            if not reached[j] and conductance[e] > 0.0:
+                reached[j] = True
+                queue[number] = j
+                number += 1
 
 
-@njit(cache=True, parallel=True)
-def flows(links, places, gradient, x, received, throughput):
-    """Heat that each particle receives over its links, and how much passes.
+@njit(**IN_PIECES)
+def flows(first, last, links, places, gradient, x, received, throughput, moment):
+    """Heat that each particle receives over its links, how much passes, and their moments.
 
     Parameters
     ----------
+    first, last : int
+        Rows.
     links : Links
     places : Places
     gradient : (3,) float array, K/m
@@ -273,49 +111,32 @@ def flows(links, places, gradient, x, received, throughput):
     received : (n,) float array, W, out
     throughput : (n,) float array, W, out
         Sum of the sizes of those flows.
+    moment : (n, 3) float array, W m, out
+        Sum of W b / 2: W the heat received over a link, b its vector from the particle to its neighbour.
     """
     indptr, conductance = links.indptr, links.conductance
-    for i in prange(len(x)):
-        branch = np.empty(3)
-        heat, passing = 0.0, 0.0
-        for e in range(indptr[i], indptr[i + 1]):
-            rise, _ = rise_along(i, e, links, places, gradient, x, branch)
-            heat += conductance[e] * rise
-            passing += abs(conductance[e] * rise)
-        received[i] = heat
-        throughput[i] = passing
+    for i in range(np.uint64(first), np.uint64(last)):
+        heat, passing, along_x, along_y, along_z = 0.0, 0.0, 0.0, 0.0, 0.0
+        for e in range(np.uint64(indptr[i]), np.uint64(indptr[i + np.uint64(1)])):
+            rise, u, v, w = rise_along(i, e, links, places, gradient, x)
+            flow = conductance[e] * rise
+            heat += flow
+            passing += abs(flow)
+            along_x += flow * u
+            along_y += flow * v
+            along_z += flow * w
+        received[i], throughput[i] = heat, passing
+        moment[i, 0], moment[i, 1], moment[i, 2] = 0.5 * along_x, 0.5 * along_y, 0.5 * along_z
 
 
-@njit(cache=True, parallel=True)
-def moments(links, places, gradient, x, first):
-    """Sum over the links of each particle of W b / 2: W the heat it receives, b the branch vector.
-
-    Parameters
-    ----------
-    links : Links
-    places : Places
-    gradient : (3,) float array, K/m
-    x : (n,) float array, K
-        Temperatures less the linear field of the gradient.
-    first : (n, 3) float array, W m, out
-    """
-    indptr, conductance = links.indptr, links.conductance
-    for i in prange(len(x)):
-        branch = np.empty(3)
-        for k in range(3):
-            first[i, k] = 0.0
-        for e in range(indptr[i], indptr[i + 1]):
-            rise, _ = rise_along(i, e, links, places, gradient, x, branch)
-            for k in range(3):
-                first[i, k] += 0.5 * conductance[e] * rise * branch[k]
-
-
-@njit(cache=True, parallel=True)
-def reconstruct(links, places, area, gradient, x, shape, flow):
+@njit(**IN_PIECES)
+def reconstruct(first, last, links, places, area, gradient, x, shape, flow):
     """Sums over the links of each particle of S e e and of e W: e the unit vector, W the heat it receives.
 
     Parameters
     ----------
+    first, last : int
+        Rows.
     links : Links
     places : Places
     area : (m,) float array, m2
@@ -327,16 +148,23 @@ def reconstruct(links, places, area, gradient, x, shape, flow):
     flow : (n, 3) float array, W, out
     """
     indptr, conductance = links.indptr, links.conductance
-    for i in prange(len(x)):
-        branch = np.empty(3)
-        for k in range(3):
-            flow[i, k] = 0.0
-            for m in range(3):
-                shape[i, k, m] = 0.0
-        for e in range(indptr[i], indptr[i + 1]):
-            rise, square = rise_along(i, e, links, places, gradient, x, branch)
-            length = np.sqrt(square)
-            for k in range(3):
-                flow[i, k] += conductance[e] * rise * branch[k] / length
-                for m in range(3):
-                    shape[i, k, m] += area[e] * branch[k] * branch[m] / length**2
+    for i in range(np.uint64(first), np.uint64(last)):
+        xx, xy, xz, yy, yz, zz = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        along_x, along_y, along_z = 0.0, 0.0, 0.0
+        for e in range(np.uint64(indptr[i]), np.uint64(indptr[i + np.uint64(1)])):
+            rise, u, v, w = rise_along(i, e, links, places, gradient, x)
+            square = u * u + v * v + w * w
+            heat, part = conductance[e] * rise / np.sqrt(square), area[e] / square
+            along_x += heat * u
+            along_y += heat * v
+            along_z += heat * w
+            xx += part * u * u
+            xy += part * u * v
+            xz += part * u * w
+            yy += part * v * v
+            yz += part * v * w
+            zz += part * w * w
+        flow[i, 0], flow[i, 1], flow[i, 2] = along_x, along_y, along_z
+        shape[i, 0, 0], shape[i, 0, 1], shape[i, 0, 2] = xx, xy, xz
+        shape[i, 1, 0], shape[i, 1, 1], shape[i, 1, 2] = xy, yy, yz
+        shape[i, 2, 0], shape[i, 2, 1], shape[i, 2, 2] = xz, yz, zz

@@ -12,9 +12,10 @@ import numpy as np
 from scipy import sparse
 
 from demheat.beyond.petsc import PREFIX, conjugate_gradients, know
-from demheat.conduction import multigrid_kernels, steady_kernels
+from demheat.conduction import multigrid_kernels
 from demheat.conduction.balance import System, residual, throughput
 from demheat.conduction.multigrid import aggregated, cycle
+from demheat.conduction.products import apply
 from demheat.mpi.numbers import Ghosts
 from demheat.network.links_kernels import Links
 
@@ -116,7 +117,7 @@ class _Balance:
         """PETSc's name for y = A x."""
         self.seen[: self.ghosts.own] = x.array_r
         self.ghosts.update(self.seen)
-        steady_kernels.apply(self.links, self.diagonal, self.seen, y.array)
+        apply(self.links, self.diagonal, self.seen, y.array)
 
 
 class _Cycle:

@@ -4,11 +4,11 @@ import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.base import Facets
-from demheat.network.bins_kernels import bin_points
+from demheat.network.bins import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
-from demheat.network.gather_kernels import Gathered, gather_facets
 from demheat.network.links_kernels import match_links
-from demheat.network.sites_kernels import Sites
+from demheat.network.polyhedron_kernels import empty_polyhedron
+from demheat.network.sites_kernels import Sites, empty_candidates
 from demheat.packing.base import check_domain
 from demheat.runtime.progress import stage
 from demheat.runtime.threads import shared_out
@@ -150,10 +150,12 @@ class _Columns:
         return [column[: self.used] for column in self.columns]
 
 
-LINKS = (np.uint32, np.uint8, float, float)  # indices, image, area, distance
-AREA = 2  # of these
-WALLS = (np.int64, np.int64, float, float)  # particle, side, area, distance
 FACETS = ("neighbour", "image", "area", "distance")  # of a Cut
+LINKS = (np.uint32, np.uint8, float, float)  # of these
+AREA = 2
+WALLS = (np.int64, np.int64, float, float)  # particle, side, area, distance
+# Rows whose links a thread matches at a time.
+MATCHED = 16384
 
 
 def _cut_all(sites, wall, spacing):
@@ -167,19 +169,21 @@ def _cut_all(sites, wall, spacing):
             block, parts, begun = _cut_block(start, stop, sites, wall, spacing)
             volumes[start:stop], number[start:stop] = block.volume, block.links
             again += begun
-            link, end = _chunk_starts(block.links), _chunk_starts(block.ends)
-            to, (particle, *ends) = links.grow(link[-1], stop / n), walls.grow(end[-1], stop / n)
+            _gather(parts, links.grow(int(block.links.sum()), stop / n), lambda used: slice(used[0]))
+            particle, *ends = walls.grow(int(block.ends.sum()), stop / n)
             particle[:] = np.repeat(np.arange(start, stop), block.ends)
-            for chunks, cut in parts:
-                gather_facets(chunks, link, end, cut, Gathered(*to, *ends))
+            _gather(parts, ends, lambda used: slice(-1, -1 - used[1], -1), (FACETS[0], *FACETS[2:]))
             done(stop / n)
     return volumes, number, links.done(), walls.done(), again / n
 
 
-def _chunk_starts(number):
-    """Where the facets of each chunk of rows begin, from the number of each row."""
-    total = np.add.reduceat(number.astype(np.int64), np.arange(0, len(number), kernels.CHUNK))
-    return np.concatenate([[0], np.cumsum(total)])
+def _gather(parts, columns, taken, names=FACETS):
+    """Bring facets of all chunks, those that are taken of each by what it used, to columns in the order of the rows."""
+    places = {chunk: (cut, place) for chunks, cut in parts for place, chunk in enumerate(chunks.tolist())}
+    ordered = [(cut, place, taken(cut.used[place])) for _, (cut, place) in sorted(places.items(), key=lambda at: at[0])]
+    for name, column in zip(names, columns, strict=True):
+        if len(column):
+            np.concatenate([getattr(cut, name)[place, of] for cut, place, of in ordered], out=column)
 
 
 def _cut_block(start, stop, sites, wall, spacing):
@@ -191,20 +195,30 @@ def _cut_block(start, stop, sites, wall, spacing):
     # A large cell has as many neighbours as lie on its surface.
     room = int(ROOM * kernels.CHUNK + LARGE * (sites.weights.max() - sites.weights.min()) / spacing**2)
     todo = np.arange(-(-n // kernels.CHUNK))
-    rows = [np.empty(n, kind) for kind in (np.int8, np.uint8, float, np.int32, np.int32)]
-    again = np.zeros(n, dtype=bool)
+    rows = [np.zeros(n, kind) for kind in (np.int8, np.uint8, float, np.int32, np.int32)]
     while len(todo):
         cut = _empty_cut(rows, len(todo), room)
-        near = tangents_within(wall, sites.points[start:stop], reach)
-        what = todo, start, sites, wall, near, _limits(sites, spacing, reach), cut
-        shared_out(lambda first, last, what=what: kernels.cut_cells(first, last, *what), len(todo), piece=PIECE)
+        round_wall = (None, None)
+        if len(wall.normals):
+            round_wall = wall, tangents_within(wall, sites.points[start:stop], reach)
+        what = todo, start, sites, *round_wall, _limits(sites, wall, spacing, reach), cut
+        shared_out(_cut_chunks, len(todo), *what, piece=PIECE)
         blind = _unseen(cut.status, len(wall.normals) and reach < 2 * sites.size.max())
-        full = cut.used > room
+        total = cut.used.sum(axis=1)
+        full = total > room
         redone = full | np.isin(todo, blind)
-        again |= (cut.times > 1) | np.isin(np.arange(n) // kernels.CHUNK, todo[redone])
         parts.append((todo[~redone], cut if not redone.any() else _kept(cut, ~redone)))
-        todo, room, reach = todo[redone], max(room, int(1.1 * cut.used.max())), 1.35 * reach
-    return cut, parts, np.count_nonzero(again)
+        todo, room, reach = todo[redone], max(room, int(1.1 * total.max())), 1.35 * reach
+    return cut, parts, np.count_nonzero(cut.times > 1)
+
+
+def _cut_chunks(first, last, *what):
+    """Cut chunks in places from first to last, with more scratch memory where a cell needs it."""
+    *given, cut = what
+    at, end, planes, room = first * kernels.CHUNK, last * kernels.CHUNK, kernels.PLANES, kernels.ROOM
+    while at < end:
+        at = kernels.cut_cells(at, end, *given, empty_candidates(room), empty_polyhedron(planes), cut)
+        planes, room = 4 * planes, 4 * room
 
 
 def _check_filled(volumes, volume, domain):
@@ -226,7 +240,7 @@ def _unseen(status, rounded):
     return np.unique(np.flatnonzero(bad) // kernels.CHUNK)
 
 
-def _limits(sites, spacing, reach):
+def _limits(sites, wall, spacing, reach):
     return kernels.Limits(
         box=START * spacing,
         widest=2.0 * sites.size.max(),
@@ -234,13 +248,14 @@ def _limits(sites, spacing, reach):
         coarsest=1e-8 * spacing,
         reach=reach,
         lightest=sites.weights.min(),
+        # Tangent planes enclose as much as a round body: their corners stand out of its box.
+        flat=~sites.periodic & (wall.across == 0.0),
         sliver=SLIVER * spacing**2,
     )
 
 
 def _empty_cut(rows, chunks, room):
-    kinds = np.int64, np.uint8, float, float
-    return kernels.Cut(*rows, np.empty(chunks, np.int64), *(np.empty((chunks, room), kind) for kind in kinds))
+    return kernels.Cut(*rows, np.empty((chunks, 2), np.int64), *(np.empty((chunks, room), kind) for kind in LINKS))
 
 
 def _kept(cut, good):
@@ -255,7 +270,7 @@ def _matched(number, links, spacing):
     """
     indptr = np.concatenate([[0], np.cumsum(number, dtype=np.int64)])
     matched = np.empty(len(links[AREA]))
-    match_links(indptr, *links[: AREA + 1], matched)
+    shared_out(match_links, len(number), indptr, *links[: AREA + 1], matched, piece=MATCHED)
     lost = np.flatnonzero(matched == 0.0)
     if len(lost):
         largest = links[AREA][lost].max()

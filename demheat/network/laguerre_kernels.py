@@ -12,39 +12,33 @@ from numba import njit
 from demheat.network.polyhedron_kernels import (
     AREA,
     DISTANCE,
+    ONCE,
     PLAIN,
     X,
     Y,
     Z,
     beyond,
     cut,
-    empty_polyhedron,
     measure,
     start_box,
 )
 from demheat.network.sites_kernels import (
-    HERE,
     HIGH,
     LOW,
     arrange,
     cutting_reach,
-    empty_candidates,
     find_home,
     gather_ring,
     ring_distance,
 )
 
 OK, UNSECURED, OVERFLOW, TANGLED, NARROW, CROWDED = 0, 1, 2, 3, 4, 5
-# Sites cut with one scratch memory, by one thread.
+# Sites whose facets are noted in one place, by one thread.
 CHUNK = 128
 # Planes, and sites that may cut, that there is room for at first: enough for most cells of most packings.
 PLANES, ROOM = 96, 192
 # Times that a cell is begun at most; each time what was lacking is doubled or more.
 MOST_TIMES = 40
-
-
-# Of functions called in one place: what Numba inlines itself it compiles once, not at every level of its callers.
-ONCE = {**PLAIN, "inline": "always"}
 
 
 class Limits(NamedTuple):
@@ -62,6 +56,8 @@ class Limits(NamedTuple):
         Planes of a round wall farther than this were not listed.
     lightest : float, m2
         The least weight.
+    flat : (3,) bool array
+        Across which axes the box has flat walls.
     sliver : float, m2
         Facets up to this area are rounding where more than four cells meet in one point, and left out.
     """
@@ -72,6 +68,7 @@ class Limits(NamedTuple):
     coarsest: float
     reach: float
     lightest: float
+    flat: np.ndarray
     sliver: float
 
 
@@ -84,17 +81,18 @@ class Cut(NamedTuple):
         OK; UNSECURED if a site or a plane of a round wall beyond what was seen might cut the cell; TANGLED by rounding.
         What follows is good for cells that are OK.
     times : (r,) uint8 array
-        How often the cell was begun: more than once is rare.
+        How often the cell was begun, 0 at first: more than once is rare.
     volume : (r,) float array, m3
         Zero for the cell of a hidden site.
     links, ends : (r,) int32 arrays
         Numbers of facets towards other sites and towards walls.
-    used : (c,) int64 array
-        Facets of each chunk; if more than there is room for, the last are missing.
-    neighbour : (c, room) int64 array
-        The site beyond each facet; -1 - s for side s of the box, -7 - q for plane q of a round wall.
+    used : (c, 2) int64 array
+        Facets of each chunk, towards sites and towards walls; if both are more than there is room for, some are wrong.
+    neighbour : (c, room) uint32 array
+        The site beyond each facet from the front on; from the back on side s of the box, or 6 + q for plane q of a
+        round wall.
     image : (c, room) uint8 array
-        Which periodic image of it.
+        Which periodic image of a site.
     area : (c, room) float array, m2
     distance : (c, room) float array, m
         From the site to the facet's plane.
@@ -179,13 +177,12 @@ def _nearest(center, tangents, wall):
 
 
 @njit(**ONCE)
-def _start(i, half, sites, wall, found, cell):
-    """Begin the cell of site i as a box of that half edge, within walls; the vertex count."""
+def _start(i, half, sites, flat, found, cell):
+    """Begin the cell of site i as a box of that half edge, within flat walls; the vertex count."""
     low, high = found.frame[LOW], found.frame[HIGH]
     for k in range(3):
         low[k], high[k] = -half, half
-        # Tangent planes enclose as much as the round body: their corners stand out of its box.
-        if not sites.periodic[k] and wall.across[k] == 0.0:
+        if flat[k]:
             low[k], high[k] = max(low[k], -sites.points[i, k]), min(high[k], sites.size[k] - sites.points[i, k])
         cell.label[2 * k] = NARROW if low[k] == -half else 0
         cell.label[2 * k + 1] = NARROW if high[k] == half else 0
@@ -238,7 +235,7 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
             if state != OK or count == 0:
                 return state, 0, 0
         ring += 1
-        distance, ended = ring_distance(ring, level, sites, found)
+        distance, ended = ring_distance(ring, found.grid, found.frame)
         if distance >= cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
             return OK, count, planes
         if ended:
@@ -253,23 +250,26 @@ def _secured(i, sites, found, farthest):
         ring, ended = 1, False
         while not ended:
             ring += 1
-            distance, ended = ring_distance(ring, level, sites, found)
+            distance, ended = ring_distance(ring, found.grid, found.frame)
         if distance < cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
             return False
     return True
 
 
-@njit(**PLAIN)
-def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
+@njit(**ONCE)
+def _cell(i, half, sites, wall, tangents, eps, limits, found, cell):
     """Cut the cell of site i from a box of that half edge; (status, vertex count, number of planes)."""
-    center = sites.points[i]
-    count, planes, state = _start(i, half, sites, wall, found, cell), 6, OK
-    # The wall plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
-    first = _nearest(center, tangents, wall)
-    if first >= 0:
-        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents[first : first + 1], -1)
+    count, planes, state, first = _start(i, half, sites, limits.flat, found, cell), 6, OK, -1
+    if wall is not None:
+        # The plane in front of the centre bounds the cell early; the others of the wall mostly miss it in the end.
+        first = _nearest(sites.points[i], tangents, wall)
+        if first >= 0:
+            one = tangents[first : first + 1]
+            state, count, planes = _cut_wall(cell, count, planes, sites.points[i], eps, wall, one, -1)
     # Sites of its own level are all round it, those of others perhaps far away: the cell is small when they are met.
-    own, wide = np.searchsorted(sites.heaviest, sites.weights[i]), False
+    own, wide = 0, False
+    while sites.heaviest[own] < sites.weights[i]:
+        own += 1
     for turn in range(len(sites.heaviest)):
         level = own if turn == 0 else turn - 1 if turn <= own else turn
         if state != OK or count == 0:
@@ -281,93 +281,97 @@ def _cell(i, half, sites, wall, tangents, eps, reach, found, cell):
         return state, 0, 0
     if wide and not _secured(i, sites, found, _farthest(cell, count)):
         return UNSECURED, 0, 0
-    if len(wall.normals):
+    if wall is not None:
         skip = tangents[first] if first >= 0 else -1
-        state, count, planes = _cut_wall(cell, count, planes, center, eps, wall, tangents, skip)
-        if state == OK and count > 0 and _misses_tangents(cell, count, reach, center, wall):
+        state, count, planes = _cut_wall(cell, count, planes, sites.points[i], eps, wall, tangents, skip)
+        if state == OK and count > 0 and _misses_tangents(cell, count, limits.reach, sites.points[i], wall):
             state = UNSECURED
     return state, count, planes
 
 
 @njit(**PLAIN)
-def _narrow(cell, count):
-    """Whether a side of the start box that is no wall still bounds the cell."""
-    for v in range(count):
-        for k in range(3):
-            side = cell.corner[v, k]
-            if side < 6 and cell.label[side] == NARROW:
-                return True
-    return False
-
-
-@njit(**PLAIN)
 def _note_facets(row, chunk, planes, cell, sliver, out):
     """Note the facets of more than a sliver's area at the end of a chunk's."""
-    e, links, ends = out.used[chunk], 0, 0
+    links, ends, room = out.used[chunk, 0], out.used[chunk, 1], out.area.shape[1]
     for f in range(planes):
         area = cell.plane[f, AREA]
         if area <= sliver:
             continue
         label = cell.label[f]
         inner = f >= 6 and label >= 0
+        if links + ends < room:
+            e = links if inner else room - 1 - ends
+            out.neighbour[chunk, e] = label >> 5 if inner else (f if f < 6 else 5 - label)
+            out.image[chunk, e] = label & 31
+            out.area[chunk, e], out.distance[chunk, e] = area, cell.plane[f, DISTANCE]
         links += inner
         ends += not inner
-        if e < out.area.shape[1]:
-            if inner:
-                out.neighbour[chunk, e], out.image[chunk, e] = label >> 5, label & 31
-            else:
-                out.neighbour[chunk, e], out.image[chunk, e] = -1 - f if f < 6 else label - 6, HERE
-            out.area[chunk, e], out.distance[chunk, e] = area, cell.plane[f, DISTANCE]
-        e += 1
-    out.used[chunk], out.links[row], out.ends[row] = e, links, ends
+    out.links[row], out.ends[row] = links - out.used[chunk, 0], ends - out.used[chunk, 1]
+    out.used[chunk, 0], out.used[chunk, 1] = links, ends
 
 
-@njit(cache=True, error_model="numpy", nogil=True)
-def cut_cells(first, last, chunks, start, sites, wall, near, limits, out):
-    """Cut the cells of some chunks of CHUNK rows, those in places from first to last in a list.
+@njit(**PLAIN, nogil=True)
+def cut_cells(first, last, chunks, start, sites, wall, near, limits, found, cell, out):
+    """Cut the cells of some chunks of CHUNK rows, those in places from first / CHUNK to last / CHUNK in a list.
 
-    Each chunk has scratch memory of its own, which grows where a cell needs more, and writes its own rows and facets.
-    Python's lock is not held: threads may cut other chunks meanwhile.
+    Each chunk has rows and facets of its own. Python's lock is not held: threads may cut other chunks meanwhile.
 
     Parameters
     ----------
     first, last : int
+        CHUNK times places; to go on, more.
     chunks : (c,) int64 array
         Numbers of the chunks among the rows of `out`.
     start : int
         The site of its first row.
     sites : Sites
-    wall : RoundWall
-        Tangent planes normal.(x - middle) <= radius; without planes for a box.
-    near : Tangents
+    wall : RoundWall or None
+        Tangent planes normal.(x - middle) <= radius; None for a box, for which half as much is compiled.
+    near : Tangents or None
         The planes of the wall that touch the body within reach of each row's site.
     limits : Limits
-    out : Cut, out
+    found : Candidates
+        Scratch memory.
+    cell : Polyhedron
+        Scratch memory.
+    out : Cut, in and out
+
+    Returns
+    -------
+    int
+        `last`; less if a cell needs more scratch memory: where to go on with more.
     """
-    for place in range(first, last):
-        found, cell = empty_candidates(ROOM), empty_polyhedron(PLANES)
-        out.used[place] = 0
-        for row in range(chunks[place] * CHUNK, min(len(out.status), (chunks[place] + 1) * CHUNK)):
-            i = start + row
+    for at in range(first, last):
+        place, within = at // CHUNK, at % CHUNK
+        row = chunks[place] * CHUNK + within
+        if within == 0:
+            out.used[place, 0], out.used[place, 1] = 0, 0
+        if row >= len(out.status):
+            continue
+        i = start + row
+        half = min(limits.box + 2.0 * np.sqrt(sites.weights[i] - limits.lightest), limits.widest)
+        eps, state, count, planes, volume, tangents = limits.eps, OK, 0, 0, 0.0, None
+        if near is not None:
             tangents = near.planes[near.pointers[row] : near.pointers[row + 1]]
-            half = min(limits.box + 2.0 * np.sqrt(sites.weights[i] - limits.lightest), limits.widest)
-            eps, state, count, planes = limits.eps, OK, 0, 0
-            for times in range(1, MOST_TIMES):
-                state, count, planes = _cell(i, half, sites, wall, tangents, eps, limits.reach, found, cell)
-                if state == OK and half < limits.widest and _narrow(cell, count):
-                    state = NARROW
-                out.times[row] = times
-                if state == CROWDED:
-                    found = empty_candidates(4 * len(found.label))
-                elif state == OVERFLOW:
-                    cell = empty_polyhedron(4 * len(cell.label))
-                elif state == NARROW:
-                    half = min(4.0 * half, limits.widest)
-                elif state == TANGLED and eps < limits.coarsest:
-                    eps *= 4.0
-                else:
-                    break
-            out.status[row], out.volume[row], out.links[row], out.ends[row] = state, 0.0, 0, 0
+        while out.times[row] < MOST_TIMES:
+            out.times[row] += 1
+            state, count, planes = _cell(i, half, sites, wall, tangents, eps, limits, found, cell)
             if state == OK and count > 0:
-                out.volume[row] = measure(cell, count, planes)
-                _note_facets(row, place, planes, cell, limits.sliver, out)
+                volume = measure(cell, count, planes)
+                for side in range(6):
+                    # A side of the start box that is no wall still bounds the cell.
+                    if half < limits.widest and cell.label[side] == NARROW and cell.plane[side, AREA] > 0.0:
+                        state = NARROW
+            if state == CROWDED or state == OVERFLOW:
+                return at
+            if state == NARROW:
+                half = min(4.0 * half, limits.widest)
+            elif state == TANGLED and eps < limits.coarsest:
+                eps *= 4.0
+            else:
+                break
+        out.status[row], out.volume[row], out.links[row], out.ends[row] = state, 0.0, 0, 0
+        if state == OK and count > 0:
+            out.volume[row] = volume
+            _note_facets(row, place, planes, cell, limits.sliver, out)
+    return last

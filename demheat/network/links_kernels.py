@@ -3,7 +3,11 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
+
+# Options of kernels of which threads do pieces, from `first` to `last`: they make no array, so that no references are
+# counted, and hold no lock.
+IN_PIECES = {"cache": True, "error_model": "numpy", "_nrt": False, "nogil": True}
 
 
 class Links(NamedTuple):
@@ -50,8 +54,8 @@ def places_of(network):
     return Places(network.centers, network.size, network.image)
 
 
-@njit(cache=True)
-def rise_along(i, e, links, places, gradient, x, branch):
+@njit(cache=True, error_model="numpy", _nrt=False)
+def rise_along(i, e, links, places, gradient, x):
     """Rise of the temperature from a particle to its neighbour (image) along a link, and the way there.
 
     Parameters
@@ -63,32 +67,28 @@ def rise_along(i, e, links, places, gradient, x, branch):
     gradient : (3,) float array, K/m
     x : (n,) float array, K
         Temperatures less the linear field of the gradient.
-    branch : (3,) float array, m, out
-        Vector from the particle to its neighbour.
 
     Returns
     -------
     rise : float, K
-    square : float, m2
-        Squared length of the branch vector.
+    u, v, w : float, m
+        Vector from the particle to its neighbour.
     """
     code = np.int64(places.image[e])
     j, centers, size = links.indices[e], places.centers, places.size
-    branch[0] = centers[j, 0] - centers[i, 0] + (code // 9 - 1) * size[0]
-    branch[1] = centers[j, 1] - centers[i, 1] + (code // 3 % 3 - 1) * size[1]
-    branch[2] = centers[j, 2] - centers[i, 2] + (code % 3 - 1) * size[2]
-    rise = x[j] - x[i]
-    for k in range(3):
-        rise += gradient[k] * branch[k]
-    return rise, branch[0] ** 2 + branch[1] ** 2 + branch[2] ** 2
+    u = centers[j, 0] - centers[i, 0] + (code // 9 - 1) * size[0]
+    v = centers[j, 1] - centers[i, 1] + (code // 3 % 3 - 1) * size[1]
+    w = centers[j, 2] - centers[i, 2] + (code % 3 - 1) * size[2]
+    return x[j] - x[i] + gradient[0] * u + gradient[1] * v + gradient[2] * w, u, v, w
 
 
-@njit(cache=True, parallel=True)
-def match_links(indptr, indices, image, area, matched):
-    """Give each link one area, from those that its two cells see.
+@njit(**IN_PIECES)
+def match_links(first, last, indptr, indices, image, area, matched):
+    """Give each link of rows from first to last one area, from those that its two cells see.
 
     Parameters
     ----------
+    first, last : int
     indptr : (n + 1,) int64 array
         Row pointers.
     indices : (m,) uint32 array
@@ -100,11 +100,12 @@ def match_links(indptr, indices, image, area, matched):
     matched : (m,) float array, m2, out
         The mean of both; 0 where only one of the cells sees the facet.
     """
-    for p in prange(len(indptr) - 1):
-        for e in range(indptr[p], indptr[p + 1]):
-            q, back = indices[e], 26 - image[e]
+    one = np.uint64(1)
+    for p in range(np.uint64(first), np.uint64(last)):
+        for e in range(np.uint64(indptr[p]), np.uint64(indptr[p + one])):
+            q, back = np.uint64(indices[e]), 26 - image[e]
             matched[e] = 0.0
-            for r in range(indptr[q], indptr[q + 1]):
+            for r in range(np.uint64(indptr[q]), np.uint64(indptr[q + one])):
                 if indices[r] == p and image[r] == back:
                     matched[e] = 0.5 * (area[e] + area[r])
                     break

@@ -15,6 +15,9 @@ from numba import njit
 
 # Options of functions that make no array: no references are counted, and no division is checked.
 PLAIN = {"cache": True, "error_model": "numpy", "_nrt": False}
+# Of functions called in one place: what Numba inlines itself it compiles once, not at every level of its callers, and
+# hands no arrays on, each of which is a dozen arguments.
+ONCE = {**PLAIN, "inline": "always"}
 # Where things stand in the arrays of a Polyhedron: few arrays are quick to hand on, and quick to compile.
 X, Y, Z, ABOVE = range(4)
 EDGE, GONE, BEGINS = 3, 6, 7
@@ -47,7 +50,6 @@ class Polyhedron(NamedTuple):
     label: np.ndarray
 
 
-@njit(cache=True)
 def empty_polyhedron(most):
     """Memory of a Polyhedron of up to `most` planes."""
     return Polyhedron(
@@ -92,7 +94,7 @@ def start_box(low, high, cell):
     return 8
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def beyond(cell, count, x, y, z, limit):
     """How many of the vertices have a larger product with a vector than that.
 
@@ -120,7 +122,7 @@ def _end(corner, w, b):
     return 0 if corner[w, 0] == b else (1 if corner[w, 1] == b else 2)
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def _heights(cell, count, slot):
     """Note the height of each vertex above the plane in a slot."""
     x, y, z, h = cell.plane[slot, 0], cell.plane[slot, 1], cell.plane[slot, 2], cell.plane[slot, DISTANCE]
@@ -128,7 +130,7 @@ def _heights(cell, count, slot):
         cell.vertex[ABOVE, v] = x * cell.vertex[X, v] + y * cell.vertex[Y, v] + z * cell.vertex[Z, v] - h
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def _add(cell, new, v, k, slot):
     """Put a new vertex where edge k of vertex v crosses the plane in a slot."""
     vertex, corner = cell.vertex, cell.corner
@@ -142,7 +144,7 @@ def _add(cell, new, v, k, slot):
     corner[a, BEGINS] = new
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def _close(corner, first, total):
     """Join the new vertices from `first` on to a rim; False unless they are one simple loop."""
     v, steps = first, 0
@@ -159,7 +161,7 @@ def _close(corner, first, total):
     return v == first and steps == total - first
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def _fill(cell, gone, total, eps):
     """Move the last vertices to the places of those that are gone; the new number of vertices."""
     vertex, corner = cell.vertex, cell.corner

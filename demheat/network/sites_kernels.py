@@ -10,11 +10,12 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from demheat.network.polyhedron_kernels import PLAIN
+from demheat.network.polyhedron_kernels import ONCE, PLAIN
 
 # Code of the image in the box itself: no shift along any axis.
 HERE = 13
 LOW, HIGH, WIDTH = range(3)
+HOME, COUNT, PERIODIC = range(3)
 # Bins that candidates are put in order by.
 BINS = 32
 
@@ -68,8 +69,9 @@ class Candidates(NamedTuple):
         The candidates, nearest plane first as far as `arrange` tells.
     bin : (room,) uint32 array
         Scratch of `arrange`.
-    home : (3,) int64 array
-        Grid cell of the cell's site.
+    grid : (3, 3) int64 array
+        For each axis, the grid cell of the cell's site, the number of grid cells, and 1 if it is periodic, in columns
+        HOME, COUNT and PERIODIC.
     frame : (3, 3) float array, m
         From the site to the low and to the high side of its grid cell, and the width of a grid cell, in rows LOW, HIGH
         and WIDTH.
@@ -79,11 +81,10 @@ class Candidates(NamedTuple):
     plane: np.ndarray
     order: np.ndarray
     bin: np.ndarray
-    home: np.ndarray
+    grid: np.ndarray
     frame: np.ndarray
 
 
-@njit(cache=True)
 def empty_candidates(room):
     """Uninitialised memory of up to `room` Candidates."""
     return Candidates(
@@ -91,7 +92,7 @@ def empty_candidates(room):
         np.empty((room, 4)),
         np.empty(room, np.uint32),
         np.empty(room + BINS, np.uint32),
-        np.empty(3, np.int64),
+        np.empty((3, 3), np.int64),
         np.empty((3, 3)),
     )
 
@@ -126,25 +127,24 @@ def find_home(i, level, sites, found):
     found : Candidates, out
     """
     for k in range(3):
-        width = sites.size[k] / sites.counts[level, k]
+        count = sites.counts[level, k]
+        width = sites.size[k] / count
         # As points are filed: rounding may put one a hair beyond its cell, and the gap is then negative.
-        home = np.int64(sites.points[i, k] / sites.size[k] * sites.counts[level, k])
-        found.home[k] = min(max(home, 0), sites.counts[level, k] - 1)
-        found.frame[LOW, k] = sites.points[i, k] - found.home[k] * width
-        found.frame[HIGH, k] = width - found.frame[LOW, k]
-        found.frame[WIDTH, k] = width
+        home = min(max(np.int64(sites.points[i, k] / sites.size[k] * count), 0), count - 1)
+        low = sites.points[i, k] - home * width
+        found.grid[k, HOME], found.grid[k, COUNT], found.grid[k, PERIODIC] = home, count, sites.periodic[k]
+        found.frame[LOW, k], found.frame[HIGH, k], found.frame[WIDTH, k] = low, width - low, width
 
 
 @njit(**PLAIN)
-def ring_distance(ring, level, sites, found):
+def ring_distance(ring, grid, frame):
     """What a ring of grid cells keeps away from the site, and whether it and those beyond hold no cell.
 
     Parameters
     ----------
-    ring, level : int
-    sites : Sites
-    found : Candidates
-        After `find_home`.
+    ring : int
+    grid, frame : arrays
+        Of Candidates, after `find_home`.
 
     Returns
     -------
@@ -154,17 +154,17 @@ def ring_distance(ring, level, sites, found):
     """
     least, ended = np.inf, True
     for k in range(3):
-        images = np.int64(sites.periodic[k]) * sites.counts[level, k]
+        images = grid[k, PERIODIC] * grid[k, COUNT]
         for end in range(2):
-            cells = found.home[k] if end == 0 else sites.counts[level, k] - 1 - found.home[k]
+            cells = grid[k, HOME] if end == 0 else grid[k, COUNT] - 1 - grid[k, HOME]
             if ring <= cells + images:
                 ended = False
             if ring <= cells + images or images:
-                least = min(least, found.frame[end, k] + (min(ring, cells + images + 1) - 1) * found.frame[WIDTH, k])
+                least = min(least, frame[end, k] + (min(ring, cells + images + 1) - 1) * frame[WIDTH, k])
     return max(least, 0.0), ended
 
 
-@njit(**PLAIN, inline="always")
+@njit(**ONCE)
 def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
     """Add the sites of items from begin to end, shifted by an image, that may cut; their number, -1 beyond the room."""
     x = sites.points[i, 0] - sx * sites.size[0]
@@ -199,24 +199,16 @@ def _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found):
     return m
 
 
-@njit(**PLAIN, inline="always")
-def _beyond(step, k, found):
-    """Squared distance along an axis from the site to the grid cells that many steps away."""
-    if step == 0:
-        return 0.0
-    gap = found.frame[HIGH, k] if step > 0 else found.frame[LOW, k]
-    gap += (abs(step) - 1) * found.frame[WIDTH, k]
-    return gap * gap
-
-
 @njit(**PLAIN)
-def _image(c, count, periodic):
-    """Which image of the box a grid cell along an axis lies in; 2 where there is none."""
-    if 0 <= c < count:
-        return 0
-    if not periodic or c < -count or c >= 2 * count:
-        return 2
-    return -1 if c < 0 else 1
+def _step(step, k, grid, frame):
+    """Grid cells so many steps along an axis: image of the box (2: there is none), number in it, squared distance."""
+    count, c = grid[k, COUNT], grid[k, HOME] + step
+    image = -1 if c < 0 else np.int64(c >= count)
+    if image != 0 and (grid[k, PERIODIC] == 0 or c < -count or c >= 2 * count):
+        image = 2
+    way = step * frame[WIDTH, k]
+    gap = max(0.0, way - frame[LOW, k], -way - frame[HIGH, k])
+    return image, c - image * count, gap * gap
 
 
 @njit(**PLAIN)
@@ -239,29 +231,29 @@ def gather_ring(i, ring, level, farthest, sites, found):
         Their number; -1 if there is no room.
     """
     limit = cutting_reach(farthest, sites.weights[i], sites.heaviest[level]) ** 2
-    nx, ny, nz = sites.counts[level]
-    m = 0
+    grid, frame, m = found.grid, found.frame, 0
     for a in range(-ring, ring + 1):
-        near, sx = _beyond(a, 0, found), _image(found.home[0] + a, nx, sites.periodic[0])
+        sx, x, near = _step(a, 0, grid, frame)
         if sx == 2 or near >= limit:
             continue
         for b in range(-ring, ring + 1):
-            beside, sy = near + _beyond(b, 1, found), _image(found.home[1] + b, ny, sites.periodic[1])
+            sy, y, beside = _step(b, 1, grid, frame)
+            beside += near
             if sy == 2 or beside >= limit:
                 continue
-            row = (found.home[0] + a - sx * nx) * ny + found.home[1] + b - sy * ny
+            row = sites.first[level] + (x * grid[1, COUNT] + y) * grid[2, COUNT]
             whole = ring == 1 or abs(a) == ring or abs(b) == ring
             c = -ring
             while c <= ring:
-                sz, last = _image(found.home[2] + c, nz, sites.periodic[2]), c
-                if sz != 2 and beside + _beyond(c, 2, found) < limit:
-                    cell = sites.first[level] + row * nz + found.home[2] + c - sz * nz
+                last, (sz, z, far) = c, _step(c, 2, grid, frame)
+                if sz != 2 and beside + far < limit:
                     # Cells in a row of the same image lie side by side.
-                    while whole and last < ring and _image(found.home[2] + last + 1, nz, sites.periodic[2]) == sz:
-                        if beside + _beyond(last + 1, 2, found) >= limit:
+                    while whole and last < ring:
+                        image, _, far = _step(last + 1, 2, grid, frame)
+                        if image != sz or beside + far >= limit:
                             break
                         last += 1
-                    begin, end = sites.start[cell], sites.start[cell + last - c + 1]
+                    begin, end = sites.start[row + z], sites.start[row + z + last - c + 1]
                     m = _cells(begin, end, sx, sy, sz, i, farthest, sites, m, found)
                     if m < 0:
                         return m

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
 from demheat.runtime.limits import check_memory
+from demheat.runtime.threads import shared_out
 
 # Of twins along an interface, in mean radii of the packing; found best together with their offsets, see
 # `demheat.packing.conforming`.
@@ -117,6 +118,8 @@ def _on_spheres(numbers, interfaces, radius, turns, tally, usual, wanted):
         refined = close
     tally.add(spacing / usual[even[2]], interfaces.stacks.sizes()[even[2]])
     turns.used += len(numbers) + int(refined.sum())
+    if not refined.any():
+        return even
     chosen, matrices = numbers[refined], turns.matrices(turn[refined] + 1)
     # Fibonacci points descend along the axis of their sphere.
     side = np.minimum(FINE * radius, 0.5 * usual[chosen])
@@ -162,9 +165,45 @@ def _refined(interfaces, even, spacing, fine, usual, wanted):
     wanted *= 1.0 + TIES * np.random.default_rng(0).random(len(narrow))
     chosen = np.zeros(len(narrow), dtype=bool)
     start, there = (_starts(own, fine.numbers) for own in (more[2], even[2]))
-    kernels.thinned(start, more[0], THINNING * wanted, there, even[0], fine.axes, chosen)
+    where = (start, more[0], THINNING * wanted), (there, even[0]), fine.axes, chosen
+    shared_out(thinned, len(start), *where, piece=1)
     columns = [np.concatenate(pair) for pair in zip(even, _taken(more, np.flatnonzero(chosen)), strict=True)]
     return _taken(columns, np.argsort(columns[2], kind="stable"))
+
+
+def thinned(first, last, fine, even, axes, chosen) -> None:
+    """Mark points of surfaces from first to last that keep their distance, see `surfaces_kernels.thin`.
+
+    `fine` are (where those of each surface begin and end, points, what they keep), `even` are (where, points) that are
+    there already. Points are sought along the axis of their surface, faster where they ascend already.
+    """
+    (spans, points, least), (taken_spans, taken) = fine, even
+    some = slice(first, last)
+    for (begin, end), (low, high), axis in zip(spans[some], taken_spans[some], axes[some], strict=True):
+        if begin == end:
+            continue
+        here, there = points[begin:end], taken[low:high]
+        along, order = _along(here, axis), _ascending(least[begin:end])
+        way_up = place = np.arange(end - begin)
+        if np.any(along[1:] < along[:-1]):
+            way_up, place = _ascending(along), np.empty_like(place)
+            place[way_up] = np.arange(end - begin)
+            along = along[way_up]
+        beside = _along(there, axis)
+        below = np.searchsorted(along, beside - least[begin:end].max())
+        free = np.ones(end - begin, dtype=bool)
+        found = order, way_up, place, along, there, beside, below, free, chosen[begin:end]
+        kernels.thin(here, least[begin:end], *found)
+
+
+def _along(points, axis):
+    return points[:, 0] * axis[0] + points[:, 1] * axis[1] + points[:, 2] * axis[2]
+
+
+def _ascending(values):
+    order = np.empty(len(values), np.int64)
+    kernels.ascending(values, np.zeros(len(values) + 1, np.int64), order)
+    return order
 
 
 def _taken(columns, places):

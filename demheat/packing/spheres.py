@@ -2,10 +2,13 @@
 
 import numpy as np
 
-import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import pattern_count
+from demheat.runtime.threads import shared_out
 from demheat.scene.shapes.bins import ball_bins
+
+# Spheres, points and facets that a thread does at a time.
+SPHERES, POINTS, FACETS = 16, 8192, 1024
 
 
 class Spheres:
@@ -30,7 +33,8 @@ class Spheres:
         """Evenly spread points on some of the spheres."""
         start = np.concatenate([[0], np.cumsum(pattern_count(self.radii[numbers], spacing))])
         points, normals = np.empty((start[-1], 3)), np.empty((start[-1], 3))
-        kernels.turned_patterns(start, turns, self.balls[numbers], points, normals)
+        where = start, turns, self.balls[numbers], points, normals
+        shared_out(kernels.turned_patterns, len(numbers), *where, piece=SPHERES)
         return points, normals, np.repeat(numbers, np.diff(start))
 
     def touched(self, points, normals, own):
@@ -50,7 +54,8 @@ class Spheres:
         """Distance of points to the nearest surface that is no kin, periodic images included, (n,) float array, m."""
         gaps = np.full(len(points), np.inf)
         if len(self):
-            kernels.nearest_gaps(points, kin, leader[: len(self)], self.balls, self.bins, self.reach, gaps)
+            where = points, kin, leader[: len(self)], self.balls, self.bins, self.reach, gaps
+            shared_out(kernels.nearest_gaps, len(points), *where, piece=POINTS)
         for number in self.lonely:
             mine = np.flatnonzero(own == number)
             if len(mine):
@@ -70,7 +75,8 @@ def inscribed_radii(normals, count):
     own = np.repeat(np.arange(len(count)), count)
     order = np.lexsort((normals[:, 2], own))
     areas = np.empty(len(normals))
-    kernels.facet_areas(np.concatenate([[0], np.cumsum(count)]), own, normals[order], areas)
+    where = np.concatenate([[0], np.cumsum(count)]), own, normals[order], areas
+    shared_out(kernels.facet_areas, len(normals), *where, piece=FACETS)
     # Pyramids of height 1.
     volume = np.bincount(own, areas, len(count)) / 3.0
     return np.cbrt(4.0 / 3.0 * np.pi / volume)

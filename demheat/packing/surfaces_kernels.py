@@ -1,11 +1,20 @@
-"""Many spherical surfaces at once, compiled: patterns of points on them, gaps between them, facets of polyhedra."""
+"""Many spherical surfaces at once, compiled: patterns of points on them, gaps between them, facets of polyhedra.
+
+Threads do spheres, points or normals from `first` to `last`.
+"""
 
 import math
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
-# Facets per task: scratch memory is made once for each. Points of a pattern from one sine to the next.
+# Options of what threads do pieces of, and of what makes no array: no references are counted, no division is checked.
+IN_PIECES = {"cache": True, "error_model": "numpy", "nogil": True}
+PLAIN = {"cache": True, "error_model": "numpy", "_nrt": False}
+# Of what is called in one place: compiled once, not again at every level of its callers.
+ONCE = {**PLAIN, "inline": "always"}
+
+# Points of a pattern from one sine to the next.
 CHUNK = 64
 # Neighbours that a facet is cut by before all others are looked at.
 AHEAD = 6
@@ -14,12 +23,14 @@ AHEAD = 6
 WIDEST, MOST_CORNERS = 4.0, 96
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
-def turned_patterns(start, turns, balls, points, normals):
+@njit(**IN_PIECES)
+def turned_patterns(first, last, start, turns, balls, points, normals):
     """Fibonacci points on spheres, each pattern turned.
 
     Parameters
     ----------
+    first, last : int
+        Spheres.
     start : (m + 1,) int array
         Where the points of each sphere begin.
     turns : (m, 3, 3) float array
@@ -30,7 +41,7 @@ def turned_patterns(start, turns, balls, points, normals):
     """
     golden = math.pi * (1.0 + math.sqrt(5.0))
     cos_step, sin_step = math.cos(golden), math.sin(golden)
-    for g in prange(len(balls)):
+    for g in range(first, last):
         count, cosine, sine = start[g + 1] - start[g], 1.0, 0.0
         for p in range(start[g], start[g + 1]):
             k = p - start[g]
@@ -47,7 +58,7 @@ def turned_patterns(start, turns, balls, points, normals):
             cosine, sine = cosine * cos_step - sine * sin_step, sine * cos_step + cosine * sin_step
 
 
-@njit(cache=True, inline="always")
+@njit(**PLAIN)
 def _cell(part, count, periodic):
     """Cell of a coordinate over the side of the box; the outer ones serve what lies beyond a wall."""
     if periodic:
@@ -55,18 +66,20 @@ def _cell(part, count, periodic):
     return min(max(np.int64(math.floor(part * count)), 0), count - 1)
 
 
-@njit(cache=True, inline="always")
+@njit(**PLAIN)
 def _image(d, side, per_side):
     """Offset to the nearest image; per_side is 0 without any."""
     return d - side * np.rint(d * per_side)
 
 
-@njit(parallel=True, cache=True, error_model="numpy")
-def nearest_gaps(points, own, kin, balls, bins, reach, gaps):
+@njit(**IN_PIECES)
+def nearest_gaps(first, last, points, own, kin, balls, bins, reach, gaps):
     """Distance of points to the nearest spherical surface but their own, nearest image; infinite beyond a reach.
 
     Parameters
     ----------
+    first, last : int
+        Points.
     points : (n, 3) float array, m
     own : (n,) int array
         The kin of spheres that each point belongs to, which do not count; any other number for none.
@@ -86,14 +99,14 @@ def nearest_gaps(points, own, kin, balls, bins, reach, gaps):
     """
     x, y, z = bins.size
     ix, iy, iz = (1.0 / x, 1.0 / y, 1.0 / z) if bins.periodic else (0.0, 0.0, 0.0)
-    dims, first, start, looked = bins.dims, bins.first, bins.start, 0
-    for p in prange(len(points)):
+    dims, begin, start, looked = bins.dims, bins.first, bins.start, 0
+    for p in range(first, last):
         px, py, pz = points[p, 0], points[p, 1], points[p, 2]
         nearest = np.inf
         for level in range(len(dims)):
             key = _cell(px / x, dims[level, 0], bins.periodic)
             key = key * dims[level, 1] + _cell(py / y, dims[level, 1], bins.periodic)
-            key = key * dims[level, 2] + _cell(pz / z, dims[level, 2], bins.periodic) + first[level]
+            key = key * dims[level, 2] + _cell(pz / z, dims[level, 2], bins.periodic) + begin[level]
             for entry in range(start[key], start[key + 1]):
                 ball = bins.balls[entry]
                 if kin[ball] == own[p]:
@@ -107,21 +120,21 @@ def nearest_gaps(points, own, kin, balls, bins, reach, gaps):
     return looked
 
 
-@njit(cache=True)
-def _along(points, axis):
-    """Coordinates along an axis."""
-    out = np.empty(len(points))
-    for k in range(len(points)):
-        out[k] = points[k, 0] * axis[0] + points[k, 1] * axis[1] + points[k, 2] * axis[2]
-    return out
+@njit(**PLAIN, nogil=True)
+def ascending(values, start, order):
+    """Stable order of numbers that are spread out: first into as many parts of their range, then by insertion.
 
-
-@njit(cache=True)
-def _ascending(values, order):
-    """Stable order of numbers that are spread out: first into as many parts of their range, then by insertion."""
-    n, low, high = len(values), values.min(), values.max()
+    Parameters
+    ----------
+    values : (n,) float array
+    start : (n + 1,) int64 array
+        Scratch memory, 0 at first.
+    order : (n,) int64 array, out
+    """
+    n, low, high = len(values), np.inf, -np.inf
+    for k in range(n):
+        low, high = min(low, values[k]), max(high, values[k])
     scale = (n - 1) / (high - low) if high > low else 0.0
-    start = np.zeros(n + 1, np.int64)
     for k in range(n):
         start[np.int64((values[k] - low) * scale) + 1] += 1
     for k in range(n):
@@ -138,36 +151,37 @@ def _ascending(values, order):
         order[m] = here
 
 
-@njit(cache=True)
-def _order_along(along):
-    """Order of coordinates; patterns of spheres ascend already."""
-    order = np.arange(len(along))
-    for k in range(1, len(along)):
-        if along[k] < along[k - 1]:
-            _ascending(along, order)
-            break
-    return order
+@njit(**PLAIN, nogil=True)
+def thin(points, least, order, way_up, place, along, taken, there, below, free, chosen):
+    """Choose points of a surface that keep their distance from each other and from those taken, closest-set first.
 
-
-@njit(cache=True, error_model="numpy")
-def _thin(points, axis, least, taken, chosen):
-    """Choose points of one surface; see `thinned`."""
-    n, widest = len(points), least.max()
-    free, order, place = np.ones(n, np.bool_), np.empty(n, np.int64), np.empty(n, np.int64)
-    along, there = _along(points, axis), _along(taken, axis)
-    way_up = _order_along(along)
-    along = along[way_up]
-    for k in range(n):
-        place[way_up[k]] = k
+    Parameters
+    ----------
+    points : (n, 3) float array, m
+    least : (n,) float array, m
+        What each point keeps from the points chosen after it, and from those taken.
+    order : (n,) int64 array
+        Of `least`, ascending.
+    way_up, place, along : (n,) int64 and float arrays
+        Points in their order along an axis, the place of each in it, and coordinates along it, in that order.
+    taken : (t, 3) float array, m
+        Points that are there already.
+    there, below : (t,) float and int64 arrays
+        Their coordinates along the axis, and the first place that may be near to each.
+    free : (n,) bool array
+        Scratch memory, True at first.
+    chosen : (n,) bool array, out
+        False at first.
+    """
+    n, widest = len(points), least[order[len(points) - 1]]
     for t in range(len(taken)):
-        for k in range(np.searchsorted(along, there[t] - widest), n):
+        for k in range(below[t], n):
             if along[k] > there[t] + widest:
                 break
             q = way_up[k]
             dx, dy, dz = points[q, 0] - taken[t, 0], points[q, 1] - taken[t, 1], points[q, 2] - taken[t, 2]
             if dx * dx + dy * dy + dz * dz < least[q] * least[q]:
                 free[q] = False
-    _ascending(least, order)
     for p in order:
         if not free[p]:
             continue
@@ -183,40 +197,14 @@ def _thin(points, axis, least, taken, chosen):
                 k += step
 
 
-@njit(parallel=True, cache=True)
-def thinned(spans, points, least, taken_spans, taken, axes, chosen):
-    """Choose points that keep their least distance from each other and from those taken, closest-set first.
-
-    Parameters
-    ----------
-    spans : (m, 2) int array
-        Where the points of each surface begin and end.
-    points : (n, 3) float array, m
-    least : (n,) float array, m
-        What each point keeps from the points chosen after it, and from those taken.
-    taken_spans : (m, 2) int array
-    taken : (t, 3) float array, m
-        Points that are there already, surface by surface.
-    axes : (m, 3) float array
-        Unit vectors, along which points are sought: faster where they ascend already.
-    chosen : (n,) bool array, out
-        False at first.
-    """
-    for g in prange(len(spans)):
-        here, there = points[spans[g, 0] : spans[g, 1]], taken[taken_spans[g, 0] : taken_spans[g, 1]]
-        if len(here):
-            marks = chosen[spans[g, 0] : spans[g, 1]]
-            _thin(here, axes[g], least[spans[g, 0] : spans[g, 1]], there, marks)
-
-
-@njit(cache=True, error_model="numpy")
-def _cut(corners, count, other, level, a, b):
-    """Cut a convex polygon in place by level + a x + b y <= 0; how many corners it has then."""
+@njit(**ONCE)
+def _cut(corners, count, far, other, level, a, b):
+    """Cut a convex polygon in place by level + a x + b y <= 0; its corners, and the farthest one's squared distance."""
     worst = -1.0
     for k in range(count):
         worst = max(worst, level + a * corners[k, 0] + b * corners[k, 1])
     if worst <= 0.0:
-        return count
+        return count, far
     kept, last = 0, count - 1
     before = level + a * corners[last, 0] + b * corners[last, 1]
     for k in range(count):
@@ -231,22 +219,14 @@ def _cut(corners, count, other, level, a, b):
             kept += 1
         last, before = k, here
     # One that is full would overflow at the next cut: what it has lost shows in its number.
-    kept = min(kept, MOST_CORNERS - 2)
+    kept, far = min(kept, MOST_CORNERS - 2), 0.0
     for k in range(kept):
-        corners[k, 0], corners[k, 1] = other[k, 0], other[k, 1]
-    return kept
+        x, y = other[k, 0], other[k, 1]
+        corners[k, 0], corners[k, 1], far = x, y, max(far, x * x + y * y)
+    return kept, far
 
 
-@njit(cache=True)
-def _farthest(corners, count):
-    """Square of the distance of the farthest corner."""
-    far = 0.0
-    for k in range(count):
-        far = max(far, corners[k, 0] ** 2 + corners[k, 1] ** 2)
-    return far
-
-
-@njit(cache=True)
+@njit(**ONCE)
 def _nearest_normals(i, begin, end, normals, found, cosines):
     """The normals nearest to one of them among those next to it in their order, nearest first; how many."""
     kept, most = 0, len(found)
@@ -266,7 +246,7 @@ def _nearest_normals(i, begin, end, normals, found, cosines):
     return kept
 
 
-@njit(cache=True, error_model="numpy")
+@njit(**ONCE)
 def _facet(i, begin, end, normals, corners, other, found, cosines):
     """Area of facet i of the polyhedron with the normals begin..end; NaN if it has no end."""
     x, y, z = normals[i, 0], normals[i, 1], normals[i, 2]
@@ -292,8 +272,7 @@ def _facet(i, begin, end, normals, corners, other, found, cosines):
                 continue
             a = ux * normals[j, 0] + uy * normals[j, 1]
             b = vx * normals[j, 0] + vy * normals[j, 1] + vz * normals[j, 2]
-            count = _cut(corners, count, other, cosine - 1.0, a, b)
-            far = _farthest(corners, count)
+            count, far = _cut(corners, count, far, other, cosine - 1.0, a, b)
             chord = 2.0 * math.sqrt(far / (1.0 + far))
     area = 0.0
     if count == MOST_CORNERS - 2:
@@ -306,12 +285,14 @@ def _facet(i, begin, end, normals, corners, other, found, cosines):
     return area
 
 
-@njit(parallel=True, cache=True)
-def facet_areas(start, own, normals, areas):
+@njit(**IN_PIECES)
+def facet_areas(first, last, start, own, normals, areas):
     """Areas of the facets of the polyhedra {x : n.x <= 1 for all n}, one for each set of normals.
 
     Parameters
     ----------
+    first, last : int
+        Normals.
     start : (m + 1,) int array
         Where the normals of each polyhedron begin.
     own : (k,) int array
@@ -321,9 +302,7 @@ def facet_areas(start, own, normals, areas):
     areas : (k,) float array, out
         NaN where a facet has no end, or so many corners or so far away (4 or more) that it is as good as without.
     """
-    n = len(normals)
-    for chunk in prange((n + CHUNK - 1) // CHUNK):
-        corners, other = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
-        found, cosines = np.empty(AHEAD, np.int64), np.empty(AHEAD)
-        for i in range(chunk * CHUNK, min(n, (chunk + 1) * CHUNK)):
-            areas[i] = _facet(i, start[own[i]], start[own[i] + 1], normals, corners, other, found, cosines)
+    corners, other = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
+    found, cosines = np.empty(AHEAD, np.int64), np.empty(AHEAD)
+    for i in range(first, last):
+        areas[i] = _facet(i, start[own[i]], start[own[i] + 1], normals, corners, other, found, cosines)

@@ -121,7 +121,8 @@ def _walled(number, size):
 def _turned(points, seed):
     """The tile's points turned and mirrored as a cube may be, and shifted, as a seed says."""
     rng = np.random.default_rng([seed, 643])
-    return (rng.choice([-1.0, 1.0], 3) * points[:, rng.permutation(3)] + rng.random(3)) % 1.0
+    turned = (rng.choice([-1.0, 1.0], 3) * points[:, rng.permutation(3)] + rng.random(3)) % 1.0
+    return np.ascontiguousarray(turned)  # columns in another order are columns in memory: compiled for by themselves
 
 
 def _layered(centers, size, radius):

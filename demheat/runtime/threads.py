@@ -13,8 +13,9 @@ before this module is imported do not know the gate.
 
 import ctypes
 import os
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import contextmanager
+from functools import cache
 
 import llvmlite.binding as llvm
 import numba
@@ -85,24 +86,46 @@ def _gate(lock, functions):
     return module
 
 
-def shared_out(work, count: int, *, piece: int) -> None:
-    """Let Python threads, as many as compiled loops use, take pieces of some work until all of it is done.
+def shared_out(work, count: int, *arguments, piece: int) -> None:
+    """Do work(first, last, *arguments) over a count in pieces, by as many threads as compiled loops use.
 
-    For compiled functions that let go of Python's lock and do not use a parallel loop: pieces of unlike length even
-    out, and one thread takes them in order, without another. After an exception no further piece is begun.
+    For compiled functions that let go of Python's lock and have no parallel loop of their own, which would take three
+    times as long to compile. Pieces of unlike length even out: whoever is done takes the next, the calling thread as
+    well, and what is no more than a piece needs no other. After an exception no further piece is begun.
     """
-    pieces = [(first, min(count, first + piece)) for first in range(0, count, piece)]
-    threads = min(numba.get_num_threads(), len(pieces))
-    if threads < 2:
-        for each in pieces:
-            work(*each)
+    if count <= piece:
+        work(0, count, *arguments)
         return
-    with ThreadPoolExecutor(threads) as pool:
+    pieces = iter(range(0, count, piece))
+
+    def some():
         try:
-            for future in [pool.submit(work, *each) for each in pieces]:
-                future.result()
+            for first in pieces:
+                work(first, min(count, first + piece), *arguments)
         finally:
-            pool.shutdown(cancel_futures=True)
+            for _ in pieces:  # left by one that failed
+                pass
+
+    others = min(numba.get_num_threads(), -(-count // piece)) - 1
+    futures = [_others().submit(some) for _ in range(others)]
+    try:
+        some()
+    finally:
+        # One that has not begun need not, and may wait for another's work.
+        futures = [future for future in futures if not future.cancel()]
+        wait(futures)
+    for future in futures:
+        future.result()
+
+
+@cache
+def _others():
+    """Threads beside the calling one: made once, as they take longer to begin than many a piece."""
+    return ThreadPoolExecutor(max(1, numba.config.NUMBA_NUM_THREADS - 1))
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_others.cache_clear)  # threads are not copied
 
 
 @contextmanager

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from demheat.conduction import steady_kernels as kernels
+from demheat.conduction.products import flows, reconstruct
 from demheat.network.base import wall_normals
-from demheat.network.links_kernels import links_of, places_of
 from demheat.sampling.particle_flux import particle_flux
 
 # Facets of a closed cell, at least. Tiny cells may have fewer: slivers are left out.
@@ -17,10 +16,9 @@ def mean_flux(network, scene, solution):
     In a periodic cell the first moment of the heat flows. Exact for linear temperatures on a Laguerre network. Between
     walls, unlike the mean of the heat that enters and leaves, it holds while heat is stored.
     """
-    first = np.empty((len(network.volumes), 3))
-    kernels.moments(links_of(network), places_of(network), solution.mean_gradient, filled(solution), first)
+    _, _, moment = flows(network, solution.mean_gradient, filled(solution))
     towards = wall_normals(network) * network.wall_distance[:, None]
-    return (np.einsum("i,ij->j", solution.wall_heat, -towards) - first.sum(axis=0)) / scene.volume
+    return (np.einsum("i,ij->j", solution.wall_heat, -towards) - moment.sum(axis=0)) / scene.volume
 
 
 def cell_fluxes(network, solution):
@@ -34,9 +32,7 @@ def cell_fluxes(network, solution):
     if not network.cells:
         return particle_flux(network, solution, split="half")
     n = len(network.volumes)
-    shape, flow = np.empty((n, 3, 3)), np.empty((n, 3))
-    where = links_of(network), places_of(network)
-    kernels.reconstruct(*where, network.area, solution.mean_gradient, filled(solution), shape, flow)
+    shape, flow = reconstruct(network, solution.mean_gradient, filled(solution))
     normal = wall_normals(network)
     outer = normal[:, :, None] * normal[:, None, :]
     np.add.at(shape, network.wall_particle, network.wall_area[:, None, None] * outer)

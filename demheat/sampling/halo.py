@@ -11,7 +11,7 @@ import numpy as np
 
 import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.field import Field, Samples, check_field
-from demheat.network.bins_kernels import bin_points
+from demheat.network.bins import bin_points
 from demheat.runtime.blocks import blocks
 from demheat.runtime.progress import stage
 from demheat.sampling import halo_kernels as kernels

@@ -7,11 +7,13 @@ from __future__ import annotations
 
 import numpy as np
 
-import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network.base import link_distances, wall_normals
 from demheat.network.links_kernels import links_of, places_of
+from demheat.runtime.threads import shared_out
 from demheat.sampling import particle_flux_kernels as kernels
 
+# Rows that a thread does at a time.
+PIECE = 32768
 SPLITS = {"half": kernels.HALF, "radii": kernels.RADII, "cell": kernels.CELL}
 
 
@@ -31,7 +33,8 @@ def particle_flux(network, solution, *, split="half"):
         raise ValueError(f"network, solution: must be of the same particles, not {sizes}")
     flow = np.empty((len(network.volumes), 3))
     state = links_of(network), places_of(network), solution.mean_gradient, np.nan_to_num(solution.temperature)
-    kernels.shared_moments(*state, network.radii, link_distances(network), SPLITS[split], flow)
+    how = network.radii, link_distances(network), SPLITS[split]
+    shared_out(kernels.shared_moments, len(flow), *state, *how, flow, piece=PIECE)
     if split == "cell":
         depth = (network.wall_distance * solution.wall_heat)[:, None] * wall_normals(network)
         np.add.at(flow, network.wall_particle, depth)

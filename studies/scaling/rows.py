@@ -109,13 +109,13 @@ def _product(network, cores):
     A product must read a conductance and a neighbour's number of every link, the diagonal, the vector and the row
     pointers, and write the result.
     """
-    from demheat.conduction import steady_kernels as kernels
+    from demheat.conduction.products import apply
     from demheat.network.links_kernels import links_of
 
     links, n = links_of(network), len(network.volumes)
     x, y, diagonal = np.ones(n), np.empty(n), np.ones(n)
-    kernels.apply(links, diagonal, x, y)
-    _, cost = measured(lambda: [kernels.apply(links, diagonal, x, y) for _ in range(PRODUCTS)])
+    apply(links, diagonal, x, y)
+    _, cost = measured(lambda: [apply(links, diagonal, x, y) for _ in range(PRODUCTS)])
     moved = 12 * len(network.indices) + 32 * n
     return {"product_gbs": 1e-9 * PRODUCTS * moved / cost["wall_s"], "triad_here_gbs": triad_gbs(threads=cores)}
 

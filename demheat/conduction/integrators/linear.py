@@ -8,10 +8,11 @@ from scipy.sparse import csgraph
 from scipy.sparse.linalg import LinearOperator, cg
 
 from demheat.conduction.integrators import transient_kernels
-from demheat.conduction.jacobi import jacobi
 from demheat.conduction.multigrid import CYCLE
+from demheat.conduction.preconditioned import by_diagonal, preconditioned
 from demheat.network.base import row_numbers
 from demheat.runtime.process_state import one_blas_thread, seeded
+from demheat.runtime.progress import stage
 
 MOST = 5000
 # A hierarchy still serves well when g has changed by this factor: both matrices are equivalent within it.
@@ -118,7 +119,8 @@ def _clusters(system):
 def _jacobi(system):
     def iterate(g, r, y, limit):
         diagonal = system.diagonal + system.capacity / g
-        return jacobi(system.links, diagonal, r, y, limit, MOST)
+        with stage("equations") as done:
+            return preconditioned(system.links, diagonal, by_diagonal(diagonal), r, y, limit, MOST, done)
 
     return iterate
 

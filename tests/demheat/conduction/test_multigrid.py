@@ -35,7 +35,7 @@ def test_aggregates_hold_every_linked_particle():
     links.conductance[links.indptr[5] : links.indptr[6]] = 0.0
     links.conductance[links.indices == 5] = 0.0  # particle 5 has no links: none to it either
     top, owner = np.empty(9**3), np.empty(9**3, np.int32)
-    kernels.strongest(links, top)
+    kernels.strongest(0, len(top), links, top)
     count = kernels.aggregate(links, top, MOST, owner)
     sizes = np.bincount(owner[owner >= 0], minlength=count)
     assert owner[5] == -1 and np.all(np.delete(owner, 5) >= 0)

@@ -20,7 +20,7 @@ def links():
 @pytest.fixture(scope="module")
 def top(links):
     found = np.empty(N)
-    kernels.strongest(links, found)
+    kernels.strongest(0, N, links, found)
     return found
 
 
@@ -34,7 +34,7 @@ def level_of(links, inverse, scale=1.0):
     place, values = np.empty(len(links.indices), np.uint8), np.empty(len(links.indices), np.float32)
     ends = np.empty((n, 2), np.uint8)
     level = kernels.Level(links.indptr, links.indices, ends, place, values, inverse.astype(np.float32))
-    kernels.arrange(links, scale, level)
+    kernels.arrange(0, -(-n // kernels.ROWS), links, scale, level)
     return level
 
 
@@ -112,9 +112,9 @@ def test_sweeps():
     r, diagonal = rng.standard_normal(N), rng.random(N) + 20.0
     level, load = level_of(links, 1.0 / diagonal), r.astype(np.float32)
     x, d, y = np.full((3, N), np.nan, np.float32)
-    kernels.forward(level, load, x)
-    kernels.defect(level, x, d)
-    kernels.backward(level, load, x, y)
+    kernels.forward(0, 1, level, load, x)
+    kernels.defect(0, N, level, x, d)
+    kernels.backward(0, 1, level, load, x, y)
     a = dense(links, diagonal)
     # Links to own images take no part in the triangles, but in what is left.
     lower, upper = np.tril(a, -1) + np.diag(diagonal), np.triu(a, 1) + np.diag(diagonal)
@@ -130,17 +130,14 @@ def test_ways_to_the_aggregates_and_back(links, top):
     aggregates, rng = grouped(links, top), np.random.default_rng(4)
     count = len(aggregates.start) - 1
     d, coarse, below = rng.standard_normal(N).astype(np.float32), rng.standard_normal(count), np.full(count, np.nan)
-    kernels.restrict(aggregates, d, below)
+    kernels.restrict(0, count, aggregates, d, below)
     for c in range(count):
         # Rounding of sums of up to ten numbers, in double precision.
         assert_allclose(below[c], d[aggregates.owner == c].astype(float).sum(), rtol=0, atol=1e-14)
     x = d.copy()
-    kernels.correct(aggregates, coarse, 1.6, x)
+    kernels.correct(0, N, aggregates, coarse, 1.6, x)
     right = d + np.where(aggregates.owner >= 0, 1.6 * coarse[aggregates.owner], 0.0)
     assert_allclose(x, right, rtol=0, atol=1e-6)  # single precision
-    out = np.empty(N, np.float32)
-    kernels.scaled(right, 0.3, out)
-    assert np.array_equal(out, (0.3 * right).astype(np.float32))
 
 
 def test_sweeps_are_those_of_the_definition_within_blocks():
@@ -152,9 +149,9 @@ def test_sweeps_are_those_of_the_definition_within_blocks():
     level = level_of(links, 1.0 / diagonal)
     r = np.random.default_rng(2).standard_normal(n).astype(np.float32)
     x, y, d = np.empty((3, n), np.float32)
-    kernels.forward(level, r, x)
-    kernels.defect(level, x, d)
-    kernels.backward(level, r, x, y)
+    kernels.forward(0, 2, level, r, x)
+    kernels.defect(0, n, level, x, d)
+    kernels.backward(0, 2, level, r, x, y)
     off = sparse.csr_matrix((g, indices, indptr), shape=(n, n)).tocoo()
     a = sparse.diags(diagonal) - off
     inside = (off.row // kernels.ROWS == off.col // kernels.ROWS) & (off.row != off.col)

@@ -8,8 +8,8 @@ from scipy import sparse
 from scipy.sparse.linalg import splu
 
 from demheat import Laguerre, Material, Scene, Sphere
-from demheat.conduction import steady_kernels
 from demheat.conduction.balance import residual, system_of
+from demheat.conduction.products import apply
 from demheat.dem.options import Particles
 from demheat.mpi.cells import cells_of, part_of
 from demheat.mpi.equations import own_rows, preconditioner
@@ -78,7 +78,7 @@ def made(scene, ranks, then):
 
 def product(rows, ghosts, x):
     seen, q = ghosts.filled(x), np.empty(ghosts.own)
-    steady_kernels.apply(*rows, seen, q)
+    apply(*rows, seen, q)
     return q
 
 

@@ -10,8 +10,9 @@ from numpy.testing import assert_allclose
 import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.network import laguerre_kernels as kernels
 from demheat.network.curved import round_wall, tangents_within
-from demheat.network.gather_kernels import Gathered, gather_facets
-from demheat.network.laguerre import filed
+from demheat.network.laguerre import FACETS, LINKS, filed
+from demheat.network.polyhedron_kernels import empty_polyhedron
+from demheat.network.sites_kernels import empty_candidates
 from demheat.scene import ROUND_AXES, domain_volume
 
 SIZE = np.array([2.0, 1.0, 1.0])
@@ -20,40 +21,33 @@ TINY = 1e-9
 
 
 def cut_all(points, weights, size, periodic, wall, *, room=60 * kernels.CHUNK, reach=9.0, box=0.5):
-    """Cells of all points, and their facets brought together: links in rows and walls."""
+    """Cells of all points, in chunks."""
     n, spacing = len(points), (size.prod() / len(points)) ** (1 / 3)
     sites = filed(points, weights, size, periodic, spacing)
     chunks = np.arange(-(-n // kernels.CHUNK))
     kinds = (np.int8, np.uint8, float, np.int32, np.int32)
     shape = (len(chunks), room)
     cut = kernels.Cut(
-        *(np.full(n, 99, kind) for kind in kinds),
-        np.zeros(len(chunks), np.int64),
-        *(np.zeros(shape, kind) for kind in (np.int64, np.uint8, float, float)),
+        *(np.zeros(n, kind) for kind in kinds),
+        np.zeros((len(chunks), 2), np.int64),
+        *(np.zeros(shape, kind) for kind in LINKS),
     )
-    limits = kernels.Limits(box, 2 * size.max(), 1e-12, 1e-9, reach, weights.min(), 0.0)
-    near = tangents_within(wall, points, reach)
-    kernels.cut_cells(0, len(chunks), chunks, 0, sites, wall, near, limits, cut)
+    limits = kernels.Limits(box, 2 * size.max(), 1e-12, 1e-9, reach, weights.min(), ~periodic & (wall.across == 0), 0.0)
+    round_wall = (wall, tangents_within(wall, points, reach)) if len(wall.normals) else (None, None)
+    at, end, more = 0, len(chunks) * kernels.CHUNK, 1
+    while at < end:
+        scratch = empty_candidates(more * kernels.ROOM), empty_polyhedron(more * kernels.PLANES)
+        at, more = kernels.cut_cells(at, end, chunks, 0, sites, *round_wall, limits, *scratch, cut), 4 * more
     return cut
 
 
-def gathered(cut):
-    """Facets of the first chunk, which has all cells, by `gather_facets`."""
-    zero, links, ends = np.zeros(2, np.int64), cut.links.sum(), cut.ends.sum()
-    kinds = [np.uint32, np.uint8, float, float], [np.int64, float, float]
-    columns = [np.empty(m, kind) for m, each in zip((links, ends), kinds, strict=True) for kind in each]
-    out = Gathered(*columns)
-    gather_facets(np.array([0]), zero, zero, cut, out)
-    return out
-
-
-def facets_of(i, cut, out):
-    """Facets of a cell: (area, distance) by neighbour and image."""
+def facets_of(i, cut):
+    """Facets of a cell of the first chunk: (area, distance) by neighbour and image."""
     e, w = (slice(number[:i].sum(), number[: i + 1].sum()) for number in (cut.links, cut.ends))
-    found = zip(out.indices[e], out.image[e], out.area[e], out.distance[e], strict=True)
-    walls = zip(out.side[w], out.wall_area[w], out.wall_distance[w], strict=True)
+    found = zip(*(getattr(cut, name)[0, e] for name in FACETS), strict=True)
+    walls = zip(*(getattr(cut, name)[0, ::-1][w] for name in FACETS), strict=True)
     there = {(int(j), int(code)): (a, d) for j, code, a, d in found}
-    return there | {(-1 - int(s), 13): (a, d) for s, a, d in walls}
+    return there | {(-1 - int(s), 13): (a, d) for s, _, a, d in walls}
 
 
 def half_spaces(i, points, weights, size, periodic, wall):
@@ -93,12 +87,11 @@ def test_cells_are_those_of_all_half_spaces(periodic, domain):
     out = cut_all(points, weights, size, periodic, wall)
     assert out.volume[-1] == 0.0 and out.links[-1] == out.ends[-1] == 0
     assert np.all(out.status == kernels.OK)
-    all_of = gathered(out)
     for i in range(0, len(points) - 1, 2):
         labels, normals, distances = half_spaces(i, points, weights, size, periodic, wall)
         areas, volume = measured(normals, distances)
         right = {label: (a, d) for label, a, d in zip(labels, areas, distances, strict=True) if a > TINY}
-        found = {label: pair for label, pair in facets_of(i, out, all_of).items() if pair[0] > TINY}
+        found = {label: pair for label, pair in facets_of(i, out).items() if pair[0] > TINY}
         assert set(found) == set(right)
         # Rounding of coordinates of order one, in planes that meet at small angles.
         assert_allclose([found[label] for label in right], list(right.values()), atol=1e-12)
@@ -115,7 +108,7 @@ def test_cells_that_need_more_say_so():
     whole = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box)
     short = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box, room=20)
     # All facets are counted where there is no room to note them.
-    assert short.used[0] == whole.used[0] > 20 and np.all(short.status == kernels.OK)
+    assert np.array_equal(short.used, whole.used) and whole.used[0].sum() > 20 and np.all(short.status == kernels.OK)
     # A start box that is too narrow is widened.
     narrow = cut_all(points, np.zeros(30), SIZE, np.zeros(3, bool), box, box=0.05)
     assert np.all(narrow.times > whole.times)

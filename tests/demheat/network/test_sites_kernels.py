@@ -72,7 +72,7 @@ def test_rings_find_every_site_that_cuts_and_keep_their_distance(periodic):
                 np.testing.assert_allclose(plane[:3], offset / np.linalg.norm(offset), atol=1e-12)
                 got[int(label)] = plane[3]
             ring += 1
-            distance, ended = kernels.ring_distance(ring, level, sites, found)
+            distance, ended = kernels.ring_distance(ring, found.grid, found.frame)
             reach = kernels.cutting_reach(farthest, sites.weights[i], sites.heaviest[level])
             if distance >= reach or ended:
                 break

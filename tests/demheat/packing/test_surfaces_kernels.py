@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 
 from demheat.packing import surfaces_kernels as kernels
 from demheat.packing.interfaces import fibonacci_sphere, inscribed_radius
+from demheat.packing.patterns import thinned
 from demheat.packing.spheres import inscribed_radii
 from demheat.scene.shapes.bins import ball_bins
 
@@ -19,7 +20,7 @@ def test_patterns_are_turned_fibonacci_points():
     balls = rng.random((4, 4))
     start = np.concatenate([[0], np.cumsum(counts)])
     points, normals = np.full((start[-1], 3), np.nan), np.full((start[-1], 3), np.nan)
-    kernels.turned_patterns(start, turns, balls, points, normals)
+    kernels.turned_patterns(0, 4, start, turns, balls, points, normals)
     wanted = np.concatenate([fibonacci_sphere(n) @ turn.T for n, turn in zip(counts, turns, strict=True)])
     # Sines of angles up to 5e4, and steps between them: their rounding.
     assert_allclose(normals, wanted, rtol=0, atol=2e-11)
@@ -44,7 +45,7 @@ def test_nearest_gaps_are_those_to_all_spheres(periodic, number, ratio):
     points, own = size * rng.uniform(0.0, 1.0, (3000, 3)), rng.integers(-1, number, 3000)
     reach, gaps = 0.07, np.full(3000, np.nan)
     bins = ball_bins(balls[:, :3], balls[:, 3] + reach, size, periodic=periodic)
-    kernels.nearest_gaps(points, own, np.arange(number), balls, bins, reach, gaps)
+    kernels.nearest_gaps(0, 3000, points, own, np.arange(number), balls, bins, reach, gaps)
     wanted = slow_gaps(points, own, balls, size, periodic)
     assert np.any(wanted > reach) and np.any(wanted < reach)
     # Rounding of distances of order 1.
@@ -60,8 +61,23 @@ def test_distances_taken_do_not_grow_with_the_number_of_spheres(ratio):
         reach = 0.3 * number ** (-1 / 3)
         bins = ball_bins(balls[:, :3], balls[:, 3] + reach, np.ones(3), periodic=True)
         none, gaps = np.full(3000, -1), np.empty(3000)
-        taken.append(kernels.nearest_gaps(rng.random((3000, 3)), none, np.arange(number), balls, bins, reach, gaps))
+        where = none, np.arange(number), balls, bins, reach, gaps
+        taken.append(kernels.nearest_gaps(0, 3000, rng.random((3000, 3)), *where))
     assert 0 < taken[1] < 1.3 * taken[0]
+
+
+@pytest.mark.twin
+def test_order_and_thinning_of_a_few():
+    """Along x, some as they stand: the closest-set of those left is chosen, and takes its neighbours out."""
+    along, least = np.array([0.0, 0.1, 0.25, 0.6, 0.65]), np.array([0.2, 0.12, 0.2, 0.06, 0.3])
+    order, place = np.empty(5, np.int64), np.arange(5)
+    kernels.ascending(least, np.zeros(6, np.int64), order)
+    assert_array_equal(order, np.argsort(least, kind="stable"))
+    points, taken = np.column_stack([along, 0 * along, 0 * along]), np.array([[0.0, 0.11, 0.0]])
+    free, chosen = np.ones(5, bool), np.zeros(5, bool)
+    kernels.thin(points, least, order, place, place, along, taken, taken[:, 0], np.zeros(1, int), free, chosen)
+    # 0 is too near to the one taken; 3 takes 4 out; 1 takes 0 out, and leaves 2.
+    assert chosen.tolist() == [False, True, True, True, False]
 
 
 @pytest.mark.twin
@@ -78,7 +94,7 @@ def test_thinned_points_keep_their_distance(ascending):
     spans = np.stack([ends - counts, ends], axis=1)
     spans_there = np.stack([ends_there - there, ends_there], axis=1)
     chosen = np.zeros(700, dtype=bool)
-    kernels.thinned(spans, points, least, spans_there, taken, axes, chosen)
+    thinned(0, 3, (spans, points, least), (spans_there, taken), axes, chosen)
     slow = np.zeros(700, dtype=bool)
     for (begin, end), (first, last) in zip(spans, spans_there, strict=True):
         for p in begin + np.argsort(least[begin:end], kind="stable"):
@@ -113,7 +129,8 @@ def test_areas_are_those_of_the_polyhedron():
     normals, count = np.concatenate(sets), np.array([len(each) for each in sets])
     own = np.repeat(np.arange(4), count)
     order, areas = np.lexsort((normals[:, 2], own)), np.full(len(normals), np.nan)
-    kernels.facet_areas(np.concatenate([[0], np.cumsum(count)]), own, normals[order], areas)
+    start = np.concatenate([[0], np.cumsum(count)])
+    kernels.facet_areas(0, len(normals), start, own, normals[order], areas)
     wanted = [3 * polar_volume(each) for each in sets[:3]]
     assert_allclose(np.bincount(own, areas)[:3], wanted, rtol=1e-12)  # rounding
     # The mean over 40 directions a normal.

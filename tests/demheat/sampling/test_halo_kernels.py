@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
-from demheat.network.bins_kernels import bin_points
+from demheat.network.bins import bin_points
 from demheat.sampling import halo_kernels as kernels
 
 pytestmark = pytest.mark.twin

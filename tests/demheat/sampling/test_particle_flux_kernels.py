@@ -24,6 +24,6 @@ def test_moments_of_the_parts_of_links(split):
             kernels.CELL: distance[e] / np.linalg.norm(b),
         }[split]
         right[i] += share * received(i, e, links, places, gradient, x) * b
-    kernels.shared_moments(links, places, gradient, x, radii, distance, split, flow)
+    kernels.shared_moments(0, len(x), links, places, gradient, x, radii, distance, split, flow)
     # Rounding of sums of some six numbers of order ten.
     assert_allclose(flow, right, rtol=0, atol=1e-13)

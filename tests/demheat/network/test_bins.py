@@ -1,12 +1,10 @@
 """Only here: points filed in other cells than they lie in."""
 
 import numpy as np
-import pytest
 
-from demheat.network.bins_kernels import bin_points
+from demheat.network.bins import bin_points
 
 
-@pytest.mark.twin
 def test_points_are_filed_by_cell_and_number():
     rng = np.random.default_rng(0)
     size, counts = np.array([1.0, 2.0, 0.5]), np.array([3, 4, 2])
