@@ -50,7 +50,7 @@ def test_slab_that_radiates(hot, around, elements):
 
 def test_the_order_of_the_walls_does_not_matter():
     """Temperatures count from the first wall's: at an edge a held wall's nodes may be part of a film."""
-    walls = {"x-": 400.0, "y-": Convection(3.0, 20.0), "x+": Flux(5.0)}
+    walls = {"x-": 400.0, "y-": Convection(3.0, 20.0), "x+": Flux(5.0), "z+": Radiation(0.9, 350.0)}
     one, other = (fem.solve(scene(walls=dict(each)), size=COARSE) for each in (walls.items(), reversed(walls.items())))
     # The tolerance of 1e-9.
     assert_allclose(one.temperature_at(POINTS), other.temperature_at(POINTS), atol=1e-5)
