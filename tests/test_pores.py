@@ -31,6 +31,7 @@ def swapped(shape):
 BLOCKED = {
     "two layers across": cell(LAYER, THIN),
     "layers between walls": cell(LAYER, THIN, walls=WALLS),
+    "a layer in a matrix of pores": cell(swapped(LAYER), matrix=PORE),
     "spheres in a matrix of pores": cell(swapped(BALL), matrix=PORE, gradient=OBLIQUE),
     "a sphere in a matrix of pores between walls": cell(Sphere((0.5, 0.5, 0.5), 0.33, METAL), matrix=PORE, walls=WALLS),
     "nothing but pores": cell(matrix=PORE),
