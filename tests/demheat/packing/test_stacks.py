@@ -152,14 +152,16 @@ def test_particles_outside_give_way_as_beside_a_thick_layer():
     assert off[~twins & (off > 0)].min() > 2 * OFFSET * radius
 
 
-def test_another_inclusion_near_a_stack_has_closer_columns_on_all_its_surfaces():
-    shells = [Sphere((0.5,) * 3, 0.25, OTHER), Sphere((0.5,) * 3, 0.24, MATRIX)]
-    lone, beside = (
-        conform(tiled(3000, size=(1.0,) * 3), scene(*shells, *more)).provenance
-        for more in ((), (Sphere((0.92, 0.5, 0.5), 0.16, OTHER),))
-    )
-    alone = conform(tiled(3000, size=(1.0,) * 3), scene(Sphere((0.92, 0.5, 0.5), 0.16, OTHER))).provenance
-    assert lone["twins"] == lone["even_twins"] and beside["twins"] > 1.05 * (lone["twins"] + alone["twins"])
+@pytest.mark.parametrize("near", [Sphere((0.92, 0.5, 0.5), 0.16, OTHER), Sphere((0.52, 0.5, 0.5), 0.16, OTHER)])
+def test_another_inclusion_near_a_stack_has_closer_columns_on_all_its_surfaces(near):
+    """A hundredth from the outer sphere, or from the inner one, which is no leader."""
+    shells = [Sphere((0.5,) * 3, 0.25, OTHER), Sphere((0.5,) * 3, 0.19, MATRIX)]
+    packing, within = tiled(3000, size=(1.0,) * 3), []
+    for given in (scene(*shells), scene(*shells, near)):
+        made = conform(packing, given)
+        within.append(np.count_nonzero(given.phase_at(made.centers) == 1))
+    # In the shell: found 1.4 and 10 times as many.
+    assert within[1] > 1.2 * within[0]
 
 
 @pytest.mark.parametrize("axis", [0, 2])
