@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 
 from demheat.scene import Flux, Layer, Material, Scene, Sphere
 from references import exact, fem
+from references.fem import components
 
 TIGHT = 1e-12  # solver tolerance of the exact cases: their errors are then below 1e-10
 
@@ -65,6 +66,14 @@ def test_loads_that_pores_make_impossible():
     end = Layer(0, 0.4, 1.0, Material(0.0))
     with pytest.raises(ValueError, match=r"walls\['x\+'\].*conducts somewhere"):
         fem.solve(scene(end, walls={"x-": 0.0, "x+": Flux(1.0)}), size=0.3)
+
+
+def test_only_bodies_that_climb_the_gradient_carry_heat():
+    """One piece that meets itself across x, and two that meet within the cell and once more across y."""
+    seams, boxes = np.array([[0, 0], [1, 2], [1, 2]]), np.array([[1, 0, 0], [0, 0, 0], [0, 1, 0]])
+    for jump, climbing in (((0.0, 1.0, 0.0), [False, True]), ((2.0, 0.0, 0.0), [True, False])):
+        body, _, climbs = components._joined(seams, boxes, 3, np.array(jump))
+        assert body.tolist() == [0, 1, 1] and climbs.tolist() == climbing
 
 
 def test_a_flux_wall_with_a_pore_takes_heat_where_it_conducts():
