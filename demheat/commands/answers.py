@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 import warnings
 from typing import NamedTuple
 
@@ -11,7 +10,7 @@ from demheat.commands.knobs import Asked
 from demheat.declared import load
 from demheat.field import Field
 from demheat.runtime.deadline import look
-from demheat.runtime.process_state import cpu_seconds
+from demheat.runtime.process_state import stopwatch
 from demheat.scene.inputs import one_line
 
 
@@ -73,24 +72,24 @@ def _run(scene, method, knobs, interval):
     module, knobs = load(method.module), {**method.knobs, **knobs}
     if method.call == "evolve":
         raise NotImplementedError(f"{method.name} solves in time, and this command a steady state")
-    clock, cpu = time.perf_counter(), cpu_seconds()
+    spent = stopwatch()
     if method.call == "estimate":
-        return Answer("ok", module.estimate(scene, **knobs), how="a formula", cost=_cost(clock, cpu))
+        return Answer("ok", module.estimate(scene, **knobs), how="a formula", cost=spent())
     field = module.solve(scene, **knobs)
     conductivity = conductivity_of(field)
-    cost = _cost(clock, cpu) | {name: field.stats.get(name) for name in ("unknowns", "iterations")}
+    cost = spent() | {name: field.stats.get(name) for name in ("unknowns", "iterations")}
     found = Answer("ok", conductivity, cost=cost, field=field)
     return _with_interval(found, field) if interval else found
 
 
 def _with_interval(found, field):
-    cpu = cpu_seconds()
+    spent = stopwatch()
     try:
         error = field.error
     except (NotImplementedError, RuntimeError, TimeoutError) as reason:
         note = f"no interval: {one_line(reason).removeprefix('Field.error: ')}"
         return found._replace(notes=(note,), cut=isinstance(reason, TimeoutError))
-    cost = found.cost | {"interval_cpu_s": cpu_seconds() - cpu}
+    cost = found.cost | {"interval_cpu_s": spent()["cpu_s"]}
     return found._replace(lower=error.lower, upper=error.upper, how=error.how, cost=cost)
 
 
@@ -100,7 +99,3 @@ def conductivity_of(field) -> float:
         return field.conductivity
     except ValueError:
         return math.nan
-
-
-def _cost(clock, cpu):
-    return {"wall_s": time.perf_counter() - clock, "cpu_s": cpu_seconds() - cpu}

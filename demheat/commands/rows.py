@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import hashlib
 from functools import cache
 from importlib.util import find_spec
@@ -11,7 +10,7 @@ from pathlib import Path
 from demheat.commands.answers import Answer
 from demheat.commands.knobs import Asked
 from demheat.declared import HOMES
-from demheat.runtime.paths import locked, replaced
+from demheat.runtime.row_file import RowFile
 
 # What a row depends on: it is used again only if all of these are the same.
 KEY = ("method", "knobs", "with_interval", "scene", "code")
@@ -38,33 +37,30 @@ def row_of(each: Asked, found: Answer, key: tuple[str, ...]) -> dict[str, str]:
 
 def read(path: Path) -> dict[tuple, dict[str, str]]:
     """Rows of a file by their keys; empty if there is none."""
-    if not path.exists():
-        return {}
+    file = _file(path)
+    rows = file.read()
     try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file, strict=True)
-            rows = list(reader)
-        if reader.fieldnames != list(COLUMNS) or any(None in row or None in row.values() for row in rows):
-            raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
-        for row in rows:
+        for row in rows.values():
+            if tuple(row) != COLUMNS:
+                raise ValueError(f"its columns are not {', '.join(COLUMNS)}")
             for name in NUMBERS:
                 float(row[name] or "nan")
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"{path}: must hold rows of a comparison: {error}; mend it or move it away") from None
-    return {tuple(row[name] for name in KEY): row for row in rows}
+    except ValueError as error:
+        raise file.error(error) from None
+    return rows
 
 
 def add(path: Path, key: tuple[str, ...], row: dict[str, str]) -> None:
-    """Put a row into a file as it is now, whole or not at all; rows of another scene or other code are dropped.
+    """Put a row into a file as it is now, whole or not at all; rows of another scene or other code are dropped."""
 
-    Others may do so at the same time: one waits for the other.
-    """
-    with locked(path.parent):
-        rows = {other: old for other, old in read(path).items() if other[-2:] == key[-2:]} | {key: row}
-        with replaced(path) as part, part.open("w", newline="", encoding="utf-8") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(rows.values())
+    def changed(rows):
+        return ({other: old for other, old in rows.items() if other[-2:] == key[-2:]} | {key: row}).values()
+
+    _file(path).change(changed)
+
+
+def _file(path):
+    return RowFile(path, "rows of a comparison", needs=COLUMNS, key=KEY, last=COLUMNS)
 
 
 @cache

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import ctypes
+import json
 import os
 import signal
 import subprocess
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 
@@ -24,11 +26,21 @@ def run(
             dismiss(guard)
 
 
-def ending(code: int, log: Path) -> str:
-    """How a process ended and what it said last, in one line."""
-    how = f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
-    lines = Path(log).read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    return f"{how}; {lines[-1][:300] if lines else 'nothing on its output'}"
+def answered(words: Sequence[str], *, limit: float | None = None, start: Callable = run) -> dict:
+    """What a command writes as JSON into the file that is the last of its words.
+
+    Without an answer a TimeoutError at the limit, or a ChildProcessError that says how it ended.
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        answer, log = Path(folder) / "row.json", Path(folder) / "log"
+        try:
+            code = start([*words, str(answer)], log, limit=limit)
+        except subprocess.TimeoutExpired:
+            raise TimeoutError(f"not finished after {limit:g} s") from None
+        try:
+            return json.loads(answer.read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            raise ChildProcessError(_ending(code, log)) from None
 
 
 def die_with_parent(parent: int) -> None:
@@ -75,3 +87,10 @@ def _end(process):
     """Kill a process and all that it started, and wait for it."""
     end_group(process.pid)
     process.wait()
+
+
+def _ending(code, log):
+    """How a process ended and what it said last, in one line."""
+    how = f"process killed by {signal.Signals(-code).name}" if code < 0 else f"process ended with status {code}"
+    lines = log.read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    return f"{how}; {lines[-1][:300] if lines else 'nothing on its output'}"

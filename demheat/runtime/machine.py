@@ -6,8 +6,14 @@ import hashlib
 import os
 import platform
 from contextlib import suppress
+from datetime import datetime, timezone
 from functools import cache
 from pathlib import Path
+
+
+def here() -> dict[str, str]:
+    """When and where a row is made: the time, UTC, to the second, the machine and its host."""
+    return {"when": datetime.now(timezone.utc).isoformat(timespec="seconds"), "machine": machine(), "host": host()}
 
 
 @cache

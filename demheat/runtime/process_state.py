@@ -3,6 +3,7 @@
 import os
 import threading
 import time
+from collections.abc import Callable
 from contextlib import contextmanager
 from functools import cache
 
@@ -19,6 +20,12 @@ def cpu_seconds() -> float:
     """Processor seconds of this process, of its finished children, and of the mesher's process that it keeps."""
     # Of itself to the microsecond: `os.times` counts in hundredths of a second.
     return time.process_time() + sum(os.times()[2:4]) + sum(_elsewhere)
+
+
+def stopwatch() -> Callable[[], dict[str, float]]:
+    """What says, whenever it is called, how many wall and processor seconds have passed since now."""
+    wall, cpu = time.perf_counter(), cpu_seconds()
+    return lambda: {"wall_s": time.perf_counter() - wall, "cpu_s": cpu_seconds() - cpu}
 
 
 def count_elsewhere(seconds: float) -> None:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 
 from demheat.beyond.cluster import completed, row_environment
@@ -32,21 +32,19 @@ def on_workers(client, function: Callable, cases: Sequence[dict], limit: float |
 
 def in_fresh_process(sent: bytes, limit: float | None) -> dict:
     """The row of a case, or {"lost": why there is none}."""
-    with tempfile.TemporaryDirectory() as folder:
-        question, answer, log = (Path(folder) / name for name in ("case", "row.json", "log"))
-        question.write_bytes(sent)
-        words = [sys.executable, "-m", __name__, str(question), str(answer), str(os.getpid())]
+    with tempfile.NamedTemporaryFile() as question:
+        question.write(sent)
+        question.flush()
+        words = [sys.executable, "-m", __name__, question.name, str(os.getpid())]
         try:
-            code = fresh.run(words, log, limit=limit, environment=row_environment())
-        except subprocess.TimeoutExpired:
-            return {"lost": f"TimeoutError: not finished after {limit:g} s"}
-        try:
-            return json.loads(answer.read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return {"lost": fresh.ending(code, log)}
+            return fresh.answered(words, limit=limit, start=partial(fresh.run, environment=row_environment()))
+        except TimeoutError as error:
+            return {"lost": f"TimeoutError: {error}"}
+        except ChildProcessError as error:
+            return {"lost": str(error)}
 
 
-def main(question: str, answer: str, parent: str) -> None:
+def main(question: str, parent: str, answer: str) -> None:
     """Compute the case of one file into another."""
     fresh.die_with_parent(int(parent))
     import cloudpickle

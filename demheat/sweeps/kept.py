@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import csv
 import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 
-from demheat.runtime.paths import checked_path, locked, replaced
+from demheat.runtime.paths import checked_path
+from demheat.runtime.row_file import RowFile
 from demheat.sweeps.cases import key_of
 from demheat.sweeps.rows import CASE, TAIL
 
@@ -15,8 +15,10 @@ from demheat.sweeps.rows import CASE, TAIL
 class Kept:
     """Rows of a file as text, by their cases."""
 
-    def __init__(self, path: Path, rows: dict[str, dict]):
-        self.path, self.rows = path, rows
+    def __init__(self, path: Path):
+        name = f"out = {str(path)!r}"
+        self.file = RowFile(path, "rows of a sweep as CSV", needs=(CASE, *TAIL), last=TAIL, name=name)
+        self.rows = self.file.read()
 
     def has(self, case: Mapping) -> bool:
         """Whether a case stands there without an error."""
@@ -34,14 +36,13 @@ class Kept:
     def add(self, case: Mapping, row: Mapping) -> None:
         """Put a row in the place of an older one of its case, and write all, and what others have written meanwhile."""
         texts = {name: "" if value is None else str(value) for name, value in row.items()}
-        with locked(self.path.parent):
-            self.rows |= _read(self.path) | {key_of(case): {CASE: key_of(case), **texts}}
-            seen = dict.fromkeys(name for each in self.rows.values() for name in each)
-            columns = [*(name for name in seen if name not in TAIL), *TAIL]
-            with replaced(self.path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-                writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-                writer.writeheader()
-                writer.writerows(self.rows.values())
+        new = {key_of(case): {CASE: key_of(case), **texts}}
+
+        def merged(stored):
+            self.rows |= stored | new
+            return self.rows.values()
+
+        self.file.change(merged)
 
 
 def opened(path) -> Kept:
@@ -57,23 +58,7 @@ def opened(path) -> Kept:
         raise ValueError(f"out = {str(path)!r}: must be a file in a folder that can be written: {error}") from None
     if path.is_dir() or not path.name:
         raise ValueError(f"out = {str(path)!r}: must be a file, and is a folder")
-    return Kept(path, _read(path))
-
-
-def _read(path):
-    """Rows of a file as it is now, by their cases; none of a file that is not there."""
-    if not path.exists():
-        return {}
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file, strict=True)
-            rows, columns = list(reader), reader.fieldnames or ()
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"out = {str(path)!r}: must hold rows of a sweep as CSV: {error}") from None
-    whole = all(None not in row and None not in row.values() for row in rows)
-    if not {CASE, *TAIL} <= set(columns) or not whole:
-        raise ValueError(f"out = {str(path)!r}: must hold rows of a sweep as CSV; move it away, or mend it")
-    return {row[CASE]: row for row in rows}
+    return Kept(path)
 
 
 def _parsed(text):

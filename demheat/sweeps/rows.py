@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Mapping
-from datetime import datetime, timezone
 from functools import singledispatch
 from numbers import Real
 
@@ -12,8 +10,8 @@ import numpy as np
 
 from demheat.cheapest.effective import Effective
 from demheat.field import Field
-from demheat.runtime.machine import host, machine
-from demheat.runtime.process_state import cpu_seconds
+from demheat.runtime.machine import here
+from demheat.runtime.process_state import stopwatch
 from demheat.scene.inputs import one_line, shown
 from demheat.version import __version__
 
@@ -25,14 +23,12 @@ ENTRIES = {"k_xx": (0, 0), "k_yy": (1, 1), "k_zz": (2, 2), "k_yz": (1, 2), "k_xz
 
 def row_of(function: Callable, case: Mapping) -> dict:
     """Call the function in this process; what it raises is the row's error."""
-    wall, cpu = time.perf_counter(), cpu_seconds()
-    values, error = {}, ""
+    spent, values, error = stopwatch(), {}, ""
     try:
         values = _apart(values_of(function(**case)), case)
     except Exception as raised:
         error = f"{type(raised).__name__}: {one_line(raised)}"
-    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": cpu_seconds() - cpu}
-    return {**case, **values, "error": error, **cost, **origin()}
+    return {**case, **values, "error": error, **spent(), **origin()}
 
 
 def failed(case: Mapping, error: str) -> dict:
@@ -42,8 +38,7 @@ def failed(case: Mapping, error: str) -> dict:
 
 def origin() -> dict:
     """When, where and by which version of the package a row is made."""
-    now = datetime.now(timezone.utc).isoformat(timespec="seconds")
-    return {"when": now, "machine": machine(), "host": host(), "version": __version__}
+    return here() | {"version": __version__}
 
 
 @singledispatch

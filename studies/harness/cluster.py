@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from functools import cache
+from functools import cache, partial
 
 from demheat.beyond.cluster import cluster, completed, row_environment
 from studies.harness import runner
@@ -35,9 +35,9 @@ def spread_over(client):
         tasks = [(name, case_key(case)) for case in cases]
         for number, row in completed(client, row_of, tasks, label=name):
             if isinstance(row, Exception):
-                row = _failed(study, cases[number], f"{type(row).__name__}: {row}")
+                row = runner.failed(study, cases[number], f"{type(row).__name__}: {row}")
             elif _origin(row) != expected:
-                row = _failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected)}")
+                row = runner.failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected)}")
             yield row
 
     return spread
@@ -46,8 +46,8 @@ def spread_over(client):
 def row_of(name, key):
     """Compute one row in a fresh process of this machine."""
     study = runner.load(name)
-    bandwidth = _bandwidth()
-    row = runner.spawn_row(name, study, runner.find_case(study, key), environment=row_environment())
+    bandwidth, start = _bandwidth(), partial(runner.started, environment=row_environment())
+    row = runner.spawn_row(name, study, runner.find_case(study, key), start=start)
     return {**row, "triad_gbs": bandwidth}
 
 
@@ -78,8 +78,3 @@ def _check_workers(client, name, expected):
             raise ValueError(f"a worker cannot make rows of {name!r}: {type(origin).__name__}: {origin}")
         if origin != expected:
             raise ValueError(f"worker {worker} has {_told(origin)}: must be as here, {_told(expected)}")
-
-
-def _failed(study, case, note):
-    note = " ".join(note.split())
-    return {"case": case_key(case), **case, "status": "failed", "note": note, **provenance(study)}

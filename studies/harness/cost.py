@@ -10,7 +10,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from demheat.runtime.process_state import cpu_seconds
+from demheat.runtime.process_state import stopwatch
 
 MIB = 2**20
 
@@ -21,9 +21,9 @@ def measured(function, /, *args, **knobs):
     _give_back_freed_memory()
     peak_by = "VmHWM" if _reset_peak() else "ru_maxrss"
     base = _resident_mib()
-    wall, cpu = time.perf_counter(), cpu_seconds()
+    spent = stopwatch()
     value = function(*args, **knobs)
-    cost = {"wall_s": time.perf_counter() - wall, "cpu_s": cpu_seconds() - cpu}
+    cost = spent()
     peak = _status_mib("VmHWM") if peak_by == "VmHWM" else _max_rss_mib()
     return value, {**cost, "peak_mib": max(peak - base, 0.0), "base_mib": base, "peak_by": peak_by}
 

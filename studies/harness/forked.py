@@ -1,77 +1,51 @@
-"""Rows in processes that begin as copies of one which has loaded the libraries: they start in hundredths of a second.
+"""Rows in copies of a process which has loaded the libraries, `demheat.runtime.copies`.
 
-To start Python and load what a solve needs takes some three seconds, more than most solves do. Here one process, the
-first, does so once, and forks for each row; on Linux, elsewhere every row starts from nothing. A row still has its
-process to itself: what it compiles, allocates and keeps ends with it. The first computes nothing. Threads that OpenBLAS
+To start Python and load what a solve needs takes some three seconds, more than most solves do. Threads that OpenBLAS
 and Numba start when they are loaded are not in a copy; both make theirs anew there. When a source file changes, another
-process takes the first's place.
+process takes the first's place. On other systems than Linux every row starts from nothing.
 """
 
 from __future__ import annotations
 
 import gc
 import importlib
-import json
 import os
-import select
-import signal
-import subprocess
 import sys
-import traceback
 from contextlib import contextmanager, suppress
 from functools import cache, partial
 
-from demheat.runtime import fresh
+from demheat.runtime import copies
 from studies.harness import provenance, quiet, runner
 
 # What most rows load, whatever their method.
 SCIPY = ("scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial", "scipy.special", "scipy.optimize")
 LIBRARIES = ("numba.np.ufunc.parallel", *SCIPY, "skfem", "pyfftw", "pyamg")
-# Seconds for the first process to end.
-PATIENCE = 5.0
 
 
 @contextmanager
 def forking(*, values=False, count=None):
-    """Have a first process while rows are made."""
+    """Have a first process while rows are made, in the environment of rows: libraries read it when they are loaded."""
+    environment = provenance.row_environment(count)
     if not sys.platform.startswith("linux"):
-        yield partial(runner.spawn_row, environment=provenance.row_environment(count), values=values)
+        yield partial(runner.spawn_row, start=partial(runner.started, environment=environment), values=values)
         return
     first, made_of = None, None
 
     def compute(name, study, case):
         nonlocal first, made_of
         now = _sources()
-        if first is None or first.poll() is not None or now != made_of:
-            _end(first)
-            first, made_of = _begun(count), now
-        return runner.spawn_row(name, study, case, start=partial(_started, first), values=values)
+        if first is None or not first.alive() or now != made_of:
+            if first is not None:
+                first.end()
+            words = [sys.executable, "-m", "studies", "first", str(os.getpid())]
+            first, made_of = copies.First(words, environment), now
+        return runner.spawn_row(name, study, case, start=first.run, values=values)
 
     try:
         yield compute
     finally:
-        _end(first)
-
-
-def _begun(count):
-    """The first process, in the environment of rows: libraries read it when they are loaded."""
-    words = [sys.executable, "-m", "studies", "first", str(os.getpid())]
-    # Unbuffered, so that nothing that is there to be read hides from `select`.
-    pipes = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "bufsize": 0}
-    return subprocess.Popen(words, start_new_session=True, env=provenance.row_environment(count), **pipes)
-
-
-def _end(first):
-    """End the first process: by itself, once it has seen the end of its row, so that nothing of that is left."""
-    if first is None:
-        return
-    first.stdin.close()
-    try:
-        first.wait(PATIENCE)
-    except subprocess.TimeoutExpired:
-        first.kill()
-        first.wait()
-    first.stdout.close()
+        if first is not None:
+            first.end()
 
 
 def _sources():
@@ -80,40 +54,14 @@ def _sources():
     return {path: path.stat().st_mtime_ns for path in files}
 
 
-def _started(first, words, log, limit):
-    """Have a copy of the first process do what the command line says; return its status, as `fresh.run` does."""
-    first.stdin.write(json.dumps([words, str(log)]).encode() + b"\n")
-    pid = int(first.stdout.readline() or 0)
-    if not pid:
-        return -signal.SIGKILL
-    guard = fresh.watch(pid)
-    try:
-        if not select.select([first.stdout], [], [], limit)[0]:
-            fresh.end_group(pid)
-            first.stdout.readline()
-            raise subprocess.TimeoutExpired(words, limit)
-        return int(first.stdout.readline() or -signal.SIGKILL)
-    finally:
-        fresh.end_group(pid)
-        fresh.dismiss(guard)
-
-
 def serve(main, parent):
-    """Be the first process: for each line of orders load what that row needs and copy this process."""
-    fresh.die_with_parent(parent)
-    own = os.getpid()
-    answers = os.dup(1)
-    # What a library may print is no answer.
-    os.dup2(2, 1)
-    for line in sys.stdin:
-        words, log = json.loads(line)
-        _prepared(*words[1:3])
-        pid = os.fork()
-        if not pid:
-            _copied(main, [*words, "--parent", str(own)], log)
-        os.write(answers, f"{pid}\n".encode())
-        _, status = os.waitpid(pid, 0)
-        os.write(answers, f"{os.waitstatus_to_exitcode(status)}\n".encode())
+    """Be the first process."""
+
+    def begun(words):
+        quiet.START = quiet.moment()
+        return main(words)
+
+    copies.serve(begun, _prepared, parent)
 
 
 @cache
@@ -141,31 +89,12 @@ def _numba_ready():
         numba.njit(lambda value: value + 1.0)(1.0)
 
 
-def _prepared(name, key):
+def _prepared(words):
     """Load a study and what the row's method needs; if that fails, the row will say so."""
     with suppress(Exception):
+        _, name, key, *_ = words
         study = runner.load(name)
         case = runner.find_case(study, key)
         # What is loaded now is what the row says it was made of.
         provenance.commit(study.__file__)
         load(provenance.module_of(study, case.get("method", "")))
-
-
-def _copied(main, words, log):
-    """Do what the command line says, and end."""
-    status = 1
-    try:
-        os.setsid()
-        stream = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        for number, target in enumerate((os.open(os.devnull, os.O_RDONLY), stream, stream)):
-            os.dup2(target, number)
-        quiet.START = quiet.moment()
-        status = main(words)
-    except SystemExit as end:
-        status = end.code if isinstance(end.code, int) else 1
-    except BaseException:
-        traceback.print_exc()
-    finally:
-        sys.stdout.flush()
-        sys.stderr.flush()
-        os._exit(status)

@@ -43,8 +43,7 @@ def page(found, first, figures, out):
     body = [
         "<h1>demheat: results</h1>",
         f'<p class="note">{len(found)} studies, {sound.total(found)}. A claim that rests on costs of such rows is not'
-        " judged."
-        " Stale: made by other code than that of today. Dirty: by code of no commit. Noisy: while others used more than"
+        " judged. Dirty: made by code of no commit. Noisy: while others used more than"
         f" {sound.NOISY:.0%} of the processors, or nobody knows.</p>",
         _contents(found),
         '<h2 id="first">Ten claims first</h2>',

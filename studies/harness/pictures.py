@@ -6,7 +6,7 @@ import base64
 import io
 from pathlib import Path
 
-from studies.harness.store import replaced
+from demheat.runtime.paths import replaced
 
 # Beyond so many points, cells or paths an artist is pixels inside of the vector copy, too.
 MANY = 2_000

@@ -7,14 +7,12 @@ import hashlib
 import os
 import platform
 import subprocess
-from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
-from demheat.runtime.machine import host, machine
+from demheat.runtime.machine import here
 from studies.harness.methods import path_of
-from studies.harness.threads import threads
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = ("demheat", "references", "benchmark", "studies")
@@ -29,18 +27,16 @@ def provenance(study):
     """Columns that say where a row of a study comes from."""
     return {
         "commit": commit(study.__file__),
-        "when": now(),
-        "machine": machine(),
-        "host": host(),
+        **here(),
         "threads": threads(),
         "versions": versions(),
         "load": round(os.getloadavg()[0], 2),
     }
 
 
-def now():
-    """Date and time, UTC, to the second."""
-    return datetime.now(timezone.utc).isoformat(timespec="seconds")
+def threads():
+    """Threads a row may use: NUMBA_NUM_THREADS where set, else every processor this process may use."""
+    return int(os.environ.get("NUMBA_NUM_THREADS") or len(os.sched_getaffinity(0)))
 
 
 def guest_case(study, key):

@@ -9,8 +9,8 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
+from demheat.runtime.paths import replaced
 from studies.harness import runner
-from studies.harness.store import replaced
 from studies.harness.table import markdown, read_frame
 
 MARKED = re.compile(r"(<!-- (table|words) (\w+)(?: (\w+))? -->).*?(<!-- end of \2 -->)", re.DOTALL)

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
+from demheat.runtime.paths import replaced
 from studies.harness import explained, runner, sound
 from studies.harness.claims import NEAR, Claim
-from studies.harness.store import replaced
 from studies.harness.table import render
 
 VERDICTS = ("ok", "FAIL", "not judged")

@@ -30,23 +30,23 @@ from __future__ import annotations
 import importlib
 import json
 import os
-import subprocess
 import sys
-import tempfile
 import time
 import traceback
-from functools import partial
 from pathlib import Path
 
 from demheat.runtime import fresh
+from demheat.runtime.machine import machine
+from demheat.runtime.paths import replaced
 from demheat.runtime.progress import stage
+from demheat.scene.inputs import one_line
 from studies.harness import quiet
 from studies.harness.beside import counted
 from studies.harness.cost import measured
-from studies.harness.provenance import ANYWHERE, SAME, guest_case, machine, provenance, threads, versions
+from studies.harness.provenance import ANYWHERE, SAME, guest_case, provenance, threads, versions
 from studies.harness.repeated import RUNS, measured_again
 from studies.harness.sound import checked, cost_columns, held, values_only
-from studies.harness.store import COST, MADE, TAIL, add_rows, case_key, check_writable, read_rows, replaced
+from studies.harness.store import COST, MADE, TAIL, add_rows, case_key, check_writable, read_rows
 
 TIMEOUT = 1800.0
 KEPT = ("ok", "unsupported")  # a failed or timed-out row is tried again
@@ -175,26 +175,25 @@ def _short(key):
     return key.split(",method=")[0]
 
 
-def spawn_row(name, study, case, *, environment=None, start=None, values=False):
+def spawn_row(name, study, case, *, start=None, values=False):
     """Compute a row in a process of its own; whatever happens to that process, a row comes back."""
-    key, limit = case_key(case), getattr(study, "TIMEOUT", TIMEOUT)
-    base = {"case": key, **case}
-    with tempfile.TemporaryDirectory() as folder:
-        answer, log, begin = Path(folder) / "row.json", Path(folder) / "log", time.perf_counter()
-        words = ["row", name, key, "--json", str(answer), *(["--values"] if values else [])]
-        try:
-            code = (start or partial(_started, environment=environment))(words, log, limit)
-        except subprocess.TimeoutExpired:
-            note = f"not finished after {limit:g} s"
-            return {**base, "status": "timeout", "note": note, **provenance(study)}
-        try:
-            row = json.loads(answer.read_text(encoding="utf-8"))
-            return row | {MADE: round(time.perf_counter() - begin, 3)}
-        except (OSError, ValueError):
-            return {**base, "status": "failed", "note": fresh.ending(code, log), **provenance(study)}
+    words, begin = ["row", name, case_key(case), *(["--values"] if values else []), "--json"], time.perf_counter()
+    try:
+        row = fresh.answered(words, limit=getattr(study, "TIMEOUT", TIMEOUT), start=start or started)
+    except TimeoutError as error:
+        return failed(study, case, error, status="timeout")
+    except ChildProcessError as error:
+        return failed(study, case, error)
+    return row | {MADE: round(time.perf_counter() - begin, 3)}
 
 
-def _started(words, log, limit, *, environment):
+def failed(study, case, why, *, status="failed"):
+    """Row of a case that did not come to an end."""
+    return {"case": case_key(case), **case, "status": status, "note": one_line(why), **provenance(study)}
+
+
+def started(words, log, *, limit, environment=None):
+    """Start Python for a row."""
     words = [sys.executable, "-m", "studies", *words, "--parent", str(os.getpid())]
     return fresh.run(words, log, limit=limit, environment=environment)
 
@@ -240,5 +239,7 @@ def _quietly_measured(study, case):
 
 def write_json(row, path):
     """Hand a row over to the process that asked for it."""
+    path = Path(path)
+    path.parent.mkdir(parents=True, exist_ok=True)
     with replaced(path) as temporary:
         temporary.write_text(json.dumps(row, default=lambda value: value.item()), encoding="utf-8")

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import csv
 import math
 import tempfile
-from contextlib import contextmanager
 from pathlib import Path
 
-from demheat.runtime import paths
-from demheat.runtime.paths import locked
+from demheat.runtime.row_file import RowFile
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")
@@ -27,8 +24,6 @@ TAIL = (
 )
 # Bytes that must be free before a run begins.
 ROOM = 2**20
-# Letters of one cell at most: a picture of 200 x 200 numbers has 300 000, above what the csv module reads by default.
-csv.field_size_limit(2**24)
 
 
 def case_key(case):
@@ -36,23 +31,14 @@ def case_key(case):
     return ",".join(f"{name}={value}" for name, value in case.items())
 
 
+def rows_of(path):
+    """The file of a study's rows."""
+    return RowFile(Path(path), "rows of a study as CSV", last=TAIL)
+
+
 def read_rows(path):
     """Rows of a CSV file as {case key: {column: text}}; empty if there is no such file."""
-    path = Path(path)
-    if not path.exists():
-        return {}
-    try:
-        with path.open(newline="", encoding="utf-8") as file:
-            reader = csv.DictReader(file, strict=True)
-            rows, columns = list(reader), reader.fieldnames or ()
-        if "case" not in columns:
-            raise ValueError("no column 'case'")
-        odd = next((k for k, row in enumerate(rows, start=1) if None in row or None in row.values()), None)
-        if odd is not None:
-            raise ValueError(f"row {odd} has not as many values as there are columns")
-    except (OSError, ValueError, csv.Error) as error:
-        raise ValueError(f"{path}: must hold rows of a study as CSV: {error}; mend it or move it away") from None
-    return {row["case"]: row for row in rows}
+    return rows_of(path).read()
 
 
 def number_of(row, name):
@@ -74,35 +60,25 @@ def check_writable(folder):
         raise ValueError(f"{folder}: must be a folder that can be written, with some room: {error}") from None
 
 
+def write_rows(path, rows):
+    """Write rows, an iterable of dicts, whole or not at all, into a folder that is made if it is not there."""
+    Path(path).parent.mkdir(parents=True, exist_ok=True)
+    rows_of(path).write(rows)
+
+
 def add_rows(path, rows, keys):
     """Add rows to those of a file as it is now: other runs may have added theirs."""
-    path = Path(path)
+    path, found = Path(path), rows
+
+    def merged(stored):
+        nonlocal found
+        found = stored | rows
+        return [found[key] for key in keys if key in found]
+
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with locked(path.parent):
-            rows = read_rows(path) | rows
-            write_rows(path, (rows[key] for key in keys if key in rows))
+        rows_of(path).change(merged)
     except (OSError, ValueError) as error:
         rescued = Path(tempfile.mkdtemp(prefix="demheat-rows-")) / path.name
-        write_rows(rescued, rows.values())
+        write_rows(rescued, found.values())
         raise ValueError(f"{path}: cannot be written: {error}; the rows are in {rescued}") from None
-
-
-def write_rows(path, rows):
-    """Write rows, an iterable of dicts, whole or not at all."""
-    rows = list(rows)
-    seen = list(dict.fromkeys(name for row in rows for name in row))
-    columns = [name for name in seen if name not in TAIL] + [name for name in TAIL if name in seen]
-    with replaced(path) as temporary, temporary.open("w", newline="", encoding="utf-8") as file:
-        writer = csv.DictWriter(file, columns, restval="", lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-
-
-@contextmanager
-def replaced(path):
-    """As `demheat.runtime.paths.replaced`, in a folder that is made if it is not there."""
-    path = Path(path)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with paths.replaced(path) as temporary:
-        yield temporary

@@ -7,12 +7,13 @@ import traceback
 from pathlib import Path
 from types import SimpleNamespace
 
+from demheat.runtime.paths import replaced
 from studies.harness import explained
 from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
 from studies.harness.sound import cost_columns, counted, faults, told, uncosted
-from studies.harness.store import VALUES, case_key, read_rows, replaced
+from studies.harness.store import VALUES, case_key, read_rows
 
 # Columns of words, whatever they look like: a commit may be a number.
 WORDS = ("case", "note", "commit", *VALUES)

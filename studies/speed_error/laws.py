@@ -168,7 +168,7 @@ def _word(value):
 
 def ship(csv_path, file=shipped.FILE):
     """Fit the laws to stored rows and write the file that the package ships; returns its path."""
-    from studies.harness.store import replaced
+    from demheat.runtime.paths import replaced
 
     with replaced(file) as temporary:
         temporary.write_text(written(fitted(stored(csv_path))), encoding="utf-8")

@@ -22,7 +22,7 @@ from demheat.scene import Material, Scene
 from demheat.scene.functions import initial_at
 from studies.common.slab import packing_of, slab
 from studies.harness.cost import measured, triad_gbs
-from studies.harness.threads import threads
+from studies.harness.provenance import threads
 
 ENDS = {"slab": 0.2, "sphere": 10.0}
 # The reference is this much finer than the row's own accuracy, and never coarser than the least error of interest.

@@ -60,7 +60,9 @@ NO_ROWS = {
     "references/fft/pencils.py": LARGE,
     "references/fft/ranks.py": LARGE,
     "references/fft/slabs.py": LARGE,
+    "demheat/runtime/copies.py": LARGE,
     "demheat/runtime/fresh.py": LARGE,
+    "demheat/runtime/row_file.py": READ,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,
     "demheat/scene/shapes/occ.py": LARGE,

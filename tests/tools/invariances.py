@@ -7,7 +7,6 @@ writes the page from all rows there. It takes an hour on one processor, most of 
 """
 
 import argparse
-import csv
 import subprocess
 import sys
 import warnings
@@ -20,12 +19,13 @@ from drawn_scenes import COUNT
 from method_scenes import METHODS
 from relations import Spread, applies, exact, first, limit, second, spread
 
-from studies.harness.store import locked, replaced
+from demheat.runtime.row_file import RowFile
 
 DOCS = Path(__file__).parents[2] / "docs"
 ROWS, PAGE = DOCS / "invariances.csv", DOCS / "invariances.md"
 FIELDS = [f"{part}_{statistic}" for part in Spread._fields for statistic in ("max", "median")]
-COLUMNS = ["method", "relation", "scenes", *FIELDS, "commit", "when"]
+COLUMNS = ("method", "relation", "scenes", *FIELDS, "commit", "when")
+FILE = RowFile(ROWS, "rows of relations", needs=COLUMNS, key=("method", "relation"), last=COLUMNS)
 WORDS = {
     "conductivity": "Mean flux: size of the difference over the size of the mean flux",
     "temperature": "Temperature at 60 random points: root mean square of the difference over the imposed span",
@@ -60,23 +60,20 @@ def _row(name, relation, spreads):
 
 def stored():
     """Rows of the file, {(method, relation): row}."""
-    if not ROWS.exists():
-        return {}
-    with ROWS.open(newline="") as file:
-        return {(row["method"], row["relation"]): row for row in csv.DictReader(file)}
+    return FILE.read()
 
 
 def add(rows):
     """Put rows of one method into the file, in the place of its older ones."""
-    with locked(DOCS):
-        names = {row["method"] for row in rows}
-        kept = {key: row for key, row in stored().items() if key[0] not in names}
+    names = {row["method"] for row in rows}
+
+    def changed(before):
+        kept = {key: row for key, row in before.items() if key[0] not in names}
         kept |= {(row["method"], row["relation"]): row for row in rows}
         order = [(name, relation) for name in METHODS for relation in RELATIONS if (name, relation) in kept]
-        with replaced(ROWS) as temporary, temporary.open("w", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(kept[key] for key in order)
+        return [kept[key] for key in order]
+
+    FILE.change(changed)
 
 
 def page(rows):

@@ -1,5 +1,6 @@
 """Only here: commands that end in a traceback by a pipe, a full disk or Ctrl-C, and rows that two at work lose."""
 
+import csv
 import errno
 import os
 import subprocess
@@ -102,7 +103,7 @@ def test_a_command_names_the_file(capsys, tmp_path, monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     files.write(gallery.laminate(), tmp_path / "scene.toml")
-    monkeypatch.setattr(compare.rows.csv, "DictWriter", full)
+    monkeypatch.setattr(csv, "DictWriter", full)
     words = ["compare", tmp_path / "scene.toml", "--methods", "maxwell", "--out", tmp_path / "out"]
     assert main([str(word) for word in words]) == 2
     told = capsys.readouterr().err.splitlines()[-1]

@@ -109,13 +109,15 @@ def test_a_file_is_written_row_by_row_and_resumed(tmp_path):
 WRITER = """
 import sys
 import time
+from demheat.runtime.row_file import RowFile
 from demheat.sweeps import kept
-read, kept._read = kept._read, lambda path: (read(path), time.sleep(0.005))[0]
+from demheat.sweeps.rows import TAIL
+read, RowFile.read = RowFile.read, lambda file: (read(file), time.sleep(0.005))[0]
 print(flush=True)
 sys.stdin.readline()
 mine, file = sys.argv[1], kept.opened(sys.argv[2])
 for number in range(20):
-    file.add({"x": mine, "n": number}, {"x": mine, "n": number, "error": ""})
+    file.add({"x": mine, "n": number}, {"x": mine, "n": number, **dict.fromkeys(TAIL, "")})
 """
 
 

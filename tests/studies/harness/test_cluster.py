@@ -14,7 +14,7 @@ from studies.harness import runner
 from studies.harness.cluster import spread_over
 
 # What differs between two runs of the same row: seconds, memory, load, the hour.
-MEASURED = {"wall_s", "cpu_s", "peak_mib", "base_mib", "when", "load", "beside", "noise", "triad_gbs"}
+MEASURED = {"wall_s", "cpu_s", "peak_mib", "base_mib", "when", "load", "beside", "noise", "triad_gbs", "made_s"}
 needs_dask = pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="Dask is not installed")
 
 

@@ -3,6 +3,7 @@
 import os
 import sys
 import time
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -32,9 +33,8 @@ def test_a_row_is_that_of_a_fresh_process(study):
     tiny = study()
     with forked.forking() as compute:
         rows = [compute(tiny.__name__, tiny, case) for case in tiny.CASES]
-    others = [
-        runner.spawn_row(tiny.__name__, tiny, case, environment=provenance.row_environment()) for case in tiny.CASES
-    ]
+    start = partial(runner.started, environment=provenance.row_environment())
+    others = [runner.spawn_row(tiny.__name__, tiny, case, start=start) for case in tiny.CASES]
     for row, other in zip(rows, others, strict=True):
         # A process that lived for less than a fifth of a second does not know its noise.
         assert row.keys() | {"noise"} == other.keys() | {"noise"} and row["status"] == "ok"

@@ -1,5 +1,6 @@
 """Rows are run, reused and resumed, on a study small enough to break on purpose."""
 
+import csv
 import errno
 import os
 import signal
@@ -206,7 +207,7 @@ def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):
     before, writes = tiny.rows(), []
     capsys.readouterr()
 
-    class Full(store.csv.DictWriter):
+    class Full(csv.DictWriter):
         def writerows(self, rows):
             writes.append(1)
             if len(writes) == 1:
@@ -214,7 +215,7 @@ def test_a_disk_that_fills_up_while_rows_are_written(tiny, capsys, monkeypatch):
             super().writerows(rows)
 
     with monkeypatch.context() as patch:
-        patch.setattr(store.csv, "DictWriter", Full)
+        patch.setattr(csv, "DictWriter", Full)
         assert tiny.run() == 2
     said = capsys.readouterr().err
     assert said.count("\n") == 1 and "No space left on device" in said and "; the rows are in " in said

@@ -6,6 +6,7 @@ import time
 
 import pytest
 
+from demheat.runtime.paths import locked, replaced
 from studies.harness import store
 
 
@@ -18,7 +19,7 @@ def test_csv_is_replaced_whole_or_not_at_all(tmp_path):
         store.write_rows(path, [{"case": "b"}])
         assert reader.read() == before and list(store.read_rows(path)) == ["b"]
     before = path.read_bytes()
-    with pytest.raises(ZeroDivisionError), store.replaced(path) as temporary:
+    with pytest.raises(ZeroDivisionError), replaced(path) as temporary:
         temporary.write_text("half a fi")
         raise ZeroDivisionError
     assert path.read_bytes() == before and list(tmp_path.iterdir()) == [path]
@@ -63,7 +64,7 @@ def test_writers_take_turns(tmp_path):
         store.add_rows(path, {"k1": {"case": "k1"}}, keys)
 
     second = threading.Thread(target=other)
-    with store.locked(tmp_path):
+    with locked(tmp_path):
         rows = store.read_rows(path)
         second.start()
         inside.wait(10)
