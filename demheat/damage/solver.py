@@ -120,7 +120,8 @@ def solve(
 def _network(scene, law, wanted, cracks):
     """The network of a body with cracks, and what its packing took."""
     begun = time.perf_counter()
-    packing = wanted.packed(scene, wanted.counts(scene, law), law)
+    wanted.check(scene, law)
+    packing = wanted.packed(scene, law)
     spent = {"packing_s": time.perf_counter() - begun}
     warn_of_small(packing, cracks)
     if cracks and law.conforming:

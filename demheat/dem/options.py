@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import warnings
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,7 +33,7 @@ class Particles:
     particles: int
     seed: int
     packing: Packing | None = None
-    replicas: int | None = None  # Along the shortest side of the box
+    replicas: int | None = None  # Along the shortest side of the box, where particles are packed
     allow_few: bool = False
 
     def __post_init__(self):
@@ -47,13 +47,22 @@ class Particles:
         if self.packing is not None and self.replicas is not None:
             raise ValueError(f"replicas = {self.replicas!r} of a packing that is given: must be None")
 
-    def counts(self, scene: Scene, law: Laguerre | Calibrated | Platonic):
-        """How many replicas the packing has along each axis, (3,) int array."""
+    def check(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> None:
+        """Refuse what does not suit a scene and a law."""
         if self.packing is not None:
             _check_body(self.packing, scene)
-            return np.ones(3, dtype=int)
-        if self.tiles(scene, law):
-            return np.ones(3, dtype=int)
+        elif not self.tiles(scene, law):
+            self.repeats(scene, law)
+        if self.replicas is not None and replace(self, replicas=None).tiles(scene, law):
+            warnings.warn(
+                f"replicas = {self.replicas!r} of a packing: conforming cells need none, tiles cost nothing and are as "
+                "accurate; for them replicas will be refused",
+                DeprecationWarning,
+                stacklevel=5,
+            )
+
+    def repeats(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> np.ndarray:
+        """How often a packing that is made repeats a smaller one along each axis, (3,) int array."""
         if scene.domain == "box" and (scene.periodic or law.cells):
             return replica_counts(self.particles, scene.size, self.replicas)
         if self.replicas is not None and self.replicas != 1:
@@ -67,13 +76,14 @@ class Particles:
         ours = law.conforming and scene.domain == "box" and self.packing is None and self.replicas is None
         return ours and fits(self.particles, scene.size, scene.periodic)
 
-    def packed(self, scene: Scene, counts, law: Laguerre | Calibrated | Platonic) -> Packing:
+    def packed(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> Packing:
         """The packing that was given, or tiles, or a relaxed one in the scene's body, or replicas of one."""
         if self.packing is not None:
             return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
         if self.tiles(scene, law):
             return tiled(self.particles, **body)
+        counts = self.repeats(scene, law)
         if counts.prod() > 1:
             return replicated(self.particles, counts, **body)
         domain = {} if scene.domain == "box" else {"domain": scene.domain}

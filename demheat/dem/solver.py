@@ -80,10 +80,9 @@ def solve(
     packing : Packing, optional
         Used instead of tiles or a relaxed one; must have the scene's box and periodicity. A copy is taken.
     replicas : int, optional
-        Of a smaller relaxed packing, along the box's shortest side. Where there are no tiles, by default more than
+        Where there are no tiles, of a smaller relaxed packing, along the box's shortest side. By default more than
         2 million particles are replicas of 250 000 or fewer, which cost a few CPU-seconds instead of 90 for each
-        million, and are as accurate; twins at interfaces are not repeated. Between walls only with law "laguerre", and
-        in boxes only.
+        million, and are as accurate. Between walls only with law "laguerre", and in boxes only.
     allow_few : bool, optional
         Accept fewer than 100 particles.
 
@@ -110,6 +109,8 @@ def solve(
         If interfaces are so near to each other or to a wall that particles do not fit between them, an inclusion holds
         no particle, or is thin for particles without twins, or twins in narrow gaps are over five times as many as
         particles, or the spheres of a given packing are far apart.
+    DeprecationWarning
+        For replicas where tiles do: they will be refused there.
 
     Examples
     --------
@@ -215,10 +216,10 @@ def solve_axes(
 
 def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
     """Solve scenes that differ in their loads only, as they were checked."""
-    counts = wanted.counts(scenes[0], law)
+    wanted.check(scenes[0], law)
     begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
     with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
-        packing = wanted.packed(scenes[0], counts, law)
+        packing = wanted.packed(scenes[0], law)
         spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
         networks = networks_of(scenes, packing, law, seed=wanted.seed)
@@ -351,7 +352,7 @@ def evolve(
     if scene.radiates:
         check_linear(integrator)
     law.check(scene)
-    wanted.counts(scene, law)
+    wanted.check(scene, law)
     check_sources(scene, float(times[-1]))
     check_callables(scene)
 
@@ -361,7 +362,7 @@ def evolve(
 def _march(scene, times, law, wanted, **how):
     """Fields at times of what was checked; `how` are the knobs of the integrator."""
     with Helper(parts_of(law, wanted.particles, steady_state=False)) as helper:
-        packing = wanted.packed(scene, wanted.counts(scene, law), law)
+        packing = wanted.packed(scene, law)
         helper.join()
     network = network_of(scene, packing, law, seed=wanted.seed)
     loads = {"power": source_power(scene, network.centers, network.volumes), "transits": transits(scene)}

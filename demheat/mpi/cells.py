@@ -14,13 +14,12 @@ from demheat.tiles.slabs import Slabs
 
 def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) -> Packing:
     """The particles and twins that lie in a slab or near it, in the box."""
-    counts = wanted.counts(scene, law)
     # One makes what all read.
     for turn in (0, 1):
         if turn == min(comm.rank, 1):
-            packing, radii = tiles.packed(scene, law, wanted, counts, slabs)
+            packing, part = tiles.packed(scene, law, wanted, slabs)
         comm.Barrier()
-    packing = tiles.conformed(packing, radii, scene, law, wanted, slabs)
+    packing = tiles.conformed(packing, part, scene, law, wanted)
     if law.conforming and comm.rank == 0:
         warn_of_twins(packing, wanted.particles)
     return packing

@@ -104,7 +104,7 @@ def _solved(scene, folder, law, particles, slabs, seed, tolerance, replicas):
     # The packing may be in the cache: what it would take is said, not asked for.
     check_memory("particles", wanted.particles, expected(number, cuts[0]))
     check_room("folder", path, on_disk(number, cuts[0]))
-    packed_at_once = 0 if wanted.tiles(scene, law) else wanted.particles / wanted.counts(scene, law).prod()
+    packed_at_once = 0 if wanted.tiles(scene, law) else wanted.particles / wanted.repeats(scene, law).prod()
     needed = expected(number, cuts[0], packed_at_once)
     with announced("DEM in slabs", needed):
         return _answer(scene, law, wanted, Parts(scene, Store(path), cuts, []), tolerance, needed)
@@ -144,12 +144,11 @@ def _answer(scene, law, wanted, parts, tolerance, needed):
 def _cut(law, wanted, parts):
     """Make the network of each slab and write it; what a field's `stats` say of all."""
     scene, volume = parts.scene, 0.0
-    counts = wanted.counts(scene, law)
     with stage("slabs") as done:
         for slabs in parts.cuts:
             done(slabs.rank / len(parts.cuts))
-            packing, radii = packed(scene, law, wanted, counts, slabs)
-            packing = conformed(packing, radii, scene, law, wanted, slabs)
+            packing, part = packed(scene, law, wanted, slabs)
+            packing = conformed(packing, part, scene, law, wanted)
             if law.conforming and slabs.rank == 0:
                 warn_of_twins(packing, wanted.particles)
             cells = cells_of(scene, law, packing, slabs)
@@ -157,7 +156,7 @@ def _cut(law, wanted, parts):
             parts.store.write(slabs.rank, cells)
             parts.own.append(cells.own)
             # Twins aside, whose radii are raised by slabs.
-            made = {"packing": packing.provenance, "mean_radius": float(radii.mean())}
+            made = {"packing": packing.provenance, "mean_radius": part.radius}
             # Before the next is made.
             del packing, cells
     check_filled(volume, scene)

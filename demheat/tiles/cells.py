@@ -49,25 +49,30 @@ class Cells(NamedTuple):
     packing: dict
 
 
-def packed(scene: Scene, law: Laguerre, wanted: Particles, counts, slabs: Slabs) -> tuple[Packing, np.ndarray]:
-    """A slab's part of the packing, and the radii of all of it or of one of its replicas."""
+def packed(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs) -> tuple[Packing, Part]:
+    """A slab's part of the packing, and what is known there of all of it."""
     body = {"size": scene.size, "seed": wanted.seed}
     if wanted.tiles(scene, law):
-        part = tiled(wanted.particles, periodic=scene.periodic, keep=slabs.near, **body)
-        return part, part.radii[:1]
+        here = tiled(wanted.particles, periodic=scene.periodic, keep=slabs.near, **body)
+        return here, _part(here.radii, slabs)
+    counts = wanted.repeats(scene, law)
     if counts.prod() > 1:
-        part = replicated(wanted.particles, counts, periodic=scene.periodic, keep=slabs.near, **body)
-        return part, replica(wanted.particles, counts, **body).radii
+        here = replicated(wanted.particles, counts, periodic=scene.periodic, keep=slabs.near, **body)
+        return here, _part(replica(wanted.particles, counts, **body).radii, slabs)
     whole = relaxed(wanted.particles, periodic=scene.periodic, allow_few=wanted.allow_few, **body)
-    here = slabs.near(whole.centers)
-    return whole._replace(centers=whole.centers[here], radii=whole.radii[here]), whole.radii
+    near = slabs.near(whole.centers)
+    return whole._replace(centers=whole.centers[near], radii=whole.radii[near]), _part(whole.radii, slabs)
 
 
-def conformed(packing: Packing, radii, scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs) -> Packing:
+def _part(radii, slabs):
+    """What is known of a whole packing by radii: all of them, one replica's, or some of equal ones."""
+    return Part(float(radii.mean()), float(radii.max()), slabs.near)
+
+
+def conformed(packing: Packing, part: Part, scene: Scene, law: Laguerre, wanted: Particles) -> Packing:
     """A part of a packing with the twins that lie in a slab or near it, where the law has twins."""
     if not law.conforming:
         return packing
-    part = Part(radii.mean(), radii.max(), slabs.near)
     return conform(packing, scene, seed=wanted.seed, gap_spacing=law.gap_spacing, part=part)
 
 

@@ -18,4 +18,4 @@ def check(scene: Scene, law: Laguerre, wanted: Particles, tolerance: float, *, k
     if scene.radiates:
         raise NotImplementedError(f"walls that radiate: {knows}")
     law.check(scene)
-    wanted.counts(scene, law)
+    wanted.check(scene, law)

@@ -23,20 +23,20 @@ def test_counts():
         assert np.all(np.array(size) / counts <= 1.0001 * np.cbrt(np.prod(size) * domain.REPLICA / number))
 
 
-def test_bad_tiles():
+def test_bad_replicas():
     scene = Scene(size=(1, 1, 1), matrix=Material(1.0), **LOADS["periodic"])
     with pytest.raises(ValueError, match="replicas = "):
         demheat.solve(scene, particles=10_000, replicas=3)
 
 
-def test_too_many_tiles_are_named():
+def test_too_many_replicas_are_named():
     with pytest.raises(ValueError, match="replicas = 2: makes 2 x 4 x 2 replicas .* need 16000 .* fewer for 10000"):
         replica_counts(10_000, (1, 2, 1), 2)
     with pytest.raises(ValueError, match="replicas = 1000000000000: makes"):
         replica_counts(10_000, (1, 2, 1), 10**12)
 
 
-def test_what_tiles_are_not_for():
+def test_what_replicas_are_not_for():
     walls = Scene(size=(1, 1, 1), matrix=Material(1.0), walls={"y-": 0.0, "y+": 1.0}, initial=0.0)
     with pytest.raises(NotImplementedError, match="only in boxes by 'laguerre'"):
         demheat.solve(walls, particles=10_000, replicas=2, law="calibrated")
@@ -65,8 +65,9 @@ def test_walls_keep_their_distance_and_order():
         assert np.all(np.diff(between.centers[order, k]) >= 0)
 
 
+@pytest.mark.filterwarnings("ignore:replicas = :DeprecationWarning")
 @pytest.mark.parametrize("load", LOADS)
-def test_linear_fields_are_exact_on_tiles(load):
+def test_linear_fields_are_exact_on_replicas(load):
     same = [Sphere((0.5,) * 3, 0.3, Material(5.0))]
     scene = Scene(size=(1, 2, 1), matrix=Material(5.0), inclusions=same, **LOADS[load])
     field = demheat.solve(scene, particles=16_000, replicas=2, tolerance=1e-13)

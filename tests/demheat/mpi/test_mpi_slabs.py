@@ -38,6 +38,7 @@ def by_place(points, *columns):
     return points[order], *(column[order] for column in columns)
 
 
+@pytest.mark.filterwarnings("ignore:replicas = :DeprecationWarning")
 @pytest.mark.parametrize(
     ("scene", "knobs", "ranks"),
     [(CELL, {}, 3), (CELL, {"replicas": 1}, 1), (WALLS, {"replicas": 1}, 2)],

@@ -25,6 +25,7 @@ def by_place(samples):
     return [column[order] for column in samples]
 
 
+@pytest.mark.filterwarnings("ignore:replicas = :DeprecationWarning")
 @pytest.mark.parametrize(
     ("scene", "number", "replicas", "slabs"),
     [(WALLS, 3000, 1, 2), (CELL, 4000, 1, 3)],
