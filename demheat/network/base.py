@@ -114,6 +114,10 @@ def wall_normals(walls):
     return normals
 
 
+# Of the image in the box itself.
+HERE = 13
+
+
 def image_codes(steps):
     """Codes of periodic images, which `image_shifts` takes back."""
     return ((np.asarray(steps) + 1) @ np.array([9, 3, 1])).astype(np.uint8)

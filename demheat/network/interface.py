@@ -3,7 +3,7 @@
 import numpy as np
 
 from demheat.laws import RULES
-from demheat.network.base import Network
+from demheat.network.base import HERE, Network, image_shifts
 
 # Rows connected at once: bounds the scratch memory (some 1.5 kB a row, 25 MB).
 BLOCK = 16384
@@ -61,8 +61,10 @@ def _conductances(packing, facets, conductivity, rule):
         row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
         there = facets.indices[links]
         length = _lengths(packing.centers, packing.size, row, there, facets.image[links])
-        share = facets.distance[links] / length
-        k = link_conductivity(conductivity[row], conductivity[there], share, rule=rule)
+        k, beyond = conductivity[row], conductivity[there]
+        unlike = np.flatnonzero(k != beyond)
+        share = facets.distance[links][unlike] / length[unlike]
+        k[unlike] = link_conductivity(k[unlike], beyond[unlike], share, rule=rule)
         conductance[links] = k * facets.area[links] / length
     return conductance
 
@@ -80,9 +82,11 @@ def _resisted(conductance, facets, phase, resistance):
 
 def _lengths(centers, size, row, indices, image):
     """Distance between the centres of some links, (m,) float array, m."""
-    total = np.zeros(len(indices))
-    code = image.astype(np.int16)
-    for k, shift in enumerate((code // 9 - 1, code // 3 % 3 - 1, code % 3 - 1)):
-        x = centers[:, k]
-        total += (x[indices] - x[row] + shift * size[k]) ** 2
+    total, away = np.zeros(len(indices)), np.flatnonzero(image != HERE)
+    shifts = image_shifts(image[away], size)
+    for k in range(3):
+        x = np.ascontiguousarray(centers[:, k])
+        way = x[indices] - x[row]
+        way[away] += shifts[:, k]
+        total += way * way
     return np.sqrt(total)
