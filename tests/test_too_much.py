@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from demheat import Layer, Material, MovingCylinder, Scene, evolve, gallery, solve
+from demheat import Box, Material, MovingCylinder, Scene, evolve, gallery, solve
 from demheat.packing.base import make_packing
 from demheat.packing.conforming import conform
 from demheat.packing.domain import replicate
@@ -68,11 +68,11 @@ REQUESTS = {
 
 def test_twins_beyond_memory_are_refused(monkeypatch):
     """In a gap of a quarter of a particle there are many more twins than particles were asked for; none is made."""
-    monkeypatch.setattr("demheat.packing.patterns.kernels.thinned", None)
+    monkeypatch.setattr("demheat.packing.patterns.thinned", None)
     monkeypatch.setattr("demheat.runtime.limits.SMALL", 0)
     monkeypatch.setattr("demheat.runtime.limits.free_memory", lambda: 1e6)
-    layer = Layer(0, 0.49, 0.51, Material(10.0))
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [layer], walls={"x-": 0.0, "x+": 1.0})
+    plates = [Box((x, 0.5, 0.5), (0.2, 0.6, 0.6), Material(10.0)) for x in (0.39, 0.61)]
+    scene = Scene((1.0, 1.0, 1.0), Material(1.0), plates, walls={"x-": 0.0, "x+": 1.0})
     with pytest.raises(ValueError, match=r"^twins, most of them in narrow gaps, = [0-9]+: takes"):
         solve(scene, particles=1000)
 
