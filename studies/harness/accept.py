@@ -33,7 +33,7 @@ def accept(names, out, say):
             (name, study, case)
             for name, study in studies.items()
             for case in replay.stored_cases(study, runner.csv_of(name, out), unproved=True)
-            if (name, group_of(case)) in groups
+            if (name, group_of(study, case)) in groups
         ]
         say(f"{len(groups)} groups moved; {len(todo)} rows are made again")
         fresh, failed = _made_again(todo, made, out, say, compute)
@@ -130,7 +130,7 @@ def _groups(name, study, rows, fresh):
     for case in study.CASES:
         row = fresh.get((name, case_key(case)))
         if row is not None:
-            group = ", ".join(str(value) for _, value in group_of(case))
+            group = ", ".join(str(value) for _, value in group_of(study, case))
             lines.setdefault(group, []).append((rows[case_key(case)], row))
     table = []
     for group, pairs in lines.items():

@@ -12,16 +12,22 @@ KINDS = ("part", "name", "method", "law", "integrator", "scheme", "rule", "packi
 CODE = ("method", "law", "integrator", "scheme", "rule", "packing")
 
 
-def group_of(case):
-    """What a row stands or falls with, in its study."""
-    return tuple((kind, case[kind]) for kind in KINDS if case.get(kind) is not None)
+def group_of(study, case):
+    """What a row stands or falls with, in its study: `KINDS`, and what a study names besides in `APART`."""
+    kinds = (*KINDS, *getattr(study, "APART", ()))
+    return tuple((kind, case[kind]) for kind in kinds if case.get(kind) is not None)
 
 
-def cheapest(rows, cases):
-    """Of each group the case whose stored row took least."""
+def cheapest(study, rows, cases):
+    """Of each group the case whose stored row took least; one that was refused tells of no number."""
+
+    def order(case):
+        row = rows.get(case_key(case), {})
+        return row.get("status") != "ok", cost(row)
+
     found = {}
-    for case in sorted(cases, key=lambda case: cost(rows.get(case_key(case), {}))):
-        found.setdefault(group_of(case), case)
+    for case in sorted(cases, key=order):
+        found.setdefault(group_of(study, case), case)
     return found
 
 

@@ -111,7 +111,7 @@ def bear_out(studies, out, *, quick=False, dear=math.inf, say=print, compute=Non
         say(f"    {name} {kinds} takes long: follows {', '.join(others[:MOST])}{more}")
     gone, made = {each: before for each, (task, _, before) in groups.items() if not task}, {}
     for task, wrong, row in replayed(tasks, out, say, compute=compute):
-        name, group = each = task[0], group_of(task[2])
+        name, group = each = task[0], group_of(task[1], task[2])
         gone[each] = bool(wrong)
         if wrong:
             made[name, case_key(task[2])] = row
@@ -133,12 +133,13 @@ def _grouped(studies, out, quick):
         rows, groups = read_rows(runner.csv_of(name, out)), {}
         for case in stored_cases(study, runner.csv_of(name, out), quick=quick):
             if rows[case_key(case)]["status"] in runner.KEPT:
-                groups.setdefault(group_of(case), []).append(case)
+                groups.setdefault(group_of(study, case), []).append(case)
         for group, cases in groups.items():
             here = [rows[case_key(case)] for case in cases]
             older = [case for case in cases if not held(study, rows[case_key(case)])]
-            task = (name, study, cheapest(rows, older)[group]) if older else None
-            found[name, group] = task, min(map(cost, here)), _moved_before(study, here)
+            task = (name, study, cheapest(study, rows, older)[group]) if older else None
+            least = cost(rows[case_key(cheapest(study, rows, cases)[group])])
+            found[name, group] = task, least, _moved_before(study, here)
     return found
 
 
@@ -156,7 +157,7 @@ def _moved_before(study, rows):
 def _mark(study, path, group):
     """Note in the rows of a group that other code has made that they are borne out."""
     rows, mark = read_rows(path), {"borne_commit": provenance.commit(study.__file__)}
-    keys = [case_key(case) for case in study.CASES if group_of(case) == group]
+    keys = [case_key(case) for case in study.CASES if group_of(study, case) == group]
     found = {key: rows[key] | mark for key in keys if key in rows and not held(study, rows[key])}
     if found:
         add_rows(path, found, keys_of(study, path))

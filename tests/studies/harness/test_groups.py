@@ -1,10 +1,12 @@
 """Which rows are looked at for those of others."""
 
 import math
+from types import SimpleNamespace
 
 import pytest
 
 from studies.harness import groups
+from studies.harness.store import case_key
 
 
 def group(**kinds):
@@ -13,7 +15,21 @@ def group(**kinds):
 
 def test_what_a_row_stands_or_falls_with():
     case = {"name": "dem", "scene": "third", "particles": 10, "seed": 0, "method": "dem", "law": None, "packing": "lsa"}
-    assert groups.group_of(case) == group(name="dem", method="dem", packing="lsa")
+    assert groups.group_of(SimpleNamespace(), case) == group(name="dem", method="dem", packing="lsa")
+    apart = SimpleNamespace(APART=("scene",))
+    assert groups.group_of(apart, case) == group(name="dem", method="dem", packing="lsa", scene="third")
+
+
+def test_a_row_that_was_refused_tells_of_no_number():
+    refused, right, dear = ({"method": "dem", "seed": seed} for seed in range(3))
+    rows = {
+        case_key(refused): {"status": "unsupported", "wall_s": "0.1"},
+        case_key(right): {"status": "ok", "wall_s": "1.0"},
+        case_key(dear): {"status": "ok", "wall_s": "9.0"},
+    }
+    assert groups.cheapest(SimpleNamespace(), rows, [refused, dear, right]) == {group(method="dem"): right}
+    del rows[case_key(right)], rows[case_key(dear)]
+    assert groups.cheapest(SimpleNamespace(), rows, [refused]) == {group(method="dem"): refused}
 
 
 @pytest.mark.parametrize(
