@@ -1,6 +1,14 @@
-"""How far a finite element solution is off, by coarser meshes of the same scene."""
+"""How far a finite element solution is off, by coarser meshes of the same scene, and by linear elements on its own.
 
-from demheat.error import Refinement, by_refinement
+Runs on coarser meshes may hardly differ by luck: coarse elements lose as much volume of a body as they are too stiff.
+Linear elements tell how stiff elements are. What quadratic ones lack goes with the square of what linear ones do, where
+surfaces are smooth; beside edges of boxes both fall alike and keep their ratio.
+"""
+
+import math
+
+from demheat.error import Refinement, by_refinement, conductivity_of, quietly
+from demheat.scene.edges import SMOOTH, edge_order
 
 # Meshes follow features: all their edges are made so many times longer, not the largest alone.
 RATIO = 1.4
@@ -10,9 +18,33 @@ RULES = {
     "straight": Refinement(RATIO, 2, 2.0, 2.5, 2.0, 1.2),
     "linear": Refinement(RATIO, 2, 2.0, 4.5, 2.0, 2.0),
 }
+# Quadratic elements lack of the conductivity such a part of what they differ by from linear ones beside edges, and of
+# smooth bodies so many times that part squared, of what inclusions make of the conductivity. Found on scenes of study
+# `intervals`, even seeds, are .15 to .34, and up to .8 where runs hardly differ.
+BESIDE_EDGES, ROUND = 0.4, 1.0
 
 
-def estimated(field, coarser, kind, *, steps=0.0):
-    """Estimate of a field."""
+def estimated(field, again, kind, *, steps=0.0):
+    """Estimate of a field; `again` makes it of other knobs of its mesh."""
     left = {"residual": field.stats["residual"], "steps": steps}
-    return by_refinement(field, lambda level: coarser(RATIO**level), RULES[kind], how="coarser meshes", **left)
+    least = _by_linear(field, again) if kind == "curved" else 0.0
+
+    def coarser(level):
+        return again(coarser=RATIO**level)
+
+    return by_refinement(field, coarser, RULES[kind], how="coarser meshes", least=least, **left)
+
+
+def _by_linear(field, again):
+    """What quadratic elements lack of the conductivity, by what linear ones of the same lengths do, W/(m K)."""
+    k, scene = conductivity_of(field), field.scene
+    if not k or not math.isfinite(k) or not scene.inclusions:
+        return 0.0
+    try:
+        apart = abs(conductivity_of(quietly(lambda order: again(order=order, curved=False), 1)) - k)
+    except (ValueError, RuntimeError, NotImplementedError):
+        return 0.0
+    if edge_order(scene) < SMOOTH:
+        return BESIDE_EDGES * apart
+    made = abs(k - float(scene.mean_conductivities[0]))
+    return min(ROUND * apart**2 / made, apart) if made else 0.0

@@ -108,15 +108,16 @@ def _answer(scene, tolerance, options, **elements):
     temperature += given.level
     solved = Solved(temperature, *at_walls(scene, given, temperature, heat, {}), stats)
     kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"
-    coarser = partial(_again, scene, tolerance, options, elements)
+    again = partial(_again, scene, tolerance, options, elements)
     with costs.of("field"):
-        field = field_of(scene, mesh, solved, tolerance, partial(estimated, coarser=coarser, kind=kind))
+        field = field_of(scene, mesh, solved, tolerance, partial(estimated, again=again, kind=kind))
     return replace(field, stats=dict(field.stats) | {"ranks": comm.size, "solver": "petsc"} | costs.told())
 
 
-def _again(scene, tolerance, options, elements, factor):
-    """The same on edges so many times as long."""
-    return _answer(scene, tolerance, options, **elements | {"coarser": factor})
+def _again(scene, tolerance, options, elements, **changed):
+    """The same by other elements, of the same length if nothing else is said."""
+    size = checked_size(scene, elements["size"], elements["order"])
+    return _answer(scene, tolerance, options, **elements | {"size": size} | changed)
 
 
 def _from_first(work, comm):

@@ -157,13 +157,14 @@ def _answers(scenes, tolerance, **elements):
     fields = []
     for scene, each in zip(scenes, solved, strict=True):
         again = partial(_again, scene, tolerance, elements)
-        fields.append(field_of(scene, mesh, each, tolerance, partial(estimated, coarser=again, kind=kind)))
+        fields.append(field_of(scene, mesh, each, tolerance, partial(estimated, again=again, kind=kind)))
     return fields
 
 
-def _again(scene, tolerance, elements, factor):
-    """The same on edges so many times as long."""
-    return _answers([scene], tolerance, **elements | {"coarser": factor})[0]
+def _again(scene, tolerance, elements, **changed):
+    """The same by other elements, of the same length if nothing else is said."""
+    size = checked_size(scene, elements["size"], elements["order"])
+    return _answers([scene], tolerance, **elements | {"size": size} | changed)[0]
 
 
 def field_of(scene, mesh, solved, tolerance, estimator) -> Field:

@@ -150,7 +150,7 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
         stats |= {"iterations": solver.iterations, "residual": solver.residual, "setups": solver.setups}
         stats |= {"solve_s": clock.perf_counter() - begun}
         again = partial(_at, scene, float(time), cells, step=step, accuracy=accuracy, tolerance=tolerance)
-        estimator = partial(estimated, coarser=again, kind=kind, steps=accuracy)
+        estimator = partial(estimated, again=again, kind=kind, steps=accuracy)
         yield _field(scene, problem, state, initial - level, space.stats | stats, estimator)
 
 

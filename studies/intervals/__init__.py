@@ -8,7 +8,8 @@ images, spheres at random, needles and discs up to 1:20, half-spaces, and bodies
 estimate of what is small and far apart, multipoles, or finer elements, each with its own doubt.
 
 An interval holds if it has a point in common with what is true; how many hold by that doubt alone, and not with its
-middle, is said. Scenes of odd seeds are for judging only: nothing is ever changed because of them. Limits were set
+middle, is said. Scenes of odd seeds are for judging only: nothing is ever changed because of them (of particles and
+finite elements the first eleven were looked at; theirs are later ones). Limits were set
 before any value was seen, the median by half of the interval, as in study `estimates`. A method that refuses, or has no
 interval (of images nobody has one), counts neither way; finite elements are not asked where a mesh would be dear.
 """
@@ -18,6 +19,10 @@ from studies.intervals.scenes import KINDS
 EACH = 22  # Scenes of a kind
 # Methods that cost more are asked for the first of each kind.
 FIRST = {"dem": 11, "fem": 11, "fft-em": 11}
+# Thin ones have elements as fine as they are thin.
+DEAR = {("fem", "needles, discs"): 5}
+# Misses of these among the first odd seeds were looked at: they are judged by later ones.
+LOOKED_AT = ("dem", "fem")
 SHOWN = ("array", "layers", "half-space")
 # Whose truth is not theirs: single spheres in a cell.
 BY_MULTIPOLES = ("array", "speck", "copies")
@@ -58,8 +63,14 @@ TIMEOUT = 600.0
 
 def _methods(kind, seed):
     yield from ("truth", "fft")
-    yield from (name for name, number in FIRST.items() if seed < number)
+    yield from (name for name, number in FIRST.items() if _asked(name, seed, DEAR.get((name, kind), number)))
     yield from ("multipole",) * (kind in BY_MULTIPOLES)
+
+
+def _asked(name, seed, number):
+    """Whether a method is asked of a seed: the first, or even ones of these and as many later odd ones."""
+    first = number if name in LOOKED_AT and seed % 2 else 0
+    return first <= seed < first + number
 
 
 CASES = [

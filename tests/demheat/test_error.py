@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from method_scenes import METHODS
 
-from demheat import Laguerre, Layer, Material, Scene, Sphere, evolve, gallery, solve
+from demheat import Box, Laguerre, Layer, Material, Scene, Sphere, evolve, gallery, solve
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.error import Estimate, Refinement, beside, by_refinement, known, missing
@@ -66,6 +66,46 @@ def test_intervals_are_what_is_missing_times_a_safety():
     assert left.upper - middle == pytest.approx(0.3 + 0.01 * middle, rel=1e-10)
     span = np.ptp([0.0, 1.01])  # of the points and walls; the points do not reach the ends
     assert 0.02 + 0.11 * 0.98 < left.temperature < 0.02 + 0.11 * 1.001 * span
+
+
+def test_a_coarser_run_that_is_close_by_luck_is_told_by_another():
+    lucky = {"coarser": lambda level: made(0 if level == 1 else 1), "rule": RULE, "how": "coarser"}
+    half = [by_refinement(made(0), **lucky, again=again).upper - made(0).conductivity for again in (None, made)]
+    # Of 5.1, 5.1, 5.28 the last change alone tells, at a step; of 5.28 beside 5.1 it tells all.
+    assert half == pytest.approx([3 * 0.1 / 2**1.5, 3 * 0.1], rel=1e-9)
+
+
+def test_beside_edges_orders_are_no_higher_than_those_of_the_field_there():
+    """The edge of a good conductor has the power 2/3: .9 times 4/3 for a rule of second order, all of a slower one."""
+    rod = Scene((1.0,) * 3, Material(1.0), [Box((0.5,) * 3, (0.5,) * 3, Material(1e9))], gradient=(1.0, 0.0, 0.0))
+
+    def half(rule):
+        estimate = by_refinement(made(0, scene=rod), lambda n: made(n, scene=rod), rule, how="", least=1e-3)
+        return (estimate.upper - estimate.lower) / 2
+
+    def told(order):  # by the second change, of errors that grow with the power 1.5
+        return 3 * 0.1 * 2**1.5 * (2**1.5 - 1) / (2**order * (2**order - 1))
+
+    # Powers are tried in steps of 1/2000.
+    assert half(RULE._replace(order=2.0)) == pytest.approx(told(0.9 * 4 / 3), rel=2e-3)
+    assert half(RULE._replace(order=1.0)) == pytest.approx(told(1.0), rel=1e-9)
+    assert half(RULE._replace(safety=0.0)) == pytest.approx(1e-3, rel=1e-6)
+
+
+@pytest.mark.parametrize("shape, half", [("box", 0.4 * 0.9), ("sphere", 0.9**2 / 4.1)])
+def test_linear_elements_tell_of_quadratic_ones_whose_runs_hardly_differ(monkeypatch, shape, half):
+    """An error of a unit by linear ones where a body makes 4.1 of 5.1; runs do not tell more than .2."""
+    body = Box((0.5,) * 3, (0.5,) * 3, Material(1e9)) if shape == "box" else Sphere((0.5,) * 3, 0.3, Material(9.0))
+    scene = Scene((1.0,) * 3, Material(1.0), [body], gradient=(1.0, 0.0, 0.0))
+    monkeypatch.setitem(of_elements.RULES, "curved", of_elements.RULES["curved"]._replace(safety=0.0))
+
+    def of(error):
+        field = off_by(error)
+        field.scene, field.fractions = scene, fractions(scene)
+        return field
+
+    estimate = of_elements.estimated(of(0.1), lambda order=2, **knobs: of(1.0 if order == 1 else 0.1), "curved")
+    assert (estimate.upper - estimate.lower) / 2 == pytest.approx(half, rel=1e-9)
 
 
 def test_coats_are_at_least_as_uncertain_as_their_temperature():
@@ -136,8 +176,13 @@ def off_by(error, **stats):
     return field
 
 
-def by_elements(kind):
-    return of_elements.estimated(off_by(0.1), lambda factor: off_by(0.1 * factor**2), kind)
+def by_elements(kind, linear=0.1):
+    """Linear elements of the same size are off by `linear`."""
+
+    def again(coarser=1.0, order=2, **knobs):
+        return off_by(linear if order == 1 else 0.1 * coarser**2)
+
+    return of_elements.estimated(off_by(0.1), again, kind)
 
 
 def by_voxels(rule):
