@@ -1,4 +1,4 @@
-"""Edges of boxes that meet: how slowly any elements close in on what happens there.
+"""Edges, of boxes, rims and planes at walls: how slowly any elements close in on what happens there.
 
 Where good and bad conductors alternate around an edge, as on a checkerboard, the temperature goes with a small power of
 the distance from it, on a board of contrast s with the power (4 / pi) arctan(1 / sqrt(s)): .8 at 2, .39 at 10, .13 at
@@ -7,8 +7,8 @@ on with its root or less. What joins the good ones at the edge, as voxels with t
 upwards, what parts them, as links between middles of voxels, downwards: to 98 and to 5.7 where 31.6 is right (48 voxels
 along a board of contrast 1000), and twice as many voxels change that by a tenth. So such edges have no answer here.
 
-The edge of a box alone has a power from 2/3 on, so that errors of second order fall with the power 4/3 at contrasts far
-from 1.
+The edge of a box or the rim of a cylinder alone has a power from 2/3 on, so that errors of second order fall with the
+power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall and its image, with powers from 1/2 on.
 """
 
 from __future__ import annotations
@@ -18,42 +18,81 @@ from itertools import combinations, product
 import numpy as np
 
 from demheat.scene.shapes.box import Box
+from demheat.scene.shapes.cylinder import Cylinder
+from demheat.scene.shapes.half_space import HalfSpace
 
 # Powers of the size below which methods have no answer, and where there is no edge.
 SLOWEST, SMOOTH = 0.5, 2.0
 # Points along an edge that are looked at, and how far beside it, of the shortest side of the box.
 ALONG, BESIDE = 8, 1e-6
+# Cosine of the angle from which on a plane and a wall are not upright, nor parallel.
+MEETS = 1e-9
 # Powers that are tried, and least conductivity over the largest at an edge.
 TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 
 
 def edge_order(scene) -> float:
-    """The power of their size with which errors of elements fall beside the worst of the edges of boxes, at most 2."""
-    boxes = [part for shape in scene.inclusions for part in shape.parts if isinstance(part, Box)]
-    if not boxes or scene.anisotropic:
+    """The power of their size with which errors of elements fall beside the worst edge of the scene, at most 2.
+
+    Edges are those of boxes, the rims of cylinders, and where inclined planes meet walls.
+    """
+    if scene.anisotropic:
         return SMOOTH
-    around, size = np.concatenate([_around(box, scene.size) for box in boxes]), np.array(scene.size)
+    parts, k = [part for shape in scene.inclusions for part in shape.parts], scene.mean_conductivities
+    return min((2 * each for each in (*_of_rims(scene, parts, k), *_of_planes(scene, parts, k))), default=SMOOTH)
+
+
+def _of_rims(scene, parts, k):
+    """Powers at edges of boxes and rims of cylinders."""
+    around = [_around(part, scene.size) for part in parts if isinstance(part, Box)]
+    around += [_rims(part, scene.size) for part in parts if isinstance(part, Cylinder) and part.length is not None]
+    if not around:
+        return []
+    around, size = np.concatenate(around), np.array(scene.size)
     if not scene.periodic:
         # Walls are mirrors: what touches one with an edge meets its image there.
         within = size / 2 - np.abs(around - size / 2)
         around = np.where(within < 0, np.where(around < 0, -around, 2 * size - around), around)
         around = around[np.all(within > -4 * BESIDE * size.max(), axis=(1, 2))]
-    k = scene.mean_conductivities[scene.phase_at(around.reshape(-1, 3))].reshape(-1, 4)
-    return min((2 * power(four) for four in np.unique(k, axis=0)), default=SMOOTH)
+    return [power(four) for four in np.unique(k[scene.phase_at(around.reshape(-1, 3))].reshape(-1, 4), axis=0)]
 
 
-def power(conductivities) -> float:
+def _of_planes(scene, parts, k):
+    """Powers where planes meet walls, which make wedges of them, at an angle of theirs and at its supplement."""
+    for plane in (part for part in parts if isinstance(part, HalfSpace)):
+        along = np.abs(plane.outward)
+        # Walls are mirrors: the wedge of an angle is one of twice that.
+        for wedge in 2 * np.arccos(along[(along > MEETS) & (along < 1 - MEETS)]):
+            angles = np.array([wedge, 2 * np.pi - wedge])
+            yield from (power([plane.material.mean_conductivity, k[0]], each) for each in (angles, angles[::-1]))
+
+
+def power(conductivities, angles=(np.pi / 2,) * 4) -> float:
     """Least power of the distance from an edge with which the temperature may go, at most 1.
 
-    Around the edge the temperature and the flux across its rays come back to themselves.
+    Around the edge, through wedges of some angles, the temperature and the flux across its rays come back to
+    themselves.
     """
-    k = np.maximum(conductivities, LEAST * max(conductivities)) if max(conductivities) > 0 else np.ones(4)
-    cosine, sine = np.cos(0.5 * np.pi * TRIED), np.sin(0.5 * np.pi * TRIED)
+    k = np.maximum(conductivities, LEAST * max(conductivities)) if max(conductivities) > 0 else np.ones(len(angles))
     turned = np.eye(2)
-    for each in k:
+    for each, angle in zip(k, angles, strict=True):
+        cosine, sine = np.cos(angle * TRIED), np.sin(angle * TRIED)
         turned = np.array([[cosine, sine / each], [-each * sine, cosine]]).transpose(2, 0, 1) @ turned
     back = np.flatnonzero(np.trace(turned, axis1=1, axis2=2) >= 2.0)
     return float(TRIED[back[0]]) if len(back) else 1.0
+
+
+def _rims(cylinder, size):
+    """Points in the four quadrants around the two rims of a cylinder, (n, 4, 3) float array, m."""
+    axis = np.array(cylinder.axis)
+    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+    one /= np.linalg.norm(one)
+    turns = 2 * np.pi * (np.arange(ALONG) + 0.5) / ALONG
+    outward = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * np.cross(axis, one)
+    beside = BESIDE * min(cylinder.radius, cylinder.length, *size)
+    across = (cylinder.radius + beside * np.array([-1, -1, 1, 1]))[None, :, None] * outward[:, None]
+    up = (0.5 * cylinder.length + beside * np.array([-1, 1, 1, -1]))[:, None] * axis
+    return np.array(cylinder.center) + np.concatenate([across + up, across - up])
 
 
 def _around(box, size):

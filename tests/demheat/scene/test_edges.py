@@ -2,11 +2,12 @@
 
 import math
 
+import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Material, Scene, solve
-from demheat.scene import Box, Sphere, Union
+from demheat.scene import Box, Cylinder, HalfSpace, Sphere, Union
 from demheat.scene.edges import edge_order, power
 from references import fft
 
@@ -31,6 +32,33 @@ def test_power_of_other_edges():
     # A corner of a perfect conductor or insulator: 2/3, as around any angle of 270 degrees.
     assert_allclose([power([1e9, 1, 1, 1]), power([0, 1, 1, 1])], 2 / 3, atol=1 / 2000)
     assert power([1.0, 0.0, 1.0, 0.0]) == 1 / 2000
+
+
+@pytest.mark.parametrize("contrast, angle", [(100.0, 0.3), (0.05, 0.8), (7.0, 1.2)])
+def test_power_of_wedges(contrast, angle):
+    """Even modes of a wedge of twice an angle: k tan(p angle) = -tan(p (pi - angle)); odd ones with 1 / k."""
+
+    def least(k):
+        p = np.linspace(1e-4, 1.0, 100_001)
+        # Without the poles of the tangents.
+        mode = k * np.sin(p * angle) * np.cos(p * (np.pi - angle)) + np.cos(p * angle) * np.sin(p * (np.pi - angle))
+        return p[1:][np.diff(np.sign(mode)) != 0].min(initial=1.0)
+
+    exact = min(least(contrast), least(1 / contrast))
+    assert_allclose(power([contrast, 1.0], [2 * angle, 2 * np.pi - 2 * angle]), exact, atol=1 / 2000)
+
+
+def test_rims_and_inclined_planes_have_edges():
+    cell, good = {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0)}, Material(1e9)
+    walls = {"walls": {"x-": 0.0, "x+": 1.0}}
+    rod = Cylinder((0.5,) * 3, 0.2, (1, 2, 0), good, length=0.3)
+    assert_allclose(edge_order(Scene(inclusions=[rod], **cell, **walls)), 4 / 3, atol=2 / 1000)
+    fibre = Cylinder((0.5,) * 3, 0.2, (1, 0, 0), good)
+    assert edge_order(Scene(inclusions=[fibre], **cell, **walls)) == 2.0
+    # A plane at 45 degrees is the edge of a square bar there, or one less a quarter; an upright one is none.
+    tilted = HalfSpace((0.5,) * 3, (1, 1, 0), good)
+    assert_allclose(edge_order(Scene(inclusions=[tilted], **cell, **walls)), 4 / 3, atol=2 / 1000)
+    assert edge_order(Scene(inclusions=[HalfSpace((0.5,) * 3, (0, 0, 1), good)], **cell, **walls)) == 2.0
 
 
 def test_boxes_that_keep_apart_or_share_a_face_are_as_all_others():
