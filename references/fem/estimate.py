@@ -20,7 +20,7 @@ RULES = {
 }
 # Quadratic elements lack of the conductivity such a part of what they differ by from linear ones beside edges, and of
 # smooth bodies so many times that part squared, of what inclusions make of the conductivity. Found on scenes of study
-# `intervals`, even seeds, are .15 to .34, and up to .8 where runs hardly differ.
+# `intervals`, even seeds, are .15 to .34, and .2 to .8 of that squared.
 BESIDE_EDGES, ROUND = 0.4, 1.0
 
 

@@ -80,7 +80,7 @@ def test_beside_edges_orders_are_no_higher_than_those_of_the_field_there():
     rod = Scene((1.0,) * 3, Material(1.0), [Box((0.5,) * 3, (0.5,) * 3, Material(1e9))], gradient=(1.0, 0.0, 0.0))
 
     def half(rule):
-        estimate = by_refinement(made(0, scene=rod), lambda n: made(n, scene=rod), rule, how="", least=1e-3)
+        estimate = by_refinement(made(0, scene=rod), lambda n: made(n, scene=rod), rule, how="")
         return (estimate.upper - estimate.lower) / 2
 
     def told(order):  # by the second change, of errors that grow with the power 1.5
@@ -89,22 +89,32 @@ def test_beside_edges_orders_are_no_higher_than_those_of_the_field_there():
     # Powers are tried in steps of 1/2000.
     assert half(RULE._replace(order=2.0)) == pytest.approx(told(0.9 * 4 / 3), rel=2e-3)
     assert half(RULE._replace(order=1.0)) == pytest.approx(told(1.0), rel=1e-9)
-    assert half(RULE._replace(safety=0.0)) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_what_a_method_knows_besides_counts_where_runs_turn():
+    def half(levels, least):
+        runs = dict(enumerate(levels))
+        estimate = by_refinement(made(runs[0]), lambda n: made(runs[n]), RULE, how="", least=least)
+        return (estimate.upper - estimate.lower) / 2
+
+    plain, turned = half((0, 1, 2), 0.0), half((0, 1, 0), 0.0)
+    assert half((0, 1, 2), 10.0) == pytest.approx(1.5 * plain, rel=1e-9)
+    assert half((0, 1, 2), 1.2 * plain) == pytest.approx(1.2 * plain, rel=1e-9)
+    assert turned < 2.0 == pytest.approx(half((0, 1, 0), 2.0), rel=1e-9)
 
 
 @pytest.mark.parametrize("shape, half", [("box", 0.4 * 0.9), ("sphere", 0.9**2 / 4.1)])
-def test_linear_elements_tell_of_quadratic_ones_whose_runs_hardly_differ(monkeypatch, shape, half):
-    """An error of a unit by linear ones where a body makes 4.1 of 5.1; runs do not tell more than .2."""
+def test_linear_elements_tell_of_quadratic_ones_whose_runs_turn(shape, half):
+    """An error of a unit by linear ones where a body makes 4.1 of 5.1; what runs differ by tells little."""
     body = Box((0.5,) * 3, (0.5,) * 3, Material(1e9)) if shape == "box" else Sphere((0.5,) * 3, 0.3, Material(9.0))
     scene = Scene((1.0,) * 3, Material(1.0), [body], gradient=(1.0, 0.0, 0.0))
-    monkeypatch.setitem(of_elements.RULES, "curved", of_elements.RULES["curved"]._replace(safety=0.0))
 
-    def of(error):
-        field = off_by(error)
+    def again(coarser=1.0, order=2, **knobs):
+        field = off_by(1.0 if order == 1 else 0.101 if 1.3 < coarser < 1.5 else 0.1)
         field.scene, field.fractions = scene, fractions(scene)
         return field
 
-    estimate = of_elements.estimated(of(0.1), lambda order=2, **knobs: of(1.0 if order == 1 else 0.1), "curved")
+    estimate = of_elements.estimated(again(), again, "curved")
     assert (estimate.upper - estimate.lower) / 2 == pytest.approx(half, rel=1e-9)
 
 
