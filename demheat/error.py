@@ -162,8 +162,8 @@ def by_refinement(
     """The estimate of a method by the changes that coarser elements make.
 
     A coarser run may be made `again` on other elements of the same size: two are not often close to a finer one by
-    luck. Half of the interval is at `least` what a method knows besides, W/(m K), where the conductivity turns from
-    run to run, so that errors of two kinds cancel, and elsewhere as far as that is not much more.
+    luck. Half of the interval is at `least` what a method knows besides, W/(m K), where coarser
+    runs do not differ more and more, as errors of two kinds cancel, and elsewhere as far as that is not much more.
 
     Changes do not show what all elements see alike: fractions of phases that are not the body's, which count as far as
     the conductivity goes with them; and parts that are finer than any of the elements, which may be anything, within
@@ -185,7 +185,7 @@ def by_refinement(
 
     k = conductivity_of(field)
     half = lacks(conductivity_of, _largest, rule.order, rule.safety)
-    half = max(half, least if _turned(fields) else min(least, RAISED * half)) + residual * abs(k)
+    half = max(half, least if _by_luck(fields) else min(least, RAISED * half)) + residual * abs(k)
     if k:
         # What inclusions make of the conductivity goes with how much there is of them.
         off = _unshown([misplaced(each) for each in fields], rule) + fine.rough
@@ -200,10 +200,10 @@ def by_refinement(
     return _with_unseen(found, field, k, fine)
 
 
-def _turned(runs):
-    """Whether a conductivity goes up and down from run to run."""
-    changes = np.diff([conductivity_of(each) for each in runs])
-    return bool(np.any(changes[1:] * changes[:-1] < 0))
+def _by_luck(runs):
+    """Whether a conductivity turns from run to run, or changes less and less as elements get coarser."""
+    one, *others = np.diff([conductivity_of(each) for each in runs])
+    return any(np.sign(one) * other < abs(one) for other in others)
 
 
 def _beside_edges(rule, power):

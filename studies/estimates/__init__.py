@@ -28,7 +28,7 @@ BESIDE, FEW = (
 MODULES = {"all": "studies.estimates.rows", "effective": "studies.estimates.reached"}
 PAPER = {}
 # Scenes that a method solves exactly do not tell what has moved on others.
-APART = ("scene",)
+BY_ITSELF = ("scene",)
 # Limits that are far from the values, and why they are no nearer.
 REASONS = {
     "an entry outside of its interval": "a twentieth is what intervals of 95 % may miss",

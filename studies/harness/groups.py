@@ -13,8 +13,8 @@ CODE = ("method", "law", "integrator", "scheme", "rule", "packing")
 
 
 def group_of(study, case):
-    """What a row stands or falls with, in its study: `KINDS`, and what a study names besides in `APART`."""
-    kinds = (*KINDS, *getattr(study, "APART", ()))
+    """What a row stands or falls with, in its study: `KINDS`, and what a study names besides in `BY_ITSELF`."""
+    kinds = (*KINDS, *getattr(study, "BY_ITSELF", ()))
     return tuple((kind, case[kind]) for kind in kinds if case.get(kind) is not None)
 
 
@@ -57,4 +57,5 @@ def followed(costs, dear):
 
 
 def _code(group):
-    return tuple(pair for pair in group if pair[0] in CODE)
+    """What says in every study which code it is, and what its own study names."""
+    return tuple(pair for pair in group if pair[0] in CODE or pair[0] not in KINDS)

@@ -11,7 +11,7 @@ A study is a module with
 - optionally `VALUES(case)`, true for the cases of which nobody asks what they cost: their rows have none, and are made
   side by side; `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
   sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
-  `APART`, parameters of which no value's rows are borne out by another's (`groups.KINDS`);
+  `BY_ITSELF`, parameters of which no value's rows are borne out by another's (`groups.KINDS`);
   `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`), and `COMPARED_AS`, of
   columns whose cells hold more than values, text -> what of it is compared;
   `REPEATS`, how often a short `run` is called at most (`repeated.RUNS`); `COSTS`, columns of costs that are not called

@@ -31,7 +31,7 @@ MANY = 20  # Scenes from which on shares are judged
 MODULES = {"truth": "studies.intervals.truth", "fft-em": "references.fft"}
 PAPER = {}
 # Kinds that a method solves exactly do not tell what has moved on others.
-APART = ("scene",)
+BY_ITSELF = ("scene",)
 # Why claims on the stored rows fail.
 EDGES = (
     "most misses are beside edges of boxes, where errors fall with the power 4/3 of the size of elements and the "

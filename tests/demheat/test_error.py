@@ -91,7 +91,7 @@ def test_beside_edges_orders_are_no_higher_than_those_of_the_field_there():
     assert half(RULE._replace(order=1.0)) == pytest.approx(told(1.0), rel=1e-9)
 
 
-def test_what_a_method_knows_besides_counts_where_runs_turn():
+def test_what_a_method_knows_besides_counts_where_runs_tell_little():
     def half(levels, least):
         runs = dict(enumerate(levels))
         estimate = by_refinement(made(runs[0]), lambda n: made(runs[n]), RULE, how="", least=least)
@@ -100,11 +100,13 @@ def test_what_a_method_knows_besides_counts_where_runs_turn():
     plain, turned = half((0, 1, 2), 0.0), half((0, 1, 0), 0.0)
     assert half((0, 1, 2), 10.0) == pytest.approx(1.5 * plain, rel=1e-9)
     assert half((0, 1, 2), 1.2 * plain) == pytest.approx(1.2 * plain, rel=1e-9)
+    # Runs that differ less and less are not close in by their order either.
+    assert half((0, 0.2, 0.6), 2.0) < 1.0 < half((0, 0.2, 0.3), 2.0) == pytest.approx(2.0, rel=1e-9)
     assert turned < 2.0 == pytest.approx(half((0, 1, 0), 2.0), rel=1e-9)
 
 
 @pytest.mark.parametrize("shape, half", [("box", 0.4 * 0.9), ("sphere", 0.9**2 / 4.1)])
-def test_linear_elements_tell_of_quadratic_ones_whose_runs_turn(shape, half):
+def test_linear_elements_tell_of_quadratic_ones_whose_runs_tell_little(shape, half):
     """An error of a unit by linear ones where a body makes 4.1 of 5.1; what runs differ by tells little."""
     body = Box((0.5,) * 3, (0.5,) * 3, Material(1e9)) if shape == "box" else Sphere((0.5,) * 3, 0.3, Material(9.0))
     scene = Scene((1.0,) * 3, Material(1.0), [body], gradient=(1.0, 0.0, 0.0))

@@ -16,7 +16,7 @@ def group(**kinds):
 def test_what_a_row_stands_or_falls_with():
     case = {"name": "dem", "scene": "third", "particles": 10, "seed": 0, "method": "dem", "law": None, "packing": "lsa"}
     assert groups.group_of(SimpleNamespace(), case) == group(name="dem", method="dem", packing="lsa")
-    apart = SimpleNamespace(APART=("scene",))
+    apart = SimpleNamespace(BY_ITSELF=("scene",))
     assert groups.group_of(apart, case) == group(name="dem", method="dem", packing="lsa", scene="third")
 
 
@@ -53,6 +53,11 @@ def test_a_dear_group_follows_those_of_its_study_that_the_same_code_makes():
     costs = {("one", DEM): 1.0, ("one", FEM): 1.0, ("two", DEM): 0.1, ("one", LARGE): 9.0}
     assert groups.followed(costs, dear=3.0) == {("one", LARGE): [("one", DEM)]}
     assert groups.followed(costs, dear=9.0) == groups.followed(costs, dear=math.inf) == {}
+
+
+def test_a_dear_group_does_not_follow_one_that_stands_for_itself():
+    one, other = (("method", "dem"), ("scene", "layers")), (("method", "dem"), ("scene", "spheres"))
+    assert groups.followed({("one", one): 1.0, ("one", other): 9.0}, dear=3.0) == {}
 
 
 def test_one_without_such_in_its_study_follows_those_of_all_others():
