@@ -33,24 +33,11 @@ PAPER = {}
 # Kinds that a method solves exactly do not tell what has moved on others.
 BY_ITSELF = ("scene",)
 # Why claims on the stored rows fail.
-EDGES = (
-    "most misses are beside edges of boxes, where errors fall with the power 4/3 of the size of elements and the "
-    "interval counts on 2; on six other rods 4/3 was enough. In one array and some fibres coarser elements lose "
-    "as much volume as they are too stiff, so that runs hardly differ"
-)
-CELLS = (
-    "twelve of 17 misses are beside edges of boxes (rods, boards, Keller's duals), as those of elements; level sets, a "
-    "union and a half-space, off by .0001 to .02 %, had runs that differed by less"
-)
 FAILS = {
-    "DEM: share of intervals that hold": CELLS,
-    "DEM: the same of scenes for judging only": CELLS,
     "DEM: half of the interval": (
-        "15 and more for spheres, whose errors are much smaller than the changes between coarser runs, 2 beside edges"
+        "errors fell to a tenth by tiles and twins that know how surfaces are bent, changes between coarser runs by "
+        "less: 15 times and more for spheres, 2 beside edges"
     ),
-    "beside a warning": "the DEM on a board, whose edges meet: not mended",
-    "FEM: share of intervals that hold": EDGES,
-    "FEM: the same of scenes for judging only": EDGES,
     "FFT, scalar, by itself: half of the interval": (
         "15 where bodies are finer than voxels, whose intervals reach to bounds, or have flat faces, whose errors "
         "cross zero with their place in a voxel; 4.5 on all others, half of the scenes"
