@@ -133,7 +133,7 @@ def test_coats_are_at_least_as_uncertain_as_their_temperature():
 
     coated = [Sphere((0.5,) * 3, 0.2, k), core]
     plain, warmth = half([core], 1.0)
-    assert half(coated, 1.0)[0] == pytest.approx(1.15 * plain, rel=1e-9)
+    assert half(coated, 1.0)[0] == pytest.approx(1.5 * plain, rel=1e-9)
     # Nothing changes in the conductivity of 5: the temperature's error, of a drop of a degree or so, counts.
     assert half([core], 0.0)[0] < 1e-9
     assert 1.5 * 5 * warmth * 0.98 < half(coated, 0.0)[0] < 1.5 * 5 * warmth * 1.001

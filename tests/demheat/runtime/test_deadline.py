@@ -27,7 +27,7 @@ METHODS = {
 }
 # Where each looks more than once on its way.
 AGAIN = {
-    "dem": {"loops"},
+    "dem": {"equations"},
     "amg": {"equations"},
     "fem": {"mesh", "assembly", "equations"},
     "fft": {"iterations"},
