@@ -2,8 +2,8 @@
 
 gmsh's library keeps to itself until a mesh is done: no signal reaches Python meanwhile; and its second mesh in a
 process may be another than its first, or end the process. So one worker is kept (`references.mesh.worker`), which forks
-for each mesh. It is ended with whatever ends the wait for it, and ends itself with its parent; a fork of the parent
-starts its own.
+for each mesh and keeps nothing of it. It is ended with whatever ends the wait for it, and ends itself with its parent;
+a fork of the parent starts its own.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ LAST = 0.95
 # Of the worker. Threads would only take room: nothing there uses them. gmsh's HXT reads, on coarse round bodies, memory
 # that it has not written: the C library of Linux fills all with this byte's complement first (5 % of the time), so that
 # it crashes always, and its next size is taken, instead of now and then, or with another mesh each time.
-ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MALLOC_PERTURB_": "1"}
+ENVIRONMENT = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "MALLOC_PERTURB_": "1", "PYTHONHASHSEED": "0"}
 # Workers of this process with the processor seconds that were counted of each; those of them that wait for work, at
 # most one, whatever the number of threads.
 _workers: dict[subprocess.Popen, float] = {}
@@ -46,7 +46,7 @@ def run_apart(
 ):
     """Call function(*arguments) in another process."""
     job = pickle.dumps((function, arguments, memory, most))
-    worker = _worker()
+    worker = _worker(function)
     try:
         status, answer = _waited(worker, job, seconds, done)
     except (EOFError, OSError, pickle.UnpicklingError):
@@ -67,8 +67,8 @@ def run_apart(
     return value
 
 
-def _worker():
-    """One that waits for work, or a new one."""
+def _worker(function):
+    """One that waits for work, or a new one, which loads what a function wants."""
     while _idle:
         try:
             worker = _idle.pop()
@@ -81,16 +81,25 @@ def _worker():
         raise RuntimeError("meshes are made in a process of their own, and sys.executable does not say which program")
     # A session of its own: Ctrl-C in a terminal is for the parent alone, who ends the worker.
     how = {"stdin": subprocess.PIPE, "stdout": subprocess.PIPE, "start_new_session": os.name == "posix"}
-    words = [sys.executable, Path(__file__).with_name("worker.py")]
+    words = [
+        sys.executable,
+        Path(__file__).with_name("worker.py"),
+        os.pathsep.join(_paths()),
+        pickle.dumps(function).hex(),
+    ]
     worker = subprocess.Popen(words, env=os.environ | ENVIRONMENT, **how)
     _workers[worker] = 0.0
     return worker
 
 
+def _paths():
+    """Where modules are; relative paths are those of this process, which may have moved since."""
+    return [os.path.abspath(each) for each in sys.path]
+
+
 def _waited(worker, job, seconds, done):
     """Status and bytes of the answer."""
-    # Relative paths are those of this process, which may have moved since.
-    pickle.dump(([os.path.abspath(each) for each in sys.path], job), worker.stdin)
+    pickle.dump((_paths(), job), worker.stdin)
     worker.stdin.flush()
     begin = time.monotonic()
     parts = []
@@ -100,8 +109,8 @@ def _waited(worker, job, seconds, done):
             parts.append(word)
         done(min((time.monotonic() - begin) / seconds, LAST))
     status, spent = word
-    _workers[worker] += spent
-    count_elsewhere(spent)
+    count_elsewhere(spent - _workers[worker])
+    _workers[worker] = spent
     return status, b"".join(parts)
 
 

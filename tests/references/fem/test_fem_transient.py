@@ -250,8 +250,6 @@ def test_far_beyond_the_steady_state():
     assert field.stats["energy_error"] < 1e-12
 
 
-# Open: once in six the second mesh is another.
-@pytest.mark.slow
 def test_a_coarse_beam_has_one_answer_everywhere_in_it():
     """The beam of Terreros et al. (2013), on elements as long as its radius: most on the surface are straight."""
     radius, metal = 0.116e-3, Material(134.0, 2790.0, 880.0)

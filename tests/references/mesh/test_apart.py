@@ -107,7 +107,7 @@ def test_what_ends_the_wait_ends_the_work():
 
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="one worker for one mesh")
 def test_one_worker_is_kept_and_its_time_is_counted():
-    assert call(os.getppid)[0] == call(os.getppid)[0] == apart._idle[0].pid
+    assert call(os.getsid, 0)[0] == call(os.getsid, 0)[0] == apart._idle[0].pid
     assert call(os.getpid)[0] != call(os.getpid)[0]
     before = cpu_seconds()
     call(_burn)
@@ -117,6 +117,22 @@ def test_one_worker_is_kept_and_its_time_is_counted():
     apart._idle[0].kill()
     apart._idle[0].wait()
     assert call(math.sqrt, 4.0)[0] == 2.0 and len(apart._workers) == 1
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="one worker for one mesh")
+def test_memory_begins_where_it_did_before():
+    """gmsh's meshes may go by where its memory lies."""
+    first = _places()
+    for size in (10, 10**4, 10**6):
+        # What is read and answered is kept nowhere.
+        call(bytes, size)
+        call(len, bytes(size))
+        assert _places() == first
+
+
+def _places():
+    """Where small and large objects come to lie that a fork has read."""
+    return [call(id, bytes(size))[0] for size in (50, 5000, 100_000)]
 
 
 def _burn():
