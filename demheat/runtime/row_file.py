@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from operator import itemgetter
 from pathlib import Path
@@ -38,9 +39,13 @@ class RowFile(NamedTuple):
             odd = next((k for k, row in enumerate(rows, start=1) if None in row or None in row.values()), None)
             if odd is not None:
                 raise ValueError(f"row {odd} has not as many values as there are columns")
+            keys = [itemgetter(*self.key)(row) for row in rows]
+            if len(set(keys)) < len(keys):
+                twice = next(key for key, count in Counter(keys).items() if count > 1)
+                raise ValueError(f"two rows of {twice!r}")
         except (OSError, ValueError, csv.Error) as error:
             raise self.error(error) from None
-        return {itemgetter(*self.key)(row): row for row in rows}
+        return dict(zip(keys, rows, strict=True))
 
     def error(self, why: Exception | str) -> ValueError:
         """The error of a file that holds something else."""

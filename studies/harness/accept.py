@@ -1,8 +1,9 @@
 """A change of code accepted: rows whose values it moves are made again, old and new side by side.
 
-Rows of a group (`groups.group_of`) whose replay has moved get new values; their costs stay, as those of the commit and
-the day on which they were measured. Rows that did not move are left alone. Of a group whose cheapest row takes long the
-cheaper rows tell that the same code makes; all rows are looked at by `replay --all`.
+Rows of a group (`groups.group_of`) of which one has moved get new values where they are others; their costs stay, as
+those of the commit and the day on which they were measured. Rows that did not move are left alone. Of a group whose
+cheapest row takes long the cheaper rows tell that the same code makes; all rows are looked at by `replay --all`, and
+what that finds moved is made again here.
 """
 
 from __future__ import annotations
@@ -64,7 +65,10 @@ def _made_again(tasks, made, out, say, compute):
             continue
         stored = read_rows(path)[key]
         wrong = moved(name, study, case, stored, row)
-        add_rows(path, {key: renewed(study, case, stored, row)}, replay.keys_of(study, path))
+        # One that is the same stays, to the last digit.
+        other = wrong or any(column not in stored for column in value_columns(study, case, row))
+        new = renewed(study, case, stored, row) if other else replay.stamped(stored, row, wrong)
+        add_rows(path, {key: new}, replay.keys_of(study, path))
         fresh[name, key] = row
         say(f"[{number}/{len(tasks)}] {name} {key}: {replay.told(wrong)}")
     return fresh, failed

@@ -58,7 +58,7 @@ def side_by_side(workers=WORKERS):
 
 
 def replayed(tasks, out, say, *, compute=None):
-    """Make stored rows again and note in them when they came out the same; task, what moved, and row, as they come."""
+    """Make stored rows again and note in them if they came out the same; task, what moved, and row, as they come."""
     check_writable(out)
     with ExitStack() as stack:
         compute = compute or stack.enter_context(side_by_side())
@@ -70,11 +70,17 @@ def replayed(tasks, out, say, *, compute=None):
                 say(f"[{number}/{len(tasks)}] {name} {key}: not here, {row['note']}")
                 continue
             wrong = moved(name, study, case, stored, row)
-            if not wrong:
-                stamp = {"replayed_commit": row["commit"], "replayed_when": row["when"]}
-                add_rows(path, {key: stored | stamp}, keys_of(study, path))
+            add_rows(path, {key: stamped(stored, row, wrong)}, keys_of(study, path))
             say(f"[{number}/{len(tasks)}] {name} {key}: {told(wrong)}")
             yield task, wrong, row
+
+
+def stamped(stored, row, wrong):
+    """A stored row with a note that it came out the same, or that it moved: then `accept` makes its group again."""
+    if wrong:
+        return stored | {"moved_commit": row["commit"]}
+    found = {"replayed_commit": row["commit"], "replayed_when": row["when"]}
+    return stored | found | {name: "" for name in ("moved_commit",) if name in stored}
 
 
 def absent(row):
@@ -102,14 +108,15 @@ def bear_out(studies, out, *, quick=False, dear=math.inf, say=print, compute=Non
     older = {each: task for each, (task, _, _) in groups.items() if task}
     told_of = {each: seconds for each, (task, seconds, before) in groups.items() if task or before is not None}
     following = {each: leaders for each, leaders in followed(told_of, dear).items() if each in older}
-    tasks = [older[each] for each in sorted(older, key=told_of.get) if each not in following]
+    known = {each: before for each, (task, _, before) in groups.items() if before or not task}
+    tasks = [older[each] for each in sorted(older, key=told_of.get) if each not in following and each not in known]
     if older:
         say(f"{len(older)} groups have rows of other code; one row of each of {len(tasks)} is made again")
     for (name, group), leaders in following.items():
         kinds, others = case_key(dict(group)), sorted({other for other, _ in leaders})
         more = f" and {len(others) - MOST} more" if len(others) > MOST else ""
         say(f"    {name} {kinds} takes long: follows {', '.join(others[:MOST])}{more}")
-    gone, made = {each: before for each, (task, _, before) in groups.items() if not task}, {}
+    gone, made = dict(known), {}
     for task, wrong, row in replayed(tasks, out, say, compute=compute):
         name, group = each = task[0], group_of(task[1], task[2])
         gone[each] = bool(wrong)
@@ -118,6 +125,8 @@ def bear_out(studies, out, *, quick=False, dear=math.inf, say=print, compute=Non
         else:
             _mark(studies[name], runner.csv_of(name, out), group)
     for (name, group), leaders in following.items():
+        if (name, group) in known:
+            continue
         # A leader that is not here says nothing.
         found = [gone[each] for each in leaders if gone.get(each) is not None]
         gone[name, group] = any(found)
@@ -144,12 +153,12 @@ def _grouped(studies, out, quick):
 
 
 def _moved_before(study, rows):
-    """Whether a replay by this code, that was killed since, found a group moved; None if there was none."""
+    """Whether a replay by this code found a group moved, which is not all made again yet; None if there was none."""
 
     def here(*names):
         return any(of_this_code(str(row.get(name) or ""), study.__file__) for row in rows for name in names)
 
-    if here("values_commit"):
+    if here("values_commit", "moved_commit"):
         return True
     return False if here("replayed_commit", "borne_commit") and not here("commit") else None
 

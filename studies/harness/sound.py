@@ -66,13 +66,22 @@ def checked(study, path):
 
 def proved(study, row):
     """Whether a row's values are those of the present code: it has made them, or made them again and found the same."""
+    if moved_by_now(study, row):
+        return False
     commits = (row.get("values_commit") or row.get("commit"), row.get("replayed_commit"))
     return any(of_this_code(str(commit or ""), study.__file__) for commit in commits)
 
 
 def held(study, row):
     """Whether a run need not make a row: its values are proved, or another row's of its group are."""
-    return proved(study, row) or of_this_code(row.get("borne_commit") or "", study.__file__)
+    return proved(study, row) or (
+        not moved_by_now(study, row) and of_this_code(row.get("borne_commit") or "", study.__file__)
+    )
+
+
+def moved_by_now(study, row):
+    """Whether a replay by the present code found other values, which nobody has accepted yet."""
+    return of_this_code(str(row.get("moved_commit") or ""), study.__file__)
 
 
 def cost_columns(study, df):

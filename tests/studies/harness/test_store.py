@@ -40,6 +40,7 @@ def test_columns_come_in_order(tmp_path):
         (b"case,x\na,1\nb\n", "row 2 has not as many values"),
         (b"case,x\na,1,2\n", "row 1 has not as many values"),
         (b'case,x\na,"1\n', "unexpected end of data"),
+        (b"case,x\na,1\nb,1\na,2\n", "two rows of 'a'"),
         (b"case,x\na,\xff\xfe\n", "utf-8"),
     ],
 )
