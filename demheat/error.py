@@ -30,7 +30,7 @@ POINTS, SEED = 1000, 7
 ROUNDING = 1e-12
 # What formulas that must agree differ by.
 BESIDE = 1e-9
-# Of the power with which errors fall beside edges of boxes, as coarse elements meet singular fields by chance: rods of
+# Of the power with which errors fall beside edges, as coarse elements meet singular fields by chance: rods of
 # square section (study `intervals`, even seeds) ask for .93.
 EDGES = 0.9
 # What else a method knows raises an interval by so much at most, where runs close in from one side: scenes of study
@@ -162,8 +162,8 @@ def by_refinement(
     """The estimate of a method by the changes that coarser elements make.
 
     A coarser run may be made `again` on other elements of the same size: two are not often close to a finer one by
-    luck. Half of the interval is at `least` what a method knows besides, W/(m K), where coarser
-    runs do not differ more and more, as errors of two kinds cancel, and elsewhere as far as that is not much more.
+    luck. Half of the interval is at `least` what a method knows besides, W/(m K), where coarser runs do not differ more
+    and more, as errors of two kinds cancel; elsewhere that raises it by `RAISED` at most.
 
     Changes do not show what all elements see alike: fractions of phases that are not the body's, which count as far as
     the conductivity goes with them; and parts that are finer than any of the elements, which may be anything, within
@@ -207,7 +207,7 @@ def _by_luck(runs):
 
 
 def _beside_edges(rule, power):
-    """A rule whose orders are no higher than edges of boxes let them be."""
+    """A rule whose orders are no higher than edges let them be."""
     most = EDGES * power if power < SMOOTH else math.inf
     return rule._replace(order=min(rule.order, most), temperature_order=min(rule.temperature_order, most))
 
