@@ -8,8 +8,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from demheat.files.images import read_image
-from demheat.files.scene_table import AXES, LOADS, SHAPES
+from demheat.io.images import read_image
+from demheat.io.scenes.scene_table import AXES, LOADS, SHAPES
 from demheat.scene import Image, Material, Scene, UniformSource
 from demheat.scene.rotations import IDENTITY
 

@@ -6,14 +6,13 @@ Importing this package loads NumPy only; the engine and its compiled kernels loa
 
 from typing import TYPE_CHECKING
 
-from demheat import terminal  # noqa: F401 - first, so that a command is interrupted without a traceback from here on
+import demheat.renamed as _renamed  # noqa: F401 - and then old names
+import demheat.terminal.ends as _ends  # noqa: F401 - first: from here on a command is interrupted without a traceback
 from demheat.field import Field, Samples
 from demheat.io.fields import write as _write
 from demheat.laws import Calibrated, Laguerre, Platonic
-from demheat.lazy import lazy_names
-from demheat.pictures import plot_field as _plot_field
-from demheat.pictures import plot_scene as _plot_scene
 from demheat.runtime.deadline import budget
+from demheat.runtime.lazy import lazy_names
 from demheat.runtime.progress import on_progress
 from demheat.scene import (
     Convection,
@@ -29,6 +28,8 @@ from demheat.scene import (
 )
 from demheat.scene import shapes as _shapes
 from demheat.scene.shapes import *  # noqa: F403 - a new shape is named there and nowhere else
+from demheat.terminal.pictures import plot_field as _plot_field
+from demheat.terminal.pictures import plot_scene as _plot_scene
 from demheat.version import __version__ as __version__
 
 if TYPE_CHECKING:

@@ -2,7 +2,7 @@
 
 import sys
 
-from demheat.commands import main
+from demheat.terminal.commands import main
 
 if __name__ == "__main__":
     sys.exit(main())

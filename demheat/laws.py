@@ -1,6 +1,6 @@
 """Laws of conductance, as plain objects: what each may be asked for, and which scenes it cannot take.
 
-They are declared here and at work in `demheat.build`, so that naming a law loads no engine.
+They are declared here and at work in `demheat.dem.networks`, so that naming a law loads no engine.
 """
 
 from __future__ import annotations

@@ -7,8 +7,9 @@ import sys
 from pathlib import Path
 
 from demheat import Calibrated, Material, Scene, solve
-from demheat.build import network_of
-from demheat.packing import contacts, io, statistics
+from demheat.dem.networks import network_of
+from demheat.io import packings
+from demheat.packing import contacts, statistics
 from demheat.packing.lsa import lsa
 
 folder = Path(sys.argv[1] if len(sys.argv) > 1 else ".")
@@ -25,5 +26,5 @@ field = solve(scene, law=law, packing=packing)
 print(f"C_t = {field.stats['calibration']:.4f}, conductivity {field.conductivity:.6f} of 1")
 
 path = folder / "network.vtp"
-io.write(packing, path, network=network)
+packings.write(packing, path, network=network)
 print(f"{path.name}: {len(network.indices) // 2} links, {path.stat().st_size // 1024} KiB")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import studies
 from demheat.runtime import fresh
-from demheat.terminal import BAD, INTERRUPTED, finished, of_output, told
+from demheat.terminal.ends import BAD, INTERRUPTED, finished, of_output, told
 from studies import contents
 from studies.harness import jobs, lasting, quiet, replay, runner, sound
 from studies.harness.cluster import spreading

@@ -16,16 +16,16 @@ HOMES = {
     # Before a kernel is compiled its threading layer is chosen, by demheat.runtime.threads, and where to keep it.
     # The harness loads it once for all rows, and counts what it compiles.
     "numba": (
-        *("*kernels", "demheat.runtime.threads", "demheat.runtime.compiled", "demheat.warm"),
+        *("*kernels", "demheat.runtime.threads", "demheat.runtime.compiled", "demheat.dem.warm"),
         *("studies.harness.forked", "studies.harness.quiet"),
     ),
     "pandas": ("studies",),
     "markdown_it": ("studies.harness.html",),
     "PIL": ("studies.harness.pictures",),
-    "matplotlib": ("studies", "demheat.pictures"),
-    "tifffile": ("demheat.files.images",),
-    "nrrd": ("demheat.files.images",),
-    "zarr": ("demheat.files.images",),
+    "matplotlib": ("studies", "demheat.terminal.pictures"),
+    "tifffile": ("demheat.io.images",),
+    "nrrd": ("demheat.io.images",),
+    "zarr": ("demheat.io.images",),
     "distributed": ("demheat.beyond.cluster",),
     "dask": ("demheat.beyond.cluster",),
     "cloudpickle": ("demheat.sweeps",),
@@ -54,14 +54,14 @@ def below(name, prefix):
     return name == prefix or name.startswith(prefix + ".")
 
 
-# What imports a module that it is told by its name; `lazy_names` is that of `demheat.lazy`.
+# What imports a module that it is told by its name; `lazy_names` is that of `demheat.runtime.lazy`.
 BY_NAME = ("import_module", "__import__", "run_module", "resolve_name", "lazy_names")
 # Those who load what declares itself to them, by names that no source holds: what that is, they say here.
 DECLARING = tuple(
     name for name, path in MODULES.items() if "\nMETHODS = (\n    Method(" in path.read_text(encoding="utf-8")
 )
 FINDERS = {
-    "demheat.lazy": (),  # what those who call it name
+    "demheat.runtime.lazy": (),  # what those who call it name
     "demheat.beyond.ranks": ("mpi4py",),
     "demheat.declared": (*DECLARING, *(name for name in MODULES if re.fullmatch(r"references\.\w+\.ranks", name))),
     # They know no study: a study is what has the entries that they ask for.

@@ -3,233 +3,100 @@
 from rooms_above import ABOVE
 from rooms_beside import BESIDE
 
-# The rooms of the house from the ground up, and what each may import of ours: itself and rooms that stand before it.
-# The longest prefix that fits a module is its room; a prefix stands for itself and all below it. A module adds a line.
+# Rooms from the ground up: modules (each with all below it), and rooms before it, or modules of others, on which it
+# stands. That inside of a room nothing goes in circles is asked by `test_circles.py`.
 ENGINE = {
-    "demheat.scene.inputs": (),
-    "demheat.scene.frozen": (),
-    "demheat.scene.bodies": (),
-    "demheat.scene.crossing": ("demheat.scene.bodies",),
-    "demheat.scene.dependence": ("demheat.scene.inputs",),
-    "demheat.scene.rotations": ("demheat.scene.inputs",),
-    "demheat.scene.tensors": ("demheat.scene.inputs", "demheat.scene.rotations"),
-    "demheat.scene.material": ("demheat.scene.inputs", "demheat.scene.dependence", "demheat.scene.tensors"),
-    "demheat.scene.image": ("demheat.scene.frozen", "demheat.scene.inputs", "demheat.scene.material"),
-    "demheat.scene.shapes": (
-        "demheat.scene.inputs",
-        "demheat.scene.rotations",
-        "demheat.scene.material",
-        "demheat.scene.shapes",
+    "scene": (("demheat.scene",), ()),
+    # What all computing runs on. Kept packings go by the text of `powers` and `addition`: where these lie stays.
+    "runtime": (("demheat.runtime", "demheat.powers", "demheat.addition", "demheat.version"), ("scene",)),
+    # What all methods share.
+    "nouns": (
+        (
+            *("demheat.gate", "demheat.error", "demheat.field", "demheat.tensor"),
+            *("demheat.laws", "demheat.method"),
+        ),
+        ("scene",),
     ),
-    "demheat.scene.parts": ("demheat.scene.inputs",),
-    "demheat.scene.checks": (
-        "demheat.scene.frozen",
-        "demheat.scene.crossing",
-        "demheat.scene.image",
-        "demheat.scene.inputs",
-        "demheat.scene.bodies",
-        "demheat.scene.parts",
-        "demheat.scene.shapes",
-    ),
-    "demheat.scene.edges": ("demheat.scene.shapes",),
-    "demheat.scene.needs": ("demheat.scene.edges", "demheat.scene.parts"),
-    "demheat.scene.functions": ("demheat.scene.inputs", "demheat.scene.parts"),
-    "demheat.scene.html": (),
-    "demheat.scene.scene": (
-        "demheat.scene.html",
-        "demheat.scene.image",
-        "demheat.scene.inputs",
-        "demheat.scene.bodies",
-        "demheat.scene.dependence",
-        "demheat.scene.material",
-        "demheat.scene.parts",
-        "demheat.scene.shapes",
-        "demheat.scene.checks",
-        "demheat.scene.needs",
-        "demheat.scene.functions",
-    ),
-    "demheat.scene.thickness": (),
-    "demheat.scene.volumes": (),
-    "demheat.scene.resistances": (),
-    "demheat.scene.negligible": ("demheat.scene.inputs", "demheat.scene.shapes", "demheat.scene.scene"),
-    "demheat.scene.symmetry": (
-        "demheat.scene.inputs",
-        "demheat.scene.shapes",
-        "demheat.scene.scene",
-        "demheat.scene.symmetry",
-    ),
-    "demheat.scene.narrows": ("demheat.scene.shapes",),
-    "demheat.scene": ("demheat.scene",),
-    # What all computing runs on.
-    "demheat.runtime": ("demheat.scene", "demheat.runtime"),
-    "demheat.powers": (),
-    "demheat.addition": ("demheat.powers",),
-    "demheat.gate": ("demheat.scene",),
-    "demheat.error": ("demheat.scene", "demheat.gate"),
-    "demheat.field": ("demheat.scene", "demheat.gate", "demheat.error"),
-    "demheat.tensor": ("demheat.scene", "demheat.gate", "demheat.field"),
-    "demheat.laws": ("demheat.scene",),
+    # No method knows it.
+    "referee": (("demheat.referee",), ("scene", "nouns")),
     # Ranks of an MPI run, and workers of Dask, for whoever computes on them.
-    "demheat.beyond": ("demheat.runtime",),
-    "demheat.io.vtk": (),
-    "demheat.terminal": (),
-    "demheat.version": (),
-    "demheat.lazy": (),
-    "demheat.method": (),
-    "demheat.referee": ("demheat.referee", "demheat.scene", "demheat.field"),
-    "demheat.slices": ("demheat.scene", "demheat.field", "demheat.runtime"),
-    # Nouns know nothing of those who draw and store them: the front gives them `plot` and `write`.
-    "demheat.pictures": ("demheat.scene", "demheat.field", "demheat.slices"),
-    "demheat.io": ("demheat.scene", "demheat.field", "demheat.runtime", "demheat.io.vtk"),
-    "demheat.packing": (
-        "demheat.powers",
-        "demheat.addition",
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.io.vtk",
-        "demheat.packing",
+    "beyond": (("demheat.beyond",), ("runtime",)),
+    "packing": (("demheat.packing", "demheat.gallery"), ("scene", "runtime")),
+    "statistics": (("demheat.packing.statistics",), ("scene", "runtime", "packing")),
+    "network": (("demheat.network",), ("scene", "runtime", "nouns", "packing")),
+    "conduction": (("demheat.conduction",), ("scene", "runtime", "network")),
+    "sampling": (("demheat.sampling",), ("scene", "runtime", "nouns", "network", "conduction")),
+    # The whole way: calibration of a law is a steady solve, so what joins packings to networks stands up here.
+    "dem": (
+        ("demheat.dem",),
+        ("scene", "runtime", "nouns", "packing", "network", "conduction", "sampling"),
     ),
-    "demheat.gallery": (
-        "demheat.powers",
-        "demheat.addition",
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.packing.dispersion",
-        "demheat.gallery",
-    ),
-    "demheat.network": (
-        "demheat.scene",
-        "demheat.laws",
-        "demheat.runtime",
-        "demheat.packing",
-        "demheat.network",
-    ),
-    "demheat.conduction": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.network",
-        "demheat.conduction",
-    ),
-    "demheat.sampling": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.runtime",
-        "demheat.network",
-        "demheat.conduction.products",
-        "demheat.sampling",
-    ),
-    "demheat.calibration": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction.steady",
-        "demheat.sampling.fluxes",
-    ),
-    # Above what it calibrates with: a steady solve.
-    "demheat.build": (
-        "demheat.scene",
-        "demheat.laws",
-        "demheat.runtime",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.calibration",
-    ),
-    # Calls what it wants compiled.
-    "demheat.warm": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction",
-        "demheat.sampling",
-    ),
-    "demheat.dem": (
-        "demheat.warm",
-        "demheat.runtime",
-        "demheat.scene",
-        "demheat.field",
-        "demheat.tensor",
-        "demheat.laws",
-        "demheat.packing",
-        "demheat.conduction",
-        "demheat.sampling",
-        "demheat.build",
-        "demheat.error",
-        "demheat.method",
-        "demheat.lazy",
-        "demheat.dem",
-    ),
-    "demheat.damage": (
-        "demheat.runtime",
-        "demheat.lazy",
-        "demheat.scene",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction",
-        "demheat.sampling",
-        "demheat.build",
-        "demheat.dem",
-        "demheat.damage",
-    ),
-    # A model of its own, by the engine's packings and solver: beds of grains out of files.
-    "demheat.grains": (
-        "demheat.runtime",
-        "demheat.scene",
-        "demheat.packing",
-        "demheat.network.base",
-        "demheat.conduction.steady",
-        "demheat.sampling.fluxes",
-        "demheat.grains",
-    ),
-    # Parts of a body that are made by themselves, for those who work on several, or on one after the other.
-    "demheat.tiles": (
-        "demheat.scene",
-        "demheat.laws",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction.steady",
-        "demheat.sampling",
-        "demheat.dem.options",
-        "demheat.tiles",
-    ),
-    # A solve that is larger than the memory: slabs one after the other, kept on disk.
-    "demheat.streamed": (
-        "demheat.runtime",
-        "demheat.scene",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction",
-        "demheat.sampling",
-        "demheat.build",
-        "demheat.dem",
-        "demheat.tiles",
-        "demheat.lazy",
-        "demheat.streamed",
-    ),
-    # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
-    "demheat.mpi": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.runtime",
-        "demheat.packing",
-        "demheat.network",
-        "demheat.conduction",
-        "demheat.sampling",
-        "demheat.build",
-        "demheat.dem",
-        "demheat.beyond",
-        "demheat.tiles",
-        "demheat.lazy",
-        "demheat.mpi",
+    "damage": (
+        ("demheat.damage",),
+        ("scene", "runtime", "nouns", "packing", "network", "conduction", "sampling", "dem"),
     ),
 }
-
-LAYERS = ENGINE | BESIDE | ABOVE
+# Above the witnesses: what knows all methods, or joins them.
+UPPER = {
+    # Finds methods where they are declared, by name alone: a method of one's own is found, too.
+    "declared": (("demheat.declared",), ("nouns", "dem", "references")),
+    # What methods cost and how far they are off, and the cheapest of them.
+    "cheapest": (
+        ("demheat.cheapest",),
+        (
+            *("scene", "runtime", "nouns", "dem", "references.bracket", "references.exact"),
+            *("references.fem", "references.fft", "references.multipole"),
+        ),
+    ),
+    # All that is read and written. A file of a scene names methods, and what they are told.
+    "io": (("demheat.io",), ("scene", "runtime", "nouns", "packing", "declared")),
+    # A model of its own, by the engine's packings and solver: beds of grains out of files.
+    "grains": (
+        ("demheat.grains",),
+        ("scene", "runtime", "packing", "network", "conduction", "sampling", "io"),
+    ),
+    # One function over many cases: of what it returns it knows a Field and the tensor of `effective`.
+    "sweeps": (("demheat.sweeps",), ("scene", "runtime", "nouns", "beyond", "cheapest")),
+    # Commands and pictures. Nouns know nothing of these: the front gives them `plot` and `write`.
+    "terminal": (
+        ("demheat.terminal", "demheat.__main__"),
+        (
+            *("scene", "runtime", "nouns", "declared", "cheapest", "io"),
+            *("references.bounds", "references.bracket.voxels", "references.exact"),
+        ),
+    ),
+    # A big solve on several processes: the engine's own parts at work on slabs, and a command of its own.
+    "mpi": (
+        ("demheat.mpi",),
+        (
+            *("scene", "runtime", "nouns", "beyond", "packing", "network", "conduction", "sampling", "dem"),
+            *("declared", "io", "terminal"),
+        ),
+    ),
+    # What the package shows, what it gives to fields and scenes, and its old names.
+    "front": (
+        ("demheat", "demheat.renamed", "demheat.streamed"),
+        ("scene", "runtime", "nouns", "packing", "dem", "cheapest", "io", "sweeps", "terminal"),
+    ),
+}
+ROOMS = ENGINE | UPPER
 # Packages whose own room is for their front alone.
 FRONTS = ("demheat", "references", "benchmark")
+
+
+def by_prefix(rooms):
+    """Each prefix of modules with those that these may import; a room's own among them, but for a front."""
+    return {
+        prefix: tuple(
+            module
+            for other in (room, *below)
+            for module in (ROOMS[other][0] if other in ROOMS else (other,))
+            if module not in FRONTS or other != room
+        )
+        for room, (own, below) in rooms.items()
+        for prefix in own
+    }
+
+
+# From the ground up; the longest prefix that fits a module says what it may import.
+LAYERS = by_prefix(ENGINE) | BESIDE | by_prefix(UPPER) | ABOVE

@@ -1,89 +1,8 @@
-"""Rooms above the engine and its witnesses: what chooses among them, files, commands, the benchmark and studies."""
+"""Rooms above the package: the benchmark and studies."""
 
 ABOVE = {
-    # What methods cost and how far they are off, and the cheapest of them.
-    "demheat.cheapest": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.tensor",
-        "demheat.method",
-        "demheat.dem",
-        "references.bracket",
-        "references.exact",
-        "references.fem",
-        "references.fft",
-        "references.multipole",
-        "demheat.cheapest",
-    ),
-    # One function over many cases: of what it returns it knows a Field and the tensor of `effective`.
-    "demheat.sweeps": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.runtime",
-        "demheat.version",
-        "demheat.beyond",
-        "demheat.cheapest.effective",
-        "demheat.sweeps",
-    ),
-    # Finds methods where they are declared, by name alone: a method of one's own is found, too.
-    "demheat.declared": ("demheat.method", "demheat.dem", "references"),
-    "demheat.files": (
-        "demheat.scene",
-        "demheat.field",
-        "demheat.io.vtk",
-        "demheat.runtime",
-        "demheat.laws",
-        "demheat.method",
-        "demheat.packing.io",
-        "demheat.declared",
-        "demheat.files",
-    ),
-    # The commands of the terminal.
-    "demheat.commands": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.method",
-        "demheat.slices",
-        "demheat.pictures",
-        "demheat.version",
-        "demheat.io",
-        "demheat.cheapest",
-        "demheat.declared",
-        "demheat.files",
-        "demheat.terminal",
-        "references.bounds",
-        "references.bracket.voxels",
-        "references.exact",
-        "demheat.commands",
-    ),
-    # Other methods on ranks are found by their names.
-    "demheat.mpi.__main__": (
-        "demheat.declared",
-        "demheat.files",
-        "demheat.commands.options",
-        "demheat.beyond",
-        "demheat.mpi",
-    ),
-    "demheat.__main__": ("demheat.commands",),
-    # The front of the package: what it shows, and what it gives to fields and scenes.
-    "demheat": (
-        "demheat.scene",
-        "demheat.runtime",
-        "demheat.field",
-        "demheat.laws",
-        "demheat.lazy",
-        "demheat.version",
-        "demheat.io",
-        "demheat.pictures",
-        "demheat.dem",
-        "demheat.cheapest",
-        "demheat.sweeps",
-        "demheat.terminal",
-    ),
     # Scenes with known answers: what reads them knows the nouns, what made them the witnesses.
-    "benchmark.parts": ("demheat.scene", "demheat.files"),
+    "benchmark.parts": ("demheat.scene", "demheat.io"),
     "benchmark.schema": (),
     "benchmark": ("demheat.scene", "benchmark.parts"),
     "benchmark.recipes": (
@@ -103,5 +22,5 @@ ABOVE = {
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
-    "studies.__main__": ("demheat.runtime", "demheat.terminal", "studies"),
+    "studies.__main__": ("demheat.runtime", "demheat.terminal.ends", "studies"),
 }

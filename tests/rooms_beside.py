@@ -14,7 +14,7 @@ BESIDE = {
     ),
     "references.exact": (
         "demheat.scene",
-        "demheat.lazy",
+        "demheat.runtime",
         "demheat.error",
         "demheat.field",
         "demheat.tensor",
@@ -23,10 +23,15 @@ BESIDE = {
         "references.midpoints",
         "references.exact",
     ),
-    "references.bounds": ("demheat.scene", "demheat.lazy", "demheat.method", "references.exact", "references.bounds"),
+    "references.bounds": (
+        "demheat.scene",
+        "demheat.runtime",
+        "demheat.method",
+        "references.exact",
+        "references.bounds",
+    ),
     "references.multipole": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "demheat.error",
         "demheat.field",
@@ -39,13 +44,11 @@ BESIDE = {
     ),
     "references.walkers": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "references.walkers",
     ),
     "references.fem": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "demheat.error",
         "demheat.field",
@@ -58,7 +61,6 @@ BESIDE = {
     ),
     "references.bracket": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "demheat.gate",
         "references.mesh",
@@ -67,7 +69,6 @@ BESIDE = {
     ),
     "references.fft": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "demheat.error",
         "demheat.field",
@@ -80,7 +81,6 @@ BESIDE = {
     ),
     "references.bracket.voxels": (
         "demheat.scene",
-        "demheat.lazy",
         "demheat.runtime",
         "demheat.gate",
         "references.threads",

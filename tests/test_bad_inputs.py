@@ -14,12 +14,14 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat import gallery, packing, referee, slices, streamed
-from demheat.build import network_of
+from demheat import gallery, packing, referee
 from demheat.dem import evolve, solve, solve_axes
-from demheat.packing import dispersion, domain, io, lsa, make_packing, neighbours, relax, statistics
+from demheat.dem.networks import network_of
+from demheat.io import packings
+from demheat.packing import dispersion, domain, lsa, make_packing, neighbours, relax, statistics
 from demheat.sampling import halo
 from demheat.scene.symmetry import reduced, unfold
+from demheat.terminal import slices
 from references import bounds, bracket, exact, fem, fft, mesh, multipole, richardson
 from references.fft import zeta
 
@@ -162,7 +164,6 @@ TABLE = [
     (solve, {"scene": CELL, "packing": EIGHT}, {"conforming": or_none(FLAG), "interface": or_none(WORD), "replicas": or_none(COUNT)}),
     (solve, {"scene": CELL, "law": "calibrated", "packing": EIGHT}, {"sparse": or_none(WORD), "wall": or_none(WORD), "coordination": or_none(POSITIVE), "gap": or_none(NUMBER)}),
     (solve, {"scene": CELL, "allow_few": True}, {"particles": COUNT}),
-    (streamed.solve, {"scene": CELL, "folder": "nowhere/none", "particles": 3000}, {"scene": OBJECT, "folder": (None, 5, [], "", "a\0", "."), "law": without(WORD, None), "particles": COUNT, "slabs": or_none((*COUNT, 10**6)), "seed": WHOLE, "tolerance": POSITIVE, "replicas": or_none(COUNT)}),
     (evolve, {"scene": WARMING, "times": [1.0], "allow_few": True}, {"scene": OBJECT, "times": TIMES, "law": WORD, "particles": COUNT, "seed": WHOLE, "packing": or_none(OBJECT)}),
     (evolve, {"scene": WARMING, "times": [1.0], "law": "calibrated", "allow_few": True}, {"integrator": WORD, "accuracy": POSITIVE, "step": or_none(POSITIVE), "wall": or_none(WORD), "allow_few": FLAG}),
     (network_of, {"scene": CELL, "packing": EIGHT, "law": demheat.Laguerre()}, {"scene": OBJECT, "packing": OBJECT, "law": WORD}),
@@ -192,8 +193,8 @@ TABLE = [
     (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"number": COUNT, "size": SIDES, "phi": or_none(POSITIVE), "radii": RADII, "periodic": FLAG, "domain": WORD, "seed": WHOLE, "allow_few": FLAG}),
     (lsa.lsa, {"number": 8, "allow_few": True, "phi": 0.1}, {"pressure": or_none(POSITIVE), "most": POSITIVE, "growth": (*without(POSITIVE, [0.5]), [], [(1, 2, 3)]), "progress": ("a", 5), "start": ("a", 5)}),
     (packing.settle, {"packing": EIGHT}, {"packing": OBJECT, "fixed": ("a", 5, [True], np.ones(8)), "steps": WHOLE, "overlap": PART, "progress": ("a", 5)}),
-    (io.write, {"packing": EIGHT, "path": "nowhere/none.npz"}, {"packing": OBJECT, "path": (None, 5, "", "none", "a\0.npz"), "format": or_none((5, "box", ["npz"])), "temperature": ([1.0] * 8,)}),
-    (io.read, {"path": "nowhere/none.xyz"}, {"path": (None, 5, "", "none", "a\0.npz"), "format": or_none((None, 5, "box", ["npz"])), "size": or_none(SIDES), "periodic": or_none(FLAG), "domain": or_none((None, 5, "box ", ["box"])), "step": (True, 1.0, "a"), "order": WORD}),
+    (packings.write, {"packing": EIGHT, "path": "nowhere/none.npz"}, {"packing": OBJECT, "path": (None, 5, "", "none", "a\0.npz"), "format": or_none((5, "box", ["npz"])), "temperature": ([1.0] * 8,)}),
+    (packings.read, {"path": "nowhere/none.xyz"}, {"path": (None, 5, "", "none", "a\0.npz"), "format": or_none((None, 5, "box", ["npz"])), "size": or_none(SIDES), "periodic": or_none(FLAG), "domain": or_none((None, 5, "box ", ["box"])), "step": (True, 1.0, "a"), "order": WORD}),
     (neighbours.neighbours, {"packing": EIGHT}, {"packing": OBJECT, "scale": PART, "skin": PART}),
     (packing.contacts, {"packing": EIGHT, "coordination": 3.0}, {"packing": OBJECT, "gap": or_none((*NUMBER, -1.0)), "additive": FLAG, "coordination": POSITIVE, "margin": PART}),
     (packing.cut, {"packing": EIGHT}, {"packing": OBJECT, "domain": WORD, "size": or_none(SIDES), "center": or_none(VECTOR), "keep": WORD}),

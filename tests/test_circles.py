@@ -51,18 +51,20 @@ def test_no_circle_of_modules_or_folders():
 @pytest.mark.parametrize(
     "source",
     [
-        "def f():\n    from demheat.pictures import plot_field",
-        "import_module('demheat.pictures').plot_field",
-        "importlib.import_module(name='demheat.pictures')",
-        "__import__('demheat.pictures')",
-        "lazy_names(__name__, {'demheat.pictures': ('plot_field',)})",
-        "HOMES = {'picture': 'demheat.pictures'}\ndef f(kind):\n    return import_module(HOMES[kind])",
-        "import_module(f'demheat.pictures.{name}')",
+        "def f():\n    from demheat.terminal.pictures import plot_field",
+        "import_module('demheat.terminal.pictures').plot_field",
+        "importlib.import_module(name='demheat.terminal.pictures')",
+        "__import__('demheat.terminal.pictures')",
+        "lazy_names(__name__, {'demheat.terminal.pictures': ('plot_field',)})",
+        "HOMES = {'picture': 'demheat.terminal.pictures'}\ndef f(kind):\n    return import_module(HOMES[kind])",
+        "import_module(f'demheat.terminal.pictures.{name}')",
     ],
 )
 def test_imports_are_seen_in_functions_and_by_name(source):
-    modules = MODULES | {"demheat.pictures.part": None}
-    assert {name.removesuffix(".part") for name in imports("demheat.field", source, modules)} == {"demheat.pictures"}
+    modules = MODULES | {"demheat.terminal.pictures.part": None}
+    assert {name.removesuffix(".part") for name in imports("demheat.field", source, modules)} == {
+        "demheat.terminal.pictures"
+    }
 
 
 def test_what_cannot_be_read_is_refused():

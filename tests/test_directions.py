@@ -9,12 +9,12 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Dependence, Layer, Material, Scene, Sphere, dem, orthotropic
-from demheat.build import network_of
-from demheat.commands.bounds import bounds_of
 from demheat.conduction.steady import solve_steady
+from demheat.dem.networks import network_of
 from demheat.laws import Laguerre
 from demheat.scene.negligible import negligible
 from demheat.scene.symmetry import reduced
+from demheat.terminal.commands.bounds import bounds_of
 from references import bounds, bracket, exact, fem, fft, multipole, series, zeta
 
 TENSOR = orthotropic(1, 2, 4, rotation=(0.0, 0.5, 0.0))

@@ -102,10 +102,10 @@ def test_the_study_runs_and_its_claims_hold():
 
 
 def test_the_scene_of_a_file_is_read(tmp_path):
-    from demheat import files
+    from demheat.io import scenes
 
     (text,) = (block.text for block in blocks("scenes.md") if block.kind == "toml")
     (tmp_path / "scene.toml").write_text(text, encoding="utf-8")
     (tmp_path / "beads.csv").write_text("x_mm,y_mm,z_mm,radius_mm\n0.5,0.5,0.5,0.2\n", encoding="utf-8")
-    scene = files.read(tmp_path / "scene.toml")
+    scene = scenes.read(tmp_path / "scene.toml")
     assert scene.size == (1e-3, 1e-3, 1e-3) and scene.conductivities.tolist() == [0.195, 1.05]

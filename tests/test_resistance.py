@@ -11,7 +11,7 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere, dem, gallery
-from demheat.build import network_of
+from demheat.dem.networks import network_of
 from demheat.laws import Calibrated
 from references import bounds, bracket, exact, fem, fft, multipole, series, zeta
 from references.exact import lattice

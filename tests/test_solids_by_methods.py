@@ -14,7 +14,8 @@ from numpy.testing import assert_allclose
 from scipy.special import elliprd, zeta
 from solid_shapes import LIMITS, MATRIX, TURN, ball, torus
 
-from demheat import Layer, Material, Scene, Sphere, files, solve
+from demheat import Layer, Material, Scene, Sphere, solve
+from demheat.io import scenes
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from references import exact, fem, fft
 
@@ -197,16 +198,16 @@ def test_files_hold_all_but_functions(tmp_path):
         Cylinder((0.8, 0.8, 0.2), 0.1, (1, 1, 0), Material(6.0), length=0.2),
     ]
     scene = Scene((1, 1, 1), MATRIX, shapes, **load)
-    files.write(scene, tmp_path / "scene.toml")
-    assert repr(files.read(tmp_path / "scene.toml")) == repr(scene)
+    scenes.write(scene, tmp_path / "scene.toml")
+    assert repr(scenes.read(tmp_path / "scene.toml")) == repr(scene)
     text = (tmp_path / "scene.toml").read_text()
     (tmp_path / "scene.toml").write_text(text.replace("radius = 0.03", "radius_mm = 30"))
-    assert files.read(tmp_path / "scene.toml") == scene
+    assert scenes.read(tmp_path / "scene.toml") == scene
     (tmp_path / "scene.toml").write_text(text.replace("length = 0.2", "length = -0.2"))
     with pytest.raises(ValueError, match=r"scene.toml:\d+: inclusions\[4\].length = -0.2: must be None, or"):
-        files.read(tmp_path / "scene.toml")
+        scenes.read(tmp_path / "scene.toml")
     with pytest.raises(ValueError, match=r"Scene.inclusions\[0\] = LevelSet.*in a file"):
-        files.write(cube(RING), tmp_path / "ring.toml")
+        scenes.write(cube(RING), tmp_path / "ring.toml")
 
 
 def test_a_surface_that_resists_may_end_on_the_edge_of_a_held_wall():

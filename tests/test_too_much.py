@@ -8,11 +8,11 @@ import pytest
 
 from demheat import Box, Material, MovingCylinder, Scene, evolve, gallery, solve
 from demheat.packing.base import make_packing
-from demheat.packing.conforming import conform
 from demheat.packing.domain import replicate
 from demheat.packing.lsa import lsa
 from demheat.packing.relax import relax, settle
-from demheat.slices import plane
+from demheat.packing.twins.conforming import conform
+from demheat.terminal.slices import plane
 from references import exact, fem, fft, multipole
 from references.fft.zeta import zeta2
 
@@ -68,7 +68,7 @@ REQUESTS = {
 
 def test_twins_beyond_memory_are_refused(monkeypatch):
     """In a gap of a quarter of a particle there are many more twins than particles were asked for; none is made."""
-    monkeypatch.setattr("demheat.packing.patterns.thinned", None)
+    monkeypatch.setattr("demheat.packing.twins.patterns.thinned", None)
     monkeypatch.setattr("demheat.runtime.limits.SMALL", 0)
     monkeypatch.setattr("demheat.runtime.limits.free_memory", lambda: 1e6)
     plates = [Box((x, 0.5, 0.5), (0.2, 0.6, 0.6), Material(10.0)) for x in (0.39, 0.61)]

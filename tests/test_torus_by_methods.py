@@ -8,7 +8,8 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from solid_shapes import MATRIX, RING
 
-from demheat import Cylinder, Material, Scene, Sphere, Torus, files, solve
+from demheat import Cylinder, Material, Scene, Sphere, Torus, solve
+from demheat.io import scenes
 from references import bracket, exact, fem, fft, multipole
 
 MIDDLE = (0.5, 0.5, 0.5)
@@ -133,11 +134,11 @@ def test_who_does_not_know_it_refuses_it_in_one_line(name):
 
 def test_files_hold_it(tmp_path):
     scene, path = cell(ring(5.0, axis=(1, 2, 3), resistance=0.1)), tmp_path / "scene.toml"
-    files.write(scene, path)
-    assert repr(files.read(path)) == repr(scene)
+    scenes.write(scene, path)
+    assert repr(scenes.read(path)) == repr(scene)
     text = path.read_text()
     path.write_text(text.replace("tube = 0.12", "tube_mm = 120"))
-    assert files.read(path) == scene
+    assert scenes.read(path) == scene
     path.write_text(text.replace("tube = 0.12", 'tube = "30 cm"'))
     with pytest.raises(ValueError, match=r"scene.toml:\d+: inclusions\[0\].tube = '30 cm': must be > 0 m and less"):
-        files.read(path)
+        scenes.read(path)

@@ -5,7 +5,7 @@ import shlex
 import pytest
 from blocks import blocks, check_alike
 
-from demheat.commands import main
+from demheat.terminal.commands import main
 
 PAGE = "tutorial.md"
 

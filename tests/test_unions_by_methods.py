@@ -11,7 +11,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solid_shapes import MATRIX
 from test_solids_by_methods import FRACTION, RADIUS, WAYS, rayleigh
 
-from demheat import Material, Scene, Sphere, files, solve
+from demheat import Material, Scene, Sphere, solve
+from demheat.io import scenes
 from demheat.scene import Box, Cylinder, Union
 from references import bracket, exact, fem, fft, multipole
 from references.voxels.paint import voxelise
@@ -139,8 +140,8 @@ def test_files_hold_them(tmp_path):
         Cylinder(MIDDLE, 0.1, (0, 1, 2), inside, length=0.5),
     ]
     scene = cell(Union(shapes, inside, resistance=0.1), Sphere((0.1, 0.1, 0.1), 0.05, inside))
-    files.write(scene, path)
-    assert repr(files.read(path)) == repr(scene)
+    scenes.write(scene, path)
+    assert repr(scenes.read(path)) == repr(scene)
     path.write_text(
         """size = [1, 1, 1]
 matrix = {conductivity = 1}
@@ -158,7 +159,7 @@ center = [0.7, 0.5, 0.5]
 sides = [0.3, 0.2, 0.1]
 """
     )
-    (read,) = files.read(path).inclusions
+    (read,) = scenes.read(path).inclusions
     assert read == Union([Sphere(MIDDLE, 0.2, inside), Box((0.7, 0.5, 0.5), (0.3, 0.2, 0.1), inside)], inside)
     text = path.read_text()
     for old, new, words in (
@@ -169,5 +170,5 @@ sides = [0.3, 0.2, 0.1]
     ):
         path.write_text(text.replace(old, new))
         with pytest.raises(ValueError, match=words) as refused:
-            files.read(path)
+            scenes.read(path)
         assert "\n" not in str(refused.value)

@@ -2,7 +2,7 @@
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from demheat.damage.cracks import Disc, Rectangle, cracked

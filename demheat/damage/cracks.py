@@ -14,8 +14,8 @@ from scipy.spatial import cKDTree
 from demheat.damage.links import cut, pairs
 from demheat.network.base import Network, image_shifts, row_numbers
 from demheat.packing.base import Packing, make_packing
-from demheat.packing.conforming import NEAR_WALL, OFFSET, margin
-from demheat.packing.patterns import SPACING
+from demheat.packing.twins.conforming import NEAR_WALL, OFFSET, margin
+from demheat.packing.twins.patterns import SPACING
 from demheat.scene.inputs import finite, vector
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.patterns import SQUARE
@@ -207,8 +207,8 @@ def warn_of_small(packing: Packing, cracks) -> None:
 def seamed(packing: Packing, cracks) -> Packing:
     """A packing with particles mirrored in the planes of cracks, so that facets lie on them and end at their rims.
 
-    As at interfaces (`demheat.packing.conforming`): pairs half a mean radius from the plane, and no other particle so
-    near or so heavy that a facet of it reaches it. The outermost pairs lie outside of the rim.
+    As at interfaces (`demheat.packing.twins.conforming`): pairs half a mean radius from the plane, and no other
+    particle so near or so heavy that a facet of it reaches it. The outermost pairs lie outside of the rim.
     """
     radius = float(packing.radii.mean())
     pitch, found, near = PITCH * radius, [np.empty((0, 2, 3))], np.full(packing.number, np.inf)
@@ -252,7 +252,7 @@ def cracked(network: Network, cracks: Sequence[Disc | Rectangle]) -> Network:
     Examples
     --------
     >>> from demheat import Laguerre, damage, gallery
-    >>> from demheat.build import network_of
+    >>> from demheat.dem.networks import network_of
     >>> from demheat.packing.relax import relax
     >>> network = network_of(gallery.slab(size=(1.0, 1.0, 1.0), periodic=True), relax(500, seed=0), Laguerre())
     >>> crack = damage.Disc(center=(0.5, 0.5, 0.5), radius=0.3, normal=(0, 0, 1))

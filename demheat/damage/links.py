@@ -35,7 +35,7 @@ def without_links(network: Network, share: float, *, seed: int) -> Network:
     --------
     >>> import numpy as np
     >>> from demheat import Laguerre, damage, gallery
-    >>> from demheat.build import network_of
+    >>> from demheat.dem.networks import network_of
     >>> from demheat.packing.relax import relax
     >>> network = network_of(gallery.slab(size=(1.0, 1.0, 1.0), periodic=True), relax(500, seed=0), Laguerre())
     >>> fewer = damage.without_links(network, 0.25, seed=0)

@@ -5,11 +5,11 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from demheat.build import network_of
 from demheat.conduction.steady import check_solver, solve_checked
 from demheat.damage.cracks import Disc, Rectangle, check_cracks, cracked, seamed, warn_of_small
 from demheat.damage.inclusions import drawn
 from demheat.damage.links import without_links
+from demheat.dem.networks import network_of
 from demheat.dem.options import Particles, check_fits
 from demheat.field import Field
 from demheat.laws import Calibrated, Choices, Laguerre, Platonic

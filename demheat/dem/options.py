@@ -1,4 +1,4 @@
-"""What is asked of `solve` and `evolve`: read and checked once, before any heavy work."""
+"""What is asked of `solve` and `evolve`: read and checked once, before any heavy work; and what memory it takes."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from demheat.packing.domain import replica_counts
 from demheat.packing.gate import check_packing
 from demheat.packing.relax import FEWEST
 from demheat.packing.tile import fits, tiled
+from demheat.packing.twins.conforming import faces
 from demheat.runtime.limits import check_memory
 from demheat.scene import Scene
 from demheat.scene.inputs import flag, whole
@@ -23,7 +24,15 @@ from demheat.scene.inputs import flag, whole
 LOOSE = 0.3
 # Least bytes that a particle takes, found from 560 to 800 where they are many.
 BYTES = 500
-STREAMED = ", or demheat.streamed.solve, which keeps slabs of the body on disk, takes half and less"
+SHARED = ", or demheat.mpi, which shares the body out to processes of several machines"
+MIB = 2**20
+# Bytes at the peak for each unknown, and for each of the rows that are worked on at once. Found between walls with a
+# sphere of contrast 5, by law "laguerre": 929 an unknown of 212 thousand, 678 of 1.03 million.
+EACH, ROW, ROWS = 613, 1020, 65536
+# Twins less the particles that give way to them, for each squared mean radius of the faces of an inclusion's bounds.
+TWINS = 0.37
+# Of the volume, that spheres fill.
+PHI = 0.64
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -90,10 +99,24 @@ class Particles:
         return relaxed(self.particles, allow_few=self.allow_few, **body, **domain)
 
 
+def unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Particles) -> float:
+    """How many unknowns a packing is expected to have with its twins; those in narrow gaps are not foreseen."""
+    number = float(wanted.particles if wanted.packing is None else wanted.packing.number)
+    if not (law.conforming and scene.inclusions):
+        return number
+    unit = np.cbrt(0.75 / np.pi * PHI * scene.volume / number)
+    return number + TWINS * float(faces(scene).sum() / unit**2)
+
+
+def expected(number: float) -> float:
+    """Bytes that a steady solve is expected to take at its peak, besides Python and libraries."""
+    return EACH * number + ROW * min(number, ROWS)
+
+
 def check_fits(wanted: Particles, law: Law) -> None:
     """Refuse more particles than the memory holds."""
     if wanted.packing is None:
-        remedy = STREAMED if isinstance(law, Laguerre) else ""
+        remedy = SHARED if isinstance(law, Laguerre) else ""
         check_memory("particles", wanted.particles, BYTES * int(wanted.particles), remedy=remedy)
 
 

@@ -8,7 +8,6 @@ from functools import partial
 
 import numpy as np
 
-from demheat.build import network_of, networks_of
 from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
@@ -17,9 +16,10 @@ from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
-from demheat.dem.memory import MIB, expected, unknowns
-from demheat.dem.options import Particles, check_fits
+from demheat.dem.networks import network_of, networks_of
+from demheat.dem.options import MIB, Particles, check_fits, expected, unknowns
 from demheat.dem.trial import check_contrast
+from demheat.dem.warm import Helper, cells, parts_of
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Choices, Laguerre, Platonic
 from demheat.packing.base import Packing
@@ -28,7 +28,6 @@ from demheat.runtime.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
 from demheat.tensor import axis_loads
-from demheat.warm import Helper, cells, parts_of
 
 
 def solve(

@@ -1,9 +1,9 @@
 """Beds of grains out of DEM simulations: contacts and gaps as a network, their temperatures, and the heat of each pair.
 
     from demheat import grains
-    from demheat.packing import io
+    from demheat.io import packings
 
-    bed = io.read("bed.liggghts").scaled(1e-3)  # a file in millimetres
+    bed = packings.read("bed.liggghts").scaled(1e-3)  # a file in millimetres
     field = grains.solve(bed, 16.0, walls={"z-": 80.0, "z+": 20.0}, gap=grains.Gap(conductivity=0.026))
     field.conductivity, field.temperature, field.pairs, field.heat
     field.write("flows.csv")

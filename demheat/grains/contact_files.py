@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from demheat.grains.pairs import Contacts
-from demheat.packing.io.text import Lines, broken, read_table, whole
+from demheat.io.packings.text import Lines, broken, read_table, whole
 from demheat.runtime.paths import checked_path
 
 FORCE = ("fx", "fy", "fz")
@@ -32,7 +32,7 @@ def read_contacts(
         that are there: the column's name in the file, or its number from 1, as in {"id1": 1, "id2": 2, "area": 7}. By
         default the columns of these names.
     ids : (n,) sequence of int, optional
-        Ids of the grains in the order of the packing, as `demheat.packing.io.ids` reads them; by default 1 to n.
+        Ids of the grains in the order of the packing, as `demheat.io.packings.ids` reads them; by default 1 to n.
     step : int, optional
         Timestep; the last in the file by default.
 

@@ -47,7 +47,7 @@ class GrainField:
     mean_flux : (3,) float array, W/m2
         Average over the box.
     network : Network
-        As `demheat.packing.io.write` draws it.
+        As `demheat.io.packings.write` draws it.
     stats : mapping
         unknowns, iterations, residual, solver, islands.
 
@@ -136,7 +136,7 @@ class GrainField:
             Ends in .csv: a row for each pair with the heat that its second grain gives to the first, then for each
             grain at a wall, with the wall's name for the second. Or in .npz: the same as arrays, and the temperatures.
         ids : (n,) sequence of int, optional
-            Names of the grains, as `demheat.packing.io.ids` reads them; by default their numbers from 0.
+            Names of the grains, as `demheat.io.packings.ids` reads them; by default their numbers from 0.
 
         Raises
         ------

@@ -41,7 +41,7 @@ def solve(
     Parameters
     ----------
     packing : Packing
-        As `demheat.packing.io.read` reads it from a file, in metres; grains may overlap.
+        As `demheat.io.packings.read` reads it from a file, in metres; grains may overlap.
     solid : float or (n,) sequence of float, W/(m K)
         Conductivity of the grains.
     walls : mapping of str to float, K or degrees Celsius

@@ -1,1 +1,1 @@
-"""What is read and written."""
+"""What is read and written: scenes, images, packings, fields."""

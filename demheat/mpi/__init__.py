@@ -7,7 +7,7 @@ manual.
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from demheat.mpi.solver import solve

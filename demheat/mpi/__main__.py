@@ -16,11 +16,11 @@ from importlib.util import find_spec
 import numpy as np
 
 from demheat.beyond import ranks
-from demheat.commands.options import Parser
 from demheat.declared import found, load, path_of
-from demheat.files import read
-from demheat.files.source import nearest
+from demheat.io.scenes import read
+from demheat.io.words import nearest
 from demheat.mpi.engines import world
+from demheat.terminal.commands.options import Parser
 
 # What all ranks raise alike, before anything heavy, and the exit status of each.
 STATUS = {ValueError: 2, OSError: 2, NotImplementedError: 1, ImportError: 1}

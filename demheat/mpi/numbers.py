@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from demheat.mpi.slabs import NOBODY, Slabs, found_at
 from demheat.packing.base import wrap
-from demheat.tiles.places import NOBODY, found_at
-from demheat.tiles.slabs import Slabs
 
 
 def numbers_of(network, own: int, slabs: Slabs, comm) -> np.ndarray:

@@ -11,7 +11,7 @@ from demheat import dem
 from demheat.beyond import ranks
 from demheat.beyond.ranks import Costs, check_fits, cores, give_back, here
 from demheat.conduction.balance import at_walls, linear_start, system_of
-from demheat.conduction.steady import Solution
+from demheat.conduction.steady import Solution, check_solver
 from demheat.dem.estimate import estimator_of
 from demheat.dem.options import Particles
 from demheat.field import Field
@@ -21,11 +21,9 @@ from demheat.mpi.engines import petsc, world
 from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Ghosts, linked, numbers_of
+from demheat.mpi.slabs import NOBODY, slabs_of
 from demheat.runtime.threads import limited
-from demheat.scene import Scene
-from demheat.tiles.checks import check
-from demheat.tiles.places import NOBODY
-from demheat.tiles.slabs import slabs_of
+from demheat.scene import Scene, check_scene
 
 # Least bytes that a particle takes at the peak, all ranks together, where they are many: about as many for what a rank
 # sees as for solving for what it owns.
@@ -51,7 +49,7 @@ def solve(
     """
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas, allow_few=allow_few)
-    check(scene, law, wanted, tolerance, knows=KNOWS)
+    _check(scene, law, wanted, tolerance)
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
     check_fits("particles", particles, BYTES * float(particles), comm)
@@ -62,6 +60,19 @@ def solve(
 def outlook(scene: Scene, *, particles: int = 1_000_000) -> str:
     """What a solve will take on this machine, in words."""
     return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
+
+
+def _check(scene, law, wanted, tolerance):
+    """Raise unless a scene can be solved slab by slab."""
+    check_scene(scene)
+    check_solver("auto", tolerance)
+    if not isinstance(law, Laguerre):
+        raise ValueError(f"law = {law!r}: must be a Laguerre, whose cells can be made by slabs")
+    scene.require(KNOWS, steady=True, domain="box", pores=False, takes=("resistance", "exchange"))
+    if scene.radiates:
+        raise NotImplementedError(f"walls that radiate: {KNOWS}")
+    law.check(scene)
+    wanted.check(scene, law)
 
 
 def _answer(scene, law, wanted, comm, **how):

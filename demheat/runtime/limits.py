@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -41,16 +40,6 @@ def check_memory(name: str, value, needed: float, *, power: float = 1.0, remedy:
         f"{name} = {_short(value)}: takes {gib:.3g} GiB of memory or more, and {free / GIB:.3g} GiB are free; must be "
         f"{fits} here{remedy}"
     )
-
-
-def check_room(name: str, folder: Path, needed: float) -> None:
-    """Refuse what would need more room than its disk has."""
-    there = next(each for each in (folder, *folder.absolute().parents) if each.exists())
-    if needed > SMALL and needed > (free := shutil.disk_usage(there).free):
-        raise ValueError(
-            f"{name} = {_short(str(folder))}: would hold {needed / GIB:.3g} GiB, and {free / GIB:.3g} GiB are free "
-            "there; must be on a larger disk, or particles fewer"
-        )
 
 
 def check_steps(name: str, value, steps: float, seconds: float, *, remedy: str) -> None:

@@ -6,8 +6,8 @@ any unit of conductivity.
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
 from demheat.method import Errors, Method
+from demheat.runtime.lazy import lazy_names
 from references.bounds.formulas import (
     agari_uno,
     bruggeman,

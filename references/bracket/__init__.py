@@ -7,7 +7,7 @@ are pushed to that side of the true ones which keeps the bound.
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
+from demheat.runtime.lazy import lazy_names
 from references.bracket import voxels
 
 if TYPE_CHECKING:

@@ -2,8 +2,8 @@
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
 from demheat.method import Method
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from references.exact.series import evolve

@@ -6,8 +6,8 @@ that of the matrix) and solved by conjugate gradients with a multigrid precondit
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
 from demheat.method import OVERSHOOT, SIZE, UNTURNED, Errors, Method, Orders
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from references.fem.solver import solve, solve_axes

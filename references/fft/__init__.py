@@ -5,8 +5,8 @@ The only home of pyFFTW.
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
 from demheat.method import CUT, OVERSHOOT, VOXELS, Errors, Method, Orders
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from references.fft.solver import solve, solve_axes

@@ -7,7 +7,7 @@ C. Kim and S. Torquato, J. Appl. Phys. 68 (1990) 3892 and 69 (1991) 2280; A. Lej
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from references.walkers.solver import Walked, solve

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from demheat.build import network_of
 from demheat.conduction.steady import solve_steady
+from demheat.dem.networks import network_of
 from demheat.field import Samples
 from demheat.sampling.field_of import field_of
 from demheat.sampling.particle_flux import particle_flux

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from demheat import referee
-from demheat.slices import filled, plane
+from demheat.terminal.slices import filled, plane
 from studies.harness.cells import cell
 from studies.harness.cost import measured
 

@@ -70,8 +70,8 @@ def unit_law(packing, held):
 
 def calibrated(packing, law, held):
     """C_t of a packing by every calibration that its walls allow."""
-    from demheat.build import network_of
-    from demheat.calibration import calibration
+    from demheat.dem.calibration import calibration
+    from demheat.dem.networks import network_of
     from demheat.scene import Material, Scene
 
     load = {"gradient": (0.0, 1.0, 0.0)} if held == "periodic" else {"walls": {"y-": 0.0, "y+": 1.0}}

@@ -72,7 +72,7 @@ REPLICA = 130_000
 
 def laguerre_network(scene, particles, seed):
     """The network of a scene on replicas of a small packing."""
-    from demheat.build import network_of
+    from demheat.dem.networks import network_of
     from demheat.laws import Laguerre
     from demheat.packing.cache import replicated
 

@@ -89,7 +89,7 @@ def prepare(times, look, *, method, **knobs):
     if "particles" in knobs:
         packing = packing_of(knobs["particles"], knobs["seed"])
         if knobs["law"] == "calibrated":
-            from demheat.calibration import cube_like
+            from demheat.dem.calibration import cube_like
 
             cube_like(packing)
     marched(times, look, method=method, **{**knobs, **methods.small(method)})
@@ -112,8 +112,8 @@ def in_shells(r, values, weights, shells=20):
 
 
 def slice_grid(n=41):
-    """Points of a grid over the plane z = R that lie in the sphere, and their mask: see `demheat.slices.plane`."""
-    from demheat.slices import plane
+    """Points of a grid over the plane z = R that lie in the sphere, and their mask: see `terminal.slices.plane`."""
+    from demheat.terminal.slices import plane
 
     return plane(sphere(), axis=2, at=DIAMETER / 2, n=n)
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from functools import cache
 
-from demheat.build import network_of
-from demheat.calibration import calibration
+from demheat.dem.calibration import calibration
+from demheat.dem.networks import network_of
 from demheat.laws import LAWS
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts

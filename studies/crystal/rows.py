@@ -7,8 +7,8 @@ import math
 import numpy as np
 
 from demheat import Flux, Material, Scene, Sphere, referee, solve
-from demheat.build import network_of
 from demheat.conduction.transient import capacities
+from demheat.dem.networks import network_of
 from demheat.laws import Platonic
 from demheat.network.platonic import CRYSTALS, crystal_packing, fraction_factors, surface_factors
 from demheat.packing.base import make_packing

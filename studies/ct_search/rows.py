@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from demheat import referee
-from demheat.build import network_of
-from demheat.calibration import calibration
 from demheat.dem import solve
+from demheat.dem.calibration import calibration
+from demheat.dem.networks import network_of
 from demheat.gallery import sphere_in_cube
 from demheat.laws import Calibrated
 from demheat.packing.cache import grown

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.build import network_of
-from demheat.calibration import calibration
+from demheat.dem.calibration import calibration
+from demheat.dem.networks import network_of
 from demheat.laws import Calibrated
 from demheat.packing.cache import grown, relaxed
 from demheat.packing.domain import replicate

@@ -28,7 +28,7 @@ def ball(packing, particles, seed):
 
 def cube(packing, made, particles, seed):
     """Packing between walls on which C_t is calibrated, kept in the cache."""
-    from demheat.calibration import cube_like
+    from demheat.dem.calibration import cube_like
 
     if packing == "relaxed":
         return cube_like(made)

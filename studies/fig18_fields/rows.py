@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from demheat.slices import filled, plane
+from demheat.terminal.slices import filled, plane
 from studies.common import silica_epoxy
 from studies.common.field_errors import mean_diameter
 from studies.common.pictures import packed

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.tiles.slabs import GHOSTS, PHI
+from demheat.mpi.slabs import GHOSTS, PHI
 
 # In mean spacings: what a block sees of its neighbours.
 LAYER = GHOSTS * (0.75 / math.pi * PHI) ** (1 / 3)

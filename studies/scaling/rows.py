@@ -77,7 +77,7 @@ def dem_row(scene, particles, seed, *, cores=None):
     from demheat.network.interface import connect
     from demheat.network.laguerre import drop_empty_cells, laguerre
     from demheat.packing.cache import replicated
-    from demheat.packing.conforming import conform
+    from demheat.packing.twins.conforming import conform
     from demheat.runtime.threads import limited
     from demheat.sampling.field_of import field_of
 

@@ -11,11 +11,11 @@ import time
 import numpy as np
 
 from demheat import referee
-from demheat.build import network_of
 from demheat.conduction import transient
 from demheat.conduction.integrators import control, euler, march
 from demheat.conduction.integrators.spectrum import spectrum
 from demheat.conduction.integrators.system import initial_state, semi_discrete
+from demheat.dem.networks import network_of
 from demheat.laws import Laguerre
 from demheat.packing.cache import relaxed
 from demheat.scene import Material, Scene

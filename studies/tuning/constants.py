@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from typing import NamedTuple
 
 from demheat.laws import Laguerre
-from demheat.packing import conforming, gaps, interfaces, patterns
+from demheat.packing.twins import conforming, gaps, interfaces, patterns
 
 HOMES = (conforming, gaps, interfaces, patterns)
 

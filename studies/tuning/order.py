@@ -16,8 +16,8 @@ from functools import cache
 import numpy as np
 
 from demheat import Laguerre
-from demheat.build import network_of
 from demheat.conduction.steady import solve_steady
+from demheat.dem.networks import network_of
 from demheat.packing.tile import tiled
 from demheat.referee import value_error
 from demheat.sampling.field_of import field_of

@@ -8,8 +8,8 @@ from numpy.testing import assert_allclose
 
 import demheat
 from demheat import Layer, Material, Scene, Sphere
-from demheat.build import network_of
-from demheat.calibration import LOADINGS, calibration
+from demheat.dem.calibration import LOADINGS, calibration
+from demheat.dem.networks import network_of
 from demheat.laws import Calibrated, Laguerre
 from demheat.packing.cache import relaxed
 from demheat.packing.neighbours import contacts

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 import demheat
 from demheat import Calibrated, Laguerre, Material, Platonic, Scene, Sphere
-from demheat.build import network_of
+from demheat.dem.networks import network_of
 from demheat.laws import POLICIES, RULES, WALL_RULES, Choices
 from demheat.network.base import branches, link_distances, row_numbers
 from demheat.packing.cache import relaxed

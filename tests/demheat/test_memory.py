@@ -3,8 +3,7 @@
 import pytest
 
 from demheat import Laguerre, Layer, Material, Scene, gallery, on_progress, solve
-from demheat.dem.memory import expected, unknowns
-from demheat.dem.options import Particles
+from demheat.dem.options import Particles, expected, unknowns
 from demheat.runtime import limits, progress
 
 SCENE = gallery.sphere_in_cube(5.0)
@@ -51,7 +50,7 @@ def test_a_field_knows_it_and_a_large_solve_says_it(monkeypatch):
 def test_a_refusal_names_what_would_do(monkeypatch):
     monkeypatch.setattr(limits, "free_memory", lambda: 2.0**33)
     told = r"particles = 100000000: takes 46.6 GiB .* 8 GiB are free; must be at most about 1.72e\+07 here"
-    with pytest.raises(ValueError, match=told + r", or demheat\.streamed\.solve"):
+    with pytest.raises(ValueError, match=told + r", or demheat\.mpi"):
         solve(SCENE, particles=10**8)
     with pytest.raises(ValueError, match=told + "$"):
         solve(SCENE, particles=10**8, law="platonic")

@@ -1,11 +1,16 @@
 """Only here: old names that users have met and that no longer work or warn."""
 
+import sys
+from importlib import import_module
+
 import pytest
 
 import demheat
 from demheat import Calibrated, Laguerre, gallery
 from demheat.dem.options import Particles
+from demheat.io.images import read_image
 from demheat.packing import domain
+from demheat.renamed import MOVED
 
 
 def test_old_classes_and_functions():
@@ -26,3 +31,27 @@ def test_unknown_names_are_no_attributes():
         _ = demheat.Heater
     with pytest.raises(AttributeError, match="no attribute 'tiles'"):
         _ = domain.tiles
+
+
+@pytest.mark.parametrize(("old", "new"), MOVED.items())
+def test_old_modules_are_those_of_today(old, new, monkeypatch):
+    for name in MOVED:
+        monkeypatch.delitem(sys.modules, name, raising=False)
+    with pytest.warns(DeprecationWarning, match=f"{old} is now {new}") as told:
+        __import__(old)
+    assert sys.modules[old] is import_module(new)
+    assert told[-1].filename == __file__  # of those who ask, where they can mend it
+
+
+@pytest.mark.filterwarnings("ignore:demheat.files is now:DeprecationWarning")
+def test_files_had_images_too():
+    assert import_module("demheat.files").read_image is read_image
+
+
+def test_slabs_on_disk_are_solved_whole():
+    from demheat import streamed
+
+    scene = gallery.sphere_in_cube(5.0)
+    with pytest.warns(DeprecationWarning, match=r"demheat\.streamed solves in memory now"):
+        field = streamed.solve(scene, folder="nowhere", slabs=2, particles=1000)
+    assert field.conductivity == demheat.solve(scene, particles=1000).conductivity

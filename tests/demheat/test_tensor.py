@@ -12,8 +12,9 @@ import references.fem.solver
 import references.fem.system
 import references.fft.solver
 import references.multipole.truncation
-from demheat import Flux, Layer, Material, Scene, Sphere, build, dem, gallery
+from demheat import Flux, Layer, Material, Scene, Sphere, dem, gallery
 from demheat.conduction import steady
+from demheat.dem import networks
 from demheat.tensor import axis_loads, conductivity_tensor
 from references import exact, fem, fft, multipole
 from studies.harness import methods
@@ -100,7 +101,7 @@ def test_set_up_once(monkeypatch):
         function = getattr(place, name)
         monkeypatch.setattr(place, name, lambda *a, **k: calls.append(name) or function(*a, **k))
 
-    counted(build, "conform"), counted(build, "laguerre"), counted(build, "connect")
+    counted(networks, "conform"), counted(networks, "laguerre"), counted(networks, "connect")
     counted(steady, "preconditioner")
     counted(references.fem.solver, "make"), counted(references.fem.system, "assemble_loads")
     counted(references.fem.multigrid, "multigrid")

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Calibrated, Material, Scene
-from demheat.build import network_of
+from demheat.dem.networks import network_of
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import contacts
 from studies.fig03_calibration.rows import affine, calibrated, packed

@@ -34,25 +34,24 @@ WALKS = "no study asks for it yet: held against exact values by tests of its own
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
 SHIPPED = "made the tiles that are shipped: a test makes one again"
+RENAMED = "an old name: a test asks for it"
 CLAIMS = "claims extrapolate rows by it; no row does"
 NO_ROWS = {
     "demheat/runtime/deadline.py": REFUSED,
     "demheat/dem/trial.py": REFUSED,
     "demheat/scene/edges.py": REFUSED,
-    "demheat/commands": READ,
-    "demheat/files": READ,
+    "demheat/terminal/commands": READ,
     "demheat/io": READ,
-    "demheat/packing/io": READ,
     "demheat/grains/contact_files.py": READ,
-    "demheat/terminal.py": READ,
-    "demheat/pictures.py": DRAWN,
+    "demheat/terminal/ends.py": READ,
+    "demheat/terminal/pictures.py": DRAWN,
     "demheat/scene/html.py": DRAWN,
     "references/mesh/export.py": DRAWN,
+    "demheat/renamed.py": RENAMED,
+    "demheat/streamed.py": RENAMED,
     "demheat/mpi": LARGE,
     "demheat/beyond/petsc.py": LARGE,
     "demheat/beyond/ranks.py": LARGE,
-    "demheat/streamed": LARGE,
-    "demheat/tiles": LARGE,
     "demheat/sweeps": LARGE,
     "demheat/beyond/cluster.py": LARGE,
     "references/fem/ranks.py": LARGE,

@@ -63,7 +63,7 @@ def test_blocks():
 
 def test_slabs_end_where_the_engine_refuses_them():
     from demheat.gallery import sphere_in_cube
-    from demheat.tiles.slabs import slabs_of
+    from demheat.mpi.slabs import slabs_of
 
     most = model.most_slabs(1e6)
     slabs_of(sphere_in_cube(5.0), 1_000_000, most, 0)

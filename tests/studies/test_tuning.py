@@ -5,9 +5,9 @@ import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat.packing import conforming, patterns
 from demheat.packing.cache import relaxed
-from demheat.packing.conforming import conform
+from demheat.packing.twins import conforming, patterns
+from demheat.packing.twins.conforming import conform
 from demheat.scene import Material, Scene, Sphere
 from studies.harness.cells import numbers
 from studies.tuning import means, order, scenes

@@ -60,7 +60,7 @@ def test_a_draw_is_repeated_and_begins_a_larger_one():
 @pytest.mark.parametrize(
     "module, first",
     [
-        ("demheat/packing/conforming.py", "tests/demheat/packing/test_conforming.py"),
+        ("demheat/packing/twins/conforming.py", "tests/demheat/packing/twins/test_conforming.py"),
         ("demheat/dem/solver.py", "tests/demheat/test_dem.py"),
         ("references/voxels/kernels.py", "tests/references/voxels/test_voxel_kernels.py"),
         ("studies/harness/runner.py", "tests/studies/harness/test_runner.py"),

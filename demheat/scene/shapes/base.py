@@ -63,7 +63,7 @@ class Shape(ABC):
     # What it is called in messages and in scene files: its class in small letters, if it says nothing else.
     kind: ClassVar[str]
     # What of it scene files have, besides material and resistance: fields, each with what its numbers are, a key of
-    # `demheat.files.scene_table.FIELDS`.
+    # `demheat.io.scenes.scene_table.FIELDS`.
     stored: ClassVar[Mapping[str, str]] = {}
 
     def __init_subclass__(cls, **knobs):

@@ -10,7 +10,7 @@ these are exact voxel by voxel and fall wherever voxels do.
 
 from typing import TYPE_CHECKING
 
-from demheat.lazy import lazy_names
+from demheat.runtime.lazy import lazy_names
 
 if TYPE_CHECKING:
     from references.bracket.voxels.image import bounds, upper_bound

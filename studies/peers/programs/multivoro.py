@@ -39,7 +39,7 @@ missing, version = packages.asked_of("multivoro", GET)
 def solve(scene, *, particles, conforming=True) -> Found:
     """Conductivity by a network on cells of Voro++."""
     from demheat.packing.cache import relaxed
-    from demheat.packing.conforming import conform
+    from demheat.packing.twins.conforming import conform
 
     if getattr(scene, "domain", None) != "box" or scene.periodic:
         raise NotImplementedError("multivoro: rows are of boxes between walls; round bodies it has not")

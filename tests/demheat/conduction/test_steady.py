@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose
 from scipy.sparse.linalg import spsolve
 
 from demheat import Flux, Material, Scene, Sphere
-from demheat.build import network_of
 from demheat.conduction.balance import at_walls, system_of, throughput
 from demheat.conduction.steady import matrix, solve_steady
+from demheat.dem.networks import network_of
 from demheat.laws import Laguerre
 from demheat.network.base import row_numbers
 from demheat.packing.cache import relaxed

@@ -6,9 +6,9 @@ from numpy.testing import assert_allclose, assert_array_equal
 from random_links import dense, each_link
 
 from demheat import Laguerre, Layer, Material, Scene, damage
-from demheat.build import network_of
 from demheat.conduction.steady import solve_steady
 from demheat.damage.links import pairs
+from demheat.dem.networks import network_of
 from demheat.network.base import branches, row_numbers
 from demheat.network.links_kernels import Links
 from demheat.packing.base import make_packing

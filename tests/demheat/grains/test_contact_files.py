@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 
 from demheat import grains
 from demheat.grains import Gap, read_contacts
-from demheat.packing import io
+from demheat.io import packings
 
 # As `dump local` of LIGGGHTS writes `compute pair/gran/local id force contactArea`: ids, periodic flag, force, area.
 DUMP = """ITEM: TIMESTEP
@@ -80,12 +80,12 @@ def test_ids_of_a_packing(tmp_path):
     text = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n2\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n"
     path = tmp_path / "bed.liggghts"
     path.write_text(text + "ITEM: ATOMS id x y z radius\n41 .5 .5 .5 .1\n7 .2 .2 .2 .05\n")
-    assert io.ids(path).tolist() == [7, 41]
+    assert packings.ids(path).tolist() == [7, 41]
     # In the order of the packing.
-    assert io.read(path).radii.tolist() == [0.05, 0.1]
+    assert packings.read(path).radii.tolist() == [0.05, 0.1]
     path.write_text(text + "ITEM: ATOMS x y z radius\n.5 .5 .5 .1\n.2 .2 .2 .05\n")
     with pytest.raises(ValueError, match="must be a file whose spheres have ids"):
-        io.ids(path)
+        packings.ids(path)
 
 
 def test_pairs_are_written(tmp_path):

@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from blocks import DOCS, blocks
 
-from demheat import Material, Scene, Sphere, files, gallery, solve
+from demheat import Material, Scene, Sphere, gallery, solve
+from demheat.io import scenes
 from demheat.mpi.__main__ import main
 from references import fem, fft
 from studies.scaling import ranks
@@ -44,7 +45,7 @@ def ran(command, folder, needed=()):
 
 @pytest.fixture
 def folder(tmp_path):
-    files.write(gallery.sphere_in_cube(5.0), tmp_path / "scene.toml")
+    scenes.write(gallery.sphere_in_cube(5.0), tmp_path / "scene.toml")
     return tmp_path
 
 
@@ -84,7 +85,7 @@ SLOW = [pytest.param(each, marks=pytest.mark.slow) for each in COMMANDS[1:]]
 def test_the_commands_of_the_page_give_what_one_process_gives(command, folder):
     method = method_of(command)
     done = ran(small(command) + " --tolerance 1e-11", folder, NEEDED[method])
-    alone = ALONE[method](files.read(folder / "scene.toml"), 1e-11)
+    alone = ALONE[method](scenes.read(folder / "scene.toml"), 1e-11)
     # Rounding, and what is left of either's residual.
     assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
     if method == "fft":
@@ -95,12 +96,12 @@ def test_the_commands_of_the_page_give_what_one_process_gives(command, folder):
 @pytest.mark.slow
 @pytest.mark.parametrize("method", ["fem", "fft"])
 def test_periodic_cells_give_what_one_process_gives(method, tmp_path):
-    files.write(CELL, tmp_path / "cell.toml")
+    scenes.write(CELL, tmp_path / "cell.toml")
     words = {"fft": "--method fft --voxels 21", "fem": "--method fem --size 0.3"}[method]
     words += " --tolerance 1e-11 --at 0.31 0.77 0.2"
     done = ran(f"mpiexec -n 2 python -m demheat.mpi cell.toml {words}", tmp_path, NEEDED[method])
     knobs = {"fft": {"voxels": 21, "rule": "laminate"}, "fem": {"size": 0.3}}[method]
-    alone = {"fft": fft, "fem": fem}[method].solve(files.read(tmp_path / "cell.toml"), tolerance=1e-11, **knobs)
+    alone = {"fft": fft, "fem": fem}[method].solve(scenes.read(tmp_path / "cell.toml"), tolerance=1e-11, **knobs)
     assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
     if method == "fft":
         # Only they show what preconditions; rounding may make one more.
@@ -116,7 +117,7 @@ def test_the_interval_and_the_file_are_those_of_one_process(method, folder):
     words = {"fft": f"--voxels {SMALL['voxels']}", "fem": f"--size {SMALL['size']}"}[method]
     words = f"--method {method} {words} --tolerance 1e-11 --interval --write field.npz"
     done = ran(f"mpiexec -n 2 python -m demheat.mpi scene.toml {words}", folder, NEEDED[method])
-    alone = ALONE[method](files.read(folder / "scene.toml"), 1e-11)
+    alone = ALONE[method](scenes.read(folder / "scene.toml"), 1e-11)
     assert conductivity(done) == pytest.approx(alone.conductivity, rel=1e-9)
     # Printed with nine digits, of differences of runs.
     told = [float(each) for each in re.search(r"expected +(\S+) to (\S+)", done.stdout).groups()]
@@ -139,7 +140,7 @@ def test_the_block_of_python_on_the_page(folder):
     done = ran("mpiexec -n 2 python script.py", folder, NEEDED["fft"] + NEEDED["fem"])
     assert done.returncode == 0, done.stderr
     # Lines of two ranks may be mixed up.
-    scene = files.read(folder / "scene.toml")
+    scene = scenes.read(folder / "scene.toml")
     unknowns = solve(scene, particles=SMALL["particles"]).stats["unknowns"]
     assert done.stdout.count(f" {unknowns}") == done.stdout.count("'y-': -42.6") == 2
     printed = [float(each) for each in re.findall(r"42\.\d{6}", done.stdout)]

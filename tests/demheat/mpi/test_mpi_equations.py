@@ -14,8 +14,7 @@ from demheat.dem.options import Particles
 from demheat.mpi.cells import cells_of, part_of
 from demheat.mpi.equations import own_rows, preconditioner
 from demheat.mpi.numbers import numbers_of
-from demheat.tiles.places import NOBODY
-from demheat.tiles.slabs import slabs_of
+from demheat.mpi.slabs import NOBODY, slabs_of
 
 SPHERE = Sphere((1.0, 0.4, 0.5), 0.3, Material(100.0))
 WALLS = Scene((2.0, 1.0, 1.0), Material(10.0), (SPHERE,), walls={"x-": 300.0, "x+": 400.0})

@@ -11,7 +11,7 @@ from demheat.conduction.steady import Solution
 from demheat.dem.options import Particles
 from demheat.mpi.cells import cells_of, part_of
 from demheat.mpi.field import field_of
-from demheat.tiles.slabs import slabs_of
+from demheat.mpi.slabs import slabs_of
 
 LAW = Laguerre()
 SCENE = Scene(

@@ -9,11 +9,9 @@ from scipy.sparse.linalg import spsolve
 from demheat import Laguerre, Material, Scene, Sphere, solve
 from demheat.conduction.balance import system_of
 from demheat.dem.options import Particles
-from demheat.mpi.cells import cells_of, part_of
+from demheat.mpi.cells import cells_of, own_part, part_of
 from demheat.mpi.numbers import numbers_of
-from demheat.tiles.cells import own_part
-from demheat.tiles.places import NOBODY
-from demheat.tiles.slabs import GHOSTS, slabs_of
+from demheat.mpi.slabs import GHOSTS, NOBODY, slabs_of
 
 LAW, A, B = Laguerre(), Material(10.0), Material(100.0)
 # A sphere across the first face, one across the face between two slabs.

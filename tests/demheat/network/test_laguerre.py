@@ -8,7 +8,7 @@ from scipy.spatial import ConvexHull
 from demheat.network.base import branches, row_numbers
 from demheat.network.laguerre import _matched, drop_empty_cells, laguerre, tessellated
 from demheat.packing.base import make_packing
-from demheat.packing.interfaces import fibonacci_sphere
+from demheat.packing.twins.interfaces import fibonacci_sphere
 
 
 def cloud(n=600, *, spread=0.6, seed=0, size=(1.0, 1.0, 1.0)):

@@ -7,10 +7,11 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat.build import network_of
-from demheat.calibration import cube_like
-from demheat.packing import Packing, conforming, domain, lsa, make_packing, neighbours, relax, statistics, walls
+from demheat.dem.calibration import cube_like
+from demheat.dem.networks import network_of
+from demheat.packing import Packing, domain, lsa, make_packing, neighbours, relax, statistics, walls
 from demheat.packing.gate import check_packing
+from demheat.packing.twins import conforming
 
 ROOT = Path(__file__).parents[3]
 STEEL = demheat.Material(33.0)

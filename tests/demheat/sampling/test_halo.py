@@ -7,9 +7,9 @@ import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
 from demheat import Material, Scene, Sphere
-from demheat.build import network_of
-from demheat.calibration import calibration, calibration_scene
 from demheat.conduction.steady import solve_steady
+from demheat.dem.calibration import calibration, calibration_scene
+from demheat.dem.networks import network_of
 from demheat.field import Field, Samples
 from demheat.laws import Calibrated, Laguerre
 from demheat.network.base import branches, link_distances, row_numbers

@@ -8,10 +8,11 @@ import pytest
 from numpy.testing import assert_array_equal
 
 import demheat
-from demheat import Flux, Material, MovingCylinder, Scene, Sphere, referee, slices
+from demheat import Flux, Material, MovingCylinder, Scene, Sphere, referee
 from demheat.packing import make_packing
 from demheat.scene import Layer, Shape
 from demheat.scene.frozen import ReadOnly, read_only
+from demheat.terminal import slices
 from references import exact, fem
 
 METAL = Material(1.0, 1.0, 1.0)

@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 
 from demheat import Flux, Material, Scene
-from demheat.build import network_of as built
 from demheat.conduction.integrators.system import semi_discrete
 from demheat.conduction.transient import capacities
+from demheat.dem.networks import network_of as built
 from demheat.laws import Calibrated, Laguerre
 from demheat.packing.cache import relaxed
 from demheat.packing.radii import Bidisperse, Gaussian

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from demheat import Box, Layer, Material, Scene, Sphere, files, referee, solve
+from demheat import Box, Layer, Material, Scene, Sphere, referee, solve
+from demheat.io import scenes
 from demheat.scene.inputs import vector
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.base import nearest
@@ -164,7 +165,7 @@ def test_what_does_not_know_it_refuses_it_in_one_line(name, monkeypatch):
 
 def test_no_file_holds_it(tmp_path):
     with pytest.raises(ValueError, match=r"Scene.inclusions\[0\] = Brick.*: must be one of sphere, layer,.* in a file"):
-        files.write(cell(CENTRED), tmp_path / "scene.toml")
+        scenes.write(cell(CENTRED), tmp_path / "scene.toml")
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,1 @@
+"""Twins: pairs of particles mirrored in the interfaces of a scene, whose radical facets lie on them."""

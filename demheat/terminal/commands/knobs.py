@@ -1,0 +1,94 @@
+"""Which methods a command is to run, and with which knobs: from the file's [solve] and from the command line."""
+
+from __future__ import annotations
+
+import inspect
+from typing import NamedTuple
+
+from demheat.declared import found, load
+from demheat.io.scenes.units import LENGTH, read_quantity
+from demheat.io.words import nearest
+from demheat.method import Method
+
+# Keywords that no text can give.
+OBJECTS = {"packing"}
+WORDS = {"true": True, "false": False, "none": None}
+
+
+class Asked(NamedTuple):
+    """One method with the knobs that are asked for."""
+
+    method: Method
+    knobs: dict
+
+    @property
+    def title(self) -> str:
+        """Its name and knobs in words."""
+        return " ".join([self.method.name, *(f"{name}={value}" for name, value in self.knobs.items())])
+
+
+def asked(file, names, words, *, default) -> list[Asked]:
+    """Methods with their knobs."""
+    chosen = list(names or file.methods or default)
+    for name in chosen:
+        if name not in found():
+            near = nearest(name, found()) or f"; must be one of {', '.join(found())}"
+            raise ValueError(f"--method {name}: no such method{near}")
+    knobs = {name: dict(file.methods.get(name, {})) for name in chosen}
+    for name, own in knobs.items():
+        for knob in own:
+            _check(found()[name], knob, lambda what, at=(name, knob): file.source.error(("solve", *at), f": {what}"))
+    for word in words:
+        _add(knobs, word)
+    return [Asked(found()[name], knobs[name]) for name in chosen]
+
+
+def known(method: Method) -> set[str]:
+    """Keywords of a method that are free: what it fixes is not."""
+    parameters = inspect.signature(getattr(load(method.module), method.call)).parameters.values()
+    return {each.name for each in parameters if each.kind is each.KEYWORD_ONLY} - OBJECTS - set(method.knobs)
+
+
+def _add(knobs, word):
+    """Put a knob of the command line where it belongs."""
+    left, equal, text = word.partition("=")
+    *names, knob = left.rsplit(".", 1)
+    if not equal or not knob:
+        raise ValueError(f"--knob {word}: must be like voxels=64 or fft.voxels=64")
+    if names and names[0] not in knobs:
+        raise ValueError(f"--knob {word}: no method {names[0]!r} is asked for{nearest(names[0], knobs)}")
+    takers = names or [name for name in knobs if knob in known(found()[name])]
+    # What fixes it says so.
+    takers = takers or [name for name in knobs if knob in found()[name].knobs]
+    if not takers:
+        everything = set().union(*(known(found()[name]) for name in knobs))
+        near = nearest(knob, everything) or f"; must be one of {', '.join(sorted(everything)) or 'none'}"
+        raise ValueError(f"--knob {word}: no knob of {', '.join(knobs)}{near}")
+    for name in takers:
+        _check(found()[name], knob, lambda what: ValueError(f"--knob {word}: {what}"))
+        knobs[name][knob] = _value(found()[name], knob, text, word)
+
+
+def _check(method, knob, error):
+    """Raise what `error` makes of the reason unless a method has a knob."""
+    if knob in method.knobs:
+        raise error(f"method {method.name!r} is what has {knob} = {method.knobs[knob]!r}; must be left out")
+    names = known(method)
+    if knob not in names:
+        near = nearest(knob, names) or f"; must be one of {', '.join(sorted(names)) or 'none'}"
+        raise error(f"no knob of {method.name}{near}")
+
+
+def _value(method, knob, text, word):
+    """What a text means: a number, a flag, a length with its unit, or itself."""
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            pass
+    if method.resolution is not None and method.resolution.metric and knob == method.resolution.knob:
+        try:
+            return read_quantity(text, LENGTH)[0]
+        except ValueError as error:
+            raise ValueError(f"--knob {word}: {error}") from None
+    return WORDS.get(text.lower(), text)

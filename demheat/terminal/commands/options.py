@@ -1,0 +1,73 @@
+"""The command line: its words, and what is said of a wrong one."""
+
+from __future__ import annotations
+
+import argparse
+
+from demheat.io.words import nearest
+
+COMMANDS = {
+    "solve": "solve a scene by one method or some",
+    "compare": "all methods that take a scene in one table, with intervals, costs and bounds",
+    "effective": "the conductivity tensor to an accuracy, by the method that gets there at least cost",
+    "recommend": "what `effective` would do, and what each method would cost; nothing is solved",
+    "view": "a picture of a scene, or of its field by a method",
+}
+
+OPTIONS = ("--help", "--version", "--method", "--methods", "--knob", "--accuracy", "--no-interval", "--all", "--force")
+OPTIONS = (*OPTIONS, "--out", "--write", "--seconds")
+
+
+class Parser(argparse.ArgumentParser):
+    """A parser that says what is wrong in one line, with the nearest word that it knows."""
+
+    def error(self, message):
+        """Raise ValueError instead of printing how the command is used."""
+        for mark, words in (("unrecognized arguments: ", OPTIONS), ("invalid choice: ", COMMANDS)):
+            _, found, rest = message.partition(mark)
+            if found:
+                message += nearest(rest.split()[0].strip("'\"").partition("=")[0], words)
+        raise ValueError(f"{message}; {self.prog} --help tells more")
+
+
+def parser(version: str) -> argparse.ArgumentParser:
+    """The parser of all commands."""
+    top = Parser(
+        prog="demheat", description="Heat conduction in a scene that a TOML file describes.", allow_abbrev=False
+    )
+    top.add_argument("--version", action="version", version=f"demheat {version}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
+    for name, words in COMMANDS.items():
+        command = commands.add_parser(name, help=words, description=words, allow_abbrev=False)
+        command.add_argument("scene", metavar="SCENE.toml")
+        _options(command, name)
+    return top
+
+
+def _options(command, name):
+    several = name in ("solve", "compare")
+    if name in ("solve", "compare", "view", "effective"):
+        command.add_argument(
+            *("--method", "--methods"),
+            dest="methods",
+            action="append",
+            metavar="NAME",
+            help="of a method" + (", again for more, or several with commas" if several else ""),
+        )
+    if name in ("solve", "compare", "view"):
+        command.add_argument("--knob", action="append", default=[], metavar="NAME=VALUE", help="such as voxels=64")
+    if name in ("effective", "recommend"):
+        command.add_argument("--accuracy", type=float, metavar="PART", help="default: the file's, or 1e-3")
+    if several or name == "effective":
+        help_ = "that the command may take; what is done by then is told"
+        command.add_argument("--seconds", type=float, metavar="SECONDS", help=help_)
+    if several:
+        command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
+    if name == "solve":
+        command.add_argument("--write", metavar="FILE", help="the field of one method: .vti, .vtp, .vtu or .npz")
+    if name == "compare":
+        command.add_argument("--all", action="store_true", help="methods that are seldom compared, too")
+        command.add_argument("--force", action="store_true", help="repeat rows that could be reused")
+    if name in ("solve", "compare", "view"):
+        usual = "none" if name == "solve" else "demheat-out"
+        command.add_argument("--out", metavar="FOLDER", help=f"for tables, fields and pictures; default: {usual}")

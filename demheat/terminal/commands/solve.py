@@ -1,0 +1,64 @@
+"""`demheat solve`: one method or some on a scene, each with its conductivity, interval and cost."""
+
+from __future__ import annotations
+
+import sys
+import time
+from pathlib import Path
+
+from demheat.io.fields import check_target
+from demheat.method import SIZE
+from demheat.runtime.deadline import budget
+from demheat.runtime.paths import replaced
+from demheat.terminal.commands.answers import answered
+from demheat.terminal.commands.knobs import asked
+from demheat.terminal.commands.words import costs, interval, names, scene_line
+
+
+def run(file, options) -> int:
+    """Solve and print; the exit status."""
+    wanted = asked(file, names(options.methods), options.knob, default=("dem",))
+    if options.write and len(wanted) > 1:
+        raise ValueError(f"--write {options.write}: of one method, and {len(wanted)} are asked for; must be with --out")
+    for each in wanted if options.write else ():
+        if each.method.call == "estimate":
+            raise NotImplementedError(f"--write {options.write}: {each.method.name} is a formula and has no field")
+        check_target(options.write, mesh=each.method.resolution is SIZE and file.scene.image is None)
+    folder = Path(options.out) if options.out else None
+    if folder:
+        folder.mkdir(parents=True, exist_ok=True)
+    print(f"{file.path}: {scene_line(file.scene)}")
+    worst, begun = 0, time.monotonic()
+    for each in wanted:
+        with budget(options.seconds, begun=begun):
+            found = answered(file.scene, each, interval=not options.no_interval)
+        worst = max(worst, _shown(each, found))
+        if folder and found.field is not None:
+            _stored(folder, each.method.name, found.field)
+        if options.write and found.field is not None:
+            found.field.write(options.write)
+            print(f"  written       {options.write}", flush=True)
+    return worst
+
+
+def _shown(each, found):
+    """Print an answer; the exit status that it asks for."""
+    for note in found.notes:
+        print(f"demheat: {each.method.name}: {note}", file=sys.stderr)
+    if found.status != "ok":
+        return 2 if found.status == "invalid" else 1
+    print(f"\n{each.title}")
+    print(f"  conductivity  {interval(found)}")
+    for name, heat in (found.field.wall_heat if found.field else {}).items():
+        print(f"  heat at {name}    {heat:.6g} W into the body")
+    print(f"  cost          {costs(found)}", flush=True)
+    return 0
+
+
+def _stored(folder, name, field):
+    path = folder / f"{name}.npz"
+    field.write(path)
+    print(f"  written       {path}")
+    with replaced(path.with_suffix(".png")) as part:
+        field.plot().savefig(part, dpi=120)
+    print(f"  picture       {path.with_suffix('.png')}", flush=True)
