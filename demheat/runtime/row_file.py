@@ -61,6 +61,15 @@ class RowFile(NamedTuple):
             writer.writeheader()
             writer.writerows(rows)
 
+    def put(self, rows: Mapping, *, order: Iterable | None = None) -> None:
+        """Put rows, by their keys, in the places of older ones; with an order of keys the others of the file go."""
+
+        def merged(stored):
+            found = stored | rows
+            return found.values() if order is None else [found[key] for key in order if key in found]
+
+        self.change(merged)
+
     def change(self, changed: Callable[[dict], Iterable[Mapping]]) -> None:
         """Write what is made of the rows as they are now: of several who do so at a time one waits for the other."""
         with locked(self.path.parent):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 
-from demheat.runtime.progress import stage
+from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import finite
 from demheat.sweeps import kept
 from demheat.sweeps.alone import on_workers
@@ -77,17 +77,15 @@ def sweep(
     file = None if out is None else kept.opened(out)
     todo = [number for number, case in enumerate(cases) if file is None or not file.has(case)]
     asked = [cases[number] for number in todo]
-    arriving = _here(function, asked) if client is None else on_workers(client, function, asked, timeout)
+    here = enumerate(row_of(function, case) for case in asked)
+    arriving = here if client is None else on_workers(client, function, asked, timeout)
     made = {}
-    with stage("sweep") as done:
-        for count, (place, row) in enumerate(arriving, start=1):
-            made[todo[place]] = row
-            if file is not None:
-                file.add(cases[todo[place]], row)
-            done(count / len(todo))
+
+    def keep(number, row):
+        made[number] = row
+        if file is not None:
+            file.add(cases[number], row)
+
+    for _ in each_kept(todo, arriving, keep, what="sweep"):
+        pass
     return [made[number] if file is None else file.row(case) for number, case in enumerate(cases)]
-
-
-def _here(function, cases):
-    for number, case in enumerate(cases):
-        yield number, row_of(function, case)

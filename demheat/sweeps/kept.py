@@ -34,15 +34,11 @@ class Kept:
         return {**case, **others, **ends, "error": found["error"]}
 
     def add(self, case: Mapping, row: Mapping) -> None:
-        """Put a row in the place of an older one of its case, and write all, and what others have written meanwhile."""
+        """Put a row in the place of an older one of its case, beside what others have written meanwhile."""
         texts = {name: "" if value is None else str(value) for name, value in row.items()}
         new = {key_of(case): {CASE: key_of(case), **texts}}
-
-        def merged(stored):
-            self.rows |= stored | new
-            return self.rows.values()
-
-        self.file.change(merged)
+        self.rows |= new
+        self.file.put(new)
 
 
 def opened(path) -> Kept:

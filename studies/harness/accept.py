@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from itertools import chain
 
+from demheat.runtime.rows import each_kept
 from studies import contents
 from studies.harness import replay, runner
 from studies.harness.claims import judged
@@ -55,14 +56,14 @@ def _made_again(tasks, made, out, say, compute):
     left = [task for task in tasks if (task[0], case_key(task[2])) not in made]
     have = [task for task in tasks if task not in left]
     rows = chain((made[task[0], case_key(task[2])] for task in have), compute(left))
-    for number, (task, row) in enumerate(zip([*have, *left], rows, strict=True), start=1):
+
+    def keep(task, row):
         name, study, case = task
         path, key = runner.csv_of(name, out), case_key(case)
         if row["status"] not in runner.KEPT or replay.absent(row):
             # A row that there is must not give way to none.
             failed.append(f"{name} {key}: {row['status']}, {row['note']}")
-            say(f"[{number}/{len(tasks)}] {failed[-1]}")
-            continue
+            return failed[-1]
         stored = read_rows(path)[key]
         wrong = moved(name, study, case, stored, row)
         # One that is the same stays, to the last digit.
@@ -70,7 +71,10 @@ def _made_again(tasks, made, out, say, compute):
         new = renewed(study, case, stored, row) if other else replay.stamped(stored, row, wrong)
         add_rows(path, {key: new}, replay.keys_of(study, path))
         fresh[name, key] = row
-        say(f"[{number}/{len(tasks)}] {name} {key}: {replay.told(wrong)}")
+        return f"{name} {key}: {replay.told(wrong)}"
+
+    for number, words in enumerate(each_kept([*have, *left], enumerate(rows), keep, what="accept"), start=1):
+        say(f"[{number}/{len(tasks)}] {words}")
     return fresh, failed
 
 

@@ -38,7 +38,7 @@ def spread_over(client):
                 row = runner.failed(study, cases[number], f"{type(row).__name__}: {row}")
             elif _origin(row) != expected:
                 row = runner.failed(study, cases[number], f"made by {_told(row)}, not by {_told(expected)}")
-            yield row
+            yield number, row
 
     return spread
 

@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from queue import SimpleQueue
 
+from demheat.runtime.rows import each_kept
 from studies.harness import provenance, runner
 from studies.harness.forked import forking
 from studies.harness.groups import cheapest, cost, followed, group_of
@@ -62,17 +63,23 @@ def replayed(tasks, out, say, *, compute=None):
     check_writable(out)
     with ExitStack() as stack:
         compute = compute or stack.enter_context(side_by_side())
-        for number, (task, row) in enumerate(zip(tasks, compute(tasks), strict=True), start=1):
+
+        def keep(task, row):
             name, study, case = task
             path, key = runner.csv_of(name, out), case_key(case)
-            stored = read_rows(path)[key]
             if absent(row):
-                say(f"[{number}/{len(tasks)}] {name} {key}: not here, {row['note']}")
-                continue
+                return task, None, row
+            stored = read_rows(path)[key]
             wrong = moved(name, study, case, stored, row)
             add_rows(path, {key: stamped(stored, row, wrong)}, keys_of(study, path))
-            say(f"[{number}/{len(tasks)}] {name} {key}: {told(wrong)}")
-            yield task, wrong, row
+            return task, wrong, row
+
+        found = each_kept(tasks, enumerate(compute(tasks)), keep, what="replay")
+        for number, (task, wrong, row) in enumerate(found, start=1):
+            words = f"not here, {row['note']}" if wrong is None else told(wrong)
+            say(f"[{number}/{len(tasks)}] {task[0]} {case_key(task[2])}: {words}")
+            if wrong is not None:
+                yield task, wrong, row
 
 
 def stamped(stored, row, wrong):

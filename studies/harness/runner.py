@@ -39,7 +39,7 @@ from pathlib import Path
 from demheat.runtime import fresh
 from demheat.runtime.machine import machine
 from demheat.runtime.paths import replaced
-from demheat.runtime.progress import stage
+from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import one_line
 from studies.harness import quiet
 from studies.harness.beside import counted
@@ -109,15 +109,17 @@ def run_study(name, out, *, quick=False, force=False, method=None, say=print, co
     check_writable(path.parent)
     compute = compute or quiet.quietly(spawn_row, say=say)
     todo.sort(key=lambda case: values_only(study, case))
-    arriving = spread(name, study, todo) if spread else _made(name, study, todo, compute)
+    arriving = spread(name, study, todo) if spread else enumerate(_made(name, study, todo, compute))
     start = time.perf_counter()
-    for number, case in enumerate(todo, start=1):
-        what = "" if spread else f", {_short(case_key(case))}"
-        with stage(f"{name} {number}/{len(todo)}{what}", before=time.perf_counter() - start) as done:
-            done((number - 1) / len(todo))
-            row = next(arriving)
+
+    def keep(_, row):
         made[row["case"]] = row
         add_rows(path, made, keys)
+        return row
+
+    # Rows of a cluster come in no order.
+    named = {} if spread else {"named": lambda case: f", {_short(case_key(case))}"}
+    for number, row in enumerate(each_kept(todo, arriving, keep, what=name, **named), start=1):
         say(_progress(number, len(todo), row, time.perf_counter() - start))
     return path
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
+from contextlib import suppress
 from pathlib import Path
 
 from demheat.runtime.row_file import RowFile
@@ -68,17 +69,13 @@ def write_rows(path, rows):
 
 def add_rows(path, rows, keys):
     """Add rows to those of a file as it is now: other runs may have added theirs."""
-    path, found = Path(path), rows
-
-    def merged(stored):
-        nonlocal found
-        found = stored | rows
-        return [found[key] for key in keys if key in found]
-
+    path = Path(path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        rows_of(path).change(merged)
+        rows_of(path).put(rows, order=keys)
     except (OSError, ValueError) as error:
         rescued = Path(tempfile.mkdtemp(prefix="demheat-rows-")) / path.name
-        write_rows(rescued, found.values())
+        with suppress(ValueError, OSError):
+            rows = read_rows(path) | rows
+        write_rows(rescued, rows.values())
         raise ValueError(f"{path}: cannot be written: {error}; the rows are in {rescued}") from None

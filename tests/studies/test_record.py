@@ -62,6 +62,7 @@ NO_ROWS = {
     "demheat/runtime/copies.py": LARGE,
     "demheat/runtime/fresh.py": LARGE,
     "demheat/runtime/row_file.py": READ,
+    "demheat/runtime/rows.py": READ,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,
     "demheat/scene/shapes/occ.py": LARGE,

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterator
 from functools import partial
 from pathlib import Path
 
@@ -17,6 +16,7 @@ from demheat.declared import found
 from demheat.io.scenes.write import text_of_scene
 from demheat.runtime.deadline import budget
 from demheat.runtime.paths import replaced
+from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import one_line
 from demheat.terminal.commands import rows
 from demheat.terminal.commands.answers import answered
@@ -43,7 +43,7 @@ def run(file, options) -> int:
     path = folder / f"{file.path.stem}.csv"
     print(f"{file.path}: {scene_line(file.scene)}", flush=True)
     how = {"interval": not options.no_interval, "force": options.force, "seconds": options.seconds}
-    made = list(compared(file.scene, wanted, path, **how))
+    made = compared(file.scene, wanted, path, **how)
     bounds = bounds_of(file.scene)
     print("\n" + table(made, bounds))
     drawn = picture(file.scene, made, bounds, path)
@@ -59,20 +59,25 @@ def usual(*, everything: bool = False) -> list[str]:
 
 def compared(
     scene, wanted: list[Asked], path: Path, *, interval: bool, force: bool, seconds: float | None = None
-) -> Iterator[dict[str, str]]:
+) -> list[dict[str, str]]:
     """Rows of methods on a scene, those that are stored and hold as they are; each new one is stored at once.
 
     What the time did not suffice for is not stored: the same command goes on with it.
     """
     text, known = text_of_scene(scene), rows.read(path)
     how = {"interval": interval, "limit": partial(budget, seconds, begun=time.monotonic())}
-    for each in wanted:
-        key = rows.key_of(each, text, interval=interval)
-        if force or key not in known:
-            known[key], whole = _made(scene, each, key, path, **how)
-            if whole:
-                rows.add(path, key, known[key])
-        yield known[key]
+    keys = {rows.key_of(each, text, interval=interval): each for each in wanted}
+    todo = [key for key in keys if force or key not in known]
+
+    def keep(key, made):
+        known[key], whole = made
+        if whole:
+            rows.add(path, key, known[key])
+
+    made = (_made(scene, keys[key], key, path, **how) for key in todo)
+    for _ in each_kept(todo, enumerate(made), keep, what="compare"):
+        pass
+    return [known[key] for key in keys]
 
 
 def _made(scene, each, key, path, *, interval, limit):

@@ -18,7 +18,7 @@ from demheat.io import scenes
 from demheat.terminal.commands import answers, compare, main
 from demheat.terminal.commands.knobs import asked
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 # The simple cubic array, contrast 5, a sphere of a third of the edge.
 EXACT = 42.6403350747
 CHEAP = "exact,maxwell,rayleigh"

@@ -15,7 +15,7 @@ from demheat.io import scenes
 from demheat.runtime.paths import replaced
 from demheat.terminal.commands import compare, main
 
-ROOT = Path(__file__).parents[3]
+ROOT = Path(__file__).parents[4]
 COMMANDS = {
     "module": ("-m", "demheat"),
     "script": (
