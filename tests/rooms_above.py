@@ -18,7 +18,7 @@ ABOVE = {
     "studies.harness": ("demheat", "references", "studies.harness"),
     # Headlines are among what a change is shown by.
     "studies.contents": (),
-    "studies.harness.accept": ("studies.contents", "studies.harness"),
+    "studies.harness.accept": ("demheat.runtime", "studies.contents", "studies.harness"),
     "studies.common": ("demheat", "references", "studies.harness", "studies.common"),
     # And every study itself, if it is a folder.
     "studies": ("demheat", "references", "benchmark", "studies.harness", "studies.common"),
