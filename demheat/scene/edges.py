@@ -13,18 +13,12 @@ power 4/3 at contrasts far from 1. An inclined plane makes wedges with a wall an
 
 from __future__ import annotations
 
-from itertools import combinations, product
-
 import numpy as np
 
-from demheat.scene.shapes.box import Box
-from demheat.scene.shapes.cylinder import Cylinder
-from demheat.scene.shapes.half_space import HalfSpace
+from demheat.scene.shapes.base import BESIDE
 
 # Powers of the size below which methods have no answer, and where there is no edge.
 SLOWEST, SMOOTH = 0.5, 2.0
-# Points along an edge that are looked at, and how far beside it, of the shortest side of the box.
-ALONG, BESIDE = 8, 1e-6
 # Cosine of the angle from which on a plane and a wall are not upright, nor parallel.
 MEETS = 1e-9
 # Powers that are tried, and least conductivity over the largest at an edge.
@@ -34,18 +28,17 @@ TRIED, LEAST = np.arange(1, 2001) / 2000, 1e-12
 def edge_order(scene) -> float:
     """The power of their size with which errors of elements fall beside the worst edge of the scene, at most 2.
 
-    Edges are those of boxes, the rims of cylinders, and where inclined planes meet walls.
+    Edges are those that shapes tell, and where inclined planes without end meet walls.
     """
     if scene.anisotropic:
         return SMOOTH
     parts, k = [part for shape in scene.inclusions for part in shape.parts], scene.mean_conductivities
-    return min((2 * each for each in (*_of_rims(scene, parts, k), *_of_planes(scene, parts, k))), default=SMOOTH)
+    return min((2 * each for each in (*_of_shapes(scene, parts, k), *_of_planes(scene, parts, k))), default=SMOOTH)
 
 
-def _of_rims(scene, parts, k):
-    """Powers at edges of boxes and rims of cylinders."""
-    around = [_around(part, scene.size) for part in parts if isinstance(part, Box)]
-    around += [_rims(part, scene.size) for part in parts if isinstance(part, Cylinder) and part.length is not None]
+def _of_shapes(scene, parts, k):
+    """Powers at edges of shapes."""
+    around = [found for part in parts if len(found := part.edges(scene.size))]
     if not around:
         return []
     around, size = np.concatenate(around), np.array(scene.size)
@@ -59,8 +52,8 @@ def _of_rims(scene, parts, k):
 
 def _of_planes(scene, parts, k):
     """Powers where planes meet walls, which make wedges of them, at an angle of theirs and at its supplement."""
-    for plane in (part for part in parts if isinstance(part, HalfSpace)):
-        along = np.abs(plane.outward)
+    for plane in (part for part in parts if part.planes() is not None and not part.bounded):
+        along = np.abs(plane.planes()[0])
         # Walls are mirrors: the wedge of an angle is one of twice that.
         for wedge in 2 * np.arccos(along[(along > MEETS) & (along < 1 - MEETS)]):
             angles = np.array([wedge, 2 * np.pi - wedge])
@@ -80,31 +73,3 @@ def power(conductivities, angles=(np.pi / 2,) * 4) -> float:
         turned = np.array([[cosine, sine / each], [-each * sine, cosine]]).transpose(2, 0, 1) @ turned
     back = np.flatnonzero(np.trace(turned, axis1=1, axis2=2) >= 2.0)
     return float(TRIED[back[0]]) if len(back) else 1.0
-
-
-def _rims(cylinder, size):
-    """Points in the four quadrants around the two rims of a cylinder, (n, 4, 3) float array, m."""
-    axis = np.array(cylinder.axis)
-    one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-    one /= np.linalg.norm(one)
-    turns = 2 * np.pi * (np.arange(ALONG) + 0.5) / ALONG
-    outward = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * np.cross(axis, one)
-    beside = BESIDE * min(cylinder.radius, cylinder.length, *size)
-    across = (cylinder.radius + beside * np.array([-1, -1, 1, 1]))[None, :, None] * outward[:, None]
-    up = (0.5 * cylinder.length + beside * np.array([-1, 1, 1, -1]))[:, None] * axis
-    return np.array(cylinder.center) + np.concatenate([across + up, across - up])
-
-
-def _around(box, size):
-    """Points in the four quadrants around the edges of a box, (n, 4, 3) float array, m."""
-    turn, half = np.array(box.rotation), 0.5 * np.array(box.sides)
-    beside, found = BESIDE * min(*box.sides, *size), []
-    for one, other in combinations(range(3), 2):
-        along = 3 - one - other
-        for ends in product((-1.0, 1.0), repeat=2):
-            points = np.zeros((ALONG, 4, 3))
-            points[:, :, along] = (((np.arange(ALONG) + 0.5) / ALONG - 0.5) * box.sides[along])[:, None]
-            for axis, end, ways in ((one, ends[0], (-1, -1, 1, 1)), (other, ends[1], (-1, 1, 1, -1))):
-                points[:, :, axis] = end * (half[axis] + beside * np.array(ways))
-            found.append(points)
-    return np.array(box.center) + np.concatenate(found) @ turn.T

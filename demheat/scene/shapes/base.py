@@ -17,6 +17,8 @@ from demheat.scene.shapes.patterns import Room, even_points, level
 
 # Two surfaces closer than this fraction of the box touch: relative rounding of user-typed coordinates.
 TOUCH = 1e-12
+# Points along an edge that are looked at, and how far beside it, of the shortest length there is.
+ALONG, BESIDE = 8, 1e-6
 # What a class derived from a finished shape may say anew: the rest is its geometry.
 OWN = {"material", "resistance", "kind", "stored"}
 
@@ -38,6 +40,7 @@ class Shape(ABC):
     and facets of the DEM on it. What a shape may supply besides, or where it has something sharper or faster:
 
     - `cad`, for finite elements, which refuse shapes without it; `stored`, for scene files, which hold none without it;
+    - `edges`, if it is not smooth: errors fall slowly beside them, which intervals must know;
     - `pattern` and `facets` of the DEM, where evenly spread points are not the best there are;
     - `contains`, `ball`, `meets`, `volume_in`, `width`, `depth`, `fills_bounds` and `fills_ball`;
     - for pairs `reach`, `hull`, `planes` and `encloses`; one that is not convex says so, one whose distance is not
@@ -307,6 +310,20 @@ class Shape(ABC):
     def planes(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Outward normals (m, 3) and offsets (m,), m, of the planes that it is all of the inside of; None if none."""
         return None
+
+    def edges(self, size: Sequence[float]) -> np.ndarray:
+        """Points in the four quadrants around its sharp edges, `ALONG` for each; none where it is smooth all over.
+
+        Parameters
+        ----------
+        size : (3,) sequence of float, m
+            Of the scene's box: points lie `BESIDE` of the shortest length from the edge.
+
+        Returns
+        -------
+        (n, 4, 3) float array, m
+        """
+        return np.empty((0, 4, 3))
 
     @property
     def faces(self) -> Sequence[Shape]:

@@ -5,14 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from itertools import product
+from itertools import combinations, product
 
 import numpy as np
 
 from demheat.scene.inputs import vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.rotations import IDENTITY, rotation, turned_rotation
-from demheat.scene.shapes.base import Shape, check_resistance
+from demheat.scene.shapes.base import ALONG, BESIDE, Shape, check_resistance
 from demheat.scene.shapes.directions import corners
 from demheat.scene.shapes.ellipsoid import lengths
 from demheat.scene.shapes.half_space import HalfSpace
@@ -105,6 +105,20 @@ class Box(Solid):
         """Those of its six faces; see `Shape.planes`."""
         normals = np.concatenate([np.array(self.rotation).T, -np.array(self.rotation).T])
         return normals, normals @ np.array(self.center) + np.tile(0.5 * np.array(self.sides), 2)
+
+    def edges(self, size: Sequence[float]) -> np.ndarray:
+        """Points around its twelve edges; see `Shape.edges`."""
+        turn, half = np.array(self.rotation), 0.5 * np.array(self.sides)
+        beside, found = BESIDE * min(*self.sides, *size), []
+        for one, other in combinations(range(3), 2):
+            along = 3 - one - other
+            for ends in product((-1.0, 1.0), repeat=2):
+                points = np.zeros((ALONG, 4, 3))
+                points[:, :, along] = (((np.arange(ALONG) + 0.5) / ALONG - 0.5) * self.sides[along])[:, None]
+                for axis, end, ways in ((one, ends[0], (-1, -1, 1, 1)), (other, ends[1], (-1, 1, 1, -1))):
+                    points[:, :, axis] = end * (half[axis] + beside * np.array(ways))
+                found.append(points)
+        return np.array(self.center) + np.concatenate(found) @ turn.T
 
     @property
     def faces(self) -> list[Shape]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, number, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import TOUCH, Shape, check_resistance
+from demheat.scene.shapes.base import ALONG, BESIDE, TOUCH, Shape, check_resistance
 from demheat.scene.shapes.directions import across, unit
 from demheat.scene.shapes.half_space import HalfSpace
 from demheat.scene.shapes.occ import GENERIC
@@ -141,6 +141,20 @@ class Cylinder(Solid):
                 f"{name}: cylinder without end along {self.axis} does not repeat in a periodic cell; must lie along x, "
                 "y or z, or have a length"
             )
+
+    def edges(self, size: Sequence[float]) -> np.ndarray:
+        """Points around its two rims, if it has ends; see `Shape.edges`."""
+        if self.length is None:
+            return super().edges(size)
+        axis = np.array(self.axis)
+        one = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        one /= np.linalg.norm(one)
+        turns = 2 * np.pi * (np.arange(ALONG) + 0.5) / ALONG
+        outward = np.cos(turns)[:, None] * one + np.sin(turns)[:, None] * np.cross(axis, one)
+        beside = BESIDE * min(self.radius, self.length, *size)
+        across = (self.radius + beside * np.array([-1, -1, 1, 1]))[None, :, None] * outward[:, None]
+        up = (0.5 * self.length + beside * np.array([-1, 1, 1, -1]))[:, None] * axis
+        return np.array(self.center) + np.concatenate([across + up, across - up])
 
     @property
     def faces(self) -> list[Shape]:

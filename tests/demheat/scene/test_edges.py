@@ -9,6 +9,7 @@ from numpy.testing import assert_allclose
 from demheat import Material, Scene, solve
 from demheat.scene import Box, Cylinder, HalfSpace, Sphere, Union
 from demheat.scene.edges import edge_order, power
+from demheat.scene.shapes import Shape
 from references import fft
 
 
@@ -91,6 +92,20 @@ def test_an_edge_at_a_wall_meets_its_image():
     assert edge_order(Scene((1.0, 1.0, 0.2), Material(1.0), [flat], walls={"x-": 0.0, "x+": 1.0})) == 2.0
     with pytest.raises(NotImplementedError, match="edges of boxes meet"):
         fft.solve(on_edge(1000.0), voxels=8)
+
+
+def test_a_shape_of_ones_own_tells_its_edges():
+    box = Box((0.5, 0.5, 0.5), (0.4, 0.4, 0.4), Material(1000.0))
+
+    told = ("center", "material", "distance", "normal", "bounds", "volume", "turned")
+
+    def own(*more):
+        """The box as a class that nobody knows, which says this of itself."""
+        return type("Own", (Shape,), {name: getattr(box, name) for name in (*told, *more)})()
+
+    cell = {"size": (1.0, 1.0, 1.0), "matrix": Material(1.0), "gradient": (0, 1, 0)}
+    assert edge_order(Scene(inclusions=[own()], **cell)) == 2.0
+    assert_allclose(edge_order(Scene(inclusions=[own("edges")], **cell)), 4 / 3, atol=2 / 1000)
 
 
 @pytest.mark.parametrize("method", [fft.solve, solve])
