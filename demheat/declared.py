@@ -17,7 +17,7 @@ HOMES = ("demheat", "references")
 
 
 @cache
-def found() -> dict[str, Method]:
+def all_methods() -> dict[str, Method]:
     """All methods by name: those that compute fields, then formulas, then witnesses, each by home and module.
 
     Only modules whose source declares `METHODS` are loaded.

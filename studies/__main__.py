@@ -10,7 +10,7 @@ from pathlib import Path
 
 import studies
 from demheat.runtime import fresh
-from demheat.terminal.ends import BAD, INTERRUPTED, finished, of_output, told
+from demheat.terminal.ends import BAD, INTERRUPTED, error_line, finished, of_output
 from studies import contents
 from studies.harness import jobs, lasting, quiet, replay, runner, sound
 from studies.harness.cluster import spreading
@@ -43,7 +43,7 @@ def _done(words):
     except (ValueError, OSError) as error:
         if of_output(error):
             raise
-        print(f"studies: {told(error)}", file=sys.stderr)
+        print(f"studies: {error_line(error)}", file=sys.stderr)
         return BAD
     except KeyboardInterrupt:
         kept = ": rows done are kept; the same command goes on" if arguments.action is _run else ""
@@ -177,7 +177,7 @@ def _to_run(names, arguments):
         todo = runner.still_to_run(study, path, quick=arguments.quick, force=arguments.force)[1]
         known = path if path.exists() else runner.csv_of(name, STORED)
         found += lasting.seconds(study, known, todo).values()
-    return lasting.told(found)
+    return lasting.time_in_words(found)
 
 
 def _beside_stored(name, out):
@@ -300,7 +300,8 @@ def _check(arguments):
         unproved = [key for key in found if not sound.proved(study, rows[key])]
         old += len(unproved)
         print(
-            f"{name:24} {len(found):4} rows: {sound.told(sound.counted(found.values()))}; {sound.ages(rows.values())}"
+            f"{name:24} {len(found):4} rows: {sound.in_words(sound.counted(found.values()))}; "
+            f"{sound.ages(rows.values())}"
         )
         _name_some("missing", gone, arguments.rows)
         if arguments.release:
@@ -310,10 +311,10 @@ def _check(arguments):
     full = [
         each for name, study, path in _stored(arguments) for each in lasting.seconds(study, path, study.CASES).values()
     ]
-    print(f"made anew by two processors that nobody else uses: {lasting.told(full)}")
+    print(f"made anew by two processors that nobody else uses: {lasting.time_in_words(full)}")
     print(
         f"{arguments.out}: {len(every)} rows: {absent} missing, {old} of other code and not replayed by this one, "
-        + sound.told(sound.counted(every))
+        + sound.in_words(sound.counted(every))
     )
     return int(bool(absent) or arguments.release and (old > 0 or any(every)))
 

@@ -184,4 +184,4 @@ def plot(df):
 
 
 def _words(name):
-    return methods.found()[name].title
+    return methods.all_methods()[name].title

@@ -94,7 +94,7 @@ def _claims(df):
         fitted = order([1 / n for n in known], list(known.values())) if last in known and len(known) > 1 else None
         yield f"image's own error, 16^3 to {last}^3: order in the voxel", fitted, limit
     for name, n, limit in (("fft-plain", 32, 1.0), ("fft-links", 32, 2.5), ("fft-em", 32, 1.0), ("fem-p1", 32, 1.5)):
-        text = f"image of {n}^3, {methods.found()[name].title}: distance from the image's own conductivity, %"
+        text = f"image of {n}^3, {methods.all_methods()[name].title}: distance from the image's own conductivity, %"
         yield text, _abs(_added(df, own, name=name, n=n)), limit
     for n, particles, limit in ((16, 10_000, 2.0), (32, 10_000, 2.0), (32, 100_000, 0.5)):
         text = f"image of {n}^3, DEM without twins, {particles} particles: distance from its own conductivity, %"
@@ -156,7 +156,7 @@ def words(df):
     nearest = min((name for name in others if others[name] is not None), key=others.get)
     return (
         f"with {particles:.0f} particles it is {dem:.2g} % off the conductivity of an image of {n}^3 voxels; "
-        f"{methods.found()[nearest].title}, on these voxels is {others[nearest]:.2g} % off"
+        f"{methods.all_methods()[nearest].title}, on these voxels is {others[nearest]:.2g} % off"
     )
 
 

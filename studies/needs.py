@@ -200,7 +200,7 @@ def words(df):
     for method, rows in pick(df[df["method"] != "multipole"], size="full").groupby("method", sort=False):
         cubes = rows[(rows["cut"] == 8) & (rows["loads"] == 1)]
         once, least = (each["three_s"] / each[name] for each, name in ((rows, "once_s"), (cubes, "least_s")))
-        parts.append(f"{once.median():.2g} and {least.median():.2g} ({methods.found()[method].title})")
+        parts.append(f"{once.median():.2g} and {least.median():.2g} ({methods.all_methods()[method].title})")
     return (
         "processor time of three solves over that of one set-up for all three, and over that of the loads needed on an "
         f"eighth of the body, medians: {', '.join(parts)}"

@@ -76,7 +76,7 @@ REASONS = {
 
 def QUICK(case):
     """Coarse rows; not the costly ones: elements in narrow gaps, Eyre and Milton's scheme at a contrast of 1e6."""
-    name, contrast, method = case["name"], case["contrast"], methods.found().get(case["name"])
+    name, contrast, method = case["name"], case["contrast"], methods.all_methods().get(case["name"])
     coarse = _resolutions(method)[0] if method else {"contrast": 1e8}
     fractions = (methods.THIRD,) if name == "fem" else (methods.THIRD, CLOSEST)
     slow = name == "fft-em" and contrast in SLOW
@@ -162,7 +162,7 @@ def _right(rows):
 
 
 def _is_coarse(row):
-    coarse, *fine = _resolutions(methods.found()[row["name"]])
+    coarse, *fine = _resolutions(methods.all_methods()[row["name"]])
     return bool(fine) and coarse.items() <= row.items()
 
 
@@ -188,7 +188,7 @@ def _scenes(rows):
 
 def _method(row):
     single = ", single precision" if row["precision"] == "float32" else ""
-    words = (methods.found()[row["name"]].title, resolution(row))
+    words = (methods.all_methods()[row["name"]].title, resolution(row))
     return ", ".join(filter(None, words)) + single
 
 

@@ -13,7 +13,7 @@ from demheat import Layer, Material, Scene, Sphere, gallery
 from demheat.scene.volumes import fractions
 from studies.harness import methods
 
-METHODS = methods.found()
+METHODS = methods.all_methods()
 # A box without any symmetry; spheres cross faces and an edge of the cell, walls cut them.
 BOX = (1.0, 1.2, 0.8)
 SPHERES = [((0.05, 0.45, 0.4), 0.3, 20.0), ((0.4, 1.0, 0.15), 0.3, 0.2)]

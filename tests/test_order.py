@@ -12,7 +12,7 @@ from studies.harness import methods
 
 # Where the sphere sits in its periodic cell: not where a grid or mesh would treat it better than elsewhere.
 PLACES = [(0.47, 0.52, 0.55), (0.07, 0.31, 0.92), (0.63, 0.17, 0.44)]
-REFINED = [method for method in methods.found().values() if method.resolution]
+REFINED = [method for method in methods.all_methods().values() if method.resolution]
 
 
 @cache

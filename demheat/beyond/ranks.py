@@ -19,7 +19,7 @@ NEEDED = (
 )
 
 
-def found(*names: str, instead: str):
+def imported(*names: str, instead: str):
     """Modules by their names, MPI before what is built on it."""
     names = ("mpi4py.MPI", *names)
     try:
@@ -75,7 +75,7 @@ class Costs:
         slowest = max(self.comm.allgather(time.perf_counter() - wall))
         self.stages |= {f"{name}_s": slowest, f"{name}_cpu_s": took, f"{name}_bytes": self.comm.allreduce(_peak())}
 
-    def told(self) -> dict:
+    def stats(self) -> dict:
         """Bytes at the peak, and those of Python and libraries alone; <stage>_s, <stage>_cpu_s and <stage>_bytes.
 
         The latter are seconds of the slowest rank, CPU-seconds of all ranks, and bytes at the peak so far.

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from demheat import dem
-from demheat.cheapest.laws import ON_SPHERE, needed, predicted
+from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
 from demheat.scene.inputs import one_line

@@ -60,9 +60,9 @@ class Particles:
         """Refuse what does not suit a scene and a law."""
         if self.packing is not None:
             _check_body(self.packing, scene)
-        elif not self.tiles(scene, law):
+        elif not self.is_tiled(scene, law):
             self.repeats(scene, law)
-        if self.replicas is not None and replace(self, replicas=None).tiles(scene, law):
+        if self.replicas is not None and replace(self, replicas=None).is_tiled(scene, law):
             warnings.warn(
                 f"replicas = {self.replicas!r} of a packing: conforming cells need none, tiles cost nothing and are as "
                 "accurate; for them replicas will be refused",
@@ -80,7 +80,7 @@ class Particles:
             )
         return np.ones(3, dtype=int)
 
-    def tiles(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> bool:
+    def is_tiled(self, scene: Scene, law: Laguerre | Calibrated | Platonic) -> bool:
         """Whether particles need not be packed: cells with twins in boxes."""
         ours = law.conforming and scene.domain == "box" and self.packing is None and self.replicas is None
         return ours and fits(self.particles, scene.size, scene.periodic)
@@ -90,7 +90,7 @@ class Particles:
         if self.packing is not None:
             return _own(self.packing)
         body = {"size": scene.size, "periodic": scene.periodic, "seed": self.seed}
-        if self.tiles(scene, law):
+        if self.is_tiled(scene, law):
             return tiled(self.particles, **body)
         counts = self.repeats(scene, law)
         if counts.prod() > 1:
@@ -99,7 +99,7 @@ class Particles:
         return relaxed(self.particles, allow_few=self.allow_few, **body, **domain)
 
 
-def unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Particles) -> float:
+def expected_unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Particles) -> float:
     """How many unknowns a packing is expected to have with its twins; those in narrow gaps are not foreseen."""
     number = float(wanted.particles if wanted.packing is None else wanted.packing.number)
     if not (law.conforming and scene.inclusions):
@@ -108,7 +108,7 @@ def unknowns(scene: Scene, law: Laguerre | Calibrated | Platonic, wanted: Partic
     return number + TWINS * float(faces(scene).sum() / unit**2)
 
 
-def expected(number: float) -> float:
+def expected_bytes(number: float) -> float:
     """Bytes that a steady solve is expected to take at its peak, besides Python and libraries."""
     return EACH * number + ROW * min(number, ROWS)
 

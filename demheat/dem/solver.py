@@ -17,7 +17,7 @@ from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import estimator_of
 from demheat.dem.networks import network_of, networks_of
-from demheat.dem.options import MIB, Particles, check_fits, expected, unknowns
+from demheat.dem.options import MIB, Particles, check_fits, expected_bytes, expected_unknowns
 from demheat.dem.trial import check_contrast
 from demheat.dem.warm import Helper, cells, parts_of
 from demheat.field import Field
@@ -216,7 +216,7 @@ def solve_axes(
 def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
     """Solve scenes that differ in their loads only, as they were checked."""
     wanted.check(scenes[0], law)
-    begun, needed = time.perf_counter(), expected(unknowns(scenes[0], law, wanted))
+    begun, needed = time.perf_counter(), expected_bytes(expected_unknowns(scenes[0], law, wanted))
     with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
         packing = wanted.packed(scenes[0], law)
         spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}

@@ -13,7 +13,7 @@ PART = 4
 ALIKE = 0.75
 
 
-def shown(value) -> str:
+def as_toml(value) -> str:
     """A value for a message, cut if it is long; flags as TOML has them."""
     text = str(value).lower() if isinstance(value, bool) else repr(value)
     return text if len(text) <= SHOWN else f"{text[:SHOWN]}..."

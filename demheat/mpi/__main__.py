@@ -16,7 +16,7 @@ from importlib.util import find_spec
 import numpy as np
 
 from demheat.beyond import ranks
-from demheat.declared import found, load, path_of
+from demheat.declared import all_methods, load, path_of
 from demheat.io.scenes import read
 from demheat.io.words import nearest
 from demheat.mpi.engines import world
@@ -35,7 +35,7 @@ def main(words=None) -> int:
     try:
         options = _parser().parse_args(words)
         # What is heavy loads once MPI is known to be there.
-        comm = world() if options.method == "dem" else ranks.found(instead="demheat solve")[0].COMM_WORLD
+        comm = world() if options.method == "dem" else ranks.imported(instead="demheat solve")[0].COMM_WORLD
         if comm.rank:
             warnings.simplefilter("ignore")
         _run(options, comm)
@@ -80,20 +80,24 @@ def _solver(name):
         from demheat.mpi import solver
 
         return solver, {}
-    if name not in found():
-        raise ValueError(f"--method {name}: no such method{nearest(name, found()) or f'; on ranks are {_on_ranks()}'}")
+    if name not in all_methods():
+        raise ValueError(
+            f"--method {name}: no such method{nearest(name, all_methods()) or f'; on ranks are {_on_ranks()}'}"
+        )
     if not _has_ranks(name):
         raise NotImplementedError(f"--method {name}: not on ranks, as are {_on_ranks()}; demheat solve runs it")
-    return load(found()[name].module, "ranks"), dict(found()[name].knobs)
+    return load(all_methods()[name].module, "ranks"), dict(all_methods()[name].knobs)
 
 
 def _has_ranks(name):
-    method = found()[name]
+    method = all_methods()[name]
     return method.call == "solve" and find_spec(f"{path_of(method.module)}.ranks") is not None
 
 
 def _on_ranks():
-    return ", ".join(dict.fromkeys(["dem", *(found()[name].module for name in found() if _has_ranks(name))]))
+    return ", ".join(
+        dict.fromkeys(["dem", *(all_methods()[name].module for name in all_methods() if _has_ranks(name))])
+    )
 
 
 def _asked(options, solver):

@@ -67,7 +67,7 @@ def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) 
 def _packed(scene, law, wanted, slabs):
     """A slab's part of the packing, and what is known there of all of it."""
     body = {"size": scene.size, "seed": wanted.seed}
-    if wanted.tiles(scene, law):
+    if wanted.is_tiled(scene, law):
         here = tiled(wanted.particles, periodic=scene.periodic, keep=slabs.near, **body)
         return here, _part(here.radii, slabs)
     counts = wanted.repeats(scene, law)

@@ -16,4 +16,4 @@ def petsc():
 
 
 def _both():
-    return ranks.found("petsc4py.PETSc", instead="demheat.solve")
+    return ranks.imported("petsc4py.PETSc", instead="demheat.solve")

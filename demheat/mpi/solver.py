@@ -22,7 +22,7 @@ from demheat.mpi.equations import Equations, solved
 from demheat.mpi.field import field_of
 from demheat.mpi.numbers import Ghosts, linked, numbers_of
 from demheat.mpi.slabs import NOBODY, slabs_of
-from demheat.runtime.threads import limited
+from demheat.runtime.threads import thread_limit
 from demheat.scene import Scene, check_scene
 
 # Least bytes that a particle takes at the peak, all ranks together, where they are many: about as many for what a rank
@@ -53,7 +53,7 @@ def solve(
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
     check_fits("particles", particles, BYTES * float(particles), comm)
-    with limited(max(1, cores() // here(comm))):
+    with thread_limit(max(1, cores() // here(comm))):
         return _answer(scene, law, wanted, comm, tolerance=tolerance, options=options)
 
 
@@ -90,7 +90,7 @@ def _answer(scene, law, wanted, comm, **how):
         estimator = estimator_of(law, wanted, lambda law, wanted: _coarser(scene, law, wanted, comm, **how))
         field = field_of(scene, cells, solution, slabs, comm, estimator=estimator)
     mean = comm.allreduce(float(cells.network.radii[: cells.own].sum())) / unknowns
-    stats |= solution.stats | {"unknowns": unknowns, "mean_radius": mean} | costs.told()
+    stats |= solution.stats | {"unknowns": unknowns, "mean_radius": mean} | costs.stats()
     if comm.rank == 0 and np.any(field.fractions == 0):
         lost = np.flatnonzero(field.fractions == 0) - 1
         warnings.warn(f"no particle lies in inclusions {lost[:8].tolist()}: use more particles", stacklevel=3)

@@ -7,8 +7,8 @@ free, so the mean difference is taken off before temperatures are compared.
 `fields` compares one Field with another, `values` numbers already at hand, `checks` need no reference.
 """
 
-from demheat.referee.checks import bound_violation, heat_balance
 from demheat.referee.fields import Error, conductivity_error, flux_error, span, temperature_error
+from demheat.referee.one_field import bound_violation, heat_balance
 from demheat.referee.values import CurveError, curve_error, dispersion, rms, value_error, variation, vector_error, worst
 
 __all__ = [

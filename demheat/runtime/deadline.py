@@ -83,6 +83,6 @@ def look(doing: str) -> None:
         raise TimeoutError(f"seconds = {deadline.seconds:g} are over, in {doing}")
 
 
-def limited() -> bool:
+def has_budget() -> bool:
     """Whether there is a budget."""
     return _now.get() is not None

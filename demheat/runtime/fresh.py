@@ -26,7 +26,7 @@ def run(
             dismiss(guard)
 
 
-def answered(words: Sequence[str], *, limit: float | None = None, start: Callable = run) -> dict:
+def answer_of(words: Sequence[str], *, limit: float | None = None, start: Callable = run) -> dict:
     """What a command writes as JSON into the file that is the last of its words.
 
     Without an answer a TimeoutError at the limit, or a ChildProcessError that says how it ended.

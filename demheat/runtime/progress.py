@@ -18,7 +18,7 @@ from contextlib import contextmanager, nullcontext
 from functools import partial
 from typing import NamedTuple
 
-from demheat.runtime.deadline import limited, look
+from demheat.runtime.deadline import has_budget, look
 
 # Seconds that a stage may last in silence, between two reports of it, and until somebody else speaks for it.
 SILENT, PAUSE, WAIT = 2.0, 0.2, 1.0
@@ -92,7 +92,7 @@ def stage(name: str, *, before: float = 0.0) -> Iterator[Callable[[float], None]
     thread = threading.get_ident()
     # Within one of its own name it would only say that again: kernels compiled where all are.
     if not _heard() or any(each.name == name for each in _open.get(thread, ())):
-        yield partial(_unheard, name) if limited() else _unlimited
+        yield partial(_unheard, name) if has_budget() else _unlimited
         return
     stack = _open.setdefault(thread, [])
     current = _Open(name, tuple(stack), before)

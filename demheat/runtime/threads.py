@@ -129,7 +129,7 @@ if hasattr(os, "register_at_fork"):
 
 
 @contextmanager
-def limited(threads: int | None):
+def thread_limit(threads: int | None):
     """Let compiled loops use so many threads for a while."""
     before = numba.get_num_threads()
     numba.set_num_threads(before if threads is None else min(threads, numba.config.NUMBA_NUM_THREADS))

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterable, Mapping
 
 from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import finite
-from demheat.sweeps import kept
-from demheat.sweeps.alone import on_workers
 from demheat.sweeps.cases import case_list
+from demheat.sweeps.file import opened
 from demheat.sweeps.rows import row_of
+from demheat.sweeps.workers import on_workers
 
 __all__ = ["sweep"]
 
@@ -74,7 +74,7 @@ def sweep(
         timeout = finite("timeout", timeout, "seconds above 0", lambda v: v > 0)
         if client is None:
             raise ValueError(f"timeout = {timeout!r}: must be None without a client; this process cannot end itself")
-    file = None if out is None else kept.opened(out)
+    file = None if out is None else opened(out)
     todo = [number for number, case in enumerate(cases) if file is None or not file.has(case)]
     asked = [cases[number] for number in todo]
     here = enumerate(row_of(function, case) for case in asked)

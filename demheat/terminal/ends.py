@@ -30,7 +30,7 @@ def finished(command: Callable[[], int], name: str) -> int:
         if not of_output(error):
             raise
         _let_go()
-        print(f"{name}: {told(error)}", file=sys.stderr)
+        print(f"{name}: {error_line(error)}", file=sys.stderr)
         return BAD
 
 
@@ -39,7 +39,7 @@ def of_output(error: BaseException) -> bool:
     return isinstance(error, OSError) and error.filename is None and error.errno in (errno.EPIPE, errno.ENOSPC)
 
 
-def told(error: BaseException) -> str:
+def error_line(error: BaseException) -> str:
     """An error in one line; of a file, its name first."""
     if isinstance(error, OSError) and error.strerror:
         # What is written into a file of ours has its name.

@@ -77,7 +77,7 @@ def _tetrahedra(scene, size, order):
 
 
 def _both():
-    return ranks.found("petsc4py.PETSc", instead="fem.solve")
+    return ranks.imported("petsc4py.PETSc", instead="fem.solve")
 
 
 def _check(scene, order, size, tolerance):
@@ -111,7 +111,7 @@ def _answer(scene, tolerance, options, **elements):
     again = partial(_again, scene, tolerance, options, elements)
     with costs.of("field"):
         field = field_of(scene, mesh, solved, tolerance, partial(estimated, again=again, kind=kind))
-    return replace(field, stats=dict(field.stats) | {"ranks": comm.size, "solver": "petsc"} | costs.told())
+    return replace(field, stats=dict(field.stats) | {"ranks": comm.size, "solver": "petsc"} | costs.stats())
 
 
 def _again(scene, tolerance, options, elements, **changed):

@@ -69,13 +69,13 @@ def solve(
     units = units_of(known)
     with costs.of("solve"):
         solution = _solution(known, units, knobs, slab)
-    stats = {"ranks": comm.size, "solver": "mpi4py-fft"} | costs.told()
+    stats = {"ranks": comm.size, "solver": "mpi4py-fft"} | costs.stats()
     return _field(scene, (known, slab, units), solution, knobs, stats)
 
 
 def world():
     """The communicator of all ranks."""
-    return ranks.found("mpi4py_fft", instead="fft.solve")[0].COMM_WORLD
+    return ranks.imported("mpi4py_fft", instead="fft.solve")[0].COMM_WORLD
 
 
 def outlook(scene: Scene, *, voxels=None) -> str:

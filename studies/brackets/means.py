@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from studies.harness.methods import found
+from studies.harness.methods import all_methods
 from studies.harness.pick import order
 
 
@@ -33,7 +33,7 @@ def narrow(rows, scene):
 def beside(rows, held):
     """Where answers of methods lie beside a bracket, in its widths, as parts of a sentence."""
     for _, row in rows.iterrows():
-        width, title = held["upper"] - held["lower"], found()[row["name"]].title
+        width, title = held["upper"] - held["lower"], all_methods()[row["name"]].title
         if row["k"] > held["upper"]:
             yield f"{title} ({(row['k'] - held['upper']) / width:.2g} of its widths above)"
         elif row["k"] < held["lower"]:

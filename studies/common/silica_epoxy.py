@@ -64,7 +64,7 @@ def together(rows, axes):
 
 def words(row):
     """Resolution of a row; sizes as parts of the cube's edge."""
-    refined = methods.found()[row["name"]].resolution
+    refined = methods.all_methods()[row["name"]].resolution
     if refined and refined.metric:
         return f"h = L/{1 / methods.size_of(row):.0f}"
     return resolution(row).removesuffix(" voxels")

@@ -37,7 +37,7 @@ FAILS = {
 
 
 def _at(name, value):
-    return {} if value is None else methods.at(methods.found()[name], value)
+    return {} if value is None else methods.at(methods.all_methods()[name], value)
 
 
 def _cases():
@@ -105,10 +105,8 @@ def claims(df):
 def _debonded_claims(rows):
     for name, limits in LIMITS.items():
         for value, limit in zip(DEBONDED[name], limits, strict=True):
-            at = _at(name, value)
-            text = (
-                f"spheres that have come off, {methods.found()[name].title}, {methods.resolution({'name': name} | at)}"
-            )
+            at, title = _at(name, value), methods.all_methods()[name].title
+            text = f"spheres that have come off, {title}, {methods.resolution({'name': name} | at)}"
             yield f"{text}: worst error at any share, %", worst(rows, by="share", name=name, **at), limit
 
 

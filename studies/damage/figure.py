@@ -26,7 +26,7 @@ def draw(df):
 def _spheres(axes, rows):
     for name in dict.fromkeys(rows["name"]):
         best = finest(pick(rows, name=name))
-        axes.plot(best["share"], best["k_ratio"], **look(name, label=methods.found()[name].title))
+        axes.plot(best["share"], best["k_ratio"], **look(name, label=methods.all_methods()[name].title))
     axes.set(xlabel="share of the spheres that have come off", ylabel="conductivity over the matrix's")
     axes.set_title("Silica in epoxy")
     axes.legend()

@@ -39,6 +39,6 @@ def _errors(rows, by):
         return pd.DataFrame()
     rows = rows.assign(words=[methods.resolution(row) for row in rows.to_dict("records")])
     for (name, resolution), group in rows.groupby(["name", "words"], sort=False):
-        line = {"method": methods.found()[name].title, "resolution": resolution}
+        line = {"method": methods.all_methods()[name].title, "resolution": resolution}
         found.append(line | {f"{row[by]:g}": row["error_percent"] for _, row in group.iterrows()})
     return pd.DataFrame(found)

@@ -10,7 +10,7 @@ FFT or the DEM, whichever it takes for the cheapest: closed forms and multipoles
 from functools import partial
 
 from studies.common.drawn import KINDS
-from studies.harness.methods import found
+from studies.harness.methods import all_methods
 from studies.harness.pick import pick
 
 EACH = 5  # scenes of a kind
@@ -100,12 +100,12 @@ def claims(df):
         yield "effective: entries outside of their intervals", int(asked["inside"].eq(False).sum()), "= 0"
         return
     for name in filter(partial(present, df), (*NAMES, *BESIDE)):
-        title = found()[name].title
+        title = all_methods()[name].title
         yield f"{title}: share of exact conductivities inside of the interval", inside(df, name).mean(), ">= 0.95"
         most = 2 if name == "dem-calibrated" else 5
         yield f"{title}: half of the interval over the error, median", over(df, name).median(), f"<= {most}"
     for name in filter(partial(present, df), NAMES):
-        title = found()[name].title
+        title = all_methods()[name].title
         yield f"{title}: share of temperatures no farther off than is said", inside(df, name, "t_").mean(), ">= 0.95"
         yield f"{title}: what is said of the temperature over its error, median", over(df, name, "t_").median(), "<= 5"
     right = asked["inside"].eq(True) & (asked["worst_percent"] <= 100 * ACCURACY)
@@ -128,7 +128,7 @@ def table(df):
 def costs(df):
     """What an estimate costs over its solve, medians over scenes, one of each kind."""
     rows = [(name, df[f"{name}_more_s"] / df[f"{name}_cpu_s"]) for name in ("dem", "fft", "fem")]
-    return ", ".join(f"{ratio.median():.2g} ({found()[name].title})" for name, ratio in rows)
+    return ", ".join(f"{ratio.median():.2g} ({all_methods()[name].title})" for name, ratio in rows)
 
 
 def words(df):

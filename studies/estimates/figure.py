@@ -6,7 +6,7 @@ import numpy as np
 
 from studies.estimates.means import answered, inside, present
 from studies.harness.figures import BLACK, GREY, look
-from studies.harness.methods import found
+from studies.harness.methods import all_methods
 
 # Errors below are shown there, %.
 LEAST = 1e-5
@@ -41,5 +41,5 @@ def _panel(axes, df, name):
     axes.annotate("interval = error", (1.3 * low, low), fontsize=8, color=GREY, va="top")
     axes.annotate("5 times", (low / 1.3, 5 * low), fontsize=8, color=GREY, ha="right", va="bottom")
     axes.set(xscale="log", yscale="log", xlabel="error of the conductivity, %")
-    axes.set_title(f"{found()[name].title}: {int(held.sum())} of {len(held)} hold")
+    axes.set_title(f"{all_methods()[name].title}: {int(held.sum())} of {len(held)} hold")
     axes.legend(loc="lower right")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pandas as pd
 
 from studies.common.drawn import ACCURACY
-from studies.harness.methods import found
+from studies.harness.methods import all_methods
 
 
 def present(df, name):
@@ -42,7 +42,7 @@ def lines(df, names):
 def intervals_in_words(df, names):
     """How many exact conductivities lie inside, and how wide the intervals are, as a part of a sentence."""
     names = [name for name in names if present(df, name)]
-    held = [f"{inside(df, name).sum()} of {len(inside(df, name))} ({found()[name].title})" for name in names]
+    held = [f"{inside(df, name).sum()} of {len(inside(df, name))} ({all_methods()[name].title})" for name in names]
     wide = [f"{over(df, name).median():.2g}" for name in names]
     return f"{', '.join(held)}; half of it was {', '.join(wide)} times the error in the median"
 
@@ -59,7 +59,7 @@ def answers_in_words(asked, accuracy):
 
 def _line(df, name):
     rows = answered(df, name)
-    line = {"scenes": f"{len(rows)} unseen", "method": found()[name].title}
+    line = {"scenes": f"{len(rows)} unseen", "method": all_methods()[name].title}
     for what, words in (("", "k"), ("t_", "T")):
         line |= {
             f"error of {words}, median %": rows[f"{name}_{what}off"].abs().median(),

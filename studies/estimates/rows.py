@@ -13,7 +13,7 @@ import references.multipole
 from demheat.referee import conductivity_error, span, temperature_error, value_error
 from studies.common.drawn import exact_field, scene_of
 from studies.harness.cost import measured
-from studies.harness.methods import found
+from studies.harness.methods import all_methods
 
 MODULES = {"dem": demheat.dem, "fem": references.fem, "fft": references.fft, "multipole": references.multipole}
 # Least and largest value of each knob: what is drawn between them by the scene's seed; lengths in longest sides.
@@ -45,7 +45,7 @@ def judged(kind, seed, names):
 
 
 def _one(name, scene, exact, points, share):
-    method = found()[name]
+    method = all_methods()[name]
     low, high = DRAWN[method.resolution.knob]
     value = low * (high / low) ** share
     if not method.resolution.metric:

@@ -66,7 +66,7 @@ def calibrated(packing, loading, *, margin=None, wanted=7.5, count="all", **choi
         target += wanted - reached
     found, gap = coordination(packing, *links[:2]), links[2]
     report = {"gap": gap, "links": found.mean, "least": found.least, "under_2": found.under_2, "under_4": found.under_4}
-    report |= {"islands": found.islands, "phi": packing.phi, "linked": reached, "left": left}
+    report |= {"islands": found.components, "phi": packing.phi, "linked": reached, "left": left}
     del links
     how = "flux" if loading == "flux" else "isothermal"
     # Replicas of a periodic cell all have the same temperatures: conjugate gradients need no more steps than for one.

@@ -88,7 +88,7 @@ def QUICK(case):
     """Coarse rows, one packing; what stands beside the main methods at contrast 10 only."""
     if case["name"] == NAME:
         return (case["packing"], case["particles"], case["seed"]) == ("relaxed", NETWORKS[0], 0)
-    method = methods.found()[case["name"]]
+    method = methods.all_methods()[case["name"]]
     if not methods.at(method, methods.spent(method, RESOLUTIONS)[0]).items() <= case.items():
         return False
     main = method.role == "main" or method.name in ("dem-calibrated", "maxwell", "exact")

@@ -66,7 +66,7 @@ TIMEOUT = 3600.0
 
 def _case(name, kind, boundary, fraction, realisation, axes="y", value=None, **knobs):
     """Case at a value of the method's resolution, or with the knobs that are given."""
-    refined = {} if value is None else methods.at(methods.found()[name], value)
+    refined = {} if value is None else methods.at(methods.all_methods()[name], value)
     here = {"kind": kind, "boundary": boundary, "fraction": fraction, "realisation": realisation, "axes": axes}
     return methods.case(name, **here, **refined, **knobs)
 
@@ -130,7 +130,7 @@ def QUICK(case):
         return True
     if case.get("axes") == "xyz":
         return case["name"] == "fft"
-    method = methods.found()[case["name"]]
+    method = methods.all_methods()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return method.role == "main" and case["realisation"] == 0 and coarsest.items() <= case.items()
 
@@ -238,7 +238,7 @@ def _averages(df):
         limits = np.array([bounds_of(df, row) for _, row in rows.iterrows()])
         k = rows["k_ratio"].to_numpy(dtype=float)
         room = 100 * np.minimum(referee.value_error(k, limits[:, 0]), -referee.value_error(k, limits[:, 1]))
-        text = f"f = {fraction:g}, {methods.found()[name].title}, means over three axes: "
+        text = f"f = {fraction:g}, {methods.all_methods()[name].title}, means over three axes: "
         yield text + "least room to the third-order bounds of the same cell, %", np.min(room), ">= 0"
     changed = [change(df, fraction, "unequal") for fraction in REFINED]
     if None not in changed:

@@ -125,7 +125,7 @@ def _once(ax, label):
 
 def _errors(ax, df):
     """On the first cell: the finest row of each method open, its converged value filled."""
-    for method in (methods.found()["dem-calibrated"], *methods.compared()):
+    for method in (methods.all_methods()["dem-calibrated"], *methods.compared()):
         name, rows = method.name, with_size(pick(df, name=method.name, **HERE)).fillna({"h": 0.0})
         if not len(rows):
             continue

@@ -88,7 +88,7 @@ def QUICK(case):
         return (case["boundary"], case["order"]) == ("gradient", DEGREES["gradient"][0])
     if case["name"] in ("arrangement", NAME):
         return case["name"] != NAME
-    method = methods.found()[case["name"]]
+    method = methods.all_methods()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return coarsest.items() <= case.items() and method.role == "main"
 

@@ -103,7 +103,7 @@ def _timed(scene, name, knobs, element, factor):
     """Verdict on a run of so many steps; those of the limit and above by one that is implicit."""
     from references import exact
 
-    method = methods.found()[name]
+    method = methods.all_methods()[name]
     evolve, rate = methods.load(method.module).evolve, scene.matrix.conductivity
     rate /= scene.matrix.density * scene.matrix.heat_capacity
     step = factor * _limit(scene, element, rate, knobs)
@@ -136,7 +136,7 @@ def _limit(scene, element, rate, knobs):
 
 def _allowed(method, element, feature):
     """Error of the temperature over the span: what is declared, with the first order of an element over a feature."""
-    declared = (method if method.errors else methods.found()["fem-p1"]).errors.temperature
+    declared = (method if method.errors else methods.all_methods()["fem-p1"]).errors.temperature
     at_declared = DECLARED / method.resolution.size(method.coarse)
     return float(np.clip(declared * at_declared * element / feature, LEAST, MOST)) if element else LEAST
 

@@ -28,7 +28,7 @@ def title(name: str) -> str:
     base = name.split(",")[0]
     if base == AUTO:
         return "FFT, scalar, by itself"
-    method = methods.found().get(base)
+    method = methods.all_methods().get(base)
     return method.title if method else base
 
 
@@ -37,6 +37,6 @@ def share(each, main: float, beside: float):
     answers = each[each["outcome"].isin(JUDGED)]
     base = answers["method"].str.split(",").str[0]
     for name in dict.fromkeys(base):
-        method = methods.found().get(name)
+        method = methods.all_methods().get(name)
         right = (answers[base == name]["outcome"] == "verified").mean()
         yield title(name), float(right), beside if method is not None and method.role == "beside" else main

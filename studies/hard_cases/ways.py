@@ -48,7 +48,7 @@ def ways(family: str, scene: Scene, rng: np.random.Generator) -> list[Way]:
     edge = scene.volume ** (1 / 3)
     found = []
     for name in NAMES:
-        method = methods.found()["fft" if name == AUTO else name]
+        method = methods.all_methods()["fft" if name == AUTO else name]
         if name.startswith("dem"):
             found.append(_dem(name, method, edge, particles, int(rng.integers(100))))
         elif name.startswith("fft"):

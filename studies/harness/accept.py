@@ -71,7 +71,7 @@ def _made_again(tasks, made, out, say, compute):
         new = renewed(study, case, stored, row) if other else replay.stamped(stored, row, wrong)
         add_rows(path, {key: new}, replay.keys_of(study, path))
         fresh[name, key] = row
-        return f"{name} {key}: {replay.told(wrong)}"
+        return f"{name} {key}: {replay.moved_in_words(wrong)}"
 
     for number, words in enumerate(each_kept([*have, *left], enumerate(rows), keep, what="accept"), start=1):
         say(f"[{number}/{len(tasks)}] {words}")

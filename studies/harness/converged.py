@@ -15,7 +15,7 @@ def converged(df, name, **where):
     Terms of the exponents that the method declares are taken off, through one row more from the finest on; without
     exponents the finest row counts.
     """
-    terms = methods.found()[name].terms
+    terms = methods.all_methods()[name].terms
     needed = len(terms) + 1
     rows = with_size(pick(df, name=name, **where))
     rows = rows.drop_duplicates("h").sort_values("h", ascending=False).tail(needed)

@@ -41,7 +41,7 @@ COLOURS = {
 }
 LOOK = {
     name: (method.label, COLOURS.get(method.look[0], method.look[0]), *method.look[1:])
-    for name, method in methods.found().items()
+    for name, method in methods.all_methods().items()
 }
 
 

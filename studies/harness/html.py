@@ -84,7 +84,7 @@ def _of_paper(paper, figures, there):
 
 
 def _chapter(each, folder):
-    said = f"{each.verdicts}; {each.rows} rows: {sound.told(each.count)}" if not each.problem else each.problem
+    said = f"{each.verdicts}; {each.rows} rows: {sound.in_words(each.count)}" if not each.problem else each.problem
     head = f"<summary><b>{each.name}</b>{escape(each.title)}<small>{escape(said)}</small></summary>"
     body = converted(each.text.partition("\n")[2], folder) if not each.problem else ""
     return f'<details id="{each.name}">{head}{body}</details>'

@@ -39,7 +39,7 @@ def _made(row):
     return number_of(row, MADE) * WORKERS / max(_first(number_of(row, "load"), 0.0), WORKERS)
 
 
-def told(lasting):
+def time_in_words(lasting):
     """How many rows take how long, in words."""
     minutes = math.fsum(filter(math.isfinite, lasting)) / 60
     unknown = sum(not math.isfinite(each) for each in lasting)

@@ -10,7 +10,7 @@ import os
 import tempfile
 from contextlib import contextmanager
 
-from demheat.declared import found, load, path_of  # noqa: F401 (studies know them from here)
+from demheat.declared import all_methods, load, path_of  # noqa: F401 (studies know them from here)
 from demheat.gallery import EDGE, HADDAD, sphere_in_cube
 from demheat.referee import conductivity_error, heat_balance, value_error
 from studies.harness.cost import measured
@@ -21,7 +21,7 @@ THIRD, HALF = 4 * math.pi / 81, 0.5  # volume fractions of the two sphere scenes
 
 def compared(*beside):
     """Methods that every study compares, and those named besides, in the order of `found`."""
-    return [method for method in found().values() if method.role == "main" or method.name in beside]
+    return [method for method in all_methods().values() if method.role == "main" or method.name in beside]
 
 
 def spent(method, resolutions):
@@ -35,7 +35,7 @@ def spent(method, resolutions):
 
 def value_of(row):
     """Value of the knob that refines a row's method, not-a-number if there is none."""
-    method = found().get(row["name"])
+    method = all_methods().get(row["name"])
     refined = method.resolution if method else None
     value = row.get(refined.column or refined.knob) if refined else None
     return math.nan if value is None else value
@@ -46,7 +46,7 @@ def resolution(row):
     value = value_of(row)
     if value != value:
         return ""
-    refined = found()[row["name"]].resolution
+    refined = all_methods()[row["name"]].resolution
     return refined.words.format(value / EDGE if refined.metric else value)
 
 
@@ -55,7 +55,7 @@ def size_of(row):
     value = value_of(row)
     if value != value:
         return math.nan
-    refined = found()[row["name"]].resolution
+    refined = all_methods()[row["name"]].resolution
     return refined.size(value / EDGE if refined.metric else value)
 
 
@@ -67,7 +67,7 @@ def at(method, value, seed=0):
 
 def case(name, **more):
     """Case of one method: its name, what is given here, its module, and what the method fixes."""
-    return {"name": name, **more, "method": found()[name].module, **found()[name].knobs}
+    return {"name": name, **more, "method": all_methods()[name].module, **all_methods()[name].knobs}
 
 
 def exact_ratio(fraction, contrast):
@@ -104,7 +104,7 @@ def _estimated_row(scene, ratio, estimate, knobs):
 
 def declared(module):
     """The methods that a module declares; none of what is a solver of something else."""
-    return [method for method in found().values() if method.module == module]
+    return [method for method in all_methods().values() if method.module == module]
 
 
 def small(module):

@@ -76,7 +76,7 @@ def replayed(tasks, out, say, *, compute=None):
 
         found = each_kept(tasks, enumerate(compute(tasks)), keep, what="replay")
         for number, (task, wrong, row) in enumerate(found, start=1):
-            words = f"not here, {row['note']}" if wrong is None else told(wrong)
+            words = f"not here, {row['note']}" if wrong is None else moved_in_words(wrong)
             say(f"[{number}/{len(tasks)}] {task[0]} {case_key(task[2])}: {words}")
             if wrong is not None:
                 yield task, wrong, row
@@ -95,7 +95,7 @@ def absent(row):
     return row["status"] == "unsupported" and bool(ABSENT.search(row["note"]))
 
 
-def told(wrong):
+def moved_in_words(wrong):
     """What has moved in a row, in words."""
     return "the same" if not wrong else "; ".join(f"{each.column} {each.stored} -> {each.found}" for each in wrong[:3])
 

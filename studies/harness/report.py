@@ -146,6 +146,5 @@ def _cell(text):
 def _line(each):
     if each.problem:
         return f"| {each.name} | {each.title} | {each.problem} | | |"
-    return (
-        f"| [{each.name}]({each.name}.md) | {each.title} | {each.verdicts} | {each.rows} | {sound.told(each.count)} |"
-    )
+    count = sound.in_words(each.count)
+    return f"| [{each.name}]({each.name}.md) | {each.title} | {each.verdicts} | {each.rows} | {count} |"

@@ -182,7 +182,7 @@ def spawn_row(name, study, case, *, start=None, values=False):
     """Compute a row in a process of its own; whatever happens to that process, a row comes back."""
     words, begin = ["row", name, case_key(case), *(["--values"] if values else []), "--json"], time.perf_counter()
     try:
-        row = fresh.answered(words, limit=getattr(study, "TIMEOUT", TIMEOUT), start=start or started)
+        row = fresh.answer_of(words, limit=getattr(study, "TIMEOUT", TIMEOUT), start=start or started)
     except TimeoutError as error:
         return failed(study, case, error, status="timeout")
     except ChildProcessError as error:

@@ -52,7 +52,7 @@ def counted(found):
     return {name: count[name] for name in FAULTS}
 
 
-def told(count):
+def in_words(count):
     """Such numbers in words, as "0 dirty, 1 noisy"."""
     return ", ".join(f"{number} {name}" for name, number in count.items())
 
@@ -93,7 +93,7 @@ def cost_columns(study, df):
 def total(found):
     """Rows of all chapters of a report, and those whose costs do not count, in words."""
     count = {name: sum(each.count[name] for each in found) for name in FAULTS}
-    return f"{sum(each.rows for each in found)} rows: {told(count)}"
+    return f"{sum(each.rows for each in found)} rows: {in_words(count)}"
 
 
 def ages(rows):

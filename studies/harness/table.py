@@ -12,7 +12,7 @@ from studies.harness import explained
 from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
-from studies.harness.sound import cost_columns, counted, faults, told, uncosted
+from studies.harness.sound import cost_columns, counted, faults, in_words, uncosted
 from studies.harness.store import VALUES, case_key, read_rows
 
 # Columns of words, whatever they look like: a commit may be a number.
@@ -173,7 +173,7 @@ def _origin(study, df):
     others = f" and {guests} of methods that are not ours" if guests else ""
     lines = [f"- rows: {len(df) - guests} of {len(study.CASES)} cases{others}; " + _counts(df["status"])]
     count = counted(faults(row) for row in df.to_dict("records"))
-    lines.append(f"- rows whose costs do not count: {told(count)}")
+    lines.append(f"- rows whose costs do not count: {in_words(count)}")
     for name in ("commit", "machine", "threads", "versions"):
         lines.append(f"- {name}: " + " / ".join(str(v) for v in df[name].dropna().unique()))
     lines.append(f"- made between {df['when'].min()} and {df['when'].max()}")

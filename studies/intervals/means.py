@@ -59,7 +59,7 @@ def over(each):
 
 def title(name):
     """What a method is called in tables."""
-    return methods.found()[name].title if name != "fft" else "FFT, scalar, by itself"
+    return methods.all_methods()[name].title if name != "fft" else "FFT, scalar, by itself"
 
 
 def in_words(each):

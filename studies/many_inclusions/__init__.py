@@ -70,7 +70,7 @@ def QUICK(case):
         return case["highest"] in DEGREES[:3]
     if case["name"] == STEADY:
         return False
-    method = methods.found()[case["name"]]
+    method = methods.all_methods()[case["name"]]
     coarsest = methods.at(method, methods.spent(method, RESOLUTIONS)[0])
     return coarsest.items() <= case.items() and case["method"] != "fem"
 
@@ -145,12 +145,12 @@ def _others(df):
     for name, finest in (("fft", VOXELS[-1]), ("fft-em", COARSER[-1])):
         for voxels, limit in ((VOXELS[0], 0.8), (finest, 0.04)):
             rows = pick(df, name=name, voxels=voxels)
-            yield f"{methods.found()[name].title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
+            yield f"{methods.all_methods()[name].title}, {voxels}^3: error, %", largest(rows, "error_percent"), limit
     limit = converged(df[df["precision"].isna()] if "precision" in df else df, "fft")
     exact = pick(df, name="multipole").sort_values("highest")["k_ratio"].iloc[-1]
     off = None if limit is None else 100 * abs(referee.value_error(limit, exact))
     # Quick rows have one grid of the three that are asked for.
-    yield f"{methods.found()['fft'].title}, extrapolated: error, %", off, 0.01
+    yield f"{methods.all_methods()['fft'].title}, extrapolated: error, %", off, 0.01
     rows = pick(df, name="fem-p1", size=SIZES["fem-p1"][-1] * methods.EDGE)
     yield "FEM, P1, finest elements: error, %", largest(rows, "error_percent"), 0.5
 

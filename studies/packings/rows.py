@@ -72,7 +72,7 @@ def described(packing, row, *, curves):
     found |= {"rattlers": float(held.rattler.mean()), "backbone_z": held.coordination}
     indptr, indices, gap = contacts(packing, coordination=7.5, margin=margin)
     links = statistics.coordination(packing, indptr, indices, margin=margin)
-    found |= {"gap_7.5": gap, "under_2": links.under_2, "under_4": links.under_4, "islands": links.islands}
+    found |= {"gap_7.5": gap, "under_2": links.under_2, "under_4": links.under_4, "islands": links.components}
     fabric = statistics.fabric(packing, indptr, indices, margin=margin)
     found |= {"fabric_sd": fabric.deviation, "fourth_sd": fabric.fourth_deviation}
     # The same links in a packing stretched along x: what an anisotropic one would show.

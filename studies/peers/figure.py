@@ -27,7 +27,7 @@ def draw(df):
         for (name, kind), group in rows.groupby(["name", "given"]):
             group = front(group)
             # A method of ours has one look; what it is given tells its line.
-            how = _ours(name) if name in methods.found() else _theirs(name, others.index(name), colours[name])
+            how = _ours(name) if name in methods.all_methods() else _theirs(name, others.index(name), colours[name])
             label = {"label": f"{how.pop('label')}, {kind}"}
             axes.plot(group["cpu_s"], group["error_percent"].abs().clip(lower=LEAST), **how | label)
         axes.set(xscale="log", yscale="log", title=scene)

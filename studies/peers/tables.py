@@ -41,14 +41,14 @@ def title(name):
     """How a method of ours, or a program of others, is called."""
     if name == GRAINS:
         return "demheat.grains"
-    if name in methods.found():
-        return methods.found()[name].title
+    if name in methods.all_methods():
+        return methods.all_methods()[name].title
     return import_module(f"studies.peers.programs.{name}").TITLE
 
 
 def way(row):
     """How a program of others was asked to do it, where it knows several ways; empty for ours."""
-    if row["name"] in methods.found():
+    if row["name"] in methods.all_methods():
         return ""
     said = {knob: row[knob] for knob in WAYS if knob in row and row[knob] == row[knob] and row[knob] is not None}
     return ", ".join(value if isinstance(value, str) else f"{knob} {value}" for knob, value in said.items())
@@ -56,13 +56,15 @@ def way(row):
 
 def ours(df):
     """True for rows of our own methods, (n,) bool Series."""
-    return df["name"].isin([*methods.found(), GRAINS, SOLVER])
+    return df["name"].isin([*methods.all_methods(), GRAINS, SOLVER])
 
 
 def resolution(row):
     """What refines a row, in words."""
     words = [form.format(row[knob]) for knob, form in KNOBS.items() if knob in row and row[knob] == row[knob]]
-    degree = [f"degree {row['order']:g}"] if row["name"] not in methods.found() and row.get("order", 0) > 0 else []
+    degree = (
+        [f"degree {row['order']:g}"] if row["name"] not in methods.all_methods() and row.get("order", 0) > 0 else []
+    )
     return ", ".join(words + degree)
 
 

@@ -45,7 +45,7 @@ TIMEOUT = 3600.0
 
 
 def _at(name, value):
-    return {} if value is None else methods.at(methods.found()[name], value)
+    return {} if value is None else methods.at(methods.all_methods()[name], value)
 
 
 def _cases():
@@ -112,7 +112,7 @@ def _array_claims(rows):
     for name, values in ARRAY.items():
         for value, limit in zip(values, ARRAY_LIMITS[name], strict=True):
             at = _at(name, value)
-            text = f"sphere in a cube, {methods.found()[name].title}, {methods.resolution({'name': name} | at)}"
+            text = f"sphere in a cube, {methods.all_methods()[name].title}, {methods.resolution({'name': name} | at)}"
             yield f"{text}: worst error at any Kapitza length, %", worst(rows, by="kapitza", name=name, **at), limit
 
 
@@ -122,7 +122,7 @@ def _neutral_claims(rows):
             mine = pick(rows, name=name, spheres=spheres)
             if not len(mine):
                 continue
-            text = f"{spheres} neutral spheres, {methods.found()[name].title}"
+            text = f"{spheres} neutral spheres, {methods.all_methods()[name].title}"
             yield f"{text}: error of the conductivity, %", mine["error_percent"].abs().max(skipna=False), limit
             worst = mine["temperature_percent"].max(skipna=False)
             yield f"{text}: rms error of the matrix's temperature, % of the span", worst, of_temperature

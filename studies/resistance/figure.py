@@ -47,7 +47,7 @@ def _errors(axes, rows):
             how = look(name) if label is None else look(name, label="_", alpha=0.35, linestyle="")
             # A length of 0 has no place on a logarithmic axis.
             axes.plot(np.maximum(group["kapitza"], 0.02), group["error_percent"].abs(), **how)
-        axes.lines[-1].set_label(f"{methods.found()[name].title}, {methods.resolution(best.iloc[0])}")
+        axes.lines[-1].set_label(f"{methods.all_methods()[name].title}, {methods.resolution(best.iloc[0])}")
     axes.plot([], [], "o", color=GREY, alpha=0.35, label="faint: coarser")
     axes.set(xscale="log", yscale="log", xlabel="Kapitza length over radius (leftmost: 0)")
     axes.set(ylabel="|error of the conductivity|, %", title="Sphere in a cube, contrast 10")

@@ -110,7 +110,7 @@ def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
         return ranks.row(number, knobs["particles"], knobs["seed"], knobs["ranks"])
     if method == "dem":
         # Stages are called one by one, with the law that the method fixes.
-        knobs = {key: value for key, value in knobs.items() if key not in methods.found()[name].knobs}
+        knobs = {key: value for key, value in knobs.items() if key not in methods.all_methods()[name].knobs}
     if part in ("before", "start"):
         return {"before": whole.before_row, "start": whole.start_row}[part](**knobs)
     if part == "cutter":
@@ -154,7 +154,7 @@ def _coarse(df):
     """What is spent on an inclusion is little, and the errors as large for many as for few."""
     for name in COARSE:
         rows = pick(df, part="inclusions", name=name)
-        title = methods.found()[name].title
+        title = methods.all_methods()[name].title
         yield (
             f"{title}: largest error of what it spends on an inclusion, %",
             largest(rows, "error_percent"),
@@ -166,7 +166,7 @@ def _exponents(df):
     found = fitted(pick(df, part="inclusions"), "number")
     for name in ("dem", "fft", "multipole"):
         for _, fit in pick(found, name=name, stage="all").iterrows():
-            text = f"{methods.found()[name].title}: exponent of the CPU time in inclusions, off one"
+            text = f"{methods.all_methods()[name].title}: exponent of the CPU time in inclusions, off one"
             yield text, abs(fit["exponent"] - 1), 0.15
 
 

@@ -78,13 +78,13 @@ def dem_row(scene, particles, seed, *, cores=None):
     from demheat.network.laguerre import drop_empty_cells, laguerre
     from demheat.packing.cache import replicated
     from demheat.packing.twins.conforming import conform
-    from demheat.runtime.threads import limited
+    from demheat.runtime.threads import thread_limit
     from demheat.sampling.field_of import field_of
 
     counts = [math.ceil((particles / REPLICA) ** (1 / 3))] * 3
     box = {"size": scene.size, "periodic": True}
     stage = Stages()
-    with limited(cores):
+    with thread_limit(cores):
         packing = stage("packing", replicated, particles, counts, **box, seed=seed)
         packing = stage("twins", conform, packing, scene, seed=seed)
         facets = stage("cells", laguerre, packing.centers, packing.radii**2, packing.size)

@@ -41,7 +41,7 @@ def _spent(part, name):
 
 
 def _at(part, name, level):
-    return methods.at(methods.found()[name], _spent(part, name)[level])
+    return methods.at(methods.all_methods()[name], _spent(part, name)[level])
 
 
 def _cases():
@@ -105,7 +105,7 @@ def claims(df):
 
 
 def _words(name, row):
-    return f"{methods.found()[name].title}, {methods.resolution({'name': name} | row)}"
+    return f"{methods.all_methods()[name].title}, {methods.resolution({'name': name} | row)}"
 
 
 def _levels(df, part, limits):

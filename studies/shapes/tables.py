@@ -32,7 +32,7 @@ def lines(df):
             rows = pick(all_rows, part=part, name=name)
             rows = rows.assign(words=[methods.resolution(row) for row in rows.to_dict("records")])
             for words, group in rows.groupby("words", sort=False):
-                line = {"part": part, "method": methods.found()[name].title, "resolution": words}
+                line = {"part": part, "method": methods.all_methods()[name].title, "resolution": words}
                 line |= {"error": _worst(group, "error_percent"), "temperature": _worst(group, "temperature_percent")}
                 line |= {"of what is added": _worst(group, "added_percent"), "interval": _interval(group)}
                 found.append(line)

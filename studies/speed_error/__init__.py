@@ -10,8 +10,8 @@ a packing costs and, where none is made, what costs scatter by. The FFT has one 
 high contrast its solver by itself takes another, links (`studies.speed_error.links`). The cost of a Laguerre
 tessellation is set beside Voro++'s, that of the steady solver beside plain pyamg's on the same matrix, and that of the
 scalar FFT scheme beside Eyre-Milton's, each pair on the same data. Laws of error and cost are fitted to the rows of
-steady scenes and shipped with the package (`demheat.cheapest.laws`); `python -m studies.speed_error.laws` writes them
-anew.
+steady scenes and shipped with the package (`demheat.cheapest.cost_laws`); `python -m studies.speed_error.laws` writes
+them anew.
 """
 
 from studies.harness.methods import EDGE

@@ -71,7 +71,7 @@ def all_cases():
         for method in methods.compared(*BESIDE):
             yield from _ladder(scene, method, BY_SCENE.get(scene, USUAL))
     for scene, edges in EDGES.items():
-        found = (methods.found()[name] for name in IN_TIME)
+        found = (methods.all_methods()[name] for name in IN_TIME)
         for method in found:
             yield from _ladder(scene, method, MARCHED | edges, LENGTHS[scene] / EDGE)
     for voxels in COMPARED:

@@ -1,8 +1,8 @@
 """Laws of error and cost, fitted to the rows of steady scenes; `python -m studies.speed_error.laws` ships them anew.
 
-The laws and their terms are those of `demheat.cheapest.laws`. Logarithms are fitted by least squares that count large
-deviations less (an error may cross zero by luck), with a little pull of every exponent of a scene's measure towards
-none: there are few scenes.
+The laws and their terms are those of `demheat.cheapest.cost_laws`. Logarithms are fitted by least squares that count
+large deviations less (an error may cross zero by luck), with a little pull of every exponent of a scene's measure
+towards none: there are few scenes.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from demheat.cheapest import laws as shipped
+from demheat.cheapest import cost_laws as shipped
 from demheat.cheapest.measures import measures
 from studies.harness import methods
 from studies.harness.methods import value_of
@@ -75,7 +75,7 @@ def _counts(scene, error):
 
 
 def _law(name, rows):
-    knob, sound = methods.found()[name].resolution.knob, _errors(rows)
+    knob, sound = methods.all_methods()[name].resolution.knob, _errors(rows)
     terms = np.array([shipped.error_terms(knob, measured(s), v) for s, v in _places(sound)])
     error, spread = _fit(terms, np.log(sound["error_percent"].abs() / 100), "error")
     sizes = np.array([shipped.size_terms(knob, measured(s), v) for s, v in _places(rows)])
@@ -86,7 +86,7 @@ def _law(name, rows):
     terms = np.array([shipped.cost_terms(measured(s), n) for s, n in zip(rows["scene"], made, strict=True)])
     cost, cost_spread = _fit(terms, np.log(rows["cpu_s"].to_numpy(dtype=float)), "cost")
     each, each_spread = _memory(rows, made)
-    unit = methods.EDGE if methods.found()[name].resolution.metric else 1.0
+    unit = methods.EDGE if methods.all_methods()[name].resolution.metric else 1.0
     ends = sorted((rows["value"].min() / unit, rows["value"].max() / unit), reverse=unit != 1.0)
     return shipped.Law(
         name, knob, *ends, np.exp(error[0]), *error[1:], spread, *parts, np.exp(cost[0]), *cost[1:], cost_spread,

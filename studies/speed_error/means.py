@@ -205,4 +205,4 @@ def starred(scene):
 
 def label(name):
     """Title of a method."""
-    return methods.found()[name].title
+    return methods.all_methods()[name].title

@@ -75,7 +75,7 @@ def title_of(name) -> str:
     """A method in words; a guest by the last part of its name."""
     from studies.harness import methods
 
-    found = methods.found().get(name)
+    found = methods.all_methods().get(name)
     return found.title if found else name.rsplit("/", 1)[-1].rsplit(".", 1)[-1]
 
 
@@ -86,4 +86,4 @@ def resolution_of(row) -> str:
     if row["method"] == GUEST:
         return f"step {row['step']:.0f}"
     column, _ = LADDERS[row["name"]]
-    return "" if column is None else methods.found()[row["name"]].resolution.words.format(row[column])
+    return "" if column is None else methods.all_methods()[row["name"]].resolution.words.format(row[column])

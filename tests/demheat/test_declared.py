@@ -14,10 +14,10 @@ def test_two_methods_of_one_name_are_refused(tmp_path, monkeypatch):
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.setattr(declared, "HOMES", (home.name,))
     with pytest.raises(ValueError, match="methods \\['one', 'one'\\]: declared more than once"):
-        declared.found.__wrapped__()
+        declared.all_methods.__wrapped__()
     (home / "second.py").unlink()
     # Modules that declare nothing are not loaded.
-    assert [method.module for method in declared.found.__wrapped__().values()] == ["first"]
+    assert [method.module for method in declared.all_methods.__wrapped__().values()] == ["first"]
 
 
 def test_modules_are_known_by_the_last_part_of_their_names():

@@ -3,7 +3,7 @@
 import pytest
 
 from demheat import Laguerre, Layer, Material, Scene, gallery, on_progress, solve
-from demheat.dem.options import Particles, expected, unknowns
+from demheat.dem.options import Particles, expected_bytes, expected_unknowns
 from demheat.runtime import limits, progress
 
 SCENE = gallery.sphere_in_cube(5.0)
@@ -14,20 +14,20 @@ def wanted(number):
 
 
 def test_unknowns_are_particles_and_twins():
-    assert unknowns(SCENE, Laguerre(conforming=False), wanted(1000)) == 1000
+    assert expected_unknowns(SCENE, Laguerre(conforming=False), wanted(1000)) == 1000
     # As docs/decisions/mpi.md has it, and a small one.
-    assert unknowns(SCENE, Laguerre(), wanted(10**6)) == pytest.approx(1_034_521, rel=5e-3)
+    assert expected_unknowns(SCENE, Laguerre(), wanted(10**6)) == pytest.approx(1_034_521, rel=5e-3)
     field = solve(SCENE, particles=3000)
-    assert unknowns(SCENE, Laguerre(), wanted(3000)) == pytest.approx(field.stats["unknowns"], rel=0.1)
+    assert expected_unknowns(SCENE, Laguerre(), wanted(3000)) == pytest.approx(field.stats["unknowns"], rel=0.1)
     # A layer's faces end with the box.
     layer = Scene((1.0, 1.0, 1.0), Material(1.0), [Layer(0, 0.4, 0.6, Material(5.0))], gradient=(1.0, 0.0, 0.0))
-    assert 1.0 < unknowns(layer, Laguerre(), wanted(10**6)) / 10**6 < 1.1
+    assert 1.0 < expected_unknowns(layer, Laguerre(), wanted(10**6)) / 10**6 < 1.1
 
 
 def test_bytes_are_those_that_were_found():
     # Of the whole solves of docs/decisions/memory.md: 212 thousand and 1.03 million unknowns.
-    assert expected(211_820) / 211_820 == pytest.approx(929, rel=0.01)
-    assert expected(1_034_501) / 1_034_501 == pytest.approx(678, rel=0.01)
+    assert expected_bytes(211_820) / 211_820 == pytest.approx(929, rel=0.01)
+    assert expected_bytes(1_034_501) / 1_034_501 == pytest.approx(678, rel=0.01)
 
 
 def test_a_field_knows_it_and_a_large_solve_says_it(monkeypatch):
@@ -43,7 +43,7 @@ def test_a_field_knows_it_and_a_large_solve_says_it(monkeypatch):
     finally:
         on_progress(None)
     needed = field.stats["expected_mib"]
-    assert needed * 2**20 == expected(unknowns(SCENE, Laguerre(), wanted(1000)))
+    assert needed * 2**20 == expected_bytes(expected_unknowns(SCENE, Laguerre(), wanted(1000)))
     assert f"DEM, about {needed / 1024:.2g} GiB" in heard
 
 

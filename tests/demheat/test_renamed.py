@@ -9,13 +9,20 @@ import demheat
 from demheat import Calibrated, Laguerre, gallery
 from demheat.dem.options import Particles
 from demheat.io.images import read_image
-from demheat.packing import domain
+from demheat.packing import contacts, domain, make_packing
+from demheat.packing.statistics import coordination
 from demheat.renamed import MOVED
 
 
 def test_old_classes_and_functions():
     with pytest.warns(DeprecationWarning, match="tile is now replicate"):
         assert domain.tile is domain.replicate
+
+
+def test_components_of_contacts():
+    found = coordination(crystal := make_packing([[0.5] * 3], [0.4], (1, 1, 1), False, {}), *contacts(crystal))
+    with pytest.warns(DeprecationWarning, match="islands is now components"):
+        assert found.islands == found.components == 1
 
 
 def test_replicas_where_tiles_do():

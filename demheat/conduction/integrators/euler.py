@@ -3,7 +3,7 @@
 import numpy as np
 
 from demheat.conduction.integrators import transient_kernels as kernels
-from demheat.conduction.integrators.base import Step
+from demheat.conduction.integrators.step import Step
 
 ORDER = 1
 ESTIMATES = False

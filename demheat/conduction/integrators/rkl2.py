@@ -9,7 +9,7 @@ import math
 import numpy as np
 
 from demheat.conduction.integrators import transient_kernels as kernels
-from demheat.conduction.integrators.base import Step
+from demheat.conduction.integrators.step import Step
 
 ORDER = 2
 ESTIMATES = True

@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.conduction.integrators import transient_kernels as kernels
-from demheat.conduction.integrators.base import Step
 from demheat.conduction.integrators.linear import solver
+from demheat.conduction.integrators.step import Step
 
 ORDER = 2
 ESTIMATES = True

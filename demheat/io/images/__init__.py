@@ -20,7 +20,7 @@ import math
 from collections.abc import Mapping
 
 from demheat.io.images import nrrd, raw, tiff, zarr
-from demheat.io.images.base import check_there
+from demheat.io.images.source import check_there
 from demheat.runtime.limits import check_free
 from demheat.runtime.paths import checked_path
 from demheat.scene import Image, Material

@@ -8,8 +8,8 @@ import warnings
 
 import numpy as np
 
-from demheat.io.images.base import check_there, mapped, told_in_one_line
 from demheat.io.images.packed import unpacked
+from demheat.io.images.source import check_there, mapped, told_in_one_line
 from demheat.runtime.limits import check_free
 
 # Bytes of a header, and of a line that is passed over at once.

@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from demheat.io.images.base import check_there, mapped, told_in_one_line
-from demheat.io.words import shown
+from demheat.io.images.source import check_there, mapped, told_in_one_line
+from demheat.io.words import as_toml
 
 # Types of a MetaImage.
 ELEMENTS = {
@@ -80,7 +80,9 @@ def _header(path):
         text = line.decode("latin-1").strip()
         key, equal, value = text.partition("=")
         if text and (not equal or not key.strip().isalnum()):
-            raise ValueError(f"{path}:{number}: no line of a MetaImage: {shown(text)}; must be like DimSize = 64 64 64")
+            raise ValueError(
+                f"{path}:{number}: no line of a MetaImage: {as_toml(text)}; must be like DimSize = 64 64 64"
+            )
         if text:
             found[key.strip().lower()] = value.strip()
         if key.strip().lower() == "elementdatafile":

@@ -9,8 +9,8 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from demheat.io.images.base import mapped, most_of, told_in_one_line
 from demheat.io.images.packed import INFLATION, beyond, check_expansion
+from demheat.io.images.source import mapped, most_of, told_in_one_line
 from demheat.runtime.limits import check_free
 from demheat.scene.inputs import one_line
 

@@ -15,8 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from demheat.io.images.base import most_of, told_in_one_line
 from demheat.io.images.packed import INFLATION, beyond, check_expansion
+from demheat.io.images.source import most_of, told_in_one_line
 from demheat.runtime.limits import check_free
 
 # Bytes of a file of metadata, and the least version of zarr: before 3 any codec that is installed is run.

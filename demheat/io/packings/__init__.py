@@ -28,7 +28,7 @@ from numbers import Integral
 
 import numpy as np
 
-from demheat.io.packings import arrays, extxyz, lammps_data, lammps_dump, links, vtp, vtp_read, yade
+from demheat.io.packings import arrays, extxyz, lammps_data, lammps_dump, segments, vtp, vtp_read, yade
 from demheat.io.packings.found import rank_of, to_packing
 from demheat.io.packings.text import Lines, broken
 from demheat.packing.base import Packing, check_box, make_packing
@@ -89,7 +89,7 @@ def write(packing: Packing, path, *, format: str | None = None, network=None, te
     make_packing(*packing[:5], domain=packing.domain)
     if name != "vtp" and not (network is None and temperature is None):
         raise ValueError(f"network, temperature: the format {name} has no place for them; must be None, or use vtp")
-    drawn = links.drawn(packing, network, temperature)
+    drawn = segments.segments_of(packing, network, temperature)
     with replaced(path) as part, open(part, "xb") as stream:
         if name == "vtp":
             vtp.write(packing, stream, drawn)

@@ -7,12 +7,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.io.packings.links import Drawn
+from demheat.io.packings.segments import Segments
 from demheat.io.vtk import Blocks, put_down
 from demheat.packing.base import Packing
 
 
-def write(packing: Packing, stream, drawn: Drawn | None) -> None:
+def write(packing: Packing, stream, drawn: Segments | None) -> None:
     """Write a packing and what is drawn of its network."""
     blocks = Blocks()
     field = blocks.add("size", packing.size, tuples=3) + blocks.add("periodic", _bytes(packing.periodic), tuples=3)

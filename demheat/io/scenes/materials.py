@@ -6,7 +6,7 @@ import math
 
 from demheat.io.scenes.table import Table
 from demheat.io.scenes.units import CONDUCTIVITY, DENSITY, HEAT_CAPACITY, PLAIN, TEMPERATURE
-from demheat.io.words import shown
+from demheat.io.words import as_toml
 from demheat.scene import Material, orthotropic
 
 # Keys, and of what their numbers are; those of a dependence are temperatures and factors.
@@ -41,11 +41,11 @@ def _conductivity(table):
         return table.rows("conductivity", (CONDUCTIVITY,) * 3, what)
     numbers, rotation = table.vector("conductivity", CONDUCTIVITY), table.vector("rotation_deg", PLAIN)
     if len(numbers) != 3:
-        raise table.error(key, f" = {shown(value)}: must be a number, three of them, or three arrays of three")
+        raise table.error(key, f" = {as_toml(value)}: must be a number, three of them, or three arrays of three")
     try:
         return orthotropic(*numbers, rotation=rotation and [math.radians(part) for part in rotation])
     except ValueError as error:
         # Of what the file has, not of the argument.
         name = turned if str(error).startswith("rotation") else key
         what = "three finite numbers, degrees" if name == turned else str(error).partition(": must be ")[2] + " each"
-        raise table.error(name, f" = {shown(table.values[name])}: must be {what}") from None
+        raise table.error(name, f" = {as_toml(table.values[name])}: must be {what}") from None

@@ -6,12 +6,12 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-from demheat.declared import found
+from demheat.declared import all_methods
 from demheat.io.scenes.scene_table import scene_of
 from demheat.io.scenes.source import Source, read_source
 from demheat.io.scenes.table import Table
 from demheat.io.scenes.units import LENGTH, PLAIN
-from demheat.io.words import nearest, shown
+from demheat.io.words import as_toml, nearest
 from demheat.scene import Scene
 
 
@@ -96,7 +96,7 @@ def read_file(path) -> SceneFile:
     methods = _methods(table)
     accuracy = table.number("accuracy", PLAIN)
     if accuracy is not None and not 1e-9 <= accuracy < 1:
-        raise table.error("accuracy", f" = {shown(accuracy)}: must be a number from 1e-9 to below 1")
+        raise table.error("accuracy", f" = {as_toml(accuracy)}: must be a number from 1e-9 to below 1")
     return SceneFile(source.path, scene, methods, accuracy, source)
 
 
@@ -105,11 +105,11 @@ def _methods(table):
     solve = table.table("solve", {})
     methods = {}
     for name in solve.values:
-        if name not in found():
-            near = nearest(name, found()) or f"; must be one of {', '.join(found())}"
+        if name not in all_methods():
+            near = nearest(name, all_methods()) or f"; must be one of {', '.join(all_methods())}"
             raise solve.error(name, f": no such method{near}")
         own = solve.table(name)
-        methods[name] = dict(_knob(own, found()[name], knob) for knob in own.values)
+        methods[name] = dict(_knob(own, all_methods()[name], knob) for knob in own.values)
     return methods
 
 
@@ -120,5 +120,5 @@ def _knob(table, method, knob):
         return name, table.number(name, LENGTH)
     value = table.values[knob]
     if isinstance(value, dict) or not isinstance(value, (bool, int, float, str, list)):
-        raise table.error(knob, f" = {shown(value)}: must be a number, text, a flag or an array")
+        raise table.error(knob, f" = {as_toml(value)}: must be a number, text, a flag or an array")
     return knob, value

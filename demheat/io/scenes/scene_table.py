@@ -26,7 +26,7 @@ from demheat.io.scenes.units import (
     TEMPERATURE,
     VELOCITY,
 )
-from demheat.io.words import nearest, shown
+from demheat.io.words import as_toml, nearest
 from demheat.runtime.paths import checked_path
 from demheat.scene import (
     ROUND_AXES,
@@ -106,7 +106,7 @@ def scene_of(source: Source, table: Table) -> Scene:
     size = table.vector("size", LENGTH, ...)
     if len(size) != 3 or not min(size) > 0:
         key = table.keys["size"]
-        raise table.error(key, f" = {shown(table.values[key])}: all three lengths must be > 0 m")
+        raise table.error(key, f" = {as_toml(table.values[key])}: all three lengths must be > 0 m")
     matrix = _material(table, "matrix", materials)
     placed = _inclusions(table, materials, size)
     load = _loaded(table) | {"domain": table.text("domain", "box", among=tuple(ROUND_AXES))}
@@ -149,7 +149,7 @@ def _imaged(table, materials):
     except (ValueError, ImportError) as error:
         told = str(error).removeprefix(f"{path}: ").removeprefix("Image.")
         key = "voxel" if told.startswith("voxel =") else "file"
-        raise type(error)(str(own.error(own.keys[key], f" = {shown(own.values[own.keys[key]])}: {told}"))) from None
+        raise type(error)(str(own.error(own.keys[key], f" = {as_toml(own.values[own.keys[key]])}: {told}"))) from None
     return _made_scene(table, [], partial(Scene.of_image, image, **_loaded(table)))
 
 
@@ -190,7 +190,7 @@ def _material(table, key, known, default=...):
     if not isinstance(value, str) or value not in known:
         named = ", ".join(map(repr, known)) or "none yet"
         near = nearest(value, known) if isinstance(value, str) else ""
-        raise table.error(key, f" = {shown(value)}: must be the name of one of [materials], {named}{near}")
+        raise table.error(key, f" = {as_toml(value)}: must be the name of one of [materials], {named}{near}")
     return known[value]
 
 
@@ -242,7 +242,7 @@ def _axis(table, name):
     if value in AXES:
         return AXES.index(value)
     if isinstance(value, bool) or value not in (0, 1, 2) or not isinstance(value, int):
-        raise table.error(name, f' = {shown(value)}: must be "x", "y" or "z"')
+        raise table.error(name, f' = {as_toml(value)}: must be "x", "y" or "z"')
     return value
 
 
@@ -290,4 +290,4 @@ def _flux(table, value):
         return Flux(value)
     except ValueError as error:
         key = table.keys["flux"]
-        raise table.error(key, f" = {shown(table.values[key])}: {str(error).partition(': ')[2]}") from None
+        raise table.error(key, f" = {as_toml(table.values[key])}: {str(error).partition(': ')[2]}") from None

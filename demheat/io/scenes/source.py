@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from demheat.io.scenes.lines import lines_of
-from demheat.io.words import nearest_file, shown
+from demheat.io.words import as_toml, nearest_file
 from demheat.runtime.paths import checked_path
 
 try:
@@ -56,7 +56,7 @@ def read_source(path) -> Source:
         raise ValueError(f"{path}:{line}: no TOML: {told[0].lower()}{told[1:]}{hint}") from None
     except (RecursionError, ValueError) as error:
         # Numbers of too many digits, and brackets within brackets without end.
-        raise ValueError(f"{path}: no TOML that can be read: {shown(str(error))}") from None
+        raise ValueError(f"{path}: no TOML that can be read: {as_toml(str(error))}") from None
     return Source(path, values, lines_of(text), {})
 
 

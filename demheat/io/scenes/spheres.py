@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from demheat.io.scenes.source import text_of
 from demheat.io.scenes.units import LENGTH, PLAIN, RESISTANCE, factor_of, scaled
-from demheat.io.words import nearest, nearest_file, shown
+from demheat.io.words import as_toml, nearest, nearest_file
 from demheat.runtime.limits import free_memory
 from demheat.runtime.paths import checked_path
 from demheat.scene import Sphere
@@ -35,10 +35,10 @@ def spheres_of(table, materials, default, size) -> list[tuple[Sphere, str]]:
     unit = table.text("unit", "m", among=UNITS)
     offset = table.vector("offset", LENGTH, (0.0, 0.0, 0.0))
     if len(offset) != 3:
-        raise table.error(table.keys["offset"], f" = {shown(offset)}: must be three lengths")
+        raise table.error(table.keys["offset"], f" = {as_toml(offset)}: must be three lengths")
     shrunk = table.number("radius_factor", PLAIN, 1.0)
     if not 0 < shrunk <= 1:
-        raise table.error("radius_factor", f" = {shown(shrunk)}: must be a number > 0, at most 1")
+        raise table.error("radius_factor", f" = {as_toml(shrunk)}: must be a number > 0, at most 1")
     step = table.value("step", int, "an integer")
     factor = factor_of(unit, LENGTH)[0]
     tabular = path.suffix.lower() in TABLES
@@ -71,7 +71,7 @@ def _within(rows, offset, size):
 
 def _check_there(table, path):
     if not path.exists():
-        told = f" = {shown(table.values['file'])}: there is no such file{nearest_file(path)}"
+        told = f" = {as_toml(table.values['file'])}: there is no such file{nearest_file(path)}"
         raise table.error("file", told)
 
 
@@ -98,7 +98,7 @@ def _packed(table, path, factor, step, size):
     """Rows of a packing; its reader says what is wrong with it."""
     from demheat.io.packings import read
 
-    told = f" = {shown(table.values['file'])}"
+    told = f" = {as_toml(table.values['file'])}"
     try:
         packing = read(path, step=step)
         if "box" in packing.provenance:

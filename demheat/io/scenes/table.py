@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from demheat.io.scenes.source import Source
 from demheat.io.scenes.units import PLAIN, TEMPERATURE, Quantity, factor_of, read_quantity, scaled
-from demheat.io.words import nearest, shown
+from demheat.io.words import as_toml, nearest
 
 # What Scene, Sphere, ... say: "Sphere.radius = -1: must be ..."; mappings hold colons themselves.
 SAID = re.compile(r"\w+\.(?P<field>\w+)(?P<part>\[[^\]]*\])?(?: = (?:\{.*?\}|.*?))?: (?P<what>.*)", re.DOTALL)
@@ -49,7 +49,7 @@ class Table:
             return default
         value = self.values[key]
         if not isinstance(value, list):
-            raise self.error(key, f" = {shown(value)}: must be an array of numbers, such as [1, 2, 3]")
+            raise self.error(key, f" = {as_toml(value)}: must be an array of numbers, such as [1, 2, 3]")
         return tuple(self._converted((key, k), part, name, quantity) for k, part in enumerate(value))
 
     def rows(self, name: str, quantities: tuple, what: str) -> tuple | None:
@@ -59,10 +59,10 @@ class Table:
             return None
         value, found = self.values[key], []
         if not isinstance(value, list):
-            raise self.error(key, f" = {shown(value)}: must be {what}")
+            raise self.error(key, f" = {as_toml(value)}: must be {what}")
         for i, row in enumerate(value):
             if not isinstance(row, list) or len(row) != len(quantities):
-                raise self.error((key, i), f" = {shown(row)}: must be {what}")
+                raise self.error((key, i), f" = {as_toml(row)}: must be {what}")
             named = [name if quantity == quantities[0] else key for quantity in quantities]
             cells = enumerate(zip(row, named, quantities, strict=True))
             found.append(tuple(self._converted((key, i, j), *cell) for j, cell in cells))
@@ -75,10 +75,10 @@ class Table:
             return default
         value = self.values[key]
         if not isinstance(value, str):
-            raise self.error(key, f" = {shown(value)}: must be text in quotes")
+            raise self.error(key, f" = {as_toml(value)}: must be text in quotes")
         if among is not None and value not in among:
             listed = ", ".join(map(repr, among))
-            raise self.error(key, f" = {shown(value)}: must be one of {listed}{nearest(value, among)}")
+            raise self.error(key, f" = {as_toml(value)}: must be one of {listed}{nearest(value, among)}")
         return value
 
     def value(self, name: str, kind: type, words: str, default=None):
@@ -88,7 +88,7 @@ class Table:
             return default
         value = self.values[key]
         if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-            raise self.error(key, f" = {shown(value)}: must be {words}")
+            raise self.error(key, f" = {as_toml(value)}: must be {words}")
         return value
 
     def table(self, name: str, default=None) -> Table | None:
@@ -101,7 +101,7 @@ class Table:
         rows = self.value(name, list, f"an array of tables, [[{name}]]", [])
         for k, row in enumerate(rows):
             if not isinstance(row, dict):
-                raise self.error((name, k), f" = {shown(row)}: must be a table")
+                raise self.error((name, k), f" = {as_toml(row)}: must be a table")
         return [Table(self.source, (*self.path, name, k), row) for k, row in enumerate(rows)]
 
     def only(self, names: Mapping[str, Quantity]) -> None:
@@ -133,8 +133,8 @@ class Table:
         part = (found["part"] or "").strip("[]'\"")
         value = self.values[key]
         if part and isinstance(value, dict) and part in value:
-            return self.error((key, part), f" = {shown(value[part])}: {found['what']}")
-        return self.error(key, f" = {shown(value)}: {found['what']}")
+            return self.error((key, part), f" = {as_toml(value[part])}: {found['what']}")
+        return self.error(key, f" = {as_toml(value)}: {found['what']}")
 
     def _converted(self, below, value, name, quantity):
         """A number, or text of a number and a unit, in SI."""
@@ -143,13 +143,13 @@ class Table:
             try:
                 number, scale = read_quantity(value, quantity)
             except ValueError as error:
-                raise self.error(below, f" = {shown(value)}: {error}") from None
+                raise self.error(below, f" = {as_toml(value)}: {error}") from None
         elif isinstance(value, (int, float)) and not isinstance(value, bool):
             factor, scale = factor_of(quantity.suffixes[suffix], quantity) if suffix else (1, "")
             number = scaled(value, factor) if suffix else value
         else:
             text = f", or text with a unit such as '3 {quantity.unit}'" if quantity.unit and not suffix else ""
-            raise self.error(below, f" = {shown(value)}: must be a number{text}")
+            raise self.error(below, f" = {as_toml(value)}: must be a number{text}")
         if quantity == TEMPERATURE:
             self._check_scale((*self.path, *below), scale)
         return number

@@ -3,8 +3,7 @@
 Functions of a packing, and of its links as `contacts` or `neighbours` list them, that return arrays and tuples.
 """
 
-from demheat.packing.statistics.correlations import RadialDistribution, TwoPoint, radial_distribution, two_point
-from demheat.packing.statistics.links import (
+from demheat.packing.statistics.contacts import (
     Backbone,
     Coordination,
     Directions,
@@ -14,6 +13,7 @@ from demheat.packing.statistics.links import (
     directions,
     fabric,
 )
+from demheat.packing.statistics.correlations import RadialDistribution, TwoPoint, radial_distribution, two_point
 from demheat.packing.statistics.regions import packing_fraction
 
 __all__ = [

@@ -11,7 +11,7 @@ from importlib import import_module
 
 from demheat.io.scenes import read_file
 from demheat.terminal.commands.options import parser
-from demheat.terminal.ends import BAD, INTERRUPTED, finished, of_output, told
+from demheat.terminal.ends import BAD, INTERRUPTED, error_line, finished, of_output
 from demheat.version import __version__
 
 DONE, WITHOUT = 0, 1
@@ -72,5 +72,5 @@ def _done(words):
 
 
 def _said(error, status):
-    print(f"demheat: {told(error)}", file=sys.stderr)
+    print(f"demheat: {error_line(error)}", file=sys.stderr)
     return status

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from demheat.declared import found
+from demheat.declared import all_methods
 from demheat.io.scenes.write import text_of_scene
 from demheat.runtime.deadline import budget
 from demheat.runtime.paths import replaced
@@ -53,7 +53,7 @@ def run(file, options) -> int:
 
 def usual(*, everything: bool = False) -> list[str]:
     """Names of the methods that are compared where none is named: the main ones, formulas and witnesses."""
-    steady = [method for method in found().values() if method.call != "evolve"]
+    steady = [method for method in all_methods().values() if method.call != "evolve"]
     return [m.name for m in steady if everything or m.role != "beside" or m.call == "estimate"]
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from typing import NamedTuple
 
-from demheat.declared import found, load
+from demheat.declared import all_methods, load
 from demheat.io.scenes.units import LENGTH, read_quantity
 from demheat.io.words import nearest
 from demheat.method import Method
@@ -31,16 +31,18 @@ def asked(file, names, words, *, default) -> list[Asked]:
     """Methods with their knobs."""
     chosen = list(names or file.methods or default)
     for name in chosen:
-        if name not in found():
-            near = nearest(name, found()) or f"; must be one of {', '.join(found())}"
+        if name not in all_methods():
+            near = nearest(name, all_methods()) or f"; must be one of {', '.join(all_methods())}"
             raise ValueError(f"--method {name}: no such method{near}")
     knobs = {name: dict(file.methods.get(name, {})) for name in chosen}
     for name, own in knobs.items():
         for knob in own:
-            _check(found()[name], knob, lambda what, at=(name, knob): file.source.error(("solve", *at), f": {what}"))
+            _check(
+                all_methods()[name], knob, lambda what, at=(name, knob): file.source.error(("solve", *at), f": {what}")
+            )
     for word in words:
         _add(knobs, word)
-    return [Asked(found()[name], knobs[name]) for name in chosen]
+    return [Asked(all_methods()[name], knobs[name]) for name in chosen]
 
 
 def known(method: Method) -> set[str]:
@@ -57,16 +59,16 @@ def _add(knobs, word):
         raise ValueError(f"--knob {word}: must be like voxels=64 or fft.voxels=64")
     if names and names[0] not in knobs:
         raise ValueError(f"--knob {word}: no method {names[0]!r} is asked for{nearest(names[0], knobs)}")
-    takers = names or [name for name in knobs if knob in known(found()[name])]
+    takers = names or [name for name in knobs if knob in known(all_methods()[name])]
     # What fixes it says so.
-    takers = takers or [name for name in knobs if knob in found()[name].knobs]
+    takers = takers or [name for name in knobs if knob in all_methods()[name].knobs]
     if not takers:
-        everything = set().union(*(known(found()[name]) for name in knobs))
+        everything = set().union(*(known(all_methods()[name]) for name in knobs))
         near = nearest(knob, everything) or f"; must be one of {', '.join(sorted(everything)) or 'none'}"
         raise ValueError(f"--knob {word}: no knob of {', '.join(knobs)}{near}")
     for name in takers:
-        _check(found()[name], knob, lambda what: ValueError(f"--knob {word}: {what}"))
-        knobs[name][knob] = _value(found()[name], knob, text, word)
+        _check(all_methods()[name], knob, lambda what: ValueError(f"--knob {word}: {what}"))
+        knobs[name][knob] = _value(all_methods()[name], knob, text, word)
 
 
 def _check(method, knob, error):

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Layer, Material, Scene, Sphere, gallery
-from demheat.cheapest import laws
+from demheat.cheapest import cost_laws
 from demheat.cheapest.measures import measures
 
 SCENE = gallery.sphere_in_cube(10.0)
@@ -57,44 +57,44 @@ def test_pores_and_superconductors_are_measured():
     assert_allclose(measures(gallery.sphere_in_cube(1e6)).contrast, math.log(1e6), rtol=1e-12)
 
 
-@pytest.mark.parametrize("method", sorted(laws.laws()))
+@pytest.mark.parametrize("method", sorted(cost_laws.laws()))
 def test_what_is_needed_is_what_is_predicted(method):
-    law = laws.laws()[method]
+    law = cost_laws.laws()[method]
     if law.refinement <= 0.2:
         pytest.skip("errors that hardly fall")
     # At the finest value: coarse meshes are finer on the sphere than what is asked for.
     value = law.finest * (0.1 if law.knob == "size" else 1)
-    error = laws.predicted(method, SCENE, value).error
-    found = laws.needed(method, SCENE, error, sure=False)
+    error = cost_laws.predicted(method, SCENE, value).error
+    found = cost_laws.needed(method, SCENE, error, sure=False)
     if law.knob == "size":
         assert_allclose(found, value, rtol=1e-9)
     else:
         assert value * (1 - 1e-9) <= found <= value + 1
     # Nine times in ten costs more.
-    finer = laws.needed(method, SCENE, error)
-    assert laws.predicted(method, SCENE, finer).error <= error / law.error_within * (1 + 1e-9)
-    assert laws.predicted(method, SCENE, finer).cpu_s >= laws.predicted(method, SCENE, found).cpu_s
+    finer = cost_laws.needed(method, SCENE, error)
+    assert cost_laws.predicted(method, SCENE, finer).error <= error / law.error_within * (1 + 1e-9)
+    assert cost_laws.predicted(method, SCENE, finer).cpu_s >= cost_laws.predicted(method, SCENE, found).cpu_s
 
 
 def test_small_spheres_are_meshed_finely_whatever_the_size():
-    law, small = laws.laws()["fem"], measures(gallery.sphere_in_cube(10.0, radius=0.005))
-    one, other = (laws.predicted("fem", small, size).error for size in (0.01, 0.02))
+    law, small = cost_laws.laws()["fem"], measures(gallery.sphere_in_cube(10.0, radius=0.005))
+    one, other = (cost_laws.predicted("fem", small, size).error for size in (0.01, 0.02))
     assert_allclose(one, other, rtol=1e-12)
     # So that errors as large as theirs ask for no size of their own.
-    assert laws.needed("fem", small, min(0.99, 2 * one), sure=False) == law.coarsest * small.edge
+    assert cost_laws.needed("fem", small, min(0.99, 2 * one), sure=False) == law.coarsest * small.edge
 
 
 def test_predictions_do_not_hang_on_the_unit_of_length():
     larger = gallery.sphere_in_cube(10.0, edge=10.0)
-    for method, law in laws.laws().items():
+    for method, law in cost_laws.laws().items():
         value = law.finest
         scale = (0.1, 10.0) if law.knob == "size" else (1.0, 1.0)
-        one, other = (laws.predicted(method, s, value * f) for s, f in zip((SCENE, larger), scale, strict=True))
+        one, other = (cost_laws.predicted(method, s, value * f) for s, f in zip((SCENE, larger), scale, strict=True))
         assert_allclose(other, one, rtol=1e-9)
 
 
 def test_the_main_methods_have_laws():
-    assert {"dem", "fem", "fft"} <= set(laws.laws())
-    for law in laws.laws().values():
+    assert {"dem", "fem", "fft"} <= set(cost_laws.laws())
+    for law in cost_laws.laws().values():
         assert law.cost > 0 and law.bytes > 0 and law.error_within >= 1 and law.scenes > 1
         assert np.isfinite(law[2:]).all()

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from demheat import Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, recommend
-from demheat.cheapest import laws, ways
+from demheat.cheapest import cost_laws, ways
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.measures import measures
 from demheat.tensor import conductivity_tensor
@@ -134,7 +134,8 @@ def test_the_fft_is_judged_by_the_rule_that_it_takes(contrast, rule):
     told = {way.method: way for way in recommend(scene, 1e-3).ways}["fft"]
     part = measures(loads_of(scene).parts[0])
     law = {"laminate": "fft"}.get(rule, f"fft-{rule}")
-    assert told.error == laws.predicted(law, part, laws.needed(law, part, 1e-3 / ways.INTERVAL, sure=False)).error
+    needed = cost_laws.needed(law, part, 1e-3 / ways.INTERVAL, sure=False)
+    assert told.error == cost_laws.predicted(law, part, needed).error
     # The rule for pores is the same in few voxels.
     field = fft.solve(scene, voxels=told.knobs["voxels"] if contrast else 8)
     assert field.stats["rule"] == rule

@@ -7,7 +7,7 @@ from random_links import balanced, branch, each_link, network_of, random_links, 
 
 from demheat.conduction import products
 from demheat.conduction import steady_kernels as kernels
-from demheat.runtime.threads import limited
+from demheat.runtime.threads import thread_limit
 
 pytestmark = pytest.mark.twin
 
@@ -55,7 +55,7 @@ def test_bits_do_not_depend_on_threads():
     (p,), found = vectors(1, MANY), []
     for threads in (1, 2):
         q = np.empty(MANY)
-        with limited(threads):
+        with thread_limit(threads):
             found.append((products.apply(links, diagonal, p, q), products.dot(p, q), q.tobytes()))
     assert found[0] == found[1]
 

@@ -71,7 +71,7 @@ TIMED = {
 def test_seconds_of_every_solve(name):
     with pytest.raises(TimeoutError, match=r"^seconds = 1e-09 are over"):
         TIMED[name](1e-9)
-    assert not deadline.limited()
+    assert not deadline.has_budget()
     with pytest.raises(ValueError, match="seconds = -1.0: must be a finite number > 0, or None"):
         TIMED[name](-1.0)
     TIMED[name](1000.0)
@@ -94,13 +94,13 @@ def test_the_first_to_end_counts_and_none_is_left():
     with demheat.budget(5.0, begun=time.monotonic() - 6.0), pytest.raises(TimeoutError, match="seconds = 5 are"):
         deadline.look("this")
     deadline.look("this")
-    assert not deadline.limited()
+    assert not deadline.has_budget()
 
 
 def test_other_threads_have_their_own():
     found = []
     with demheat.budget(1e-9):
-        thread = threading.Thread(target=lambda: found.append(deadline.limited()))
+        thread = threading.Thread(target=lambda: found.append(deadline.has_budget()))
         thread.start()
         thread.join()
     assert found == [False]

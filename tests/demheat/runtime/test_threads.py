@@ -7,7 +7,7 @@ import time
 
 import pytest
 
-from demheat.runtime.threads import limited, shared_out
+from demheat.runtime.threads import shared_out, thread_limit
 
 CODE = "import demheat.runtime.threads, numba; print(numba.config.THREADING_LAYER)"
 
@@ -24,7 +24,7 @@ def test_layer_is_workqueue_unless_asked_otherwise(asked, given):
 @pytest.mark.parametrize("threads", [1, 2])
 def test_pieces_make_up_the_work(threads):
     done = []
-    with limited(threads):
+    with thread_limit(threads):
         shared_out(lambda first, last: done.append((first, last)), 10, piece=4)
     assert sorted(done) == [(0, 4), (4, 8), (8, 10)]
     assert threads > 1 or done == sorted(done)
@@ -40,7 +40,7 @@ def test_no_piece_is_begun_after_one_that_failed(threads):
         time.sleep(1e-3)
         done.append(first)
 
-    with limited(threads), pytest.raises(ZeroDivisionError):
+    with thread_limit(threads), pytest.raises(ZeroDivisionError):
         shared_out(work, 1000, piece=1)
     # A second thread may be in the midst of others.
     assert len(done) < 100 and 2 not in done

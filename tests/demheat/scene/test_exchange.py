@@ -76,10 +76,10 @@ def test_a_steady_state_needs_a_temperature_somewhere():
 KNOWING = {"dem", "dem-plain", "dem-mean", "fem", "fem-straight", "fem-p1", "fem-bricks"}
 
 
-@pytest.mark.parametrize("name", [name for name in methods.found() if name not in KNOWING])
+@pytest.mark.parametrize("name", [name for name in methods.all_methods() if name not in KNOWING])
 @pytest.mark.parametrize("walls", [OUT, HOT])
 def test_methods_that_do_not_know_them_say_so(name, walls):
-    method = methods.found()[name]
+    method = methods.all_methods()[name]
     # Who knows them, or the method's own remedy.
     with pytest.raises(NotImplementedError, match=rf"^Scene.walls\['x.'\] = \w+\(.*\): .*({EXCHANGE}|; use wall ')"):
         getattr(methods.load(method.module), method.call)(scene(walls), **method.knobs)

@@ -110,12 +110,12 @@ WRITER = """
 import sys
 import time
 from demheat.runtime.row_file import RowFile
-from demheat.sweeps import kept
+from demheat.sweeps import file
 from demheat.sweeps.rows import TAIL
 read, RowFile.read = RowFile.read, lambda file: (read(file), time.sleep(0.005))[0]
 print(flush=True)
 sys.stdin.readline()
-mine, file = sys.argv[1], kept.opened(sys.argv[2])
+mine, file = sys.argv[1], file.opened(sys.argv[2])
 for number in range(20):
     file.add({"x": mine, "n": number}, {"x": mine, "n": number, **dict.fromkeys(TAIL, "")})
 """

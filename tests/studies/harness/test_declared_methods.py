@@ -16,7 +16,7 @@ RESULTS = sorted((Path(__file__).parents[3] / "results").glob("*.csv"))
 
 def test_methods_come_in_one_order():
     """Fields, formulas, witnesses; families together, the default of each first: so tables and legends list them."""
-    order = [method.module for method in methods.found().values()]
+    order = [method.module for method in methods.all_methods().values()]
     assert list(dict.fromkeys(order)) == ["dem", "fem", "fft", "bounds", "exact", "multipole"]
     assert [method.name for method in methods.compared()] == ["dem", "fem", "fft", "fft-em"]
     assert [method.name for method in methods.compared("fem-p1", "maxwell")][2] == "fem-p1"
@@ -45,13 +45,13 @@ def toy(**more):
 def with_toy(monkeypatch):
     """One more method, of a knob that no study knows, and one that nothing refines."""
     closed = Method(name="closed", title="closed", module="closed")
-    known = {**methods.found(), "toy": toy(small=5), "closed": closed}
-    monkeypatch.setattr(methods, "found", lambda: known)
+    known = {**methods.all_methods(), "toy": toy(small=5), "closed": closed}
+    monkeypatch.setattr(methods, "all_methods", lambda: known)
 
 
 def test_what_a_study_spends(with_toy):
     spends = {"voxels": (64, 128), "size": (0.1,), "fem-p1": (0.05, 0.02)}
-    found = methods.found()
+    found = methods.all_methods()
     values = {name: methods.spent(found[name], spends) for name in ("fft", "fem", "fem-p1", "dem", "toy", "closed")}
     assert values == {
         "fft": (64, 128), "fem": (0.1,), "fem-p1": (0.05, 0.02), "dem": (1000, 8000), "toy": (5, 20), "closed": (None,)

@@ -55,7 +55,7 @@ def test_what_others_took_is_no_time_of_a_row(tiny):
     ],
 )
 def test_in_words(seconds, words):
-    assert lasting.told(seconds) == words
+    assert lasting.time_in_words(seconds) == words
 
 
 def test_rows_for_their_values_are_made_beside_the_others_without_costs(tiny, monkeypatch):

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 import studies.speed_error as study
-from demheat.cheapest import laws as shipped
+from demheat.cheapest import cost_laws as shipped
 from references import multipole
 from studies.harness.table import read_frame
 from studies.speed_error import laws

@@ -11,9 +11,9 @@ from scipy.integrate import solve_ivp
 from small_networks import SWINGING, dense, network_of, system_of
 
 from demheat.conduction.integrators import control, euler, linear, rkl2, trbdf2
-from demheat.conduction.integrators.base import Step
 from demheat.conduction.integrators.march import linear_tolerance
 from demheat.conduction.integrators.spectrum import Spectrum, spectrum
+from demheat.conduction.integrators.step import Step
 from demheat.conduction.integrators.system import initial_state, semi_discrete
 from demheat.conduction.integrators.transient_kernels import Ties
 from demheat.conduction.transient import capacities

@@ -15,7 +15,7 @@ import pytest
 import tifffile
 
 from demheat import Material
-from demheat.io.images import base, read_image
+from demheat.io.images import read_image, source
 
 nrrd = pytest.importorskip("nrrd")
 
@@ -28,7 +28,7 @@ SHAPE = [2, 2, 2]
 
 @pytest.fixture(autouse=True)
 def little_is_free(monkeypatch):
-    monkeypatch.setattr(base, "ALWAYS", 2**17)
+    monkeypatch.setattr(source, "ALWAYS", 2**17)
 
 
 def refused(path, words):

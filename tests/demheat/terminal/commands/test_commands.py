@@ -13,7 +13,7 @@ import pytest
 
 import demheat
 from demheat import gallery
-from demheat.declared import found
+from demheat.declared import all_methods
 from demheat.io import scenes
 from demheat.terminal.commands import answers, compare, main
 from demheat.terminal.commands.knobs import asked
@@ -295,7 +295,7 @@ def test_compare_takes_all_but_the_seldom_ones():
     usual = compare.usual()
     assert {"dem", "fem", "fft", "fft-em", "maxwell", "exact", "multipole"} <= set(usual)
     assert "fem-p1" not in usual and "fem-bricks" not in compare.usual(everything=True)
-    assert set(compare.usual(everything=True)) == {m.name for m in found().values() if m.call != "evolve"}
+    assert set(compare.usual(everything=True)) == {m.name for m in all_methods().values() if m.call != "evolve"}
 
 
 def test_a_process_loads_nothing_heavy(scene):

@@ -37,7 +37,7 @@ def in_fresh_process(sent: bytes, limit: float | None) -> dict:
         question.flush()
         words = [sys.executable, "-m", __name__, question.name, str(os.getpid())]
         try:
-            return fresh.answered(words, limit=limit, start=partial(fresh.run, environment=row_environment()))
+            return fresh.answer_of(words, limit=limit, start=partial(fresh.run, environment=row_environment()))
         except TimeoutError as error:
             return {"lost": f"TimeoutError: {error}"}
         except ChildProcessError as error:

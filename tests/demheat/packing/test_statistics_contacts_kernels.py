@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.optimize import linprog
 
-from demheat.packing.statistics import links_kernels as kernels
+from demheat.packing.statistics import contacts_kernels as kernels
 
 
 def rows_of(matrix):

@@ -13,7 +13,7 @@ NO_SHIFT = 13
 NEEDED = ("centers", "indptr", "indices", "image", "conductance")
 
 
-class Drawn(NamedTuple):
+class Segments(NamedTuple):
     """What is drawn of a network and of temperatures."""
 
     ends: np.ndarray  # (m, 2) int array: Particles p < q of each line
@@ -23,13 +23,13 @@ class Drawn(NamedTuple):
     temperature: np.ndarray | None  # (n,) float array or None
 
 
-def drawn(packing, network, temperature) -> Drawn | None:
+def segments_of(packing, network, temperature) -> Segments | None:
     """Check what `demheat.io.packings.write` was given and choose the lines."""
     if temperature is not None:
         temperature = _temperatures(temperature, packing.number)
     if network is None:
         empty = np.zeros(0)
-        return None if temperature is None else Drawn(np.zeros((0, 2), int), empty, None, 0, temperature)
+        return None if temperature is None else Segments(np.zeros((0, 2), int), empty, None, 0, temperature)
     lacking = [name for name in NEEDED if not hasattr(network, name)]
     if lacking:
         raise ValueError(f"network = {type(network).__name__}: must be a Network; it has no {', '.join(lacking)}")
@@ -44,7 +44,7 @@ def drawn(packing, network, temperature) -> Drawn | None:
     once = here & (others > rows)
     ends, conductance = np.column_stack((rows[once], others[once])), np.asarray(network.conductance)[once]
     flow = None if temperature is None else conductance * (temperature[ends[:, 1]] - temperature[ends[:, 0]])
-    return Drawn(ends, conductance, flow, int(np.count_nonzero(~here)) // 2, temperature)
+    return Segments(ends, conductance, flow, int(np.count_nonzero(~here)) // 2, temperature)
 
 
 def _temperatures(temperature, number):

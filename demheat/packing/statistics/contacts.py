@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,7 @@ import demheat.runtime.threads  # noqa: F401 (chooses the threading layer)
 from demheat.packing.base import Packing
 from demheat.packing.gate import check_packing
 from demheat.packing.neighbours import as_graph
-from demheat.packing.statistics import links_kernels as kernels
+from demheat.packing.statistics import contacts_kernels as kernels
 from demheat.packing.walls import bulk, outward, wall_distance, walls
 from demheat.scene.inputs import chosen, finite
 
@@ -30,10 +31,10 @@ class Coordination(NamedTuple):
         Parts of the counted particles with fewer than 2 and 4 contacts.
     counted : int
         Particles at least `margin` from walls.
-    islands : int
-        Connected parts of the whole network; a particle without contacts is one.
+    components : int
+        Connected components of the whole network; a particle without contacts is one.
     largest : float
-        Part of all particles that is in the largest island.
+        Part of all particles that is in the largest component.
     """
 
     mean: float
@@ -42,8 +43,14 @@ class Coordination(NamedTuple):
     under_2: float
     under_4: float
     counted: int
-    islands: int
+    components: int
     largest: float
+
+    @property
+    def islands(self) -> int:
+        """The name of `components` in 0.2."""
+        warnings.warn("islands is now components", DeprecationWarning, stacklevel=2)
+        return self.components
 
 
 class Backbone(NamedTuple):
@@ -144,7 +151,7 @@ def coordination(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, m
     """
     indptr, indices = _checked_rows(packing, indptr, indices)
     numbers = np.diff(indptr)[bulk(packing, margin)]
-    islands, label = connected_components(as_graph(indptr, indices), directed=False)
+    components, label = connected_components(as_graph(indptr, indices), directed=False)
     return Coordination(
         mean=float(numbers.mean()),
         least=int(numbers.min()),
@@ -152,7 +159,7 @@ def coordination(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, m
         under_2=float(np.mean(numbers < 2)),
         under_4=float(np.mean(numbers < 4)),
         counted=len(numbers),
-        islands=int(islands),
+        components=int(components),
         largest=float(np.bincount(label).max() / packing.number),
     )
 

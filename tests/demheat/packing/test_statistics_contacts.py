@@ -8,7 +8,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from demheat.packing.base import make_packing
 from demheat.packing.neighbours import neighbours
 from demheat.packing.statistics import backbone, coordination, directions, fabric
-from demheat.packing.statistics.links import _wall_contacts
+from demheat.packing.statistics.contacts import _wall_contacts
 from demheat.packing.walls import wall_distances
 
 
@@ -27,13 +27,13 @@ def pairs_at_random(seed, links):
 def test_coordination_of_crystals():
     for packing, number in ((simple_cubic(), 6), (face_centred(), 12)):
         found = coordination(packing, *touching(packing))
-        assert (found.mean, found.least, found.under_4, found.islands, found.largest) == (number, number, 0, 1, 1)
+        assert (found.mean, found.least, found.under_4, found.components, found.largest) == (number, number, 0, 1, 1)
         assert_array_equal(found.histogram, [0] * number + [packing.number])
     walled = simple_cubic(periodic=False)
     rows = touching(walled)
     assert coordination(walled, *rows).mean == 2 * 3 * 5 * 36 / 216
     inner = coordination(walled, *rows, margin=1.5)
-    assert (inner.mean, inner.least, inner.counted, inner.islands) == (6, 6, 64, 1)
+    assert (inner.mean, inner.least, inner.counted, inner.components) == (6, 6, 64, 1)
 
 
 def test_coordination_by_hand():
@@ -43,7 +43,7 @@ def test_coordination_by_hand():
     found = coordination(packing, *touching(packing))
     assert_array_equal(found.histogram, [1, 4, 1])
     assert_allclose(found[:1] + found[3:5], [1, 5 / 6, 1], rtol=1e-15)
-    assert (found.islands, found.largest, found.counted, found.least) == (3, 0.5, 6, 0)
+    assert (found.components, found.largest, found.counted, found.least) == (3, 0.5, 6, 0)
 
 
 def test_a_stack_unravels_from_its_free_top():
