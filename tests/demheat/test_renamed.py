@@ -3,13 +3,14 @@
 import sys
 from importlib import import_module
 
+import numpy as np
 import pytest
 
 import demheat
 from demheat import Calibrated, Laguerre, gallery
 from demheat.dem.options import Particles
 from demheat.io.images import read_image
-from demheat.packing import contacts, domain, make_packing
+from demheat.packing import domain, make_packing
 from demheat.packing.statistics import coordination
 from demheat.renamed import MOVED
 
@@ -20,7 +21,8 @@ def test_old_classes_and_functions():
 
 
 def test_components_of_contacts():
-    found = coordination(crystal := make_packing([[0.5] * 3], [0.4], (1, 1, 1), False, {}), *contacts(crystal))
+    alone = make_packing([[0.5] * 3], [0.4], (1, 1, 1), False, {})
+    found = coordination(alone, np.zeros(2, dtype=np.int64), np.empty(0, dtype=np.int64))
     with pytest.warns(DeprecationWarning, match="islands is now components"):
         assert found.islands == found.components == 1
 

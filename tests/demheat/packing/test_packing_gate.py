@@ -50,10 +50,10 @@ CALLS = {
     "statistics.regions.packing_fraction": lambda p: statistics.packing_fraction(p),
     "statistics.correlations.radial_distribution": lambda p: statistics.radial_distribution(p, r_max=0.9),
     "statistics.correlations.two_point": lambda p: statistics.two_point(p, r_max=1.0, lines=2),
-    "statistics.links.coordination": lambda p: statistics.coordination(p, *NONE),
-    "statistics.links.backbone": lambda p: statistics.backbone(p, *NONE),
-    "statistics.links.fabric": lambda p: statistics.fabric(p, *NONE),
-    "statistics.links.directions": lambda p: statistics.directions(p, *NONE),
+    "statistics.contacts.coordination": lambda p: statistics.coordination(p, *NONE),
+    "statistics.contacts.backbone": lambda p: statistics.backbone(p, *NONE),
+    "statistics.contacts.fabric": lambda p: statistics.fabric(p, *NONE),
+    "statistics.contacts.directions": lambda p: statistics.directions(p, *NONE),
 }
 # Beyond this folder.
 OTHERS = {
