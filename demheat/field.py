@@ -21,8 +21,7 @@ import numpy as np
 from demheat.gate import check_answer
 from demheat.scene import Scene
 from demheat.scene.bodies import inside
-from demheat.scene.frozen import ReadOnly, read_only
-from demheat.scene.html import table_of
+from demheat.scene.frozen import ReadOnly, read_only, table_of
 from demheat.scene.inputs import axis_number, finite, reals
 
 if TYPE_CHECKING:

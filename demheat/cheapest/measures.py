@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Scene
-from demheat.scene.thickness import coats, extents
+from demheat.scene.volumes import coats, extents
 
 # Gap of a lone sphere, over its diameter, beyond which it makes no difference.
 WIDEST = 10.0

@@ -1,4 +1,4 @@
-"""How far the discrete element method is off: fewer particles, or conforming cells beside a law that has no limit."""
+"""What other runs tell of one: fewer particles how far it is off, few ones whether there is an answer at all."""
 
 from __future__ import annotations
 
@@ -9,11 +9,13 @@ from functools import partial
 
 import numpy as np
 
+from demheat.conduction.steady import HIGH_CONTRAST, Unsolved, contrast_of
 from demheat.dem.options import Particles
-from demheat.error import Estimate, Fine, Refinement, beside, by_refinement, misplaced
+from demheat.error import Estimate, Fine, Refinement, beside, by_refinement, misplaced, quietly
 from demheat.laws import Calibrated, Laguerre, Platonic
-from demheat.scene import LevelSet
-from demheat.scene.thickness import coats, extents
+from demheat.runtime.progress import stage
+from demheat.scene import LevelSet, Scene
+from demheat.scene.volumes import coats, extents
 
 # Twins in gaps stand so much closer in a run besides; there the error goes with their distance.
 CLOSER = 0.7
@@ -35,6 +37,12 @@ TOLD = 4 / 3
 SMALL = 0.4
 CONFORMING = Refinement(RATIO, 2, 2.0, 1.0, 2.0, 1.0, also=1 / (1 - CLOSER), coats=1.5)
 PLAIN = Refinement(RATIO, 2, 1.0, 1.3, 1.0, 1.0, chance=True)
+# Particles of a trial, its iterations at most (found: 700), and by how much it may miss the tolerance, as more of them
+# may do a little better: .1 to 1 s. On 16 scenes of contrasts from 1e7 to 1e12, at the usual tolerance, all that it
+# refused failed with 10 000 particles, and it refused all that failed from 1e9 on.
+FEW, MOST, LENIENT = 3000, 2000, 2.0
+# A tolerance at most, as that of any solve.
+LOOSEST = 9e-3
 
 
 def estimator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, answer: Callable, *, steps: float = 0.0):
@@ -98,3 +106,28 @@ def _in_gaps(field):
 def _by_cells(field, *, wanted, answer) -> Estimate:
     """Networks of contacts have no limit of many particles, or a far one: conforming cells show what they miss."""
     return beside(field, answer(Laguerre(), wanted), "conforming cells beside it")
+
+
+def check_contrast(scene: Scene, wanted: Particles, tolerance: float, answer: Callable) -> None:
+    """Refuse a scene of high contrast whose equations a trial shows not to be solvable.
+
+    Rounding of the temperatures in what conducts well leaves heat there of about 1e-16 of the contrast, of that which
+    passes. That is nothing where heat passes through what conducts well from end to end, or where its temperature is
+    that of the middle: a limit of the contrast alone would refuse such scenes.
+    """
+    number = wanted.particles if wanted.packing is None else len(wanted.packing.radii)
+    if contrast_of(scene) < HIGH_CONTRAST or number <= FEW:
+        return
+    how = {"tolerance": min(LENIENT * tolerance, LOOSEST), "max_iterations": MOST}
+    few = replace(wanted, particles=FEW, packing=None, replicas=None, allow_few=True)
+    try:
+        with stage("trial"):
+            quietly(partial(answer, **how), few)
+    except Unsolved as error:
+        raise NotImplementedError(
+            f"solve: a trial with {FEW} particles fails already: {error} (from 1e6 on the effective conductivity "
+            "hardly changes), conductivity 0 for what hardly conducts, or another method, such as references.fem"
+        ) from error
+    except (ValueError, RuntimeError):
+        # With so few only, perhaps: what all are asked for says so itself.
+        return

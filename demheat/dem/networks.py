@@ -21,7 +21,7 @@ from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
 from demheat.scene.narrows import STRONG, narrows
 from demheat.scene.resistances import between
-from demheat.scene.thickness import coats, extents
+from demheat.scene.volumes import coats, extents
 
 # Layers thinner than so many particle diameters are seen by chance where facets do not lie on interfaces. Errors of a
 # layer of .001 and of 1000 times the matrix's conductivity, over the exact value: at 2.4 diameters .05 and -.16, at 1.2

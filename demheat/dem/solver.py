@@ -15,10 +15,9 @@ from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_check
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
-from demheat.dem.estimate import estimator_of
+from demheat.dem.estimate import check_contrast, estimator_of
 from demheat.dem.networks import network_of, networks_of
 from demheat.dem.options import MIB, Particles, check_fits, expected_bytes, expected_unknowns
-from demheat.dem.trial import check_contrast
 from demheat.dem.warm import Helper, cells, parts_of
 from demheat.field import Field
 from demheat.laws import TWO_POINTS, Calibrated, Choices, Laguerre, Platonic

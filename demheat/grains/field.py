@@ -13,8 +13,7 @@ from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
 from demheat.packing.base import Packing
 from demheat.runtime.paths import checked_path, replaced
-from demheat.scene.frozen import ReadOnly, read_only
-from demheat.scene.html import table_of
+from demheat.scene.frozen import ReadOnly, read_only, table_of
 
 COLUMNS = ("first", "second", "gap_m", "contact_radius_m", "contact_W_K", "medium_W_K", "heat_W")
 

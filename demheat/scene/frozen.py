@@ -1,6 +1,9 @@
-"""What is handed out and must not be changed: a dict and arrays that refuse it."""
+"""What is handed out: a dict and arrays that refuse to be changed, and small tables for notebooks."""
 
 from __future__ import annotations
+
+from collections.abc import Mapping
+from html import escape
 
 import numpy as np
 
@@ -23,3 +26,9 @@ def read_only(array) -> np.ndarray:
     view = np.asarray(array).view()
     view.flags.writeable = False
     return view
+
+
+def table_of(rows: Mapping[str, object]) -> str:
+    """A table of two columns as HTML; what is in it is text, whatever it looks like."""
+    cells = (f"<tr><th>{escape(name)}</th><td>{escape(str(value))}</td></tr>" for name, value in rows.items())
+    return f"<table>{''.join(cells)}</table>"

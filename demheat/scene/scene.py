@@ -26,8 +26,8 @@ from demheat.scene.checks import (
     checked_sources,
 )
 from demheat.scene.dependence import Dependences
+from demheat.scene.frozen import table_of
 from demheat.scene.functions import load_at
-from demheat.scene.html import table_of
 from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material

@@ -7,7 +7,7 @@ import warnings
 import numpy as np
 
 from demheat.scene.narrows import narrows
-from demheat.scene.thickness import coats, narrower
+from demheat.scene.volumes import coats, narrower
 from references.voxels.kernels import FULL
 
 # Errors of the scalar scheme in % at 128^3, measured on a sphere with the radius a third of the cube's edge, against

@@ -8,7 +8,7 @@ import numpy as np
 
 from demheat.method import DEGREE, Method
 from demheat.scene import Layer, Scene, Sphere
-from demheat.scene.thickness import coats
+from demheat.scene.volumes import coats
 from studies.harness import methods
 
 # Beside the declared ones: the rule that the FFT method chooses by itself, held to what its best rule declares.

@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 import demheat
 from demheat import Layer, Material, Scene, Sphere
 from demheat.packing import make_packing
-from demheat.scene.thickness import coats, extents
+from demheat.scene.volumes import coats, extents
 from references import fft
 
 METAL, OTHER = Material(1.0), Material(5.0)

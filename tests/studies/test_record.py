@@ -38,14 +38,12 @@ RENAMED = "an old name: a test asks for it"
 CLAIMS = "claims extrapolate rows by it; no row does"
 NO_ROWS = {
     "demheat/runtime/deadline.py": REFUSED,
-    "demheat/dem/trial.py": REFUSED,
     "demheat/scene/edges.py": REFUSED,
     "demheat/terminal/commands": READ,
     "demheat/io": READ,
     "demheat/grains/contact_files.py": READ,
     "demheat/terminal/ends.py": READ,
     "demheat/terminal/pictures.py": DRAWN,
-    "demheat/scene/html.py": DRAWN,
     "references/mesh/export.py": DRAWN,
     "demheat/renamed.py": RENAMED,
     "demheat/streamed.py": RENAMED,

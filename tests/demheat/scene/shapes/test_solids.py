@@ -13,7 +13,7 @@ from demheat import Layer, Scene, Sphere
 from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet
 from demheat.scene.shapes.samples import surface_points
 from demheat.scene.shapes.sections import below
-from demheat.scene.thickness import extents, narrower
+from demheat.scene.volumes import extents, narrower
 
 PERIOD = np.array([1.0, 1.5, 2.0])
 EACH = list(SOLIDS.values())
