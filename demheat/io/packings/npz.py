@@ -9,7 +9,7 @@ import zipfile
 import numpy as np
 from numpy.lib import format as npy
 
-from demheat.io.packings.source import length_of, most_of
+from demheat.io.packings.source import length_of, most_unpacked
 from demheat.runtime.limits import check_free
 
 CHECKSUM = "checksum"
@@ -27,7 +27,7 @@ def save(stream, arrays: dict) -> None:
 
 def load(path, names) -> dict:
     """Read arrays; the checksum is held against them if there is one."""
-    left = most_of(length_of(path))
+    left = most_unpacked(length_of(path))
     try:
         with zipfile.ZipFile(path) as archive:
             stored = {each.filename.removesuffix(".npy"): each for each in archive.infolist()}

@@ -25,7 +25,7 @@ def length_of(path) -> int:
     return status.st_size
 
 
-def most_of(length: int) -> int:
+def most_unpacked(length: int) -> int:
     """Bytes that a packed file of a length in bytes may expand to."""
     return max(ALWAYS, MOST_EXPANSION * length)
 
@@ -36,7 +36,7 @@ def text_of(path) -> io.TextIOWrapper:
     # Does not wait if the file has just become a pipe.
     raw = open(path, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0)))
     if Path(path).suffix.lower() == ".gz":
-        raw = io.BufferedReader(_Bounded(path, raw, most_of(length)))
+        raw = io.BufferedReader(_Bounded(path, raw, most_unpacked(length)))
     # Foreign comments may be in any encoding; what is read from them is not.
     return io.TextIOWrapper(raw, encoding="utf-8", errors="replace")
 

@@ -11,7 +11,7 @@ import zlib
 import numpy as np
 
 from demheat.io.packings.found import Found
-from demheat.io.packings.source import length_of, most_of
+from demheat.io.packings.source import length_of, most_unpacked
 from demheat.io.packings.text import broken
 from demheat.runtime.limits import ALWAYS, check_free
 from demheat.scene.bodies import ROUND_AXES
@@ -69,7 +69,7 @@ class _File:
         self.root = _parsed(head + b"</VTKFile>" if tag else head)
         self.encoding = "base64" if b'"base64"' in rest.partition(b">")[0] else "raw"
         self.appended = rest[rest.index(b"_") + 1 :] if tag else b""
-        self.most = most_of(len(content))
+        self.most = most_unpacked(len(content))
         self.order = "<" if self.root.get("byte_order", "LittleEndian") == "LittleEndian" else ">"
         self.header = np.dtype(self.order + HEADERS[self.root.get("header_type", "UInt32")])
         self.packed = self.root.get("compressor")
