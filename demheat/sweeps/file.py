@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from demheat.runtime.paths import checked_path
-from demheat.runtime.row_file import RowFile
+from demheat.runtime.rows import RowFile
 from demheat.sweeps.cases import key_of
 from demheat.sweeps.rows import CASE, TAIL
 

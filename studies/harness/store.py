@@ -7,7 +7,7 @@ import tempfile
 from contextlib import suppress
 from pathlib import Path
 
-from demheat.runtime.row_file import RowFile
+from demheat.runtime.rows import RowFile
 
 # What every row ends with, in this order; what a case and a run bring comes before, in order of appearance.
 COST = ("wall_s", "cpu_s", "cpu_spread", "repeats", "peak_mib", "base_mib", "peak_by")

@@ -59,7 +59,6 @@ NO_ROWS = {
     "references/fft/slabs.py": LARGE,
     "demheat/runtime/copies.py": LARGE,
     "demheat/runtime/fresh.py": LARGE,
-    "demheat/runtime/row_file.py": READ,
     "demheat/runtime/rows.py": READ,
     # The mesher's own process, which no row of this one follows.
     "references/mesh/worker.py": LARGE,

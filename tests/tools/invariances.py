@@ -19,7 +19,7 @@ from drawn_scenes import COUNT
 from method_scenes import METHODS
 from relations import Spread, applies, exact, first, limit, second, spread
 
-from demheat.runtime.row_file import RowFile
+from demheat.runtime.rows import RowFile
 
 DOCS = Path(__file__).parents[2] / "docs"
 ROWS, PAGE = DOCS / "invariances.csv", DOCS / "invariances.md"

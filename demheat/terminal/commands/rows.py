@@ -8,7 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from demheat.declared import HOMES
-from demheat.runtime.row_file import RowFile
+from demheat.runtime.rows import RowFile
 from demheat.terminal.commands.answers import Answer
 from demheat.terminal.commands.knobs import Asked
 

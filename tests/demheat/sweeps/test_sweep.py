@@ -109,7 +109,7 @@ def test_a_file_is_written_row_by_row_and_resumed(tmp_path):
 WRITER = """
 import sys
 import time
-from demheat.runtime.row_file import RowFile
+from demheat.runtime.rows import RowFile
 from demheat.sweeps import file
 from demheat.sweeps.rows import TAIL
 read, RowFile.read = RowFile.read, lambda file: (read(file), time.sleep(0.005))[0]
