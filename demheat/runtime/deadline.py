@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext
 from contextvars import ContextVar
 from typing import NamedTuple
 
+from demheat.scene.beats import heard_by
 from demheat.scene.inputs import finite
 
 
@@ -81,6 +82,9 @@ def look(doing: str) -> None:
     deadline = _now.get()
     if deadline is not None and time.monotonic() >= deadline.end:
         raise TimeoutError(f"seconds = {deadline.seconds:g} are over, in {doing}")
+
+
+heard_by(look)
 
 
 def has_budget() -> bool:

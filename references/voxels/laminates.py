@@ -58,8 +58,9 @@ def cut_tensors(part, tensors, moment) -> np.ndarray:
 def with_own(voxels):
     """The same voxels where every one that a tensor's phase fills has a tensor of its own, as cut ones do."""
     bent = np.any(voxels.tensors != voxels.conductivity[:, None] * [1, 1, 1, 0, 0, 0], axis=1)
-    whole = np.flatnonzero(bent[voxels.phase.reshape(-1)])
-    own = np.union1d(whole, voxels.cut)
+    marked = bent[voxels.phase.reshape(-1)]
+    marked[voxels.cut] = True
+    own = np.flatnonzero(marked)
     tensor = voxels.tensors[voxels.phase.reshape(-1)[own]]
     tensor[np.searchsorted(own, voxels.cut)] = voxels.tensor
     return voxels._replace(cut=own, tensor=tensor)

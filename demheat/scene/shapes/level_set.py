@@ -10,6 +10,7 @@ from itertools import product
 
 import numpy as np
 
+from demheat.scene.beats import beat
 from demheat.scene.inputs import moderate, vector
 from demheat.scene.material import Material, check_material
 from demheat.scene.shapes.base import check_resistance
@@ -198,6 +199,7 @@ class LevelSet(Solid):
             )
 
     def _values(self, points):
+        beat("a level set")
         values = np.asarray(self.function(points.copy()), dtype=float)
         if values.shape != (len(points),) or not np.all(np.isfinite(values)):
             raise ValueError(

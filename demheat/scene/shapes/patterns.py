@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.scene.beats import beat
 from demheat.scene.shapes.directions import across
 from demheat.scene.shapes.morton import morton_order
 from demheat.scene.shapes.samples import surface_points
@@ -27,6 +28,8 @@ SPREAD, LIFTED, ROUNDS = 5, 4, 16
 FINER = 6
 # Cells beyond a wall in which points are spread out, too: those beside the wall then lie as elsewhere.
 BEYOND = 10
+# Samples whose nearest points are sought at once: tenths of a second.
+SOUGHT = 1 << 17
 
 
 class Room(NamedTuple):
@@ -52,13 +55,11 @@ def even_points(shape, spacing: float, rng, room: Room):
 
 def spread(shape, samples, areas, count: int, rng):
     """Points in the middles of their own parts of the samples of a surface (Lloyd's algorithm), and normals."""
-    from scipy.spatial import cKDTree
-
     samples, areas = _ordered(samples, areas)
     share = (np.arange(count) + rng.random()) / count
     points = samples[np.searchsorted(np.cumsum(areas) / areas.sum(), share).clip(max=len(samples) - 1)]
     for _ in range(ROUNDS):
-        _, nearest = cKDTree(points).query(samples)
+        nearest = _nearest(points, samples)
         area = np.bincount(nearest, areas, count)
         sums = np.stack([np.bincount(nearest, areas * column, count) for column in samples.T], axis=1)
         points = np.where(area[:, None] > 0, sums / np.maximum(area, 1e-300)[:, None], points)
@@ -86,9 +87,7 @@ def sampled_between(shape, points, room: Room):
 
 def lifted(shape, points, normals, samples, areas):
     """Points moved so that over the samples nearest to it each plane holds as much as the shape."""
-    from scipy.spatial import cKDTree
-
-    _, nearest = cKDTree(points).query(samples)
+    nearest = _nearest(points, samples)
     there = normals[nearest]
     cosine = np.maximum(np.einsum("ij,ij->i", there, shape.normal(samples)), 0.25)
     height = np.einsum("ij,ij->i", points[nearest] - samples, there) / cosine
@@ -97,6 +96,18 @@ def lifted(shape, points, normals, samples, areas):
     mean = total.sum() / max(weight.sum(), 1e-300)
     lift = np.where(weight > 0, total / np.maximum(weight, 1e-300), mean)
     return points - lift[:, None] * normals
+
+
+def _nearest(points, samples):
+    """Number of the point nearest to each sample, (n,) int array."""
+    from scipy.spatial import cKDTree
+
+    tree, nearest = cKDTree(points), np.empty(len(samples), np.intp)
+    for start in range(0, len(samples), SOUGHT):
+        beat("points on a surface")
+        part = slice(start, start + SOUGHT)
+        nearest[part] = tree.query(samples[part])[1]
+    return nearest
 
 
 def sampled(shape, room: Room, pitch: float):

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from demheat.scene.beats import beat
 from demheat.scene.shapes.sections import below
 
 # Cells along the longest side that are looked at first, and looked at together.
@@ -76,4 +77,5 @@ def _near(shape, centers, sides):
 def _blocks(points) -> Iterator[np.ndarray]:
     """Points in parts of limited number; one empty part of none."""
     for start in range(0, max(len(points), 1), BLOCK):
+        beat("samples of a surface")
         yield points[start : start + BLOCK]

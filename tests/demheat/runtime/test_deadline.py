@@ -8,10 +8,12 @@ import numpy as np
 import pytest
 
 import demheat
-from demheat import damage, effective, gallery, solve
+from demheat import LevelSet, Material, Scene, Torus, Union, damage, effective, gallery, solve
 from demheat.cheapest.answers import Answer
 from demheat.dem import solve_axes
 from demheat.runtime import deadline, progress
+from demheat.scene import Sphere, beats
+from demheat.scene.shapes import patterns
 from references import bracket, fem, fft, multipole
 from references.bracket import voxels
 
@@ -75,6 +77,42 @@ def test_seconds_of_every_solve(name):
     with pytest.raises(ValueError, match="seconds = -1.0: must be a finite number > 0, or None"):
         TIMED[name](-1.0)
     TIMED[name](1000.0)
+
+
+# What is done of shapes without formulas, and how often at least: rounds of spreading points, cells, Newton's steps.
+SLOW = {
+    "ring": ("points on a surface", 2 * patterns.ROUNDS),
+    "balls": ("points on a surface", 2 * patterns.ROUNDS),
+    "ball": ("a level set", 100),
+}
+
+
+@pytest.mark.filterwarnings("ignore:.*most of them in narrow gaps")
+@pytest.mark.parametrize("name", SLOW)
+def test_shapes_are_left_when_the_time_is_over(name, monkeypatch):
+    # Points on surfaces beside gaps once took minutes whatever the budget was.
+    good, unit = Material(20.0), (1.0, 1.0, 1.0)
+    ring = [Torus((0.5, 0.5, 0.5), 0.35, 0.1, (0, 1, 0), good), Sphere((0.5, 0.5, 0.5), 0.2, Material(0.1))]
+    balls = Union([Sphere((0.25, 0.5, 0.5), 0.2, good), Sphere((0.75, 0.5, 0.5), 0.2, good)], good)
+    ball = LevelSet(lambda points: np.linalg.norm(points - 0.5, axis=1) - 0.3, ((0.1,) * 3, (0.9,) * 3), good)
+    inclusions = {"ring": ring, "balls": [balls], "ball": [ball]}[name]
+    scene, (doing, times) = Scene(unit, Material(1.0), inclusions, gradient=(0, 1, 0)), SLOW[name]
+    with demheat.budget(1000.0):
+        heard = []
+        monkeypatch.setattr(beats, "_listeners", [*beats._listeners, heard.append])
+        solve(scene, particles=100, allow_few=True)
+    assert heard.count(doing) >= times
+    with pytest.raises(TimeoutError, match="in this$"), demheat.budget(1e-9):
+        beats.beat("this")
+
+
+def test_nearest_points_are_sought_in_pieces(monkeypatch):
+    rng, heard = np.random.default_rng(0), []
+    points, samples = rng.random((20, 3)), rng.random((101, 3))
+    found = patterns._nearest(points, samples)
+    monkeypatch.setattr(patterns, "beat", heard.append)
+    monkeypatch.setattr(patterns, "SOUGHT", 10)
+    assert np.array_equal(patterns._nearest(points, samples), found) and len(heard) == 11
 
 
 def test_a_warning_of_a_timed_function_is_of_the_line_that_called_it():
