@@ -183,11 +183,11 @@ def unseen(scene, stats) -> np.ndarray:
         length = float(np.max(np.array(scene.size) / stats["voxels"]))
     else:
         length = (scene.volume / stats["unknowns"]) ** (1 / 3) if stats.get("unknowns") else 0.0
-    # Of the faces of the bounds, and no more than all within them, or an element.
+    # Of the faces of the bounds, an element at least, and no more than all within them, or an element.
     size = np.array(scene.size)
     spans = [np.minimum(high - low, size) for low, high in (shape.bounds() for shape in scene.inclusions)]
     x, y, z = np.array(spans).reshape(-1, 3).T
-    moved = np.minimum(length * (x * y + y * z + z * x), np.maximum(x * y * z, length**3))
+    moved = np.clip(length * (x * y + y * z + z * x), length**3, np.maximum(x * y * z, length**3))
     return np.concatenate([[0.0], moved / scene.volume])
 
 

@@ -97,6 +97,17 @@ def test_elements_may_miss_half_of_one_at_a_surface():
     assert not unseen(CELL, {}).any()
 
 
+@pytest.mark.filterwarnings("ignore:inclusions .* are smaller than a voxel")
+def test_elements_may_hold_one_of_their_own_by_chance():
+    # A speck in the very middle of a voxel: its links do not meet the speck, its phase does.
+    speck = Scene(UNIT, Material(1.0), [Sphere((0.5, 0.5, 0.5), 1e-9, Material(100.0))], gradient=(0, 1, 0))
+    assert_allclose(unseen(speck, {"voxels": (15, 15, 15)}), [0.0, 15**-3], rtol=1e-14)
+    answer = fft.solve(speck, voxels=15)
+    assert_allclose([answer.conductivity, answer.fractions[1]], [1.0, 15**-3], rtol=1e-14)
+    # A coarser run that catches the speck is still one to compare with.
+    assert fft.solve(speck, voxels=24).error.upper < 1 + 1e-6
+
+
 def test_images_are_judged_by_their_own_voxels():
     labels = np.zeros((4, 4, 4), int)
     labels[:2] = 1
