@@ -81,7 +81,7 @@ def test_the_packing_example_runs(tmp_path, monkeypatch):
     # Jammed between walls: fewer spheres fit than the 0.655 of a periodic cell.
     assert names["drum"].number == 500 and 0.55 < names["drum"].phi < 0.63
     assert_allclose(names["packing"].phi, 0.64, rtol=1e-12)  # rounding of a sum of 1000 cubes
-    again = names["io"].read("packing.dump")
+    again = names["packings"].read("packing.dump")
     assert_allclose(again.centers, names["packing"].centers, rtol=0, atol=0)
 
 
