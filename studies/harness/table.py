@@ -15,6 +15,8 @@ from studies.harness.provenance import guest_case
 from studies.harness.sound import cost_columns, counted, faults, in_words, uncosted
 from studies.harness.store import VALUES, case_key, read_rows
 
+# What follows on a page is of the rows, not of the code.
+ORIGIN = "## Where the numbers come from"
 # Columns of words, whatever they look like: a commit may be a number.
 WORDS = ("case", "note", "commit", *VALUES)
 # Costs that tables may ask for, whatever the rows.
@@ -41,11 +43,11 @@ def render(study, csv_path):
             path.unlink(missing_ok=True)
         claims.append(broken("the figure can be drawn", error, why=why))
     try:
-        text = _page(study, df, claims, figure)
+        text = page(study, df, claims, figure)
     except Exception as error:
         traceback.print_exc()
         claims.append(broken("the table can be made", error, why=why))
-        text = _page(_plain(study), df, claims, figure)
+        text = page(_plain(study), df, claims, figure)
     with replaced(csv_path.with_suffix(".md")) as temporary:
         temporary.write_text(text, encoding="utf-8")
     return claims, text
@@ -114,7 +116,8 @@ def _draw(study, df, path):
             pyplot.close(number)
 
 
-def _page(study, df, claims, figure):
+def page(study, df, claims, figure):
+    """Text of NAME.md, with a link to the figure if it is there."""
     import pandas as pd
 
     title, _, rest = (study.__doc__ or study.__name__).strip().partition("\n")
@@ -140,7 +143,7 @@ def _page(study, df, claims, figure):
             markdown(judged),
             *_unjudged(claims),
             *(["\n".join(reasons)] if reasons else []),
-            "## Where the numbers come from",
+            ORIGIN,
             _origin(study, df),
             "",
         ]

@@ -1,9 +1,8 @@
-"""The study of the sphere's centre: what its rows are made of."""
+"""Only here: a march of unit C_t that does not stand for that of another at times in proportion."""
 
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 import pytest
 from numpy.testing import assert_allclose
 
@@ -13,7 +12,6 @@ from studies import fig07_sphere
 from studies.common import paper_network
 from studies.common.sphere_in_time import CENTER, sphere
 from studies.fig07_sphere import rows as fig07_rows
-from studies.fig07_sphere import tables as fig07_tables
 from studies.harness.cells import numbers
 
 
@@ -38,14 +36,3 @@ def test_one_march_serves_both_calibrations(usual):
         atol = 0.01 if way == "isothermal" else 0.3
         assert_allclose(numbers(row[f"errors_{way}"])[here], np.subtract(found, exact), atol=atol)
     assert row["error_10s_flux"] != row["error_10s_isothermal"]
-
-
-def test_of_a_stall_is_said_whether_it_is_temporal():
-    size, accuracy = next(iter(fig07_sphere.means.TIGHTER.items()))
-    here = {"method": "fem", "order": 2, "size": size, "status": "ok"}
-    df = pd.DataFrame([here | {"error_10s": 0.1}, here | {"error_10s": 0.01, "accuracy": accuracy}])
-    (said,) = fig07_tables.told(df)
-    assert said.endswith("most of it is temporal.") and "+0.1000 K" in said
-    df.loc[1, "error_10s"] = 0.09
-    assert fig07_tables.told(df)[0].endswith("little of it is temporal.")
-    assert fig07_tables.told(df.iloc[:1].assign(accuracy=None)) == []

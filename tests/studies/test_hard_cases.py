@@ -93,16 +93,6 @@ def test_what_is_no_refusal_is_raised():
         answer(lambda: 1 / 0)
 
 
-@pytest.mark.parametrize("family", scenes.FAMILIES)
-def test_scenes_are_drawn_the_same_again(family):
-    for seed in range(5):
-        found = scenes.scene_of(family, seed)
-        assert scenes.scene_of(family, seed) == found
-        names = [way.name for way in ways.ways(family, found, np.random.default_rng(0))]
-        # Finite elements are left out of what they would take too many for.
-        assert [name for name in ways.NAMES if name in names or not name.startswith("fem")] == names
-
-
 def test_an_infinite_conductivity_is_refused_by_the_scene():
     row = rows.steady("contrast", 7)
     assert (row["cases"], row["refused"]) == (1, 1) and "inf" in row["verdicts"]
@@ -114,13 +104,6 @@ def test_bounds_of_a_drawn_scene_hold_its_exact_value():
     known = verdicts._bracketed(bracket, BALL)
     assert known.lower < exact.solve(BALL).conductivity < known.upper
     assert not known.wide and known.upper < known.lower * (1 + verdicts.NARROW)
-
-
-@pytest.mark.slow
-def test_touching_spheres_have_bounds_too():
-    pair = [Sphere((x, 0.5, 0.5), 0.2, Material(5.0)) for x in (0.3, 0.7)]
-    known = verdicts.truth(Scene(matrix=Material(1.0), inclusions=pair, **CELL))
-    assert known.source == "bracket, apart" and not known.wide
 
 
 def test_what_is_allowed_follows_the_thinnest_body():

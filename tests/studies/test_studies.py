@@ -35,11 +35,6 @@ def folder(tmp_path_factory):
         yield tmp_path_factory.mktemp("out")
 
 
-def test_the_studies_are_there():
-    assert {"fig14_single_inclusion", "surfaces", "speed_error", "stability"} <= set(NAMES)
-    assert {"fig03_calibration", "packings"} <= set(NAMES)
-
-
 # The rest are for `make test-slow`: `test_record.py` has some rows of each, and claims are judged on the stored ones.
 SHORT = ("table1_platonic",)
 

@@ -1,4 +1,4 @@
-"""The study of integrators: errors against finer runs; LAMMPS and our kernel, the same links and temperatures."""
+"""Only here: LAMMPS and our kernel on other links, or at other temperatures; LAMMPS where it is not."""
 
 import itertools
 import math
@@ -11,7 +11,6 @@ from numpy.testing import assert_allclose
 from demheat.packing.base import make_packing
 from studies.common.slab import METAL
 from studies.time_integrators import lammps_peer
-from studies.time_integrators import rows as integrator_rows
 
 
 def bed_and_network():
@@ -50,24 +49,3 @@ def test_refused_where_lammps_is_missing(monkeypatch):
     monkeypatch.setitem(sys.modules, "lammps", None)
     with pytest.raises(NotImplementedError, match="lammps is not installed"):
         lammps_peer.beside(600)
-
-
-def test_error_is_against_a_finer_run(integrator="rkl2"):
-    row = integrator_rows.marched("slab", 500, integrator, 1e-2)
-    system, start = integrator_rows.system_of("slab", 500)
-    coarse, fine = (
-        integrator_rows._integrated(system, start, 0.2, name, accuracy).temperature
-        for name, accuracy in ((integrator, 1e-2), ("rkl2", 1e-6))
-    )
-    right = 100 * np.sqrt(np.mean((coarse - fine) ** 2)) / 10.0
-    # The row's own reference is at 1e-5 of the span, 0.001 %.
-    assert_allclose(row["error_percent"], right, atol=2e-3)
-    assert right > 0.01 and row["taken"] == integrator and not row["extrapolated"]
-
-
-def test_a_long_run_of_euler_is_extrapolated(monkeypatch):
-    monkeypatch.setattr(integrator_rows, "MOST_STEPS", 50)
-    monkeypatch.setattr(integrator_rows, "SAMPLE", 20)
-    row = integrator_rows.marched("sphere", 500, "euler", None)
-    assert row["extrapolated"] and row["steps"] > 50 and "error_percent" not in row
-    assert row["cpu_s"] > 0 and row["bandwidth_share"] > 0 and row["million_particle_steps"] > 0

@@ -1,4 +1,4 @@
-"""What a row of speed against error says when a method gives up."""
+"""Only here: a scheme that gives up taken for a failed row, or any error for a refusal."""
 
 import pytest
 
@@ -22,11 +22,3 @@ def test_another_error_is_none(monkeypatch):
     monkeypatch.setattr(rows, "_steady", fails)
     with pytest.raises(RuntimeError, match="no memory"):
         rows.solved("third", method="fft", voxels=32)
-
-
-def test_errors_of_a_row_are_those_of_its_scene():
-    """Layers are exact with linear elements: conductivity, temperature and flux at the points."""
-    found = rows.solved("laminate", method="fem", order=1, curved=False, size=0.02)
-    # The linear solver's 1e-9 or so, in per cent.
-    assert abs(found["error_percent"]) < 1e-5 and found["temperature_rms"] < 1e-5 and found["flux_rms"] < 1e-5
-    assert found["points_cpu_s"] >= 0 and found["unknowns"] > 100
