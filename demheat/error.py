@@ -74,55 +74,34 @@ class Estimate(NamedTuple):
 
 
 class Refinement(NamedTuple):
-    """How a method's error is read off coarser runs, each with elements so many times as long as the one before.
+    """How a method's error is read off coarser runs, each with elements so many times as long as the one before."""
 
-    Attributes
-    ----------
-    ratio : float
-        Of the lengths.
-    levels : int
-        Coarser runs.
-    order, safety : float
-        Of the conductivity: the order its error falls with, and what the largest difference is raised by.
-    temperature_order, temperature_safety : float
-        Of the temperature's root mean square.
-    also : float
-        What the change by another refinement is raised by, of what coarser runs do not show.
-    coats : float
-        What all is raised by where inclusions lie in others, whose interval is then at least as wide, relatively, as
-        the temperature is expected to be off: errors of coat and core may cancel in the conductivity, wholly so in
-        neutral spheres, and what is left between runs is chance. 0: nothing of that.
-    chance : bool
-        Whether elements hold too much or too little of phases by chance: changes between runs do not show that.
-    """
-
-    ratio: float
-    levels: int
+    ratio: float  # Of the lengths
+    levels: int  # Coarser runs
+    # order, safety: Of the conductivity: the order its error falls with, and what the largest difference is raised by
     order: float
     safety: float
+    # temperature_order, temperature_safety: Of the temperature's root mean square
     temperature_order: float
     temperature_safety: float
-    also: float = 0.0
+    also: float = 0.0  # What the change by another refinement is raised by, of what coarser runs do not show
+    # What all is raised by where inclusions lie in others, whose interval is then at least as wide, relatively, as the
+    # temperature is expected to be off: errors of coat and core may cancel in the conductivity, wholly so in neutral
+    # spheres, and what is left between runs is chance. 0: nothing of that
     coats: float = 0.0
+    # Whether elements hold too much or too little of phases by chance: changes between runs do not show that
     chance: bool = False
 
 
 class Fine(NamedTuple):
-    """What is too fine for coarser runs to tell of it.
+    """What is too fine for coarser runs to tell of it."""
 
-    Attributes
-    ----------
-    unseen : sequence of int
-        Inclusions finer than the elements, which may make of the conductivity whatever bounds allow; those of which a
-        method holds nothing need not be named.
-    rough : float
-        What all inclusions make of the conductivity is off by this part, as some are hardly wider than elements.
-    radius : float, m
-        Of a ball about the middle of an unseen sphere that holds all that a method may see instead.
-    """
-
+    # sequence of int: Inclusions finer than the elements, which may make of the conductivity whatever bounds allow;
+    # those of which a method holds nothing need not be named
     unseen: Sequence[int] = ()
+    # What all inclusions make of the conductivity is off by this part, as some are hardly wider than elements
     rough: float = 0.0
+    # m: Of a ball about the middle of an unseen sphere that holds all that a method may see instead
     radius: float = 0.0
 
 

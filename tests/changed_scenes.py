@@ -56,20 +56,13 @@ class Image(NamedTuple):
 
 
 class Relation(NamedTuple):
-    """How a scene is changed, and whose discretisation changes with it.
+    """How a scene is changed, and whose discretisation changes with it."""
 
-    Attributes
-    ----------
-    image : callable (scene, rng) -> Image or None
-        None of scenes that it says nothing of.
-    words : str
-    kept_by : {"all", "but meshes", "grids", "none"}
-        Whose elements go with the scene, so that it is exact: those of all methods; of all but unstructured meshes,
-        whose making magnifies rounding; of those that are no random packing either; or of those that have no elements.
-    """
-
-    image: Callable
+    image: Callable  # callable (scene, rng) -> Image or None: None of scenes that it says nothing of
     words: str
+    # {"all", "but meshes", "grids", "none"}: Whose elements go with the scene, so that it is exact: those of all
+    # methods; of all but unstructured meshes, whose making magnifies rounding; of those that are no random packing
+    # either; or of those that have no elements
     kept_by: str
 
 

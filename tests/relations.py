@@ -31,21 +31,12 @@ APART, ARITHMETIC = 4.0, 20.0
 
 
 class Spread(NamedTuple):
-    """Differences between two solutions of which one follows from the other.
+    """Differences between two solutions of which one follows from the other."""
 
-    Attributes
-    ----------
-    conductivity : float
-        Size of the difference of mean fluxes over that of the mean flux.
-    temperature : float
-        Root mean square over the imposed span; not-a-number of what knows the conductivity alone.
-    flux : float
-        Root mean square over the mean flux; as the temperature.
-    """
-
-    conductivity: float
+    conductivity: float  # Size of the difference of mean fluxes over that of the mean flux
+    # Root mean square over the imposed span; not-a-number of what knows the conductivity alone
     temperature: float = np.nan
-    flux: float = np.nan
+    flux: float = np.nan  # Root mean square over the mean flux; as the temperature
 
 
 def exact(method, relation):

@@ -38,50 +38,34 @@ LEAST = 1e-3
 
 
 class Law(NamedTuple):
-    """Law of one method.
+    """Law of one method."""
 
-    Attributes
-    ----------
-    method, knob : str
-        The method's name, and the keyword that refines it.
-    coarsest, finest : float
-        Values of it that were fitted; lengths in edges of the box.
-    error, refinement, strength, contrast, fraction, gap : float
-        A, p, a, b, c and d.
-    error_within : float
-        Factor within which nine of ten fitted errors are.
-    bulk, surface, each : float
-        u, v and w.
-    cost, unknowns, stiffness : float
-        B in seconds, q and r.
-    cost_within : float
-    bytes : float
-        For each unknown, at the peak.
-    bytes_within : float
-    rows, scenes : int
-        Rows and scenes that the law was fitted to.
-    """
-
+    # method, knob: The method's name, and the keyword that refines it
     method: str
     knob: str
+    # coarsest, finest: Values of it that were fitted; lengths in edges of the box
     coarsest: float
     finest: float
+    # error, refinement, strength, contrast, fraction, gap: A, p, a, b, c and d
     error: float
     refinement: float
     strength: float
     contrast: float
     fraction: float
     gap: float
-    error_within: float
+    error_within: float  # Factor within which nine of ten fitted errors are
+    # bulk, surface, each: u, v and w
     bulk: float
     surface: float
     each: float
+    # cost, unknowns, stiffness: B in seconds, q and r
     cost: float
     unknowns: float
     stiffness: float
     cost_within: float
-    bytes: float
+    bytes: float  # For each unknown, at the peak
     bytes_within: float
+    # rows, scenes: Rows and scenes that the law was fitted to
     rows: int
     scenes: int
 

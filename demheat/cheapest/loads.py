@@ -12,25 +12,15 @@ from demheat.tensor import axis_loads
 
 
 class Loads(NamedTuple):
-    """Loads that show a body's tensor.
+    """Loads that show a body's tensor."""
 
-    Attributes
-    ----------
-    wholes, parts : mapping of int to Scene
-        The body under a load along each axis that counts, and what its mirror planes leave of it.
-    alike : (3,) tuple of int
-        For each axis the one that conducts like it.
-    diagonal : bool
-        Whether symmetry leaves nothing beside the diagonal.
-    saved : tuple of str
-        What was saved, in words.
-    """
-
+    # wholes, parts: mapping of int to Scene: The body under a load along each axis that counts, and what its mirror
+    # planes leave of it
     wholes: Mapping[int, Scene]
     parts: Mapping[int, Scene]
-    alike: tuple[int, int, int]
-    diagonal: bool
-    saved: tuple[str, ...]
+    alike: tuple[int, int, int]  # (3,) tuple of int: For each axis the one that conducts like it
+    diagonal: bool  # Whether symmetry leaves nothing beside the diagonal
+    saved: tuple[str, ...]  # tuple of str: What was saved, in words
 
     @property
     def together(self) -> bool:

@@ -19,40 +19,19 @@ PORE = 1e3
 
 
 class Measures(NamedTuple):
-    """Measures of a scene.
+    """Measures of a scene."""
 
-    Attributes
-    ----------
-    edge : float, m
-        Of the cube of the box's volume.
-    smallest : float, m
-        Least width of an inclusion, or of what an inclusion in it leaves of it; the edge without any.
-    narrowest : float, m
-        Least width of an inclusion alone.
-    fraction : float
-        Volume of all inclusions over the box's.
-    strength : float
-        Largest |k_i - k_o| / (k_i + 2 k_o) of an inclusion's conductivity and that around it: how much it disturbs a
-        uniform flux; 0 to 1.
-    contrast : float
-        Largest |ln(k_i / k_o)|, of a pore that of a thousandth.
-    surface : float, m2
-        Of all interfaces.
-    count : int
-        Number of inclusions.
-    gap : float
-        Least gap between two spheres, or twice that to a wall, over the smaller one's radius.
-    """
-
-    edge: float
-    smallest: float
-    narrowest: float
-    fraction: float
+    edge: float  # m: Of the cube of the box's volume
+    smallest: float  # m: Least width of an inclusion, or of what an inclusion in it leaves of it; the edge without any
+    narrowest: float  # m: Least width of an inclusion alone
+    fraction: float  # Volume of all inclusions over the box's
+    # Largest |k_i - k_o| / (k_i + 2 k_o) of an inclusion's conductivity and that around it: how much it disturbs a
+    # uniform flux; 0 to 1
     strength: float
-    contrast: float
-    surface: float
-    count: int
-    gap: float
+    contrast: float  # Largest |ln(k_i / k_o)|, of a pore that of a thousandth
+    surface: float  # m2: Of all interfaces
+    count: int  # Number of inclusions
+    gap: float  # Least gap between two spheres, or twice that to a wall, over the smaller one's radius
 
 
 def measures(scene: Scene) -> Measures:

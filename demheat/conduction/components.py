@@ -17,23 +17,15 @@ BLOCK = 500_000
 
 
 class Bodies(NamedTuple):
-    """Bodies of a network with pores, and their temperatures where these need no solving.
+    """Bodies of a network with pores, and their temperatures where these need no solving."""
 
-    Attributes
-    ----------
-    label : (n,) int32 array
-        Body of each particle; -1 in pores.
-    still : (n,) bool array
-        Particles that no heat passes: pores, and bodies that reach one temperature or none, or in a periodic cell do
-        not join their own images up the mean gradient.
-    temperature : (n,) float array, K
-        Of bodies that no heat passes: that of the wall that they reach; in a periodic cell constant over the body, less
-        the linear field of the mean gradient, with zero mean over the body. NaN in pores, where no wall is reached, and
-        where heat passes.
-    """
-
-    label: np.ndarray
+    label: np.ndarray  # (n,) int32 array: Body of each particle; -1 in pores
+    # (n,) bool array: Particles that no heat passes: pores, and bodies that reach one temperature or none, or in a
+    # periodic cell do not join their own images up the mean gradient
     still: np.ndarray
+    # (n,) float array, K: Of bodies that no heat passes: that of the wall that they reach; in a periodic cell constant
+    # over the body, less the linear field of the mean gradient, with zero mean over the body. NaN in pores, where no
+    # wall is reached, and where heat passes
     temperature: np.ndarray
 
 

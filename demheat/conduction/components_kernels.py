@@ -12,25 +12,15 @@ ROUNDING = 1e-12
 
 
 class Found(NamedTuple):
-    """Bodies of a network, as far as they are known.
+    """Bodies of a network, as far as they are known."""
 
-    Attributes
-    ----------
-    label : (n,) int32 array
-        Body of each particle; OPEN before it is known, NONE outside all.
-    shift : (n, 3) int16 array
-        Boxes by which a particle is moved to where its body reaches it from its first particle.
-    climbs : (n,) bool array
-        Of the first entries, one for each body: whether a way in it back to the same particle, across the box, rises
-        with the mean gradient.
-    queue : (n,) uint32 array
-        Particles in the order in which they are found.
-    """
-
-    label: np.ndarray
+    label: np.ndarray  # (n,) int32 array: Body of each particle; OPEN before it is known, NONE outside all
+    # (n, 3) int16 array: Boxes by which a particle is moved to where its body reaches it from its first particle
     shift: np.ndarray
+    # (n,) bool array: Of the first entries, one for each body: whether a way in it back to the same particle, across
+    # the box, rises with the mean gradient
     climbs: np.ndarray
-    queue: np.ndarray
+    queue: np.ndarray  # (n,) uint32 array: Particles in the order in which they are found
 
 
 @njit(cache=True)

@@ -19,49 +19,28 @@ STRONG = 0.1
 
 
 class Aggregates(NamedTuple):
-    """Particles joined to aggregates.
+    """Particles joined to aggregates."""
 
-    Attributes
-    ----------
-    owner : (n,) int32 array
-        Aggregate of each particle, -1 for those without links.
-    start : (aggregates + 1,) int64 array
-        Where each aggregate begins among the rows.
-    rows : (particles with links,) uint32 array
-        The particles of each aggregate, ascending.
-    """
-
-    owner: np.ndarray
-    start: np.ndarray
-    rows: np.ndarray
+    owner: np.ndarray  # (n,) int32 array: Aggregate of each particle, -1 for those without links
+    start: np.ndarray  # (aggregates + 1,) int64 array: Where each aggregate begins among the rows
+    rows: np.ndarray  # (particles with links,) uint32 array: The particles of each aggregate, ascending
 
 
 class Level(NamedTuple):
     """Matrix of the finest level in single precision, without units, arranged for sweeps.
 
     Links of a row to lower rows of its own block come first, those to higher ones of it last, to other blocks between.
-
-    Attributes
-    ----------
-    indptr : (n + 1,) int64 array
-    indices : (m,) uint32 array
-        Of the links, in their own order.
-    ends : (n, 2) unsigned array
-        How many links of each row are lower ones, and how many come before the higher ones.
-    place : (m,) unsigned array
-        Place of each link in its row of the indices: a byte where a copy of the index would take four.
-    values : (m,) float32 array
-        Minus the entries off the diagonal.
-    inverse : (n,) float32 array
-        1 / diagonal, 0 where a row has no equation.
     """
 
-    indptr: np.ndarray
-    indices: np.ndarray
+    indptr: np.ndarray  # (n + 1,) int64 array
+    indices: np.ndarray  # (m,) uint32 array: Of the links, in their own order
+    # (n, 2) unsigned array: How many links of each row are lower ones, and how many come before the higher ones
     ends: np.ndarray
+    # (m,) unsigned array: Place of each link in its row of the indices: a byte where a copy of the index would take
+    # four
     place: np.ndarray
-    values: np.ndarray
-    inverse: np.ndarray
+    values: np.ndarray  # (m,) float32 array: Minus the entries off the diagonal
+    inverse: np.ndarray  # (n,) float32 array: 1 / diagonal, 0 where a row has no equation
 
 
 @njit(**IN_PIECES)

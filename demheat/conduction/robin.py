@@ -21,18 +21,11 @@ STEPS, SAME = 60, 1e-14
 
 
 class RobinWalls(NamedTuple):
-    """Between surroundings and the surfaces of wall facets.
+    """Between surroundings and the surfaces of wall facets."""
 
-    Attributes
-    ----------
-    conductance : (w,) float array, W/K
-        Infinite at walls that hold a temperature, 0 at those with a flux or none.
-    outside : (w,) float array, K
-        Temperature beyond the film; NaN where there is none.
-    """
-
+    # (w,) float array, W/K: Infinite at walls that hold a temperature, 0 at those with a flux or none
     conductance: np.ndarray
-    outside: np.ndarray
+    outside: np.ndarray  # (w,) float array, K: Temperature beyond the film; NaN where there is none
 
     def ties(self, own):
         """Conductance from outside to the particles, given the facets' own, (w,) float array, W/K."""
@@ -122,24 +115,15 @@ def loaded_areas(network, scene, name):
 
 
 class Radiating(NamedTuple):
-    """A wall that radiates, in time.
-
-    Attributes
-    ----------
-    name : str
-    load : Radiation
-    side : int
-    facet, particle : (v,) int arrays
-        Those facets that conduct, among all, and their particles.
-    own, black : (v,) float arrays, W/K and W/K4
-        As in `radiating_surface`.
-    """
+    """A wall that radiates, in time."""
 
     name: str
     load: Radiation
     side: int
+    # facet, particle: (v,) int arrays: Those facets that conduct, among all, and their particles
     facet: np.ndarray
     particle: np.ndarray
+    # own, black: (v,) float arrays, W/K and W/K4: As in `radiating_surface`
     own: np.ndarray
     black: np.ndarray
 

@@ -42,30 +42,18 @@ class Unsolved(RuntimeError):
 
 
 class Solution(NamedTuple):
-    """Temperatures of the particles and what the solver says of them.
+    """Temperatures of the particles and what the solver says of them."""
 
-    Attributes
-    ----------
-    temperature : (n,) float array, K
-        Of each particle, less the linear field of the mean gradient; NaN in pores and on components that no
-        wall temperature reaches.
-    mean_gradient : (3,) float array, K/m
-        Of a periodic cell; zero with walls.
-    wall_temperature : (w,) float array, K
-        At each wall facet of the network.
-    wall_heat : (w,) float array, W
-        Into the body through each wall facet.
-    stats : dict
-        unknowns, iterations, residual, solver, islands; with radiation its rounds, as it was linearised so often.
-    still : (n,) bool array, optional
-        Particles that no heat passes, see `demheat.conduction.components`; None if everything conducts.
-    """
-
+    # (n,) float array, K: Of each particle, less the linear field of the mean gradient; NaN in pores and on components
+    # that no wall temperature reaches
     temperature: np.ndarray
-    mean_gradient: np.ndarray
-    wall_temperature: np.ndarray
-    wall_heat: np.ndarray
+    mean_gradient: np.ndarray  # (3,) float array, K/m: Of a periodic cell; zero with walls
+    wall_temperature: np.ndarray  # (w,) float array, K: At each wall facet of the network
+    wall_heat: np.ndarray  # (w,) float array, W: Into the body through each wall facet
+    # unknowns, iterations, residual, solver, islands; with radiation its rounds, as it was linearised so often
     stats: dict
+    # (n,) bool array, optional: Particles that no heat passes, see `demheat.conduction.components`; None if everything
+    # conducts
     still: np.ndarray | None = None
 
 

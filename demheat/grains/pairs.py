@@ -77,27 +77,15 @@ class Contacts(NamedTuple):
 
 
 class Pairs(NamedTuple):
-    """Pairs of grains that exchange heat.
+    """Pairs of grains that exchange heat."""
 
-    Attributes
-    ----------
-    first, second : (m,) int arrays
-        Numbers of the grains.
-    image : (m,) uint8 array
-        Which periodic image of the second one, see `demheat.network.base.Facets`.
-    gap : (m,) float array, m
-        Between the surfaces; negative where spheres overlap.
-    radius : (m,) float array, m
-        Of the contact; 0 where there is a gap.
-    contact, medium : (m,) float arrays, W/K
-        Conductances of the contact, and of the medium beside it.
-    """
-
+    # first, second: (m,) int arrays: Numbers of the grains
     first: np.ndarray
     second: np.ndarray
-    image: np.ndarray
-    gap: np.ndarray
-    radius: np.ndarray
+    image: np.ndarray  # (m,) uint8 array: Which periodic image of the second one, see `demheat.network.base.Facets`
+    gap: np.ndarray  # (m,) float array, m: Between the surfaces; negative where spheres overlap
+    radius: np.ndarray  # (m,) float array, m: Of the contact; 0 where there is a gap
+    # contact, medium: (m,) float arrays, W/K: Conductances of the contact, and of the medium beside it
     contact: np.ndarray
     medium: np.ndarray
 
@@ -108,24 +96,15 @@ class Pairs(NamedTuple):
 
 
 class AtWalls(NamedTuple):
-    """Grains that exchange heat with a wall.
+    """Grains that exchange heat with a wall."""
 
-    Attributes
-    ----------
-    grain, side : (w,) int arrays
-        Numbers of the grain, and of the wall in `demheat.network.base.SIDES`.
-    distance : (w,) float array, m
-        From the centre to where the wall's temperature acts.
-    radius : (w,) float array, m
-        Of the contact.
-    contact, medium : (w,) float arrays, W/K
-        Conductances of the contact, and of the medium beside it; of a layer what holds the grain.
-    """
-
+    # grain, side: (w,) int arrays: Numbers of the grain, and of the wall in `demheat.network.base.SIDES`
     grain: np.ndarray
     side: np.ndarray
-    distance: np.ndarray
-    radius: np.ndarray
+    distance: np.ndarray  # (w,) float array, m: From the centre to where the wall's temperature acts
+    radius: np.ndarray  # (w,) float array, m: Of the contact
+    # contact, medium: (w,) float arrays, W/K: Conductances of the contact, and of the medium beside it; of a layer what
+    # holds the grain
     contact: np.ndarray
     medium: np.ndarray
 

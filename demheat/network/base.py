@@ -11,40 +11,25 @@ SIDES = (*WALLS, "round")
 
 
 class Facets(NamedTuple):
-    """Surfaces between particles and towards walls, in compressed rows (each link stands in both of its rows).
+    """Surfaces between particles and towards walls, in compressed rows (each link stands in both of its rows)."""
 
-    Attributes
-    ----------
-    indptr : (n + 1,) int64 array
-        Row pointers.
-    indices : (m,) uint32 array
-        The other particle of each link.
-    image : (m,) uint8 array
-        Which periodic image of it: 9 (sx + 1) + 3 (sy + 1) + sz + 1 with shifts s in -1, 0, 1 boxes.
-    area : (m,) float array, m2
-        Transmission surface S_pq, the same from both ends.
-    distance : (m,) float array, m
-        From the row's centre to the facet's plane along the link (negative beyond a facet that has passed it).
-    wall_particle, wall_side : (w,) int arrays
-        Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+; 6 = round) of each wall facet.
-    wall_area, wall_distance : (w,) float arrays, m2 and m
-        Distance to the wall along the facet's normal.
-    volumes : (n,) float array, m3
-        Cell volumes.
-    wall_normal : (w, 3) float array, optional
-        Outward unit vector of each wall facet; laws without it have flat walls only.
-    """
-
-    indptr: np.ndarray
-    indices: np.ndarray
+    indptr: np.ndarray  # (n + 1,) int64 array: Row pointers
+    indices: np.ndarray  # (m,) uint32 array: The other particle of each link
+    # (m,) uint8 array: Which periodic image of it: 9 (sx + 1) + 3 (sy + 1) + sz + 1 with shifts s in -1, 0, 1 boxes
     image: np.ndarray
-    area: np.ndarray
+    area: np.ndarray  # (m,) float array, m2: Transmission surface S_pq, the same from both ends
+    # (m,) float array, m: From the row's centre to the facet's plane along the link (negative beyond a facet that has
+    # passed it)
     distance: np.ndarray
+    # wall_particle, wall_side: (w,) int arrays: Particle and side (0 to 5 = x-, x+, y-, y+, z-, z+; 6 = round) of each
+    # wall facet
     wall_particle: np.ndarray
     wall_side: np.ndarray
+    # wall_area, wall_distance: (w,) float arrays, m2 and m: Distance to the wall along the facet's normal
     wall_area: np.ndarray
     wall_distance: np.ndarray
-    volumes: np.ndarray
+    volumes: np.ndarray  # (n,) float array, m3: Cell volumes
+    # (w, 3) float array, optional: Outward unit vector of each wall facet; laws without it have flat walls only
     wall_normal: np.ndarray | None = None
 
 

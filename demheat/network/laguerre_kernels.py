@@ -42,72 +42,39 @@ MOST_TIMES = 40
 
 
 class Limits(NamedTuple):
-    """How the cutter begins and what it gives up at.
+    """How the cutter begins and what it gives up at."""
 
-    Attributes
-    ----------
-    box : float, m
-        Half the edge of the box that the cell of the lightest site starts from.
-    widest : float, m
-        Half the edge beyond which no start box need go.
-    eps, coarsest : float, m
-        Vertices up to so high above a plane count as below it, at first and at last.
-    reach : float, m
-        Planes of a round wall farther than this were not listed.
-    lightest : float, m2
-        The least weight.
-    flat : (3,) bool array
-        Across which axes the box has flat walls.
-    sliver : float, m2
-        Facets up to this area are rounding where more than four cells meet in one point, and left out.
-    """
-
-    box: float
-    widest: float
+    box: float  # m: Half the edge of the box that the cell of the lightest site starts from
+    widest: float  # m: Half the edge beyond which no start box need go
+    # eps, coarsest: m: Vertices up to so high above a plane count as below it, at first and at last
     eps: float
     coarsest: float
-    reach: float
-    lightest: float
-    flat: np.ndarray
-    sliver: float
+    reach: float  # m: Planes of a round wall farther than this were not listed
+    lightest: float  # m2: The least weight
+    flat: np.ndarray  # (3,) bool array: Across which axes the box has flat walls
+    sliver: float  # m2: Facets up to this area are rounding where more than four cells meet in one point, and left out
 
 
 class Cut(NamedTuple):
-    """What became of the cells of r rows, and the facets of c chunks of them.
+    """What became of the cells of r rows, and the facets of c chunks of them."""
 
-    Attributes
-    ----------
-    status : (r,) int8 array
-        OK; UNSECURED if a site or a plane of a round wall beyond what was seen might cut the cell; TANGLED by rounding.
-        What follows is good for cells that are OK.
-    times : (r,) uint8 array
-        How often the cell was begun, 0 at first: more than once is rare.
-    volume : (r,) float array, m3
-        Zero for the cell of a hidden site.
-    links, ends : (r,) int32 arrays
-        Numbers of facets towards other sites and towards walls.
-    used : (c, 2) int64 array
-        Facets of each chunk, towards sites and towards walls; if both are more than there is room for, some are wrong.
-    neighbour : (c, room) uint32 array
-        The site beyond each facet from the front on; from the back on side s of the box, or 6 + q for plane q of a
-        round wall.
-    image : (c, room) uint8 array
-        Which periodic image of a site.
-    area : (c, room) float array, m2
-    distance : (c, room) float array, m
-        From the site to the facet's plane.
-    """
-
+    # (r,) int8 array: OK; UNSECURED if a site or a plane of a round wall beyond what was seen might cut the cell;
+    # TANGLED by rounding. What follows is good for cells that are OK
     status: np.ndarray
-    times: np.ndarray
-    volume: np.ndarray
+    times: np.ndarray  # (r,) uint8 array: How often the cell was begun, 0 at first: more than once is rare
+    volume: np.ndarray  # (r,) float array, m3: Zero for the cell of a hidden site
+    # links, ends: (r,) int32 arrays: Numbers of facets towards other sites and towards walls
     links: np.ndarray
     ends: np.ndarray
+    # (c, 2) int64 array: Facets of each chunk, towards sites and towards walls; if both are more than there is room
+    # for, some are wrong
     used: np.ndarray
+    # (c, room) uint32 array: The site beyond each facet from the front on; from the back on side s of the box, or 6 + q
+    # for plane q of a round wall
     neighbour: np.ndarray
-    image: np.ndarray
-    area: np.ndarray
-    distance: np.ndarray
+    image: np.ndarray  # (c, room) uint8 array: Which periodic image of a site
+    area: np.ndarray  # (c, room) float array, m2
+    distance: np.ndarray  # (c, room) float array, m: From the site to the facet's plane
 
 
 @njit(**ONCE)

@@ -11,36 +11,20 @@ IN_PIECES = {"cache": True, "error_model": "numpy", "_nrt": False, "nogil": True
 
 
 class Links(NamedTuple):
-    """Links of a network in compressed rows; each stands in both of its rows.
+    """Links of a network in compressed rows; each stands in both of its rows."""
 
-    Attributes
-    ----------
-    indptr : (n + 1,) int64 array
-        Row pointers.
-    indices : (m,) uint32 array
-        The other particle of each link.
-    conductance : (m,) float array, W/K
-    """
-
-    indptr: np.ndarray
-    indices: np.ndarray
-    conductance: np.ndarray
+    indptr: np.ndarray  # (n + 1,) int64 array: Row pointers
+    indices: np.ndarray  # (m,) uint32 array: The other particle of each link
+    conductance: np.ndarray  # (m,) float array, W/K
 
 
 class Places(NamedTuple):
-    """Where the ends of links lie.
+    """Where the ends of links lie."""
 
-    Attributes
-    ----------
-    centers : (n, 3) float array, m
-    size : (3,) float array, m
-        Of the box.
-    image : (m,) uint8 array
-        Which periodic image of its other end each link leads to: 9 (sx + 1) + 3 (sy + 1) + sz + 1, see `Facets`.
-    """
-
-    centers: np.ndarray
-    size: np.ndarray
+    centers: np.ndarray  # (n, 3) float array, m
+    size: np.ndarray  # (3,) float array, m: Of the box
+    # (m,) uint8 array: Which periodic image of its other end each link leads to: 9 (sx + 1) + 3 (sy + 1) + sz + 1, see
+    # `Facets`
     image: np.ndarray
 
 

@@ -28,26 +28,19 @@ class Polyhedron(NamedTuple):
     """A convex polyhedron around the origin, of up to p planes in slots, and scratch memory for cutting it.
 
     Its volume is that of normal.x <= distance for all slots in use; how many vertices are in use its owner knows.
-
-    Attributes
-    ----------
-    vertex : (4, 4 p) float array, m
-        Places of the vertices in rows X, Y and Z; row ABOVE is scratch: heights above the cutting plane.
-    corner : (4 p, 8) uint32 array
-        Of each vertex: the slots of the three planes that meet there, counter-clockwise seen from outside; from EDGE on
-        the vertices at the other ends of the edges in which planes k and k + 1 (cyclically) of the three meet. Columns
-        GONE and BEGINS are scratch lists: vertices that are cut off, and for each plane the new vertex that begins with
-        it.
-    plane : (p, 5) float array, m and m2
-        Outward unit normals, DISTANCE from the origin, and AREA of the facets by `measure`.
-    label : (p,) int64 array
-        What a plane is of, for who cuts.
     """
 
+    # (4, 4 p) float array, m: Places of the vertices in rows X, Y and Z; row ABOVE is scratch: heights above the
+    # cutting plane
     vertex: np.ndarray
+    # (4 p, 8) uint32 array: Of each vertex: the slots of the three planes that meet there, counter-clockwise seen from
+    # outside; from EDGE on the vertices at the other ends of the edges in which planes k and k + 1 (cyclically) of the
+    # three meet. Columns GONE and BEGINS are scratch lists: vertices that are cut off, and for each plane the new
+    # vertex that begins with it
     corner: np.ndarray
+    # (p, 5) float array, m and m2: Outward unit normals, DISTANCE from the origin, and AREA of the facets by `measure`
     plane: np.ndarray
-    label: np.ndarray
+    label: np.ndarray  # (p,) int64 array: What a plane is of, for who cuts
 
 
 def empty_polyhedron(most):

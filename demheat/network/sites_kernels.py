@@ -21,67 +21,34 @@ BINS = 32
 
 
 class Sites(NamedTuple):
-    """Weighted points in a box, filed in grids, one for each level of weight.
+    """Weighted points in a box, filed in grids, one for each level of weight."""
 
-    Attributes
-    ----------
-    points : (n, 3) float array, m
-    weights : (n,) float array, m2
-    size : (3,) float array, m
-    periodic : (3,) bool array
-    heaviest : (levels,) float array, m2
-        The largest weight of each level.
-    counts : (levels, 3) int64 array
-        Cells of each grid along each axis.
-    first : (levels,) int64 array
-        Where the cells of each grid begin in `start`.
-    start : int64 array
-        Where each cell begins among the items; of each grid one more than it has cells.
-    items : (n,) uint32 array
-        Numbers of the points, those of one cell side by side and ascending.
-    slots : (n, 4) float array, m and m2
-        Places and weights of the items, in their order.
-    """
-
-    points: np.ndarray
-    weights: np.ndarray
-    size: np.ndarray
-    periodic: np.ndarray
-    heaviest: np.ndarray
-    counts: np.ndarray
-    first: np.ndarray
-    start: np.ndarray
-    items: np.ndarray
-    slots: np.ndarray
+    points: np.ndarray  # (n, 3) float array, m
+    weights: np.ndarray  # (n,) float array, m2
+    size: np.ndarray  # (3,) float array, m
+    periodic: np.ndarray  # (3,) bool array
+    heaviest: np.ndarray  # (levels,) float array, m2: The largest weight of each level
+    counts: np.ndarray  # (levels, 3) int64 array: Cells of each grid along each axis
+    first: np.ndarray  # (levels,) int64 array: Where the cells of each grid begin in `start`
+    start: np.ndarray  # int64 array: Where each cell begins among the items; of each grid one more than it has cells
+    items: np.ndarray  # (n,) uint32 array: Numbers of the points, those of one cell side by side and ascending
+    slots: np.ndarray  # (n, 4) float array, m and m2: Places and weights of the items, in their order
 
 
 class Candidates(NamedTuple):
-    """Sites that may cut a cell, up to some room, and where its own site stands in a grid.
+    """Sites that may cut a cell, up to some room, and where its own site stands in a grid."""
 
-    Attributes
-    ----------
-    label : (room,) int64 array
-        32 times the number of a site, plus the code of its image.
-    plane : (room, 4) float array, m
-        The radical plane: unit vector towards the site, distance from the cell's own; that is minus infinity for a site
-        that hides the cell's own.
-    order : (room,) uint32 array
-        The candidates, nearest plane first as far as `arrange` tells.
-    bin : (room,) uint32 array
-        Scratch of `arrange`.
-    grid : (3, 3) int64 array
-        For each axis, the grid cell of the cell's site, the number of grid cells, and 1 if it is periodic, in columns
-        HOME, COUNT and PERIODIC.
-    frame : (3, 3) float array, m
-        From the site to the low and to the high side of its grid cell, and the width of a grid cell, in rows LOW, HIGH
-        and WIDTH.
-    """
-
-    label: np.ndarray
+    label: np.ndarray  # (room,) int64 array: 32 times the number of a site, plus the code of its image
+    # (room, 4) float array, m: The radical plane: unit vector towards the site, distance from the cell's own; that is
+    # minus infinity for a site that hides the cell's own
     plane: np.ndarray
-    order: np.ndarray
-    bin: np.ndarray
+    order: np.ndarray  # (room,) uint32 array: The candidates, nearest plane first as far as `arrange` tells
+    bin: np.ndarray  # (room,) uint32 array: Scratch of `arrange`
+    # (3, 3) int64 array: For each axis, the grid cell of the cell's site, the number of grid cells, and 1 if it is
+    # periodic, in columns HOME, COUNT and PERIODIC
     grid: np.ndarray
+    # (3, 3) float array, m: From the site to the low and to the high side of its grid cell, and the width of a grid
+    # cell, in rows LOW, HIGH and WIDTH
     frame: np.ndarray
 
 

@@ -21,26 +21,16 @@ class Packing(NamedTuple):
 
     `make_packing` checks what it is given; of one made or changed by hand, whatever takes it asks
     `demheat.packing.gate.check_packing`.
-
-    Attributes
-    ----------
-    centers : (n, 3) float array, m
-        Inside the box; on a periodic axis 0 <= x < size.
-    radii : (n,) float array, m
-    size : (3,) float array, m
-    periodic : (3,) bool array
-        Axis by axis: True for a periodic axis, False for a hard wall at both ends.
-    provenance : dict
-        How it was made (algorithm, seed, number, phi, ...) and what was reached (iterations, mean_overlap, ...).
-    domain : {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}
-        Shape of the domain; a cylinder is named by its axis. Axes across which it is round are not periodic.
     """
 
-    centers: np.ndarray
-    radii: np.ndarray
-    size: np.ndarray
-    periodic: np.ndarray
+    centers: np.ndarray  # (n, 3) float array, m: Inside the box; on a periodic axis 0 <= x < size
+    radii: np.ndarray  # (n,) float array, m
+    size: np.ndarray  # (3,) float array, m
+    periodic: np.ndarray  # (3,) bool array: Axis by axis: True for a periodic axis, False for a hard wall at both ends
+    # How it was made (algorithm, seed, number, phi, ...) and what was reached (iterations, mean_overlap, ...)
     provenance: dict
+    # {"box", "cylinder-x", "cylinder-y", "cylinder-z", "sphere"}: Shape of the domain; a cylinder is named by its axis.
+    # Axes across which it is round are not periodic
     domain: str = "box"
 
     @property

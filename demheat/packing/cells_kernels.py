@@ -17,49 +17,23 @@ RADIUS = 3
 
 
 class Reach(NamedTuple):
-    """How near is near: two particles closer than scale (r_i + r_j) + skin.
-
-    Attributes
-    ----------
-    scale : float
-    skin : float, m
-    """
+    """How near is near: two particles closer than scale (r_i + r_j) + skin."""
 
     scale: float
-    skin: float
+    skin: float  # m
 
 
 class Grid(NamedTuple):
-    """Cells of all size levels.
+    """Cells of all size levels."""
 
-    Attributes
-    ----------
-    dims : (levels, 3) int array
-        Cells along each axis.
-    cell : (levels, 3) float array, m
-        Sides of a cell.
-    largest : (levels,) float array, m
-        Largest radius in the level.
-    first : (levels,) int array
-        Number of the first cell of each level.
-    start : (cells + 1,) int array
-        First slot of each cell.
-    order : (n,) uint32 array
-        Particle in each slot.
-    slots : (n, 4) float array, m
-        Wrapped centre and radius of that particle.
-    box : (3,) float array, m
-        Period of each axis, 0 where it is walled.
-    """
-
-    dims: np.ndarray
-    cell: np.ndarray
-    largest: np.ndarray
-    first: np.ndarray
-    start: np.ndarray
-    order: np.ndarray
-    slots: np.ndarray
-    box: np.ndarray
+    dims: np.ndarray  # (levels, 3) int array: Cells along each axis
+    cell: np.ndarray  # (levels, 3) float array, m: Sides of a cell
+    largest: np.ndarray  # (levels,) float array, m: Largest radius in the level
+    first: np.ndarray  # (levels,) int array: Number of the first cell of each level
+    start: np.ndarray  # (cells + 1,) int array: First slot of each cell
+    order: np.ndarray  # (n,) uint32 array: Particle in each slot
+    slots: np.ndarray  # (n, 4) float array, m: Wrapped centre and radius of that particle
+    box: np.ndarray  # (3,) float array, m: Period of each axis, 0 where it is walled
 
 
 @njit(cache=True)

@@ -24,67 +24,34 @@ X, Y, Z, U, V, W, TIME, RADIUS = range(8)
 
 
 class Bounds(NamedTuple):
-    """Plain numbers that hold for a whole run: no arrays, whose counted references would cost more than the events.
+    """Plain numbers that hold for a whole run: no arrays, whose counted references would cost more than the events."""
 
-    Attributes
-    ----------
-    period, wall : tuples of three floats
-        Period of each axis, 0 if it has none; position of its upper flat wall (the lower is at 0), 0 if it has none.
-    middle : tuple of three floats
-        Centre of the round wall.
-    across : tuple of three floats
-        1 for axes across which the round wall stands, else 0.
-    round : float
-        Its radius, 0 if there is none.
-    grow : float
-        Growth rate of the radii over the radii at time 0.
-    leash : float
-        How far from home a sphere may go before the neighbours must be listed again.
-    last : float
-        Time at which to stop.
-    """
-
+    # period, wall: tuples of three floats: Period of each axis, 0 if it has none; position of its upper flat wall (the
+    # lower is at 0), 0 if it has none
     period: tuple
     wall: tuple
-    middle: tuple
-    across: tuple
-    round: float
-    grow: float
-    leash: float
-    last: float
+    middle: tuple  # tuple of three floats: Centre of the round wall
+    across: tuple  # tuple of three floats: 1 for axes across which the round wall stands, else 0
+    round: float  # Its radius, 0 if there is none
+    grow: float  # Growth rate of the radii over the radii at time 0
+    leash: float  # How far from home a sphere may go before the neighbours must be listed again
+    last: float  # Time at which to stop
 
 
 class Lists(NamedTuple):
-    """Whom each sphere may meet before it leaves its region.
+    """Whom each sphere may meet before it leaves its region."""
 
-    Attributes
-    ----------
-    home : (n, 3) float array
-        Where each sphere was when its neighbours were listed.
-    indptr : (n + 1,) int64 array
-    indices : (nnz,) uint32 array
-    """
-
-    home: np.ndarray
-    indptr: np.ndarray
-    indices: np.ndarray
+    home: np.ndarray  # (n, 3) float array: Where each sphere was when its neighbours were listed
+    indptr: np.ndarray  # (n + 1,) int64 array
+    indices: np.ndarray  # (nnz,) uint32 array
 
 
 class Events(NamedTuple):
-    """The next event of every sphere.
+    """The next event of every sphere."""
 
-    Attributes
-    ----------
-    times : (nodes,) float array
-        Tree of minima, leaves first: FAN children to a node.
-    levels : (depth + 1,) int array
-        Where each level of the tree begins.
-    partner : (n,) int32 array
-        Number of the sphere that will be met, or one of AGAIN, LEAVE, WALL and ROUND.
-    """
-
-    times: np.ndarray
-    levels: np.ndarray
+    times: np.ndarray  # (nodes,) float array: Tree of minima, leaves first: FAN children to a node
+    levels: np.ndarray  # (depth + 1,) int array: Where each level of the tree begins
+    # (n,) int32 array: Number of the sphere that will be met, or one of AGAIN, LEAVE, WALL and ROUND
     partner: np.ndarray
 
 

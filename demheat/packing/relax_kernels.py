@@ -16,20 +16,11 @@ SUMS = 6
 
 
 class Spheres(NamedTuple):
-    """Spheres in motion. Lengths in mean radii, the stiffness and the mass of a mean sphere are 1.
+    """Spheres in motion. Lengths in mean radii, the stiffness and the mass of a mean sphere are 1."""
 
-    Attributes
-    ----------
-    points : (n, 4) float array
-        Centre and radius.
-    velocity : (n, 3) float array
-    mobility : (n,) float array
-        Inverse mass; 0 holds a particle.
-    """
-
-    points: np.ndarray
-    velocity: np.ndarray
-    mobility: np.ndarray
+    points: np.ndarray  # (n, 4) float array: Centre and radius
+    velocity: np.ndarray  # (n, 3) float array
+    mobility: np.ndarray  # (n,) float array: Inverse mass; 0 holds a particle
 
 
 class Box(NamedTuple):

@@ -18,27 +18,17 @@ SMALL, NEAR = 0.05, 0.05
 
 
 class Edges(NamedTuple):
-    """Points on the edges of cells, ordered by cell.
+    """Points on the edges of cells, ordered by cell."""
 
-    Attributes
-    ----------
-    start : (n + 1,) int array
-        Where the points of each cell begin.
-    places, normals : (m, 3) float arrays, m and outward unit vectors
-    values : (m,) float array, K
-        Temperature, less the linear field of a mean gradient.
-    slopes : (m,) float array, K/m
-        Of the whole temperature along the normal, on the cell's side.
-    film : (m,) float array, 1/m
-        What is known is the slope and so many times the value, added: 0 at walls with a flux or none, infinite at
-        interfaces and held walls, where it is the value, between at films, coefficient of exchange over conductivity.
-    """
-
-    start: np.ndarray
+    start: np.ndarray  # (n + 1,) int array: Where the points of each cell begin
+    # places, normals: (m, 3) float arrays, m and outward unit vectors
     places: np.ndarray
     normals: np.ndarray
-    values: np.ndarray
-    slopes: np.ndarray
+    values: np.ndarray  # (m,) float array, K: Temperature, less the linear field of a mean gradient
+    slopes: np.ndarray  # (m,) float array, K/m: Of the whole temperature along the normal, on the cell's side
+    # (m,) float array, 1/m: What is known is the slope and so many times the value, added: 0 at walls with a flux or
+    # none, infinite at interfaces and held walls, where it is the value, between at films, coefficient of exchange over
+    # conductivity
     film: np.ndarray
 
 

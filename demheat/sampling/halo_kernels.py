@@ -18,33 +18,16 @@ PHASE, SUMS, ROWS = 3, 4, 8
 
 
 class Cells(NamedTuple):
-    """Samples sorted by the cells of one grid.
+    """Samples sorted by the cells of one grid."""
 
-    Attributes
-    ----------
-    dims : (3,) int array
-        Cells along each axis.
-    cell : (3,) float array, m
-        Sides of a cell.
-    period : (3,) float array, m
-        Period of each axis, 0 where it is walled.
-    start : (cells + 1,) int array
-        First slot of each cell.
-    slots : (8, n) float array
-        Centre, phase, volume, and volume times three values of the sample in each slot.
-    totals : (cells, 4) float array
-        Sums of volume and of volume times values.
-    phases : bool
-        Whether only samples of a point's own phase count.
-    """
-
-    dims: np.ndarray
-    cell: np.ndarray
-    period: np.ndarray
-    start: np.ndarray
+    dims: np.ndarray  # (3,) int array: Cells along each axis
+    cell: np.ndarray  # (3,) float array, m: Sides of a cell
+    period: np.ndarray  # (3,) float array, m: Period of each axis, 0 where it is walled
+    start: np.ndarray  # (cells + 1,) int array: First slot of each cell
+    # (8, n) float array: Centre, phase, volume, and volume times three values of the sample in each slot
     slots: np.ndarray
-    totals: np.ndarray
-    phases: bool
+    totals: np.ndarray  # (cells, 4) float array: Sums of volume and of volume times values
+    phases: bool  # Whether only samples of a point's own phase count
 
 
 @njit(cache=True)

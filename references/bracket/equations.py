@@ -20,24 +20,13 @@ DEGREE = 5
 
 
 class Balanced(NamedTuple):
-    """A flux, linear in each element.
+    """A flux, linear in each element."""
 
-    Attributes
-    ----------
-    moments : (m, 12) float array, W
-        Of the normal flux out of each element, at the corners of its faces.
-    work : float, W K
-        The flux's along the known part of the temperature.
-    left : float, W
-        Sum of the magnitudes of moments by which neighbours differ, or that leave through an insulated face.
-    stats : dict
-        `unknowns`, `iterations`, `residual`.
-    """
-
-    moments: np.ndarray
-    work: float
+    moments: np.ndarray  # (m, 12) float array, W: Of the normal flux out of each element, at the corners of its faces
+    work: float  # W K: The flux's along the known part of the temperature
+    # W: Sum of the magnitudes of moments by which neighbours differ, or that leave through an insulated face
     left: float
-    stats: dict[str, object]
+    stats: dict[str, object]  # dict: `unknowns`, `iterations`, `residual`
 
 
 def balanced_flux(scene: Scene, mesh: Mesh, *, tolerance: float) -> Balanced:

@@ -13,18 +13,11 @@ CORNERS = np.array([[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]])
 
 
 class Faces(NamedTuple):
-    """Faces as rows of unknowns: one at each of the three corners of each face.
+    """Faces as rows of unknowns: one at each of the three corners of each face."""
 
-    Attributes
-    ----------
-    row : (m, 12) int array
-        Unknown at the corners of `CORNERS` of each element, in that order; periodic twins share theirs.
-    node : (3 f,) int array
-        Node of each unknown.
-    """
-
+    # (m, 12) int array: Unknown at the corners of `CORNERS` of each element, in that order; periodic twins share theirs
     row: np.ndarray
-    node: np.ndarray
+    node: np.ndarray  # (3 f,) int array: Node of each unknown
 
 
 def number_faces(mesh: Mesh) -> Faces:
@@ -47,17 +40,10 @@ def _unique(sides, count):
 
 
 class Interfaces(NamedTuple):
-    """Faces between two phases.
+    """Faces between two phases."""
 
-    Attributes
-    ----------
-    nodes : (t, 6) int array
-        Corners, then the middles of the edges 01, 12, 02.
-    inner, outer : (t,) int array
-        Phases: that painted later, and the other.
-    """
-
-    nodes: np.ndarray
+    nodes: np.ndarray  # (t, 6) int array: Corners, then the middles of the edges 01, 12, 02
+    # inner, outer: (t,) int array: Phases: that painted later, and the other
     inner: np.ndarray
     outer: np.ndarray
 

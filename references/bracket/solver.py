@@ -41,19 +41,13 @@ ROUNDING = 1e-11
 
 @dataclass(frozen=True)
 class Bracket:
-    """Bounds of a conductivity.
+    """Bounds of a conductivity."""
 
-    Attributes
-    ----------
-    lower, upper : float, W/(m K)
-        The scene's conductivity along its load lies between them.
-    stats : dict
-        `size` (m), `elements`, `temperatures` and `fluxes`, each with `unknowns`, `iterations` and `residual`;
-        `unbalanced`, how much of the lower bound was given up for the residual; `cpu_s` of mesh, lower and upper.
-    """
-
+    # lower, upper: W/(m K): The scene's conductivity along its load lies between them
     lower: float
     upper: float
+    # `size` (m), `elements`, `temperatures` and `fluxes`, each with `unknowns`, `iterations` and `residual`;
+    # `unbalanced`, how much of the lower bound was given up for the residual; `cpu_s` of mesh, lower and upper
     stats: dict = field(repr=False, default_factory=dict)
 
     @property

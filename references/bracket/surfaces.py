@@ -35,21 +35,12 @@ TRIES = 10
 
 
 class Patches(NamedTuple):
-    """Curved patches of the interfaces.
+    """Curved patches of the interfaces."""
 
-    Attributes
-    ----------
-    nodes : (t, 6) int array
-    center : (t, 3) float array, m
-        Of the sphere that each lies on.
-    radius : (t,) float array, m
-    inner, outer : (t,) int array
-        Phases.
-    """
-
-    nodes: np.ndarray
-    center: np.ndarray
-    radius: np.ndarray
+    nodes: np.ndarray  # (t, 6) int array
+    center: np.ndarray  # (t, 3) float array, m: Of the sphere that each lies on
+    radius: np.ndarray  # (t,) float array, m
+    # inner, outer: (t,) int array: Phases
     inner: np.ndarray
     outer: np.ndarray
 

@@ -19,19 +19,13 @@ from references.mesh import make
 
 @dataclass(frozen=True)
 class Tensor:
-    """Bounds of a conductivity tensor.
+    """Bounds of a conductivity tensor."""
 
-    Attributes
-    ----------
-    least, greatest : (3, 3) float array, W/(m K)
-        Symmetric. Along any direction g the conductivity lies between g . least g and g . greatest g.
-    stats : dict
-        `size` (m) and `elements`.
-    """
-
+    # least, greatest: (3, 3) float array, W/(m K): Symmetric. Along any direction g the conductivity lies between g .
+    # least g and g . greatest g
     least: np.ndarray
     greatest: np.ndarray
-    stats: dict = field(repr=False, default_factory=dict)
+    stats: dict = field(repr=False, default_factory=dict)  # `size` (m) and `elements`
 
     @property
     def middle(self) -> np.ndarray:

@@ -35,37 +35,20 @@ DIRECT, NEAR = 32, 6
 
 
 class SolvedFibres(NamedTuple):
-    """One array at one contrast.
+    """One array at one contrast."""
 
-    Attributes
-    ----------
-    kind : {"square", "hexagonal"}
-    contrast, resistance : float
-        As they were given; an infinite resistance is a contrast of 0.
-    radius : float, distances of neighbours
-    conductivity : float
-        Across the fibres, over that of the matrix.
-    order : int
-        Highest degree l.
-    digits : float
-        Decimal digits of the conductivity, from the change between three quarters of this order and all of it.
-    degree : (n,) int array
-    source : (n,) float array, distances of neighbours
-        B_l / a^l, for a mean unit gradient along x.
-    outer : (n,) float array, distances of neighbours
-        A_l a^l.
-    """
-
-    kind: str
+    kind: str  # {"square", "hexagonal"}
+    # contrast, resistance: As they were given; an infinite resistance is a contrast of 0
     contrast: float
     resistance: float
-    radius: float
-    conductivity: float
-    order: int
+    radius: float  # distances of neighbours
+    conductivity: float  # Across the fibres, over that of the matrix
+    order: int  # Highest degree l
+    # Decimal digits of the conductivity, from the change between three quarters of this order and all of it
     digits: float
-    degree: np.ndarray
-    source: np.ndarray
-    outer: np.ndarray
+    degree: np.ndarray  # (n,) int array
+    source: np.ndarray  # (n,) float array, distances of neighbours: B_l / a^l, for a mean unit gradient along x
+    outer: np.ndarray  # (n,) float array, distances of neighbours: A_l a^l
 
 
 def touching(kind) -> float:

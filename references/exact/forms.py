@@ -23,28 +23,16 @@ SAME = 1e-12
 
 
 class Closed(NamedTuple):
-    """A solution in closed form.
-
-    Attributes
-    ----------
-    form : str
-    temperature : callable (n, 3) float array, m -> (n,) float array, K
-    flux : callable (n, 3) float array, m -> (n, 3) float array, W/m2
-    mean_flux : (3,) float array, W/m2
-    normal : int
-        Axis along which the temperature of a wall can vary piecewise linearly.
-    breaks : (m,) float array, m
-        Ends of its linear pieces; elsewhere the mean over a wall is the value at its centre.
-    stats : mapping
-    """
+    """A solution in closed form."""
 
     form: str
-    temperature: Callable
-    flux: Callable
-    mean_flux: np.ndarray
-    normal: int
+    temperature: Callable  # callable (n, 3) float array, m -> (n,) float array, K
+    flux: Callable  # callable (n, 3) float array, m -> (n, 3) float array, W/m2
+    mean_flux: np.ndarray  # (3,) float array, W/m2
+    normal: int  # Axis along which the temperature of a wall can vary piecewise linearly
+    # (m,) float array, m: Ends of its linear pieces; elsewhere the mean over a wall is the value at its centre
     breaks: np.ndarray
-    stats: Mapping[str, object]
+    stats: Mapping[str, object]  # mapping
 
 
 def laminate(scene):

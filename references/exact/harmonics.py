@@ -29,19 +29,13 @@ STEP = 60
 
 
 class Sums(NamedTuple):
-    """Sums of I_L^M over the sites of a cubic array, in units of the nearest distance to the power -(L+1).
+    """Sums of I_L^M over the sites of a cubic array, in units of the nearest distance to the power -(L+1)."""
 
-    Attributes
-    ----------
-    total, far : (order + 1, order // 4 + 1) float arrays
-        Entry [L, M // 4]; over all sites but the origin, and over those beyond `near`.
-    near : (n, 3) float array, edges
-        The origin first, then the sites close to it.
-    """
-
+    # total, far: (order + 1, order // 4 + 1) float arrays: Entry [L, M // 4]; over all sites but the origin, and over
+    # those beyond `near`
     total: np.ndarray
     far: np.ndarray
-    near: np.ndarray
+    near: np.ndarray  # (n, 3) float array, edges: The origin first, then the sites close to it
 
 
 def legendre(z, square, order, m):

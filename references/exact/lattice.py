@@ -28,44 +28,24 @@ FAR_ORDER = 59
 
 
 class SolvedArray(NamedTuple):
-    """One array at one contrast.
+    """One array at one contrast."""
 
-    Attributes
-    ----------
-    kind : {"sc", "bcc", "fcc"}
-    contrast : float
-        Conductivity of the spheres over that of the matrix.
-    resistance : float
-        Of their surfaces, times the conductivity of the matrix over the radius.
-    radius : float, edges
-    conductivity : float
-        Of the array over that of the matrix.
-    order : int
-        Highest degree l.
-    digits : float
-        Decimal digits of the conductivity, from the change between three quarters of this order and all of it.
-    field_digits : float
-        Decimal digits of the flux at the interface, where the series converges most slowly, from its last terms.
-    residual : float
-        Relative residual of the linear system, recomputed.
-    source, inner : (n, n) float arrays
-        Entry [l, m]: B_lm / r^(l+1), and A_lm r^l, of the sphere at the origin.
-    far : (n, n) float array
-        Entry [l, m]: coefficient of R_l^m(x / circumradius of the cell) in what the mean gradient and the spheres
-        beyond the near ones make in the cell at the origin.
-    """
-
-    kind: str
-    contrast: float
-    resistance: float
-    radius: float
-    conductivity: float
-    order: int
+    kind: str  # {"sc", "bcc", "fcc"}
+    contrast: float  # Conductivity of the spheres over that of the matrix
+    resistance: float  # Of their surfaces, times the conductivity of the matrix over the radius
+    radius: float  # edges
+    conductivity: float  # Of the array over that of the matrix
+    order: int  # Highest degree l
+    # Decimal digits of the conductivity, from the change between three quarters of this order and all of it
     digits: float
+    # Decimal digits of the flux at the interface, where the series converges most slowly, from its last terms
     field_digits: float
-    residual: float
+    residual: float  # Relative residual of the linear system, recomputed
+    # source, inner: (n, n) float arrays: Entry [l, m]: B_lm / r^(l+1), and A_lm r^l, of the sphere at the origin
     source: np.ndarray
     inner: np.ndarray
+    # (n, n) float array: Entry [l, m]: coefficient of R_l^m(x / circumradius of the cell) in what the mean gradient and
+    # the spheres beyond the near ones make in the cell at the origin
     far: np.ndarray
 
 

@@ -40,27 +40,16 @@ class Body(NamedTuple):
 
 
 class Solved(NamedTuple):
-    """A solution at one time.
+    """A solution at one time."""
 
-    Attributes
-    ----------
-    form : {"slab", "sphere"}
-    fourier : float
-        Diffusivity times time over the squared length or radius.
-    mean_flux : (3,) float array, W/m2
-    wall_temperature, heat : dict of str to float, K and W
-        Of every wall that could be loaded.
-    temperature : callable (n, 3) float array, m -> (n,) float array, K
-    flux : callable (n, 3) float array, m -> (n, 3) float array, W/m2
-    """
-
-    form: str
-    fourier: float
-    mean_flux: np.ndarray
+    form: str  # {"slab", "sphere"}
+    fourier: float  # Diffusivity times time over the squared length or radius
+    mean_flux: np.ndarray  # (3,) float array, W/m2
+    # wall_temperature, heat: dict of str to float, K and W: Of every wall that could be loaded
     wall_temperature: dict
     heat: dict
-    temperature: Callable
-    flux: Callable
+    temperature: Callable  # callable (n, 3) float array, m -> (n,) float array, K
+    flux: Callable  # callable (n, 3) float array, m -> (n, 3) float array, W/m2
 
 
 def evolve(scene: Scene, times: Sequence[float], *, points_per_axis: int = 24) -> Iterator[Field]:

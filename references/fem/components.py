@@ -16,24 +16,16 @@ ROUNDING = 1e-12
 
 
 class Bodies(NamedTuple):
-    """Bodies of a mesh with pores.
+    """Bodies of a mesh with pores."""
 
-    Attributes
-    ----------
-    node, element : (n,) and (m,) int arrays
-        Body of each; -1 in pores.
-    shift : (n, 3) int array
-        Boxes by which a node is moved to where its body reaches it from its first piece.
-    passing : (number of bodies,) bool array
-        Whether heat passes.
-    level : (number of bodies,) float array, K or degrees Celsius
-        Temperature of the wall that a body reaches where no heat passes, else NaN.
-    """
-
+    # node, element: (n,) and (m,) int arrays: Body of each; -1 in pores
     node: np.ndarray
     element: np.ndarray
+    # (n, 3) int array: Boxes by which a node is moved to where its body reaches it from its first piece
     shift: np.ndarray
-    passing: np.ndarray
+    passing: np.ndarray  # (number of bodies,) bool array: Whether heat passes
+    # (number of bodies,) float array, K or degrees Celsius: Temperature of the wall that a body reaches where no heat
+    # passes, else NaN
     level: np.ndarray
 
     @property

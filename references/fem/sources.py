@@ -21,17 +21,10 @@ LEAST_RINGS, MOST_RINGS = 8, 128
 
 
 class Deposit(NamedTuple):
-    """What a source gives.
+    """What a source gives."""
 
-    Attributes
-    ----------
-    heat : (n,) float array, W
-        Into each node.
-    power, lost : float, W
-        Inside of the body and outside.
-    """
-
-    heat: np.ndarray
+    heat: np.ndarray  # (n,) float array, W: Into each node
+    # power, lost: W: Inside of the body and outside
     power: float
     lost: float
 

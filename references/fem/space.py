@@ -35,46 +35,27 @@ class WallNodes(NamedTuple):
 
 
 class Space(NamedTuple):
-    """Equations C dT/dt + K T = heat of the n nodes of a mesh.
+    """Equations C dT/dt + K T = heat of the n nodes of a mesh."""
 
-    Attributes
-    ----------
-    points : (n, 3) float array, m
-    mass : (n, n) CSR matrix, J/K
-        Consistent.
-    stiffness : (n, n) CSR matrix, W/K
-    volumes : (n,) float array, m3
-        Integrals of the shape functions.
-    walls : mapping of str to WallNodes
-    quadratic : callable (free nodes) -> CSR matrix or None
-        From the corners to all free nodes of quadratic elements.
-    separable : callable (free nodes) -> callable (tau, load) -> solution, or None
-        Exact inverse of mass / tau + stiffness, where there is a fast one.
-    spread : callable (points, amounts) -> (n,) float array
-        Amounts at points shared among the nodes by their shape functions.
-    planes : callable (axis) -> (p,) float array, m
-        Coordinates along an axis; one point between each two resolves the shape functions.
-    spacing : float, m
-        Distance between points in a plane that resolves them.
-    view : callable (temperature) -> object
-        With `temperature_at`, `flux_at`, `samples` and `mean_flux`.
-    fractions : (1 + number of inclusions,) float array
-    stats : dict
-    """
-
-    points: np.ndarray
-    mass: csr_matrix
-    stiffness: csr_matrix
-    volumes: np.ndarray
-    walls: dict[str, WallNodes]
+    points: np.ndarray  # (n, 3) float array, m
+    mass: csr_matrix  # (n, n) CSR matrix, J/K: Consistent
+    stiffness: csr_matrix  # (n, n) CSR matrix, W/K
+    volumes: np.ndarray  # (n,) float array, m3: Integrals of the shape functions
+    walls: dict[str, WallNodes]  # mapping of str to WallNodes
+    # callable (free nodes) -> CSR matrix or None: From the corners to all free nodes of quadratic elements
     quadratic: Callable
+    # callable (free nodes) -> callable (tau, load) -> solution, or None: Exact inverse of mass / tau + stiffness, where
+    # there is a fast one
     separable: Callable | None
+    # callable (points, amounts) -> (n,) float array: Amounts at points shared among the nodes by their shape functions
     spread: Callable
+    # callable (axis) -> (p,) float array, m: Coordinates along an axis; one point between each two resolves the shape
+    # functions
     planes: Callable
-    spacing: float
-    view: Callable
-    fractions: np.ndarray
-    stats: dict[str, object]
+    spacing: float  # m: Distance between points in a plane that resolves them
+    view: Callable  # callable (temperature) -> object: With `temperature_at`, `flux_at`, `samples` and `mean_flux`
+    fractions: np.ndarray  # (1 + number of inclusions,) float array
+    stats: dict[str, object]  # dict
 
 
 def tetrahedra(scene, mesh) -> Space:

@@ -29,24 +29,14 @@ SMOOTH = 1e-6
 
 
 class Solved(NamedTuple):
-    """Nodal temperatures and what the walls see.
+    """Nodal temperatures and what the walls see."""
 
-    Attributes
-    ----------
-    temperature : (n,) float array, K or degrees Celsius
-    wall_temperature : dict of str to float, K or degrees Celsius
-    wall_heat : dict of str to float, W
-        Heat into the body by the reactions at the nodes: sums to zero to the solver's residual.
-    stats : dict
-    bodies : components.Bodies, or None
-        That pores leave; None if all phases conduct.
-    """
-
-    temperature: np.ndarray
-    wall_temperature: dict[str, float]
+    temperature: np.ndarray  # (n,) float array, K or degrees Celsius
+    wall_temperature: dict[str, float]  # dict of str to float, K or degrees Celsius
+    # dict of str to float, W: Heat into the body by the reactions at the nodes: sums to zero to the solver's residual
     wall_heat: dict[str, float]
-    stats: dict[str, object]
-    bodies: components.Bodies | None = None
+    stats: dict[str, object]  # dict
+    bodies: components.Bodies | None = None  # components.Bodies, or None: That pores leave; None if all phases conduct
 
 
 class Given(NamedTuple):

@@ -13,45 +13,28 @@ from references.fft.hexahedron_kernels import compiled
 
 
 class Vectors(NamedTuple):
-    """The vectors of conjugate gradients, one value per node, and the nodes' weights in the preconditioner.
+    """The vectors of conjugate gradients, one value per node, and the nodes' weights in the preconditioner."""
 
-    Attributes
-    ----------
-    theta : (mx, my, mz) float array, K
-        Temperature less its linear part.  Voxels have their nodes at the corners.  Periodic: m = n.  Walls:
-        mx = nx - 1 (those on the two isothermal walls are zero and left out), my = ny + 1, mz = nz + 1.  Links have
-        theirs at the voxel centres: m = n.
-    residual : (mx, my, mz) float array, W/m3
-    direction : (mx, my, mz) float array, K
-    work : (mx, my, mz or more) float array
-        An operator's result, W/m3, or a preconditioned one, K.
-    weight_y, weight_z : (my,) and (mz,) float arrays
-        A node's weight is their product: 1 over the share of a whole cell that it owns.
-    partial : (mx,) float64 array, W K/m3
-        Sums over the planes of `dot`.
-    """
-
+    # (mx, my, mz) float array, K: Temperature less its linear part.  Voxels have their nodes at the corners.  Periodic:
+    # m = n.  Walls: mx = nx - 1 (those on the two isothermal walls are zero and left out), my = ny + 1, mz = nz + 1.
+    # Links have theirs at the voxel centres: m = n
     theta: np.ndarray
-    residual: np.ndarray
-    direction: np.ndarray
-    work: np.ndarray
+    residual: np.ndarray  # (mx, my, mz) float array, W/m3
+    direction: np.ndarray  # (mx, my, mz) float array, K
+    work: np.ndarray  # (mx, my, mz or more) float array: An operator's result, W/m3, or a preconditioned one, K
+    # weight_y, weight_z: (my,) and (mz,) float arrays: A node's weight is their product: 1 over the share of a whole
+    # cell that it owns
     weight_y: np.ndarray
     weight_z: np.ndarray
-    partial: np.ndarray
+    partial: np.ndarray  # (mx,) float64 array, W K/m3: Sums over the planes of `dot`
 
 
 class Symbol(NamedTuple):
-    """Factors per axis of the symbol of minus the discrete Laplacian, sx cy cz + cx sy cz + cx cy sz.
+    """Factors per axis of the symbol of minus the discrete Laplacian, sx cy cz + cx sy cz + cx cy sz."""
 
-    Attributes
-    ----------
-    sine : tuple of three float arrays, 1/m2
-        s = (2 sin(k / 2) / spacing)^2; that of x as wide as a column of modes.
-    cosine : tuple of three float arrays
-        c = cos(k / 2)^2 for voxels, 1 for links, which gives the seven-point Laplacian.
-    """
-
+    # tuple of three float arrays, 1/m2: s = (2 sin(k / 2) / spacing)^2; that of x as wide as a column of modes
     sine: tuple
+    # tuple of three float arrays: c = cos(k / 2)^2 for voxels, 1 for links, which gives the seven-point Laplacian
     cosine: tuple
 
 

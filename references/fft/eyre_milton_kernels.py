@@ -18,18 +18,10 @@ compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "
 
 
 class Sums(NamedTuple):
-    """Sums over each plane of voxels.
+    """Sums over each plane of voxels."""
 
-    Attributes
-    ----------
-    change : (nx,) float64 array, W2/m4
-        Of the squared change of p.
-    flux : (nx, 3) float64 array, W/m2
-        Of p + Z p = 2 q.
-    """
-
-    change: np.ndarray
-    flux: np.ndarray
+    change: np.ndarray  # (nx,) float64 array, W2/m4: Of the squared change of p
+    flux: np.ndarray  # (nx, 3) float64 array, W/m2: Of p + Z p = 2 q
 
 
 @compiled

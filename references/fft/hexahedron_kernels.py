@@ -19,35 +19,18 @@ compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "
 
 
 class Body(NamedTuple):
-    """What conducts, and the load's kind.
+    """What conducts, and the load's kind."""
 
-    Attributes
-    ----------
-    material : Medium or Links, W/(m K)
-    inverse : (3,) float array, 1/m
-        1 / (4 spacing) for voxels, 1 / spacing for links.
-    walls : bool
-        Two isothermal walls across the first axis and four insulated ones; else a periodic cell.
-    """
-
-    material: NamedTuple
-    inverse: np.ndarray
-    walls: bool
+    material: NamedTuple  # Medium or Links, W/(m K)
+    inverse: np.ndarray  # (3,) float array, 1/m: 1 / (4 spacing) for voxels, 1 / spacing for links
+    walls: bool  # Two isothermal walls across the first axis and four insulated ones; else a periodic cell
 
 
 class Sums(NamedTuple):
-    """Sums over each plane of voxels of products of the gradient g and the flux q along it.
+    """Sums over each plane of voxels of products of the gradient g and the flux q along it."""
 
-    Attributes
-    ----------
-    energy : (nx,) float64 array, W K/m3
-        Of g.q.
-    flux : (nx, 3) float64 array, W/m2
-        Of q.
-    """
-
-    energy: np.ndarray
-    flux: np.ndarray
+    energy: np.ndarray  # (nx,) float64 array, W K/m3: Of g.q
+    flux: np.ndarray  # (nx, 3) float64 array, W/m2: Of q
 
 
 @compiled

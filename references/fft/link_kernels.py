@@ -17,17 +17,11 @@ class Links(NamedTuple):
 
     Link i of an axis joins voxels i - 1 and i.  The first and the last pass through the face: the same link twice in
     a periodic cell, mirrored in an isothermal wall, 0 in an insulated one.
-
-    Attributes
-    ----------
-    x : (nx + 1, ny, nz) float array
-    y : (nx, ny + 1, nz) float array
-    z : (nx, ny, nz + 1) float array
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    z: np.ndarray
+    x: np.ndarray  # (nx + 1, ny, nz) float array
+    y: np.ndarray  # (nx, ny + 1, nz) float array
+    z: np.ndarray  # (nx, ny, nz + 1) float array
 
 
 @compiled

@@ -28,29 +28,19 @@ class Problem(NamedTuple):
 
 
 class SolvedGrid(NamedTuple):
-    """A solved problem, in the units of the problem; fluxes are along the gradient, against Fourier's direction.
+    """A solved problem, in the units of the problem; fluxes are along the gradient, against Fourier's direction."""
 
-    Attributes
-    ----------
-    mean_flux : (3,) float array
-    ends : (2,) float array
-        Mean of the first flux component over the planes of voxels at the two ends of the first axis.
-    state : callable () -> (temperature, flux)
-        (nx, ny, nz) temperature less its linear part, (3, nx, ny, nz) flux, both at the voxel centres; made anew at
-        each call.
-    unknowns, iterations : int
-    errors : dict of str to float
-        Relative errors, recomputed after the solve; `residual` is the largest.
-    cost : dict of str to float
-        Wall seconds: `iteration_s` of all iterations, `transform_s` of the Fourier transforms among them.
-    """
-
-    mean_flux: np.ndarray
+    mean_flux: np.ndarray  # (3,) float array
+    # (2,) float array: Mean of the first flux component over the planes of voxels at the two ends of the first axis
     ends: np.ndarray
+    # callable () -> (temperature, flux): (nx, ny, nz) temperature less its linear part, (3, nx, ny, nz) flux, both at
+    # the voxel centres; made anew at each call
     state: Callable[[], tuple]
     unknowns: int
     iterations: int
-    errors: dict
+    errors: dict  # dict of str to float: Relative errors, recomputed after the solve; `residual` is the largest
+    # dict of str to float: Wall seconds: `iteration_s` of all iterations, `transform_s` of the Fourier transforms among
+    # them
     cost: dict
 
 

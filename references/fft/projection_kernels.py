@@ -19,33 +19,23 @@ compiled = numba.njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "
 
 
 class Waves(NamedTuple):
-    """What is known of each wave number; kernels that work on columns want every entry of x twice, see `Transform`.
+    """What is known of each wave number; kernels that work on columns want every entry of x twice, see `Transform`."""
 
-    Attributes
-    ----------
-    number : tuple of three float arrays, 1/m
-        Wave numbers per axis.  Modes: 0 at a Nyquist frequency.  Waves: those of 0 to n half waves, the last one
-        replaced by 0; those of y and z with a minus.
-    free : tuple of three float arrays
-        1 where the component along this axis is a gradient by itself (a Nyquist frequency, or n half waves), else 0.
-    multiplicity : tuple of three float arrays
-        How often each wave number counts in a sum of squares over all of them; the product over the axes is a mode's.
-    """
-
+    # tuple of three float arrays, 1/m: Wave numbers per axis.  Modes: 0 at a Nyquist frequency.  Waves: those of 0 to n
+    # half waves, the last one replaced by 0; those of y and z with a minus
     number: tuple
+    # tuple of three float arrays: 1 where the component along this axis is a gradient by itself (a Nyquist frequency,
+    # or n half waves), else 0
     free: tuple
+    # tuple of three float arrays: How often each wave number counts in a sum of squares over all of them; the product
+    # over the axes is a mode's
     multiplicity: tuple
 
 
 class Parts(NamedTuple):
-    """Sums of squares of the compatible part of a field, less its mean, and of the rest; per column or per plane.
+    """Sums of squares of the compatible part of a field, less its mean, and of the rest; per column or per plane."""
 
-    Attributes
-    ----------
-    inside, outside : (columns or nx + 1,) float64 array
-        Of the field's unit squared.
-    """
-
+    # inside, outside: (columns or nx + 1,) float64 array: Of the field's unit squared
     inside: np.ndarray
     outside: np.ndarray
 

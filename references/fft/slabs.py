@@ -22,24 +22,14 @@ from references.voxels.paint import Voxels, voxelise
 
 
 class Slab(NamedTuple):
-    """Planes of a grid that a rank has.
+    """Planes of a grid that a rank has."""
 
-    Attributes
-    ----------
-    low, high : int
-        First and end of its own nodes' planes, and of the voxels' beside or below them.
-    shape : (3,) tuple of int
-        Voxels of the whole grid.
-    walls : bool
-        Across the first axis.
-    comm : mpi4py.MPI.Comm
-    """
-
+    # low, high: First and end of its own nodes' planes, and of the voxels' beside or below them
     low: int
     high: int
-    shape: tuple
-    walls: bool
-    comm: object
+    shape: tuple  # (3,) tuple of int: Voxels of the whole grid
+    walls: bool  # Across the first axis
+    comm: object  # mpi4py.MPI.Comm
 
     @property
     def nodes(self) -> slice:

@@ -41,37 +41,21 @@ NYQUIST = 1e9
 
 
 class Tangents(NamedTuple):
-    """Frequencies of the rotated scheme along an axis, tan(pi k/N) over the spacing.
+    """Frequencies of the rotated scheme along an axis, tan(pi k/N) over the spacing."""
 
-    Attributes
-    ----------
-    frequency : (n,) float array, 1/m
-        0 at the Nyquist frequency, so that no product of two axes has a sign there.
-    square : (n,) float array, 1/m2
-        Huge at the Nyquist frequency.
-    """
-
+    # (n,) float array, 1/m: 0 at the Nyquist frequency, so that no product of two axes has a sign there
     frequency: np.ndarray
-    square: np.ndarray
+    square: np.ndarray  # (n,) float array, 1/m2: Huge at the Nyquist frequency
 
 
 class Zeta2(NamedTuple):
-    """The parameter and how it was found.
+    """The parameter and how it was found."""
 
-    Attributes
-    ----------
-    value : float
-        zeta_2 of the inclusions, extrapolated to voxels of no size if that was asked.
-    fraction : float
-        Volume fraction of the inclusions on the finest grid.
-    stats : dict
-        `raw`, the value before it is held within 0 to 1; `voxels` (shapes, finest last), `values` and `fractions` on
-        each; `error`, None from one grid, else the part that the term in h^3 had in the extrapolation (true errors
-        found: 0.03 to 1.4 times that); `amplification`, the relative error of zeta_2 over that of a_3.
-    """
-
-    value: float
-    fraction: float
+    value: float  # zeta_2 of the inclusions, extrapolated to voxels of no size if that was asked
+    fraction: float  # Volume fraction of the inclusions on the finest grid
+    # `raw`, the value before it is held within 0 to 1; `voxels` (shapes, finest last), `values` and `fractions` on
+    # each; `error`, None from one grid, else the part that the term in h^3 had in the extrapolation (true errors found:
+    # 0.03 to 1.4 times that); `amplification`, the relative error of zeta_2 over that of a_3
     stats: dict
 
 

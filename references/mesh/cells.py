@@ -28,51 +28,29 @@ class Wall(NamedTuple):
 
 
 class Faces(NamedTuple):
-    """Triangles between elements that an interface with a resistance parts, whose nodes stand once on either side.
+    """Triangles between elements that an interface with a resistance parts, whose nodes stand once on either side."""
 
-    Attributes
-    ----------
-    nodes : (t, 2, 3) or (t, 2, 6) int array
-        Of both sides, in the same places: corners, then the middles of the edges 01, 12, 02. On a face of a periodic
-        cell the places of the second are those of the first less the period.
-    resistance : (t,) float array, m2 K/W
-    """
-
+    # (t, 2, 3) or (t, 2, 6) int array: Of both sides, in the same places: corners, then the middles of the edges 01,
+    # 12, 02. On a face of a periodic cell the places of the second are those of the first less the period
     nodes: np.ndarray
-    resistance: np.ndarray
+    resistance: np.ndarray  # (t,) float array, m2 K/W
 
 
 class Mesh(NamedTuple):
-    """Tetrahedra of one scene.
+    """Tetrahedra of one scene."""
 
-    Attributes
-    ----------
-    points : (n, 3) float array, m
-    cells : (m, 4) or (m, 10) int32 array
-        Corners, then the middles of the edges 01, 12, 02, 03, 13, 23 (VTK's order).
-    phase : (m,) int32 array
-    volumes : (m,) float array, m3
-    curved : (m,) bool array
-        Which elements have a curved edge.
-    walls : mapping of str to Wall
-        All six faces, or "round" and the flat ends of a round body.
-    pairs : (p, 2) int32 array
-        Node on a face "+" and its periodic twin on the face "-"; empty in a walled box.
-    stats : mapping
-        `size` used (m), `attempts`, `straightened` elements, smallest relative `jacobian`, `mesh_s`.
-    faces : Faces, optional
-        Where nodes were doubled, see `references.mesh.sides`.
-    """
-
-    points: np.ndarray
+    points: np.ndarray  # (n, 3) float array, m
+    # (m, 4) or (m, 10) int32 array: Corners, then the middles of the edges 01, 12, 02, 03, 13, 23 (VTK's order)
     cells: np.ndarray
-    phase: np.ndarray
-    volumes: np.ndarray
-    curved: np.ndarray
-    walls: dict[str, Wall]
+    phase: np.ndarray  # (m,) int32 array
+    volumes: np.ndarray  # (m,) float array, m3
+    curved: np.ndarray  # (m,) bool array: Which elements have a curved edge
+    walls: dict[str, Wall]  # mapping of str to Wall: All six faces, or "round" and the flat ends of a round body
+    # (p, 2) int32 array: Node on a face "+" and its periodic twin on the face "-"; empty in a walled box
     pairs: np.ndarray
+    # mapping: `size` used (m), `attempts`, `straightened` elements, smallest relative `jacobian`, `mesh_s`
     stats: dict[str, object]
-    faces: Faces | None = None
+    faces: Faces | None = None  # Where nodes were doubled, see `references.mesh.sides`
 
 
 def snap(points, box, periodic):

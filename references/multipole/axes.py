@@ -20,21 +20,14 @@ from references.multipole.sums import harmonics
 
 
 class Axes(NamedTuple):
-    """What the kernels of lanes need.
+    """What the kernels of lanes need."""
 
-    Attributes
-    ----------
-    swap : (n,) float array
-        Exchange of y and z, in the order in which `lane_kernels` reads it.
-    along : ((order + 1)^3,) float array
-        Entry [m, l', l], raveled: from multipoles l to local coefficients l' at the distance 1 along z.
-    shift : (order + 1, order + 1, order + 1) float array
-        Entry [m, L, l]: from multipoles l to those of degree L >= l about a point 1 below; transposed, from local
-        coefficients L to those of degree l about a point 1 above.
-    """
-
-    swap: np.ndarray
+    swap: np.ndarray  # (n,) float array: Exchange of y and z, in the order in which `lane_kernels` reads it
+    # ((order + 1)^3,) float array: Entry [m, l', l], raveled: from multipoles l to local coefficients l' at the
+    # distance 1 along z
     along: np.ndarray
+    # (order + 1, order + 1, order + 1) float array: Entry [m, L, l]: from multipoles l to those of degree L >= l about
+    # a point 1 below; transposed, from local coefficients L to those of degree l about a point 1 above
     shift: np.ndarray
 
 

@@ -39,23 +39,12 @@ ABOVE, FASTER = 60.0, 1.06
 
 
 class Plan(NamedTuple):
-    """How to divide a periodic cell.
+    """How to divide a periodic cell."""
 
-    Attributes
-    ----------
-    shape : (3,) int array
-        Numbers of cells.
-    degree : int
-        Highest degree of the cells' multipoles.
-    precision : float
-        Relative error of what spheres make at each other.
-    product, setup : float, s
-        Estimated cost of one product with all translations and of the far sums.
-    """
-
-    shape: np.ndarray
-    degree: int
-    precision: float
+    shape: np.ndarray  # (3,) int array: Numbers of cells
+    degree: int  # Highest degree of the cells' multipoles
+    precision: float  # Relative error of what spheres make at each other
+    # product, setup: s: Estimated cost of one product with all translations and of the far sums
     product: float
     setup: float
 

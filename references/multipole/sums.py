@@ -32,19 +32,11 @@ CHUNK = 512
 
 
 class Splitting(NamedTuple):
-    """Where Ewald's two sums are cut.
+    """Where Ewald's two sums are cut."""
 
-    Attributes
-    ----------
-    eta : float, length^-2
-    reach : float, length
-        Images beyond are left out.
-    waves : (w, 3) int array
-        One of each pair K, -K of the reciprocal vectors that count, in units of 2 pi/size.
-    """
-
-    eta: float
-    reach: float
+    eta: float  # length^-2
+    reach: float  # length: Images beyond are left out
+    # (w, 3) int array: One of each pair K, -K of the reciprocal vectors that count, in units of 2 pi/size
     waves: np.ndarray
 
 

@@ -24,26 +24,15 @@ MOST_ITERATIONS = 400
 
 
 class Solved(NamedTuple):
-    """Multipoles of one order.
-
-    Attributes
-    ----------
-    order : int
-    source, local : (2, n, entries) float arrays, K
-        b and c of all spheres.
-    mean_flux : (3,) float array, K/length
-        Over the conductivity of the matrix.
-    iterations : int
-    residual : float
-        Relative, recomputed.
-    """
+    """Multipoles of one order."""
 
     order: int
+    # source, local: (2, n, entries) float arrays, K: b and c of all spheres
     source: np.ndarray
     local: np.ndarray
-    mean_flux: np.ndarray
+    mean_flux: np.ndarray  # (3,) float array, K/length: Over the conductivity of the matrix
     iterations: int
-    residual: float
+    residual: float  # Relative, recomputed
 
 
 def mirror_signs(spheres, gradient, order):

@@ -48,18 +48,12 @@ def unmirrored(centers, radii, contrasts, size, resistances=None) -> Spheres:
 
 
 class Translation(NamedTuple):
-    """Periodic sums of I_L^M for all pairs of a sphere that counts and any other.
+    """Periodic sums of I_L^M for all pairs of a sphere that counts and any other."""
 
-    Attributes
-    ----------
-    sums : (1 + pairs, entries) complex array, length^-(L+1)
-        Of a sphere's own images, then for i < j of X = x_i - x_j, j running fastest.
-    top : (1 + pairs,) int array
-        Highest degree L = l + l' that counts.
-    """
-
+    # (1 + pairs, entries) complex array, length^-(L+1): Of a sphere's own images, then for i < j of X = x_i - x_j, j
+    # running fastest
     sums: np.ndarray
-    top: np.ndarray
+    top: np.ndarray  # (1 + pairs,) int array: Highest degree L = l + l' that counts
 
     def exchanged(self, spheres, source, threads=1):
         """c that spheres make at those that count, but for the background: see `received`."""

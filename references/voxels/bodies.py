@@ -25,23 +25,15 @@ BLOCK = 1_000_000
 
 
 class Bodies(NamedTuple):
-    """Bodies of a grid; its walls, if it has some, are those across the first axis.
+    """Bodies of a grid; its walls, if it has some, are those across the first axis."""
 
-    Attributes
-    ----------
-    label : (nx, ny, nz) int32 array
-        Body of each voxel, -1 in pores.
-    shift : (n, 3) int16 array
-        Boxes by which each voxel, in flat order, is moved to where its body reaches it from its first voxel.
-    passing : (number of bodies,) bool array
-        Whether heat passes: from wall to wall, or in a periodic cell up the mean gradient.
-    low, high : (number of bodies,) bool arrays
-        Whether a body reaches the wall at either end of the first axis.
-    """
-
-    label: np.ndarray
+    label: np.ndarray  # (nx, ny, nz) int32 array: Body of each voxel, -1 in pores
+    # (n, 3) int16 array: Boxes by which each voxel, in flat order, is moved to where its body reaches it from its first
+    # voxel
     shift: np.ndarray
+    # (number of bodies,) bool array: Whether heat passes: from wall to wall, or in a periodic cell up the mean gradient
     passing: np.ndarray
+    # low, high: (number of bodies,) bool arrays: Whether a body reaches the wall at either end of the first axis
     low: np.ndarray
     high: np.ndarray
 

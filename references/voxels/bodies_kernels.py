@@ -12,25 +12,16 @@ ROUNDING = 1e-12
 
 
 class Found(NamedTuple):
-    """Bodies of a grid, as far as they are known.
+    """Bodies of a grid, as far as they are known."""
 
-    Attributes
-    ----------
-    label : (nx, ny, nz) int32 array
-        Body of each voxel; OPEN before it is known, NONE outside all.
-    shift : (n, 3) int16 array
-        Boxes by which each voxel, in flat order, is moved to where its body reaches it from its first voxel.
-    climbs : (n,) bool array
-        Of the first entries, one for each body: whether a way in it back to the same voxel, across the box, rises with
-        the mean gradient.
-    queue : (n,) int32 array
-        Voxels in the order in which they are found.
-    """
-
-    label: np.ndarray
+    label: np.ndarray  # (nx, ny, nz) int32 array: Body of each voxel; OPEN before it is known, NONE outside all
+    # (n, 3) int16 array: Boxes by which each voxel, in flat order, is moved to where its body reaches it from its first
+    # voxel
     shift: np.ndarray
+    # (n,) bool array: Of the first entries, one for each body: whether a way in it back to the same voxel, across the
+    # box, rises with the mean gradient
     climbs: np.ndarray
-    queue: np.ndarray
+    queue: np.ndarray  # (n,) int32 array: Voxels in the order in which they are found
 
 
 @njit(cache=True)

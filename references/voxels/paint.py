@@ -31,76 +31,40 @@ PAIRS = ((0, 0), (1, 1), (2, 2), (1, 2), (0, 2), (0, 1))
 
 
 class Voxels(NamedTuple):
-    """A scene on a regular grid.
+    """A scene on a regular grid."""
 
-    Attributes
-    ----------
-    spacing : (3,) float array, m
-    phase : (nx, ny, nz) uint16 array
-        Phase number at the centre of each voxel.
-    conductivity : (1 + number of inclusions,) float array, W/(m K)
-        Of each phase; of a tensor its mean over directions.
-    cut : (m,) int array
-        Flat indices of the voxels that have a tensor of their own, ascending.
-    tensor : (m, 6) float array, W/(m K)
-        Their conductivities, order xx, yy, zz, yz, xz, xy.
-    fractions : (1 + number of inclusions,) float array
-        Volume fraction of each phase, parts of voxels included.
-    tensors : (1 + number of inclusions, 6) float array, W/(m K), optional
-        Of each phase, where that of one is a tensor; see `references.voxels.laminates`.
-    """
-
-    spacing: np.ndarray
-    phase: np.ndarray
+    spacing: np.ndarray  # (3,) float array, m
+    phase: np.ndarray  # (nx, ny, nz) uint16 array: Phase number at the centre of each voxel
+    # (1 + number of inclusions,) float array, W/(m K): Of each phase; of a tensor its mean over directions
     conductivity: np.ndarray
-    cut: np.ndarray
-    tensor: np.ndarray
+    cut: np.ndarray  # (m,) int array: Flat indices of the voxels that have a tensor of their own, ascending
+    tensor: np.ndarray  # (m, 6) float array, W/(m K): Their conductivities, order xx, yy, zz, yz, xz, xy
+    # (1 + number of inclusions,) float array: Volume fraction of each phase, parts of voxels included
     fractions: np.ndarray
+    # (1 + number of inclusions, 6) float array, W/(m K), optional: Of each phase, where that of one is a tensor; see
+    # `references.voxels.laminates`
     tensors: np.ndarray | None = None
 
 
 class Medium(NamedTuple):
-    """A material property of every voxel, as kernels read it.
+    """A material property of every voxel, as kernels read it."""
 
-    Attributes
-    ----------
-    phase : (nx, ny, nz) uint16 array
-    scalar : (phases,) float array
-        The property in whole voxels.
-    start : (nx * ny + 1,) int64 array
-        Cut voxels of row (i, j) of voxels are start[i * ny + j] to start[i * ny + j + 1].
-    place : (m,) int32 array
-        Last index of each cut voxel.
-    tensor : (m, 6) float array
-        The property in cut voxels, order xx, yy, zz, yz, xz, xy.
-    """
-
-    phase: np.ndarray
-    scalar: np.ndarray
+    phase: np.ndarray  # (nx, ny, nz) uint16 array
+    scalar: np.ndarray  # (phases,) float array: The property in whole voxels
+    # (nx * ny + 1,) int64 array: Cut voxels of row (i, j) of voxels are start[i * ny + j] to start[i * ny + j + 1]
     start: np.ndarray
-    place: np.ndarray
-    tensor: np.ndarray
+    place: np.ndarray  # (m,) int32 array: Last index of each cut voxel
+    tensor: np.ndarray  # (m, 6) float array: The property in cut voxels, order xx, yy, zz, yz, xz, xy
 
 
 class Cuts(NamedTuple):
-    """Voxels cut by the inclusions' surfaces, one row per voxel and surface, in painting order.
+    """Voxels cut by the inclusions' surfaces, one row per voxel and surface, in painting order."""
 
-    Attributes
-    ----------
-    index : (m,) int64 array
-        Flat index of the voxel.
-    fraction : (m,) float array
-        Part of it inside.
-    moment : (m, 6) float array, m2
-        Integral of n n over the surface inside the voxel, order xx, yy, zz, yz, xz, xy.
-    phase : (m,) int64 array
-        Number of the inclusion.
-    """
-
-    index: np.ndarray
-    fraction: np.ndarray
+    index: np.ndarray  # (m,) int64 array: Flat index of the voxel
+    fraction: np.ndarray  # (m,) float array: Part of it inside
+    # (m, 6) float array, m2: Integral of n n over the surface inside the voxel, order xx, yy, zz, yz, xz, xy
     moment: np.ndarray
-    phase: np.ndarray
+    phase: np.ndarray  # (m,) int64 array: Number of the inclusion
 
 
 def grid_shape(scene: Scene, voxels, usual: int | None = None) -> tuple[int, int, int]:

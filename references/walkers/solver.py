@@ -34,23 +34,14 @@ FEW = 8
 
 @dataclass(frozen=True)
 class Walked:
-    """A conductivity found by walkers.
+    """A conductivity found by walkers."""
 
-    Attributes
-    ----------
-    conductivity : float, W/(m K)
-    error : float, W/(m K)
-        Standard error of the mean over the walks; it falls as one over the square root of their number.
-    bias : float, W/(m K)
-        What the balls on surfaces may make it wrong by; it falls as the square of their radius.
-    stats : dict
-        `walks`, `radius` (m) of the balls on surfaces, `steps` of all walkers, `axes` alike that were averaged,
-        longest `lag` that was counted.
-    """
-
-    conductivity: float
+    conductivity: float  # W/(m K)
+    # W/(m K): Standard error of the mean over the walks; it falls as one over the square root of their number
     error: float
-    bias: float
+    bias: float  # W/(m K): What the balls on surfaces may make it wrong by; it falls as the square of their radius
+    # `walks`, `radius` (m) of the balls on surfaces, `steps` of all walkers, `axes` alike that were averaged, longest
+    # `lag` that was counted
     stats: dict = field(repr=False, default_factory=dict)
 
     @property

@@ -29,16 +29,11 @@ COUNTED = 10_000
 
 
 class Pace(NamedTuple):
-    """Times at which steps end, and windows of time with the longest step in each.
+    """Times at which steps end, and windows of time with the longest step in each."""
 
-    Attributes
-    ----------
-    breaks : (b,) float array, s
-        Increasing; something changes at once there, so that methods start anew.
-    start, stop, longest : (m,) float arrays, s
-    """
-
+    # (b,) float array, s: Increasing; something changes at once there, so that methods start anew
     breaks: np.ndarray = np.empty(0)
+    # start, stop, longest: (m,) float arrays, s
     start: np.ndarray = np.empty(0)
     stop: np.ndarray = np.empty(0)
     longest: np.ndarray = np.empty(0)

@@ -27,44 +27,27 @@ class System(NamedTuple):
     """Arrays of the balance over N nodes: the n particles, then one node for each of the seven sides.
 
     Temperatures are relative to `level`, which spares digits.
-
-    Attributes
-    ----------
-    links : Links
-        Rows of held nodes are empty, their columns are not.
-    capacity : (N,) float array, J/K
-        Zero for held nodes.
-    inverse : (N,) float array, K/J
-        1 / capacity, zero for held nodes.
-    diagonal : (N,) float array, W/K
-        Sum of each row's conductances.
-    held, held_side : (k,) int arrays
-        Nodes with imposed temperatures, surroundings among them, and the side that imposes each.
-    ties : Ties
-        The links from free particles to held nodes once more.
-    held_at : callable (time, s) -> (k,) float array, K
-    heat_at : callable (time, s) -> (N,) float array, W, and (8,) float array, W
-        Imposed fluxes and sources: into each node, and their totals by side, sources last.
-    level : float
-    particles : int
-    radiation : callable (state, (N,) float array, K; time, s) -> as `heat_at`, optional
-        What walls that radiate let in.
-    bound : System, optional
-        One whose rates none of this one's exceeds, with links only: where walls radiate they are held there.
     """
 
-    links: Links
-    capacity: np.ndarray
-    inverse: np.ndarray
-    diagonal: np.ndarray
+    links: Links  # Rows of held nodes are empty, their columns are not
+    capacity: np.ndarray  # (N,) float array, J/K: Zero for held nodes
+    inverse: np.ndarray  # (N,) float array, K/J: 1 / capacity, zero for held nodes
+    diagonal: np.ndarray  # (N,) float array, W/K: Sum of each row's conductances
+    # held, held_side: (k,) int arrays: Nodes with imposed temperatures, surroundings among them, and the side that
+    # imposes each
     held: np.ndarray
     held_side: np.ndarray
-    ties: kernels.Ties
-    held_at: Callable
+    ties: kernels.Ties  # Ties: The links from free particles to held nodes once more
+    held_at: Callable  # callable (time, s) -> (k,) float array, K
+    # callable (time, s) -> (N,) float array, W, and (8,) float array, W: Imposed fluxes and sources: into each node,
+    # and their totals by side, sources last
     heat_at: Callable
     level: float
     particles: int
+    # callable (state, (N,) float array, K; time, s) -> as `heat_at`, optional: What walls that radiate let in
     radiation: Callable | None = None
+    # System, optional: One whose rates none of this one's exceeds, with links only: where walls radiate they are held
+    # there
     bound: "System | None" = None
 
     def heat(self, x, time):

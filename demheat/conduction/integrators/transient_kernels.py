@@ -13,21 +13,13 @@ FAST = {"reassoc", "contract"}
 
 
 class Ties(NamedTuple):
-    """Links from free particles to held nodes.
+    """Links from free particles to held nodes."""
 
-    Attributes
-    ----------
-    row, node : (t,) int64 arrays
-        The particle and the held node of each.
-    conductance : (t,) float array, W/K
-    side : (t,) int64 array
-        Which side holds the node.
-    """
-
+    # row, node: (t,) int64 arrays: The particle and the held node of each
     row: np.ndarray
     node: np.ndarray
-    conductance: np.ndarray
-    side: np.ndarray
+    conductance: np.ndarray  # (t,) float array, W/K
+    side: np.ndarray  # (t,) int64 array: Which side holds the node
 
 
 @njit(cache=True, parallel=True, fastmath=FAST)

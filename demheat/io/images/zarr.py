@@ -31,24 +31,15 @@ HEAD = 32
 
 
 class Layout(NamedTuple):
-    """What metadata tell of an array.
+    """What metadata tell of an array."""
 
-    Attributes
-    ----------
-    version : {2, 3}
-    shape, chunks : tuple of int
-    dtype : data type
-    codecs : tuple of str
-        In the order in which they pack.
-    prefix, mark : str
-        Names of files: before the numbers of a chunk, and between them.
-    """
-
-    version: int
+    version: int  # {2, 3}
+    # shape, chunks: tuple of int
     shape: tuple[int, ...]
     chunks: tuple[int, ...]
-    dtype: np.dtype
-    codecs: tuple[str, ...]
+    dtype: np.dtype  # data type
+    codecs: tuple[str, ...]  # tuple of str: In the order in which they pack
+    # prefix, mark: Names of files: before the numbers of a chunk, and between them
     prefix: str
     mark: str
 

@@ -19,32 +19,17 @@ from demheat.scene.inputs import chosen, finite
 
 
 class Coordination(NamedTuple):
-    """Contact numbers of a packing; walls do not count as contacts.
-
-    Attributes
-    ----------
-    mean : float
-    least : int
-    histogram : (most + 1,) int array
-        Number of counted particles with 0, 1, 2, ... contacts.
-    under_2, under_4 : float
-        Parts of the counted particles with fewer than 2 and 4 contacts.
-    counted : int
-        Particles at least `margin` from walls.
-    components : int
-        Connected components of the whole network; a particle without contacts is one.
-    largest : float
-        Part of all particles that is in the largest component.
-    """
+    """Contact numbers of a packing; walls do not count as contacts."""
 
     mean: float
     least: int
-    histogram: np.ndarray
+    histogram: np.ndarray  # (most + 1,) int array: Number of counted particles with 0, 1, 2, ... contacts
+    # under_2, under_4: Parts of the counted particles with fewer than 2 and 4 contacts
     under_2: float
     under_4: float
-    counted: int
-    components: int
-    largest: float
+    counted: int  # Particles at least `margin` from walls
+    components: int  # Connected components of the whole network; a particle without contacts is one
+    largest: float  # Part of all particles that is in the largest component
 
     @property
     def islands(self) -> int:
@@ -54,73 +39,42 @@ class Coordination(NamedTuple):
 
 
 class Backbone(NamedTuple):
-    """What is left of a contact network when the particles that nothing holds are taken out.
+    """What is left of a contact network when the particles that nothing holds are taken out."""
 
-    Attributes
-    ----------
-    rattler : (n,) bool array
-    coordination : float
-        Mean number of contacts with other particles of the backbone; 6 where frictionless spheres without walls are
-        isostatic. NaN if nothing is left.
-    constraints : float
-        Contacts, those with walls included, over 3 times the particles of the backbone: 1 is isostatic, with or without
-        walls. NaN if nothing is left.
-    rounds : int
-        Passes until no particle was taken out.
-    """
-
-    rattler: np.ndarray
+    rattler: np.ndarray  # (n,) bool array
+    # Mean number of contacts with other particles of the backbone; 6 where frictionless spheres without walls are
+    # isostatic. NaN if nothing is left
     coordination: float
+    # Contacts, those with walls included, over 3 times the particles of the backbone: 1 is isostatic, with or without
+    # walls. NaN if nothing is left
     constraints: float
-    rounds: int
+    rounds: int  # Passes until no particle was taken out
 
 
 class Fabric(NamedTuple):
-    """Second and fourth moments of the unit vectors n along the links.
+    """Second and fourth moments of the unit vectors n along the links."""
 
-    Attributes
-    ----------
-    tensor : (3, 3) float array
-        <n n>; I/3 if isotropic.
-    fourth : (3,) float array
-        <n_x^4>, <n_y^4>, <n_z^4>; 1/5 if isotropic. A cubic crystal shows here only: its tensor is I/3.
-    links : float
-        Number of links, or of equally weighted links with the same sampling error.
-    diagonal_error, off_diagonal_error, fourth_error : float
-        Standard deviations sqrt(4/45), sqrt(1/15) and sqrt(16/225) over sqrt(links) of independent isotropic links.
-    deviation : float
-        Largest deviation of the tensor from I/3, in standard deviations.
-    fourth_deviation : float
-        Largest deviation of the fourth moments from 1/5, in standard deviations.
-    """
-
-    tensor: np.ndarray
+    tensor: np.ndarray  # (3, 3) float array: <n n>; I/3 if isotropic
+    # (3,) float array: <n_x^4>, <n_y^4>, <n_z^4>; 1/5 if isotropic. A cubic crystal shows here only: its tensor is I/3
     fourth: np.ndarray
-    links: float
+    links: float  # Number of links, or of equally weighted links with the same sampling error
+    # diagonal_error, off_diagonal_error, fourth_error: Standard deviations sqrt(4/45), sqrt(1/15) and sqrt(16/225) over
+    # sqrt(links) of independent isotropic links
     diagonal_error: float
     off_diagonal_error: float
     fourth_error: float
-    deviation: float
-    fourth_deviation: float
+    deviation: float  # Largest deviation of the tensor from I/3, in standard deviations
+    fourth_deviation: float  # Largest deviation of the fourth moments from 1/5, in standard deviations
 
 
 class Directions(NamedTuple):
-    """Histogram of link directions in the three coordinate planes, for a polar plot.
+    """Histogram of link directions in the three coordinate planes, for a polar plot."""
 
-    Attributes
-    ----------
-    angles : (bins,) float array, rad
-        Middles of the bins, from 0.
-    density : (3, bins) float array
-        In the plane normal to x (angle from y to z), to y (from z to x) and to z (from x to y); 1 if isotropic. Each
-        link counts both ways. NaN where all links are normal to the plane.
-    error : (3,) float array
-        Standard deviation of the density of independent isotropic links.
-    """
-
-    angles: np.ndarray
+    angles: np.ndarray  # (bins,) float array, rad: Middles of the bins, from 0
+    # (3, bins) float array: In the plane normal to x (angle from y to z), to y (from z to x) and to z (from x to y); 1
+    # if isotropic. Each link counts both ways. NaN where all links are normal to the plane
     density: np.ndarray
-    error: np.ndarray
+    error: np.ndarray  # (3,) float array: Standard deviation of the density of independent isotropic links
 
 
 def coordination(packing: Packing, indptr: np.ndarray, indices: np.ndarray, *, margin: float = 0.0) -> Coordination:

@@ -30,59 +30,34 @@ STREAM = 2
 
 
 class RadialDistribution(NamedTuple):
-    """Density of centres around a centre, over the mean density.
+    """Density of centres around a centre, over the mean density."""
 
-    Attributes
-    ----------
-    r : (bins,) float array
-        Middles of the bins: distance over mean diameter, or over the sum of the two radii where `scaled`.
-    g : (bins,) float array
-        1 without correlation.
-    error : (bins,) float array
-        Poisson standard deviation, from the number of pairs counted; 0 where there are none. That of the density itself
-        (1 / sqrt(origins) with walls) is not in it.
-    origins : int
-        Centres that were looked from.
-    density : float, 1/m^3
-        What g was divided by.
-    """
-
+    # (bins,) float array: Middles of the bins: distance over mean diameter, or over the sum of the two radii where
+    # `scaled`
     r: np.ndarray
-    g: np.ndarray
+    g: np.ndarray  # (bins,) float array: 1 without correlation
+    # (bins,) float array: Poisson standard deviation, from the number of pairs counted; 0 where there are none. That of
+    # the density itself (1 / sqrt(origins) with walls) is not in it
     error: np.ndarray
-    origins: int
-    density: float
+    origins: int  # Centres that were looked from
+    density: float  # 1/m^3: What g was divided by
 
 
 class TwoPoint(NamedTuple):
-    """Probability S2(r) that both ends of a segment lie in spheres, by direction. Lengths in mean diameters.
+    """Probability S2(r) that both ends of a segment lie in spheres, by direction. Lengths in mean diameters."""
 
-    Attributes
-    ----------
-    r : (m,) float array
-        Distance over mean diameter, from 0.
-    along : (k, 3) float array
-        Unit vectors.
-    s2 : (k, m) float array
-    error : (k, m) float array
-        Standard errors of s2, from the scatter of the lines. Neighbouring distances share their lines.
-    slope, slope_error : (k,) float arrays
-        dS2/dr at r = 0, from the ends of chords counted, and its standard error.
-    phi : float
-        Exact packing fraction of the region sampled (overlaps twice): what S2(0) is without overlaps.
-    exact_slope : float
-        -surface/4 per volume, from the exact surface of the spheres in that region: what the slope is in every
-        direction without overlaps; on average over directions this holds for any shapes (Debye, Anderson and
-        Brumberger, J. Appl. Phys. 28 (1957) 679).
-    """
-
-    r: np.ndarray
-    along: np.ndarray
-    s2: np.ndarray
+    r: np.ndarray  # (m,) float array: Distance over mean diameter, from 0
+    along: np.ndarray  # (k, 3) float array: Unit vectors
+    s2: np.ndarray  # (k, m) float array
+    # (k, m) float array: Standard errors of s2, from the scatter of the lines. Neighbouring distances share their lines
     error: np.ndarray
+    # slope, slope_error: (k,) float arrays: dS2/dr at r = 0, from the ends of chords counted, and its standard error
     slope: np.ndarray
     slope_error: np.ndarray
-    phi: float
+    phi: float  # Exact packing fraction of the region sampled (overlaps twice): what S2(0) is without overlaps
+    # -surface/4 per volume, from the exact surface of the spheres in that region: what the slope is in every direction
+    # without overlaps; on average over directions this holds for any shapes (Debye, Anderson and Brumberger, J. Appl.
+    # Phys. 28 (1957) 679)
     exact_slope: float
 
 

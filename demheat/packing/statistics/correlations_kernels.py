@@ -16,24 +16,14 @@ SUM, SQUARES = 0, 1
 
 
 class Lines(NamedTuple):
-    """Parallel lines, and what is asked of them.
+    """Parallel lines, and what is asked of them."""
 
-    Attributes
-    ----------
-    starts : (lines, 3) float array, m
-        Each line runs from here, twice the largest lag far; lag r is averaged over origins on its first half.
-    along : (3,) float array
-        Unit vector.
-    lags : (m,) float array, m
-        Rising from 0.
-    steps : int
-        Pieces into which a line is cut for the search.
-    """
-
+    # (lines, 3) float array, m: Each line runs from here, twice the largest lag far; lag r is averaged over origins on
+    # its first half
     starts: np.ndarray
-    along: np.ndarray
-    lags: np.ndarray
-    steps: int
+    along: np.ndarray  # (3,) float array: Unit vector
+    lags: np.ndarray  # (m,) float array, m: Rising from 0
+    steps: int  # Pieces into which a line is cut for the search
 
 
 @njit(cache=True)

@@ -55,19 +55,13 @@ class _Twins(NamedTuple):
 
 
 class Part(NamedTuple):
-    """What is known of the whole where a packing is a part of it.
+    """What is known of the whole where a packing is a part of it."""
 
-    Attributes
-    ----------
-    radius, largest : float, m
-        Mean radius of the whole packing, and its largest.
-    holds : callable (n, 3) float array, m -> (n,) bool array
-        Which points belong to the part: twins elsewhere are left out. Where particles near an interface give way is
-        right some three mean radii within the part's edges.
-    """
-
+    # radius, largest: m: Mean radius of the whole packing, and its largest
     radius: float
     largest: float
+    # callable (n, 3) float array, m -> (n,) bool array: Which points belong to the part: twins elsewhere are left out.
+    # Where particles near an interface give way is right some three mean radii within the part's edges
     holds: Callable
 
 

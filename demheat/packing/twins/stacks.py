@@ -27,30 +27,18 @@ BENT = 9.6
 
 
 class Stacks(NamedTuple):
-    """Which surfaces of a scene form columns; most are alone, each its own leader.
+    """Which surfaces of a scene form columns; most are alone, each its own leader."""
 
-    Attributes
-    ----------
-    leader : (n,) int array
-        Of each surface: the outermost of its spheres, the first of its planes.
-    members : tuple of (n,) int arrays
-        The second surface of each leader's stack, the third and so on; -1 for none.
-    apart : (n, 2) float array, m
-        Width of the gap to the next of the stack against its normal and along it, or to the mirror image in a wall;
-        infinite without one.
-    share : (n, 2) float array
-        Of that width, the offset of the twin in it.
-    rise : (n,) float array, m2
-        Weight of the twins of each surface beyond what others have at their offsets.
-    spacing : (n,) float array, m
-        Distance between the columns of each leader at most; infinite where they are flat.
-    """
-
-    leader: np.ndarray
+    leader: np.ndarray  # (n,) int array: Of each surface: the outermost of its spheres, the first of its planes
+    # tuple of (n,) int arrays: The second surface of each leader's stack, the third and so on; -1 for none
     members: tuple[np.ndarray, ...]
+    # (n, 2) float array, m: Width of the gap to the next of the stack against its normal and along it, or to the mirror
+    # image in a wall; infinite without one
     apart: np.ndarray
-    share: np.ndarray
+    share: np.ndarray  # (n, 2) float array: Of that width, the offset of the twin in it
+    # (n,) float array, m2: Weight of the twins of each surface beyond what others have at their offsets
     rise: np.ndarray
+    # (n,) float array, m: Distance between the columns of each leader at most; infinite where they are flat
     spacing: np.ndarray
 
     def leads(self) -> np.ndarray:

@@ -29,24 +29,14 @@ class Reduced(NamedTuple):
 
 
 class Unfolded(NamedTuple):
-    """Points of the whole in its part, and what their temperature and flux are by those of the part.
+    """Points of the whole in its part, and what their temperature and flux are by those of the part."""
 
-    Attributes
-    ----------
-    points : (n, 3) float array, m
-        In the part.
-    sign : (n,) float array
-    rise : (n,) float array, K
-        The temperature of the whole is rise + sign times that of the part; up to a constant in a periodic cell, see
-        `unfold`.
-    signs : (n, 3) float array
-        The flux of the whole is that of the part times these.
-    """
-
-    points: np.ndarray
-    sign: np.ndarray
+    points: np.ndarray  # (n, 3) float array, m: In the part
+    sign: np.ndarray  # (n,) float array
+    # (n,) float array, K: The temperature of the whole is rise + sign times that of the part; up to a constant in a
+    # periodic cell, see `unfold`
     rise: np.ndarray
-    signs: np.ndarray
+    signs: np.ndarray  # (n, 3) float array: The flux of the whole is that of the part times these
 
 
 def reduced(scene: Scene) -> Reduced:

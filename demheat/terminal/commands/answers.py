@@ -15,35 +15,20 @@ from demheat.terminal.commands.knobs import Asked
 
 
 class Answer(NamedTuple):
-    """What became of one method.
+    """What became of one method."""
 
-    Attributes
-    ----------
-    status : {"ok", "refused", "invalid", "failed", "stopped"}
-        The method's answer; what it cannot do; a knob or a scene that makes no sense; what went wrong; that the time
-        was over.
-    conductivity, lower, upper : float, W/(m K)
-        NaN where there is none.
-    how : str
-        How the interval was found.
-    cost : dict
-        `wall_s`, `cpu_s` of the solve, loading and compiling included, and `interval_cpu_s`.
-    notes : list of str
-        Why there is no answer, and warnings.
-    cut : bool
-        Whether the time was over, before the answer or before its interval.
-    field : Field or None
-    """
-
+    # {"ok", "refused", "invalid", "failed", "stopped"}: The method's answer; what it cannot do; a knob or a scene that
+    # makes no sense; what went wrong; that the time was over
     status: str
+    # conductivity, lower, upper: W/(m K): NaN where there is none
     conductivity: float = math.nan
     lower: float = math.nan
     upper: float = math.nan
-    how: str = ""
-    cost: dict = {}
-    notes: tuple = ()
-    cut: bool = False
-    field: Field | None = None
+    how: str = ""  # How the interval was found
+    cost: dict = {}  # `wall_s`, `cpu_s` of the solve, loading and compiling included, and `interval_cpu_s`
+    notes: tuple = ()  # list of str: Why there is no answer, and warnings
+    cut: bool = False  # Whether the time was over, before the answer or before its interval
+    field: Field | None = None  # Field or None
 
 
 def answered(scene, asked: Asked, *, interval: bool = True) -> Answer:

@@ -14,20 +14,13 @@ from references.fft.hexahedron_kernels import compiled
 
 
 class Cells(NamedTuple):
-    """A property of every voxel: the same all over it, or its products with the fields' shapes along the axes.
+    """A property of every voxel: the same all over it, or its products with the fields' shapes along the axes."""
 
-    Attributes
-    ----------
-    scalar : (nx, ny, nz) float array
-    row : (nx, ny, nz) int32 array
-        Row of `table` for voxels in which the property varies, else -1.
-    table : (m, 3, 3, 3) or (m, 3, 3) float array
-        Of conductivities, for each axis, means of the property times the pairs (00, 01, 11) of linear shapes along the
-        lower and along the higher of the two other axes. Of resistivities, for each axis, those along the axis itself.
-    """
-
-    scalar: np.ndarray
-    row: np.ndarray
+    scalar: np.ndarray  # (nx, ny, nz) float array
+    row: np.ndarray  # (nx, ny, nz) int32 array: Row of `table` for voxels in which the property varies, else -1
+    # (m, 3, 3, 3) or (m, 3, 3) float array: Of conductivities, for each axis, means of the property times the pairs
+    # (00, 01, 11) of linear shapes along the lower and along the higher of the two other axes. Of resistivities, for
+    # each axis, those along the axis itself
     table: np.ndarray
 
 
@@ -179,21 +172,15 @@ def _pairs(cells, i, j, k, axis):
 
 
 class Modes(NamedTuple):
-    """Fourier modes of face fluxes.
+    """Fourier modes of face fluxes."""
 
-    Attributes
-    ----------
-    turn : tuple of three (n, 2) float arrays
-        Real and imaginary part of (exp(i angle) - 1) / spacing, what the divergence multiplies a mode by.
-    mass : tuple of three (n,) float arrays
-        What a mode's part of the energy of a unit resistivity is multiplied by: (2 + cos angle) / 3; or 1.
-    held : (3,) float array
-        Direction along which the mean flux stays; 0 if it is to pass.
-    """
-
+    # tuple of three (n, 2) float arrays: Real and imaginary part of (exp(i angle) - 1) / spacing, what the divergence
+    # multiplies a mode by
     turn: tuple
+    # tuple of three (n,) float arrays: What a mode's part of the energy of a unit resistivity is multiplied by: (2 +
+    # cos angle) / 3; or 1
     mass: tuple
-    held: np.ndarray
+    held: np.ndarray  # (3,) float array: Direction along which the mean flux stays; 0 if it is to pass
 
 
 @compiled
