@@ -30,7 +30,6 @@ FIGURES = (
     (HADDAD, "section 5 at full size", "many_inclusions"),
     (HADDAD, "zeta_2, left out as too costly", "zeta2"),
     (HADDAD, "7 % to experiment", "resistance"),
-    (TERREROS, "section 3", "crystal"),
     (TERREROS, "section 4, Table 1", "table1_platonic"),
     (TERREROS, "Fig. 10", "fig10_beam"),
     (TERREROS, "Figs. 12 to 15", "fig12_15_sheet"),

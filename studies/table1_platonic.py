@@ -12,7 +12,6 @@ import numpy as np
 
 from demheat import referee
 from demheat.scene import Material, Scene
-from studies.harness.figures import BLUE, GREEN, GREY, ORANGE, PINK
 from studies.harness.pick import pick, present
 from studies.harness.printed import printed
 
@@ -214,44 +213,3 @@ def notes(df):
         shown |= {f"{letter}(n)": lines[name].map("{:.6f}".format), f"{letter} printed": printed_}
         shown |= {f"{letter} by the rule": ruled}
     yield markdown(pd.DataFrame(shown))
-
-
-def plot(df):
-    """The law's table in two panels; its errors against the number of contacts."""
-    from matplotlib import pyplot
-
-    figure, (left, middle, right) = pyplot.subplots(1, 3, figsize=(14, 4.8), width_ratios=(1, 1, 1.5))
-    lines = pick(df, part="table").sort_values("neighbours")
-    _draw_table(left, lines, "surface", PINK)
-    left.set(ylabel="surface s(n) of a link, R^2", yscale="log", title="Table 1 of the paper: surfaces")
-    left.set_yticks((1, 2, 5, 10, 20), ("1", "2", "5", "10", "20"))
-    _draw_table(middle, lines, "fraction", BLUE)
-    middle.set(ylabel="local packing fraction f(n)", ylim=(0, 1), title="and packing fractions")
-    _draw_errors(right, df)
-    return figure
-
-
-def _draw_table(axes, lines, name, colour):
-    axes.plot(lines["neighbours"], lines[name], "o-", color=colour, label="from geometry")
-    axes.plot(lines["neighbours"], _printed(lines, LETTERS[name]), "x", color="black", markersize=10, label="printed")
-    axes.set(xlabel="neighbours n", xticks=range(0, 21, 4))
-    axes.minorticks_off()
-    axes.legend()
-
-
-def _draw_errors(axes, df):
-    """Errors of capacity, conductivity and their quotient, largest packings."""
-    rows = pick(df, part="packing", law="platonic")
-    rows = rows[rows["particles"] == rows["particles"].max()].sort_values("contacts")
-    looks = (("capacity", "heat capacity", ORANGE), ("conductivity", "conductivity", PINK),
-             ("diffusivity", "diffusivity, their quotient", BLUE))  # fmt: skip
-    for column, label, colour in looks:
-        for packing, marker, dashes in (("lsa", "o", "-"), ("relaxed", "s", "--")):
-            here = pick(rows, packing=packing).groupby("contacts")[column].mean()
-            off = 100 * referee.value_error(here, 1.0)
-            axes.plot(here.index, off, marker + dashes, color=colour, label=label if packing == "lsa" else None)
-    axes.plot([], [], "s--", color=GREY, label="relaxed packings")
-    axes.axhline(0.0, color=GREEN, linewidth=1.5, label="Laguerre: all three")
-    axes.set(xlabel="mean number of contacts", ylabel="error of the Platonic network, %")
-    axes.set_title("Two errors cancel in what a transient shows")
-    axes.legend()

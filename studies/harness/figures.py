@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from studies.harness import methods
 
 BLUE, ORANGE, GREEN, RED = "#0072B2", "#E69F00", "#009E73", "#D55E00"
@@ -49,3 +51,30 @@ def look(name, **more):
     """Keywords of a line for a method: its label, colour, marker and line style."""
     label, colour, marker, style = LOOK[name]
     return {"label": label, "color": colour, "marker": marker, "linestyle": style} | more
+
+
+# What is nearer to nothing, or farther from its limit, than by this factor is drawn there; letters of a sentence.
+FARTHEST, LONGEST = 1e3, 90
+VERDICTS = {"ok": BLUE, "FAIL": RED, "not judged": GREY}
+
+
+def of_claims(claims):
+    """How near each claim is to its limit: what a study shows that has no figure of its own."""
+    from matplotlib import pyplot
+
+    shown = [each for each in claims if np.isfinite(each.value)][::-1]
+    used = np.clip([1 / each.room for each in shown], 1 / FARTHEST, FARTHEST)
+    figure, axes = pyplot.subplots(figsize=(11, 1.2 + 0.2 * len(shown)))
+    for verdict, colour in VERDICTS.items():
+        here = [number for number, each in enumerate(shown) if each.verdict == verdict]
+        axes.plot(used[here], here, "o", color=colour, label=verdict)
+    axes.axvline(1.0, color=BLACK, linewidth=1)
+    axes.set(xscale="log", xlim=(0.7 / FARTHEST, 1.4 * FARTHEST), ylim=(-0.7, len(shown) - 0.3))
+    axes.set_xlabel("value over its limit, or the limit over a value that is to be larger")
+    axes.set_yticks(range(len(shown)), [_short(each.sentence) for each in shown], fontsize=7)
+    figure.legend(loc="outside lower right", ncols=3)
+    return figure
+
+
+def _short(sentence):
+    return sentence if len(sentence) <= LONGEST else f"{sentence[: LONGEST - 3]}..."

@@ -7,10 +7,11 @@ A study is a module with
 - `QUICK(case)`, true for the cases of a quick run;
 - `run(**case)`, a dict of metrics; costs it measures itself (`cost.measured`) replace the whole run's, and a "status"
   with a "note" says of a refusal that it is one;
-- `claims(df)`, pairs of a sentence with a value and a limit; `plot(df)`, a figure; `PAPER`, what the paper prints;
-- optionally `VALUES(case)`, true for the cases of which nobody asks what they cost: their rows have none, and are made
-  side by side; `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`,
-  sentences below it that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
+- `claims(df)`, pairs of a sentence with a value and a limit; `PAPER`, what the paper prints;
+- optionally `plot(df)`, a figure where one says more than the table: without, it is one of the claims; `VALUES(case)`,
+  true for the cases of which nobody asks what they cost: their rows have none, and are made side by side;
+  `warm_up(**case)`, untimed; `table(df)`, what to print, with its docstring as caption; `notes(df)`, sentences below it
+  that are made of the rows; `words(df)`, what other pages say of it; `TIMEOUT`, seconds per row;
   `BY_ITSELF`, parameters of which no value's rows are borne out by another's (`groups.KINDS`);
   `TOLERANCES`, by columns how near values must come that are made again (`tolerance.TOLERANCES`), and `COMPARED_AS`, of
   columns whose cells hold more than values, text -> what of it is compared;

@@ -10,6 +10,7 @@ from types import SimpleNamespace
 from demheat.runtime.paths import replaced
 from studies.harness import explained
 from studies.harness.claims import UNFINISHED, broken, claim, judged, unfinished  # noqa: F401 (known from here, too)
+from studies.harness.figures import STYLE, of_claims
 from studies.harness.machines import of_one_machine, said
 from studies.harness.provenance import guest_case
 from studies.harness.sound import cost_columns, counted, faults, in_words, uncosted
@@ -36,7 +37,7 @@ def render(study, csv_path):
     claims, why = judged(study, df), UNFINISHED if unfinished(study, df) else ""
     figure = csv_path.with_suffix(".png")
     try:
-        _draw(study, df, figure)
+        _draw(getattr(study, "plot", lambda _: of_claims(claims)), df, figure)
     except Exception as error:
         traceback.print_exc()
         for path in (figure, figure.with_suffix(".svg")):
@@ -97,19 +98,18 @@ def _cell(value):
     return str(value).replace("|", "\\|")
 
 
-def _draw(study, df, path):
+def _draw(plot, df, path):
     import matplotlib
 
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    from studies.harness.figures import STYLE
     from studies.harness.pictures import saved
 
     before = set(pyplot.get_fignums())
     try:
         with pyplot.rc_context(STYLE):
-            saved(study.plot(df), path)
+            saved(plot(df), path)
     finally:
         # One that could not be finished, too.
         for number in set(pyplot.get_fignums()) - before:

@@ -154,10 +154,3 @@ def table(df):
     from studies.tuning.tables import lines
 
     return lines(df)
-
-
-def plot(df):
-    """Errors against the factors; parts of the error against the particle size."""
-    from studies.tuning.figure import draw
-
-    return draw(df)
