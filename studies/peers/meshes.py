@@ -97,6 +97,12 @@ def drop(scene) -> float:
     return scene.walls["x-"] - scene.walls["x+"]
 
 
+def walls(scene) -> dict:
+    """The two walls as scripts are told: their numbers in files, and their temperatures."""
+    numbers = {"hot": FACES["x-"][0], "cold": FACES["x+"][0]}
+    return numbers | {"high": scene.walls["x-"], "low": scene.walls["x+"]}
+
+
 def by_heat(scene, heat) -> float:
     """Effective conductivity of a body by the heat that enters at the wall x-, W/(m K)."""
     length, *sides = scene.size

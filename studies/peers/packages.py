@@ -32,6 +32,16 @@ def version(name: str, distribution: str, module: str | None = None) -> str:
     return subprocess.run([python_of(name, module), "-c", code], capture_output=True, text=True, check=True).stdout[:-1]
 
 
+def own_of(name: str, documented: float, source: str):
+    """A program's `own`: what its script `own_NAME.py` finds, what its documentation has, and where that stands."""
+
+    def own():
+        found = asked(python_of(name), SCRIPTS / f"own_{name}.py", {})["value"]
+        return found, documented, source
+
+    return own
+
+
 def found(name: str, given: dict, *, module: str | None = None, note="", **knobs) -> Found:
     """What the script `with_NAME.py` answers to what it is given."""
     answer = asked(python_of(name, module), SCRIPTS / f"with_{name}.py", given, **knobs)

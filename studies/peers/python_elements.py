@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import tempfile
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +16,12 @@ from studies.peers.outside import Found, asked, python_of
 SCRIPTS = Path(__file__).parent / "programs" / "scripts"
 
 
-def solved(name, scene, *, size, order) -> Found:
+def library(name, *needed, version):
+    """`missing`, `version` and `solve` of a library: packages that must be there, and the expression of its version."""
+    return partial(absent, name, *needed), partial(told_version, name, version), partial(solved, name)
+
+
+def solved(name, scene, *, size, order=1) -> Found:
     """Solve a body by the script NAME_body.py in the Python that has the library."""
     mesh = meshes.corners(meshes.conforming(scene, size=size, order=order))
     given = {

@@ -6,7 +6,7 @@ No case of its documentation is run. https://fenicsproject.org
 """
 
 from studies.peers import meshes
-from studies.peers.python_elements import absent, solved, told_version
+from studies.peers.python_elements import library
 
 TITLE = "FEniCS"
 KIND = "mesh"
@@ -14,18 +14,4 @@ GET = "apt: python3-dolfin"
 CANNOT = {}
 EXPLAINED = "none: the equations are those of our finite elements on the same mesh"
 CASES = meshes.cases()
-
-
-def missing():
-    """Why it cannot run here, or None."""
-    return absent("fenics", "dolfin")
-
-
-def version():
-    """As it says."""
-    return told_version("fenics", "dolfin.__version__")
-
-
-def solve(scene, *, size, order=1):
-    """Solve a body."""
-    return solved("fenics", scene, size=size, order=order)
+missing, version, solve = library("fenics", "dolfin", version="dolfin.__version__")

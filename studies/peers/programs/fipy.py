@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from studies.peers import packages
 from studies.peers.given import bodies
-from studies.peers.outside import asked, python_of
 
 TITLE = "FiPy"
 KIND = "image"
@@ -24,14 +23,10 @@ SCENES = bodies()
 FINE = ("layers off the grid", "sphere 10", "sphere 1000", "pore")
 CASES = tuple({"scene": scene, "n": n} for scene in SCENES for n in ((16, 32, 64) if scene in FINE else (16, 32)))
 missing, version = packages.asked_of("fipy", GET)
+# The last of the values that its manual's "non-uniform steady-state diffusion" has in a formula.
+own = packages.own_of("fipy", 49.5 + 18 * 50 / 4, "examples/diffusion/mesh1D.py, x + 18 L / 4 at the last of 50 cells")
 
 
 def solve(scene, *, n):
     """Solve the image of a body."""
     return packages.found_on_image("fipy", scene, n)
-
-
-def own():
-    """The last of the values that its manual's "non-uniform steady-state diffusion" has in a formula."""
-    found = asked(python_of("fipy"), packages.SCRIPTS / "own_fipy.py", {})["value"]
-    return found, 49.5 + 18 * 50 / 4, "examples/diffusion/mesh1D.py, x + 18 L / 4 at the last of 50 cells"

@@ -68,10 +68,7 @@ def script(scene, mesh, order) -> str:
         order=order,
         count=max(values) + 1,
         conductivities="\n".join(f"conductivity[{phase}] = {k:.17g};" for phase, k in values.items()),
-        hot=meshes.FACES["x-"][0],
-        cold=meshes.FACES["x+"][0],
-        high=scene.walls["x-"],
-        low=scene.walls["x+"],
+        **meshes.walls(scene),
     )
 
 

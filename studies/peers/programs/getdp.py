@@ -87,8 +87,5 @@ def script(scene, mesh) -> str:
     return SCRIPT.format(
         phases=", ".join(map(str, values)),
         conductivities=" ".join(f"k[Region[{phase}]] = {k:.17g};" for phase, k in values.items()),
-        hot=meshes.FACES["x-"][0],
-        cold=meshes.FACES["x+"][0],
-        high=scene.walls["x-"],
-        low=scene.walls["x+"],
+        **meshes.walls(scene),
     )

@@ -5,9 +5,11 @@ unless told otherwise. Walls are held by its `simplification`, which takes their
 No case of its documentation is run. https://getfem.org
 """
 
+from functools import partial
+
 from studies.peers import meshes
 from studies.peers.alone import packaged
-from studies.peers.python_elements import absent, solved
+from studies.peers.python_elements import library
 
 TITLE = "GetFEM"
 KIND = "mesh"
@@ -15,18 +17,6 @@ GET = "apt: python3-getfem++"
 CANNOT = {}
 EXPLAINED = "none: the equations are those of our finite elements on the same mesh"
 CASES = meshes.cases()
-
-
-def missing():
-    """Why it cannot run here, or None."""
-    return absent("getfem", "getfem")
-
-
-def version():
-    """Debian's: its module has none."""
-    return packaged("python3-getfem")
-
-
-def solve(scene, *, size, order=1):
-    """Solve a body."""
-    return solved("getfem", scene, size=size, order=order)
+# Its module has no version: Debian's.
+missing, _, solve = library("getfem", "getfem", version="")
+version = partial(packaged, "python3-getfem")

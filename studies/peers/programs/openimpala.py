@@ -12,7 +12,6 @@ from __future__ import annotations
 
 from studies.peers import packages
 from studies.peers.given import bodies
-from studies.peers.outside import asked, python_of
 
 TITLE = "OpenImpala"
 KIND = "image"
@@ -36,6 +35,10 @@ CASES = (
     {"scene": "sphere 10", "n": 16, "solver": "mlmg"},
 )
 missing, version = packages.asked_of("openimpala", GET)
+# The tortuosity of a homogeneous cube of 16 voxels by HYPRE.
+own = packages.own_of(
+    "openimpala", 15 / 16, "docs/user-guide/concepts.md: for a uniform medium on N cells tau = (N - 1) / N"
+)
 
 
 def solve(scene, *, n, solver="mlmg"):
@@ -43,9 +46,3 @@ def solve(scene, *, n, solver="mlmg"):
     if solver == "mlmg" and sum(k > 0 for k in set(scene.conductivities)) > 1:
         raise NotImplementedError("OpenImpala's MLMG: one conducting phase only")
     return packages.found_on_image("openimpala", scene, n, solver=solver)
-
-
-def own():
-    """The tortuosity of a homogeneous cube of 16 voxels by HYPRE."""
-    found = asked(python_of("openimpala"), packages.SCRIPTS / "own_openimpala.py", {})["value"]
-    return found, 15 / 16, "docs/user-guide/concepts.md: for a uniform medium on N cells tau = (N - 1) / N"

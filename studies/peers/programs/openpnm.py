@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from studies.peers import packages
 from studies.peers.given import bodies
-from studies.peers.outside import asked, python_of
 
 TITLE = "OpenPNM"
 KIND = "image"
@@ -30,6 +29,8 @@ CASES = (
     {"scene": "sphere 10", "n": 16, "by": "tortuosity_fd"},
 )
 missing, version = packages.asked_of("openpnm", GET)
+# The tortuosity of open space by PoreSpy's `tortuosity_fd`.
+own = packages.own_of("openpnm", 1.0, "PoreSpy's pull request 500: tau is now 1.000000 in an image of open space")
 
 
 def solve(scene, *, n, by="boundary pores"):
@@ -37,9 +38,3 @@ def solve(scene, *, n, by="boundary pores"):
     if by == "tortuosity_fd" and sum(k > 0 for k in set(scene.conductivities)) > 1:
         raise NotImplementedError("PoreSpy's tortuosity_fd: one conducting phase only")
     return packages.found_on_image("openpnm", scene, n, by=by)
-
-
-def own():
-    """The tortuosity of open space by PoreSpy's `tortuosity_fd`."""
-    found = asked(python_of("openpnm"), packages.SCRIPTS / "own_openpnm.py", {})["value"]
-    return found, 1.0, "PoreSpy's pull request 500: tau is now 1.000000 in an image of open space"

@@ -13,7 +13,6 @@ import numpy as np
 
 from studies.peers import packages
 from studies.peers.given import bodies
-from studies.peers.outside import asked, python_of
 
 TITLE = "PuMA"
 KIND = "image"
@@ -37,6 +36,8 @@ CASES = (
 )
 UNIT = 1e-6
 missing, version = packages.asked_of("pumapy", GET)
+# Two halves in a row, 10 and 1 W/(m K), of its tests.
+own = packages.own_of("pumapy", 1.818181818, "python/test/test_conductivity.py, test_matSeriesInx_x")
 
 
 def solve(scene, *, n, by="fv", unit=UNIT):
@@ -52,9 +53,3 @@ def mirrored(scene, points=16):
 
     labels = image(scene, points).labels
     return all((labels == labels[turn]).all() for turn in (np.s_[::-1], np.s_[:, ::-1], np.s_[:, :, ::-1]))
-
-
-def own():
-    """Two halves in a row, 10 and 1 W/(m K), of its tests."""
-    found = asked(python_of("pumapy"), packages.SCRIPTS / "own_pumapy.py", {})["value"]
-    return found, 1.818181818, "python/test/test_conductivity.py, test_matSeriesInx_x"

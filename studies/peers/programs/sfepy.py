@@ -6,7 +6,7 @@ solver, MUMPS, ends the process with Debian's libmumps 5.5. No case of its docum
 """
 
 from studies.peers import meshes
-from studies.peers.python_elements import absent, solved, told_version
+from studies.peers.python_elements import library
 
 TITLE = "SfePy"
 KIND = "mesh"
@@ -14,18 +14,4 @@ GET = "apt: python3-sfepy, python3-petsc4py"
 CANNOT = {"meshes with triangles beside tetrahedra": "meshes with several cell kinds are not supported"}
 EXPLAINED = "none: the equations are those of our finite elements on the same mesh"
 CASES = meshes.cases()
-
-
-def missing():
-    """Why it cannot run here, or None."""
-    return absent("sfepy", "sfepy", "petsc4py")
-
-
-def version():
-    """As it says."""
-    return told_version("sfepy", "sfepy.__version__")
-
-
-def solve(scene, *, size, order=1):
-    """Solve a body."""
-    return solved("sfepy", scene, size=size, order=order)
+missing, version, solve = library("sfepy", "sfepy", "petsc4py", version="sfepy.__version__")

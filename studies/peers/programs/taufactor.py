@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from studies.peers import packages
 from studies.peers.given import bodies
-from studies.peers.outside import asked, python_of
 
 TITLE = "TauFactor"
 KIND = "image"
@@ -34,6 +33,8 @@ CASES = (
 # Voxels along an edge, and what single precision can reach with so many.
 TOLERANCES, BEYOND = ((32, 1e-4), (64, 3e-4)), 1e-3
 missing, version = packages.asked_of("taufactor", GET)
+# The tortuosity of a strip across slanted steps, of its tests.
+own = packages.own_of("taufactor", 7.51667, "tests/test_taufactor.py, test_solver_on_slanted_strip_of_ones")
 
 
 def solve(scene, *, n, solver="MultiPhaseSolver"):
@@ -42,9 +43,3 @@ def solve(scene, *, n, solver="MultiPhaseSolver"):
         raise NotImplementedError("TauFactor's Solver: one conducting phase only")
     tolerance = next((value for most, value in TOLERANCES if n <= most), BEYOND)
     return packages.found_on_image("taufactor", scene, n, solver=solver, tolerance=tolerance)
-
-
-def own():
-    """The tortuosity of a strip across slanted steps, of its tests."""
-    found = asked(python_of("taufactor"), packages.SCRIPTS / "own_taufactor.py", {})["value"]
-    return found, 7.51667, "tests/test_taufactor.py, test_solver_on_slanted_strip_of_ones"
