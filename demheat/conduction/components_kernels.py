@@ -27,23 +27,13 @@ class Found(NamedTuple):
 def gather(links, image, jump, found, state, most):
     """Go on with the search for bodies, through at most so many particles.
 
-    Parameters
-    ----------
     links : Links
-    image : (m,) uint8 array
-        Which periodic image of its other end each link leads to, see `Facets`.
-    jump : (3,) float array, K
-        Rise of the mean temperature over the box along each axis.
-    found : Found
-        In and out.
-    state : (4,) int64 array
-        Zeros at first: particles done, in the queue, looked at as first ones; bodies. In and out.
+    image : (m,) uint8 array; which periodic image of its other end each link leads to, see `Facets`
+    jump : (3,) float array, K; rise of the mean temperature over the box along each axis
+    found : Found; in and out
+    state : (4,) int64 array; zeros at first: particles done, in the queue, looked at as first ones; bodies. In and out
     most : int
-
-    Returns
-    -------
-    bool
-        Whether anything is left to do.
+    Returns bool: whether anything is left to do
     """
     indptr, indices, conductance = links
     label, shift, climbs, queue = found.label, found.shift, found.climbs, found.queue
@@ -93,14 +83,10 @@ def _climbs(rise_x, rise_y, rise_z):
 def level_off(temperature, label, volumes, total, mass):
     """Take off each body its mean, in place.
 
-    Parameters
-    ----------
     temperature : (n,) float array, K
-    label : (n,) int array
-        Body of each particle; negative in none.
+    label : (n,) int array; body of each particle; negative in none
     volumes : (n,) float array, m3
-    total, mass : (number of bodies,) float arrays
-        Zeros at first: sums of volume times temperature, and of volumes.
+    total, mass : (number of bodies,) float arrays; zeros at first: sums of volume times temperature, and of volumes
     """
     for i in range(len(label)):
         if label[i] >= 0:

@@ -47,13 +47,9 @@ class Level(NamedTuple):
 def strongest(first, last, links, top):
     """Find the largest conductance of each row.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     links : Links
-    top : (n,) float array, W/K, out
-        Zero for rows without links.
+    top : (n,) float array, W/K, out; zero for rows without links
     """
     indptr, _, conductance = links
     for i in range(np.uint64(first), np.uint64(last)):
@@ -93,20 +89,11 @@ def aggregate(links, top, most, owner):
     In order of the rows each free one takes its strongest free neighbours, if they are a third of `most` or more;
     what is left over joins the aggregate of its strongest neighbour. Only rows are joined.
 
-    Parameters
-    ----------
     links : Links
-    top : (n,) float array, W/K
-        Of `strongest`.
-    most : int
-        Particles that are joined at once, at most.
-    owner : (n,) int32 array, out
-        Aggregate of each particle, -1 for those without links.
-
-    Returns
-    -------
-    int
-        Number of aggregates.
+    top : (n,) float array, W/K; of `strongest`
+    most : int; particles that are joined at once, at most
+    owner : (n,) int32 array, out; aggregate of each particle, -1 for those without links
+    Returns int: number of aggregates
     """
     indptr, indices, conductance = links
     found, key = np.empty(most - 1, np.int64), np.empty(most - 1)
@@ -140,16 +127,9 @@ def aggregate(links, top, most, owner):
 def members(owner, count):
     """List the particles of each aggregate.
 
-    Parameters
-    ----------
-    owner : (n,) int32 array
-        Of `aggregate`.
-    count : int
-        Number of aggregates.
-
-    Returns
-    -------
-    Aggregates
+    owner : (n,) int32 array; of `aggregate`
+    count : int; number of aggregates
+    Returns Aggregates
     """
     start = np.zeros(count + 1, np.int64)
     for i in range(len(owner)):
@@ -168,20 +148,14 @@ def members(owner, count):
 def galerkin(links, diagonal, scale, aggregates):
     """Matrix of the aggregates: sums over each pair of them of scale (diag(diagonal) - conductance).
 
-    Parameters
-    ----------
     links : Links
     diagonal : (n,) float array, W/K
     scale : float, K/W
-    aggregates : Aggregates
-        With the owners also of what is beyond the rows, which have numbers after those of the rows' own.
-
-    Returns
-    -------
-    pointers : (aggregates + 1,) int32 array
-        Of compressed rows.
-    columns : int32 array
-        The diagonal comes first in each row.
+    aggregates : Aggregates; with the owners also of what is beyond the rows, which have numbers after those of the
+      rows' own
+    Returns:
+    pointers : (aggregates + 1,) int32 array; of compressed rows
+    columns : int32 array; the diagonal comes first in each row
     values : float array
     """
     indptr, indices, conductance = links
@@ -221,15 +195,10 @@ def galerkin(links, diagonal, scale, aggregates):
 def arrange(first, last, links, scale, level):
     """Copy links into the order of a Level.
 
-    Parameters
-    ----------
-    first, last : int
-        Blocks.
+    first, last : int; blocks
     links : Links
-    scale : float, K/W
-        Values are scale times conductance.
-    level : Level, out
-        All but its inverse diagonal; its pointers are those of the links.
+    scale : float, K/W; values are scale times conductance
+    level : Level, out; all but its inverse diagonal; its pointers are those of the links
     """
     indptr, indices, conductance = links
     ends, place, values = level.ends, level.place, level.values
@@ -258,13 +227,9 @@ def arrange(first, last, links, scale, level):
 def forward(first, last, level, r, x):
     """One forward Gauss-Seidel sweep from zero, within blocks.
 
-    Parameters
-    ----------
-    first, last : int
-        Blocks.
+    first, last : int; blocks
     level : Level
-    r : (n,) float32 array
-        Right-hand side.
+    r : (n,) float32 array; right-hand side
     x : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, inverse = level
@@ -281,13 +246,9 @@ def forward(first, last, level, r, x):
 def defect(first, last, level, x, d):
     """What is left of the equation after a forward sweep: r - A x, which is what the links that it left out bring.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     level : Level
-    x : (n,) float32 array
-        Of `forward`.
+    x : (n,) float32 array; of `forward`
     d : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, _ = level
@@ -302,10 +263,7 @@ def defect(first, last, level, x, d):
 def restrict(first, last, aggregates, d, coarse):
     """Add up values over each aggregate.
 
-    Parameters
-    ----------
-    first, last : int
-        Aggregates.
+    first, last : int; aggregates
     aggregates : Aggregates
     d : (n,) float32 array
     coarse : (aggregates,) float array, out
@@ -322,10 +280,7 @@ def restrict(first, last, aggregates, d, coarse):
 def correct(first, last, aggregates, coarse, weight, x):
     """Add the value of its aggregate, times a weight, to each particle's.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     aggregates : Aggregates
     coarse : (aggregates,) float array
     weight : float
@@ -341,15 +296,10 @@ def correct(first, last, aggregates, coarse, weight, x):
 def backward(first, last, level, r, x, y):
     """One backward Gauss-Seidel sweep, within blocks.
 
-    Parameters
-    ----------
-    first, last : int
-        Blocks.
+    first, last : int; blocks
     level : Level
-    r : (n,) float32 array
-        Right-hand side.
-    x : (n,) float32 array
-        Where it starts from.
+    r : (n,) float32 array; right-hand side
+    x : (n,) float32 array; where it starts from
     y : (n,) float32 array, out
     """
     indptr, indices, ends, place, values, inverse = level

@@ -18,17 +18,12 @@ BLOCK = 2048
 def apply(first, last, links, diagonal, p, q, partial):
     """Multiply by the matrix: q becomes A p.
 
-    Parameters
-    ----------
-    first, last : int
-        Blocks.
+    first, last : int; blocks
     links : Links
     diagonal : (n,) float array, W/K
-    p : (n,) float array, K
-        Or longer, where links lead beyond the rows.
+    p : (n,) float array, K; or longer, where links lead beyond the rows
     q : (n,) float array, W, out
-    partial : (blocks,) float array, W K, out
-        Sums of p q.
+    partial : (blocks,) float array, W K, out; sums of p q
     """
     indptr, indices, conductance = links
     for block in range(first, last):
@@ -46,19 +41,13 @@ def apply(first, last, links, diagonal, p, q, partial):
 def advance(first, last, alpha, p, q, x, r, partial):
     """Go along a direction: x grows by alpha p, r falls by alpha q.
 
-    Parameters
-    ----------
-    first, last : int
-        Blocks.
+    first, last : int; blocks
     alpha : float
     p : (n,) float array, K
-    q : (n,) float array, W
-        A p.
+    q : (n,) float array, W; A p
     x : (n,) float array, K, in and out
-    r : (n,) float array, W, in and out
-        Residual.
-    partial : (blocks,) float array, W2, out
-        Sums of r r after the step.
+    r : (n,) float array, W, in and out; residual
+    partial : (blocks,) float array, W2, out; sums of r r after the step
     """
     for block in range(first, last):
         rr = 0.0
@@ -73,14 +62,10 @@ def advance(first, last, alpha, p, q, x, r, partial):
 def spread(links, reached, queue, number):
     """Mark all particles that conducting links join, over any number of others, to those already marked.
 
-    Parameters
-    ----------
     links : Links
     reached : (n,) bool array, in and out
-    queue : (n,) uint32 array, in and out
-        At first those marked.
-    number : int
-        Of them.
+    queue : (n,) uint32 array, in and out; at first those marked
+    number : int; of them
     """
     indptr, indices, conductance = links
     head = 0
@@ -99,20 +84,15 @@ def spread(links, reached, queue, number):
 def flows(first, last, links, places, gradient, x, received, throughput, moment):
     """Heat that each particle receives over its links, how much passes, and their moments.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     links : Links
     places : Places
     gradient : (3,) float array, K/m
-    x : (n,) float array, K
-        Temperatures less the linear field of the gradient.
+    x : (n,) float array, K; temperatures less the linear field of the gradient
     received : (n,) float array, W, out
-    throughput : (n,) float array, W, out
-        Sum of the sizes of those flows.
-    moment : (n, 3) float array, W m, out
-        Sum of W b / 2: W the heat received over a link, b its vector from the particle to its neighbour.
+    throughput : (n,) float array, W, out; sum of the sizes of those flows
+    moment : (n, 3) float array, W m, out; sum of W b / 2: W the heat received over a link, b its vector from the
+      particle to its neighbour
     """
     indptr, conductance = links.indptr, links.conductance
     for i in range(np.uint64(first), np.uint64(last)):
@@ -133,17 +113,12 @@ def flows(first, last, links, places, gradient, x, received, throughput, moment)
 def reconstruct(first, last, links, places, area, gradient, x, shape, flow):
     """Sums over the links of each particle of S e e and of e W: e the unit vector, W the heat it receives.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     links : Links
     places : Places
-    area : (m,) float array, m2
-        S of each link.
+    area : (m,) float array, m2; S of each link
     gradient : (3,) float array, K/m
-    x : (n,) float array, K
-        Temperatures less the linear field of the gradient.
+    x : (n,) float array, K; temperatures less the linear field of the gradient
     shape : (n, 3, 3) float array, m2, out
     flow : (n, 3) float array, W, out
     """

@@ -283,30 +283,18 @@ def cut_cells(first, last, chunks, start, sites, wall, near, limits, found, cell
 
     Each chunk has rows and facets of its own. Python's lock is not held: threads may cut other chunks meanwhile.
 
-    Parameters
-    ----------
-    first, last : int
-        CHUNK times places; to go on, more.
-    chunks : (c,) int64 array
-        Numbers of the chunks among the rows of `out`.
-    start : int
-        The site of its first row.
+    first, last : int; CHUNK times places; to go on, more
+    chunks : (c,) int64 array; numbers of the chunks among the rows of `out`
+    start : int; the site of its first row
     sites : Sites
-    wall : RoundWall or None
-        Tangent planes normal.(x - middle) <= radius; None for a box, for which half as much is compiled.
-    near : Tangents or None
-        The planes of the wall that touch the body within reach of each row's site.
+    wall : RoundWall or None; tangent planes normal.(x - middle) <= radius; None for a box, for which half as much is
+      compiled
+    near : Tangents or None; the planes of the wall that touch the body within reach of each row's site
     limits : Limits
-    found : Candidates
-        Scratch memory.
-    cell : Polyhedron
-        Scratch memory.
+    found : Candidates; scratch memory
+    cell : Polyhedron; scratch memory
     out : Cut, in and out
-
-    Returns
-    -------
-    int
-        `last`; less if a cell needs more scratch memory: where to go on with more.
+    Returns int: `last`; less if a cell needs more scratch memory: where to go on with more
     """
     for at in range(first, last):
         place, within = at // CHUNK, at % CHUNK

@@ -42,21 +42,14 @@ def places_of(network):
 def rise_along(i, e, links, places, gradient, x):
     """Rise of the temperature from a particle to its neighbour (image) along a link, and the way there.
 
-    Parameters
-    ----------
-    i, e : int
-        The particle and one of its links.
+    i, e : int; the particle and one of its links
     links : Links
     places : Places
     gradient : (3,) float array, K/m
-    x : (n,) float array, K
-        Temperatures less the linear field of the gradient.
-
-    Returns
-    -------
+    x : (n,) float array, K; temperatures less the linear field of the gradient
+    Returns:
     rise : float, K
-    u, v, w : float, m
-        Vector from the particle to its neighbour.
+    u, v, w : float, m; vector from the particle to its neighbour
     """
     code = np.int64(places.image[e])
     j, centers, size = links.indices[e], places.centers, places.size
@@ -70,19 +63,12 @@ def rise_along(i, e, links, places, gradient, x):
 def match_links(first, last, indptr, indices, image, area, matched):
     """Give each link of rows from first to last one area, from those that its two cells see.
 
-    Parameters
-    ----------
     first, last : int
-    indptr : (n + 1,) int64 array
-        Row pointers.
-    indices : (m,) uint32 array
-        The other cell of each link.
-    image : (m,) uint8 array
-        Which periodic image of it.
-    area : (m,) float array, m2
-        As seen from the row's cell.
-    matched : (m,) float array, m2, out
-        The mean of both; 0 where only one of the cells sees the facet.
+    indptr : (n + 1,) int64 array; row pointers
+    indices : (m,) uint32 array; the other cell of each link
+    image : (m,) uint8 array; which periodic image of it
+    area : (m,) float array, m2; as seen from the row's cell
+    matched : (m,) float array, m2, out; the mean of both; 0 where only one of the cells sees the facet
     """
     one = np.uint64(1)
     for p in range(np.uint64(first), np.uint64(last)):

@@ -57,16 +57,9 @@ def empty_polyhedron(most):
 def start_box(low, high, cell):
     """Begin a polyhedron as a box; slots 2k and 2k + 1 are the low and the high side of axis k.
 
-    Parameters
-    ----------
-    low, high : (3,) float arrays, m
-        Corners; the origin lies between them.
+    low, high : (3,) float arrays, m; corners; the origin lies between them
     cell : Polyhedron, out
-
-    Returns
-    -------
-    int
-        Number of vertices, 8.
+    Returns int: number of vertices, 8
     """
     corner = cell.corner
     for side in range(6):
@@ -91,17 +84,11 @@ def start_box(low, high, cell):
 def beyond(cell, count, x, y, z, limit):
     """How many of the vertices have a larger product with a vector than that.
 
-    Parameters
-    ----------
     cell : Polyhedron
-    count : int
-        Number of vertices.
+    count : int; number of vertices
     x, y, z : float
     limit : float, m
-
-    Returns
-    -------
-    int
+    Returns int
     """
     number = 0
     for v in range(count):
@@ -220,18 +207,10 @@ def cut(cell, count, slot, eps):
 def measure(cell, count, planes):
     """Write the facet areas of a polyhedron by slot.
 
-    Parameters
-    ----------
     cell : Polyhedron
-    count : int
-        Number of vertices.
-    planes : int
-        Slots in use: areas of those that have no facet become 0.
-
-    Returns
-    -------
-    float, m3
-        Its volume.
+    count : int; number of vertices
+    planes : int; slots in use: areas of those that have no facet become 0
+    Returns float, m3: its volume
     """
     vertex, corner, plane = cell.vertex, cell.corner, cell.plane
     for f in range(planes):

@@ -68,16 +68,9 @@ def empty_candidates(room):
 def cutting_reach(farthest, weight, heaviest):
     """Sites of at most some weight cut a cell only if they are nearer than this.
 
-    Parameters
-    ----------
-    farthest : float, m
-        Of the cell's vertices from its site.
-    weight, heaviest : float, m2
-        Of the cell's own site and of the others.
-
-    Returns
-    -------
-    float, m
+    farthest : float, m; of the cell's vertices from its site
+    weight, heaviest : float, m2; of the cell's own site and of the others
+    Returns float, m
     """
     square = farthest * farthest + heaviest - weight
     return farthest + np.sqrt(square) if square > 0.0 else 0.0
@@ -87,8 +80,6 @@ def cutting_reach(farthest, weight, heaviest):
 def find_home(i, level, sites, found):
     """Note where a site stands in the grid of a level.
 
-    Parameters
-    ----------
     i, level : int
     sites : Sites
     found : Candidates, out
@@ -107,17 +98,11 @@ def find_home(i, level, sites, found):
 def ring_distance(ring, grid, frame):
     """What a ring of grid cells keeps away from the site, and whether it and those beyond hold no cell.
 
-    Parameters
-    ----------
     ring : int
-    grid, frame : arrays
-        Of Candidates, after `find_home`.
-
-    Returns
-    -------
+    grid, frame : arrays; of Candidates, after `find_home`
+    Returns:
     distance : float, m
-    ended : bool
-        One image of the box to either side of a periodic one has been seen.
+    ended : bool; one image of the box to either side of a periodic one has been seen
     """
     least, ended = np.inf, True
     for k in range(3):
@@ -182,20 +167,11 @@ def _step(step, k, grid, frame):
 def gather_ring(i, ring, level, farthest, sites, found):
     """Find the sites of a ring of grid cells that may cut a cell; the home belongs to ring 1.
 
-    Parameters
-    ----------
-    i, ring, level : int
-        Site, ring >= 1 and level.
-    farthest : float, m
-        Of the cell's vertices.
+    i, ring, level : int; site, ring >= 1 and level
+    farthest : float, m; of the cell's vertices
     sites : Sites
-    found : Candidates, in and out
-        After `find_home` for this level.
-
-    Returns
-    -------
-    int
-        Their number; -1 if there is no room.
+    found : Candidates, in and out; after `find_home` for this level
+    Returns int: their number; -1 if there is no room
     """
     limit = cutting_reach(farthest, sites.weights[i], sites.heaviest[level]) ** 2
     grid, frame, m = found.grid, found.frame, 0
@@ -232,11 +208,8 @@ def gather_ring(i, ring, level, farthest, sites, found):
 def arrange(found, m):
     """Put candidates in the order of their planes' distances, as far as bins tell: enough, and linear.
 
-    Parameters
-    ----------
     found : Candidates, in and out
-    m : int
-        Their number.
+    m : int; their number
     """
     plane, bins, ends = found.plane, found.bin, found.bin[len(found.label) :]
     most = 0.0

@@ -40,14 +40,9 @@ class Grid(NamedTuple):
 def fill_cells(points, level, grid):
     """Counting sort of the points into cells.
 
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Wrapped centre and radius.
-    level : (n,) int array
-        Size level of each.
-    grid : Grid
-        Its start, order and slots are filled.
+    points : (n, 4) float array, m; wrapped centre and radius
+    level : (n,) int array; size level of each
+    grid : Grid; its start, order and slots are filled
     """
     n, dims, start = len(points), grid.dims, grid.start
     keys = np.empty(n, np.int64)
@@ -128,23 +123,13 @@ def _scan(i, p, begin, end, grid, reach, out, k):
 def append_row(i, p, grid, reach, out, k):
     """Append all near neighbours of one particle to a buffer.
 
-    Parameters
-    ----------
-    i : int
-        The particle, which is not its own neighbour; -1 for a place without one.
-    p : (4,) float array, m
-        Wrapped centre and radius.
+    i : int; the particle, which is not its own neighbour; -1 for a place without one
+    p : (4,) float array, m; wrapped centre and radius
     grid : Grid
     reach : Reach
-    out : (capacity + 1,) uint32 array, out
-        The last place is scratch.
-    k : int
-        How many it holds.
-
-    Returns
-    -------
-    int
-        How many it holds now; more than the capacity if it was too short.
+    out : (capacity + 1,) uint32 array, out; the last place is scratch
+    k : int; how many it holds
+    Returns int: how many it holds now; more than the capacity if it was too short
     """
     box, start = grid.box, grid.start
     for lev in range(len(grid.largest)):
@@ -180,19 +165,12 @@ def append_row(i, p, grid, reach, out, k):
 def near_rows(points, grid, reach, first, buffer, lengths):
     """Rows of near neighbours, one chunk of particles per row of `buffer`; lengths are right even if it is too short.
 
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Wrapped centre and radius.
+    points : (n, 4) float array, m; wrapped centre and radius
     grid : Grid
-    reach : Reach
-        Of the nearest image.
-    first : int
-        Number of the chunk in the first row of `buffer`.
-    buffer : (chunks, capacity) uint32 array, out
-        The last column is scratch.
-    lengths : (n,) int array, out
-        Of all particles; those of other chunks stay as they are.
+    reach : Reach; of the nearest image
+    first : int; number of the chunk in the first row of `buffer`
+    buffer : (chunks, capacity) uint32 array, out; the last column is scratch
+    lengths : (n,) int array, out; of all particles; those of other chunks stay as they are
     """
     n = len(points)
     for row in prange(len(buffer)):
@@ -207,10 +185,7 @@ def near_rows(points, grid, reach, first, buffer, lengths):
 def compact_rows(buffer, indptr, indices):
     """Copy the rows of all chunks behind each other.
 
-    Parameters
-    ----------
-    buffer : (chunks, capacity + 1) uint32 array
-        As `near_rows` fills it.
+    buffer : (chunks, capacity + 1) uint32 array; as `near_rows` fills it
     indptr : (n + 1,) int64 array
     indices : (nnz,) uint32 array, out
     """
@@ -225,8 +200,6 @@ def compact_rows(buffer, indptr, indices):
 def sort_rows(indptr, indices):
     """Sort each row in place by insertion: rows are short and nearly sorted.
 
-    Parameters
-    ----------
     indptr : (n + 1,) int64 array
     indices : (nnz,) uint32 array, in and out
     """
@@ -244,12 +217,8 @@ def sort_rows(indptr, indices):
 def row_distances(points, box, indptr, indices, out):
     """Distance of each listed pair over the sum of its radii, nearest image.
 
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Centre and radius.
-    box : (3,) float array, m
-        Period of each axis, 0 where it is walled.
+    points : (n, 4) float array, m; centre and radius
+    box : (3,) float array, m; period of each axis, 0 where it is walled
     indptr : (n + 1,) int64 array
     indices : (nnz,) uint32 array
     out : (nnz,) float array, out

@@ -262,11 +262,9 @@ def _bounce(bounds, s, i, who):
 def start(bounds, spheres, lists, events):
     """Predict the first event of every sphere; all stand at time 0.
 
-    Parameters
-    ----------
     bounds : Bounds
-    spheres : (n, 8) float array
-        Columns X to RADIUS. Lengths in mean radii, times in mean radii over the thermal velocity.
+    spheres : (n, 8) float array; columns X to RADIUS. Lengths in mean radii, times in mean radii over the thermal
+      velocity
     lists : Lists
     events : Events, out
     """
@@ -282,24 +280,15 @@ def run(bounds, spheres, lists, events, most, done, pause):
 
     All spheres then stand at the same time. After a pause the same call with what was done goes on, to the same bits.
 
-    Parameters
-    ----------
     bounds : Bounds
-    spheres : (n, 8) float array, in and out
-        As in `start`.
+    spheres : (n, 8) float array, in and out; as in `start`
     lists : Lists
     events : Events, in and out
-    most : int
-        Collisions.
-    done : Count
-        Before a pause; zeros at first.
-    pause : int
-        Events after which to pause.
-
-    Returns
-    -------
-    why : int
-        LEFT, TIMED_OUT, COUNTED, STUCK if events go on without end, or PAUSED.
+    most : int; collisions
+    done : Count; before a pause; zeros at first
+    pause : int; events after which to pause
+    Returns:
+    why : int; LEFT, TIMED_OUT, COUNTED, STUCK if events go on without end, or PAUSED
     now : float
     done : Count
     """

@@ -121,17 +121,12 @@ def _push_of_walls(i, points, box, push, overlaps):
 def forces(spheres, indptr, indices, box, force, sums):
     """Harmonic repulsion (stiffness 1) of overlapping spheres and of walls, times each particle's mobility.
 
-    Parameters
-    ----------
     spheres : Spheres
     indptr : (n + 1,) int64 array
-    indices : (nnz,) uint32 array
-        Symmetric rows of candidates.
+    indices : (nnz,) uint32 array; symmetric rows of candidates
     box : Box
-    force : (n, 3) float array, out
-        Acceleration: mobility times force.
-    sums : (chunks, SUMS) float array, out
-        Columns POWER to WORST.
+    force : (n, 3) float array, out; acceleration: mobility times force
+    sums : (chunks, SUMS) float array, out; columns POWER to WORST
     """
     points, velocity, mobility = spheres.points, spheres.velocity, spheres.mobility
     n = len(points)
@@ -160,16 +155,11 @@ def forces(spheres, indptr, indices, box, force, sums):
 def move(spheres, start, force, step, farthest):
     """Update velocities and centres by one step.
 
-    Parameters
-    ----------
     spheres : Spheres, in and out
-    start : (n, 3) float array
-        Where the centres were when their neighbours were listed.
-    force : (n, 3) float array
-        As `forces` gives it.
+    start : (n, 3) float array; where the centres were when their neighbours were listed
+    force : (n, 3) float array; as `forces` gives it
     step : Step
-    farthest : (chunks,) float array, out
-        Largest squared distance of a centre from its start.
+    farthest : (chunks,) float array, out; largest squared distance of a centre from its start
     """
     points, velocity = spheres.points, spheres.velocity
     n = len(points)

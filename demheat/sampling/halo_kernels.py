@@ -34,15 +34,9 @@ class Cells(NamedTuple):
 def cell_totals(start, slots):
     """Sums over each cell of the volume and of volume times values.
 
-    Parameters
-    ----------
     start : (cells + 1,) int array
-    slots : (8, n) float array
-        As in `Cells`.
-
-    Returns
-    -------
-    (cells, 4) float array
+    slots : (8, n) float array; as in `Cells`
+    Returns (cells, 4) float array
     """
     totals = np.zeros((len(start) - 1, ROWS - SUMS))
     for c in range(len(totals)):
@@ -152,19 +146,13 @@ def _scan(p, wanted, square, buffer, count):
 def ball_means(at, start, wanted, radius, cells, out):
     """Write the means of three values over the samples within the radius of each point to out (m, 3).
 
-    Parameters
-    ----------
-    at : (m, 3) float array, m
-        Wrapped into the box on periodic axes, sorted by cells.
-    start : (cells + 1,) int array
-        First point of each cell. Of some whole columns of cells only: points of the others are passed over.
-    wanted : (m,) float array
-        Phase that counts for each point; 0 if phases do not.
-    radius : float, m
-        Twice it at most the period.
+    at : (m, 3) float array, m; wrapped into the box on periodic axes, sorted by cells
+    start : (cells + 1,) int array; first point of each cell. Of some whole columns of cells only: points of the others
+      are passed over
+    wanted : (m,) float array; phase that counts for each point; 0 if phases do not
+    radius : float, m; twice it at most the period
     cells : Cells
-    out : (m, 3) float array, out
-        Not-a-number where the sphere holds no volume.
+    out : (m, 3) float array, out; not-a-number where the sphere holds no volume
     """
     run = cells.dims[2]
     for column in prange((len(start) - 1) // run):

@@ -12,20 +12,14 @@ HALF, RADII, CELL = 0, 1, 2
 def shared_moments(first, last, links, places, gradient, x, radii, distance, split, flow):
     """Sum over the links of each particle of s W b: W the heat it receives, b the branch vector, s its own part of it.
 
-    Parameters
-    ----------
-    first, last : int
-        Rows.
+    first, last : int; rows
     links : Links
     places : Places
     gradient : (3,) float array, K/m
-    x : (n,) float array, K
-        Temperatures less the linear field of the gradient.
+    x : (n,) float array, K; temperatures less the linear field of the gradient
     radii : (n,) float array, m
-    distance : (m,) float array, m
-        From the row's centre to the facet of each link.
-    split : {HALF, RADII, CELL}
-        s is 1/2, R_p / (R_p + R_q), or distance over length.
+    distance : (m,) float array, m; from the row's centre to the facet of each link
+    split : {HALF, RADII, CELL}; s is 1/2, R_p / (R_p + R_q), or distance over length
     flow : (n, 3) float array, W m, out
     """
     indptr, indices, conductance = links

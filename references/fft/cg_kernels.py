@@ -42,10 +42,7 @@ class Symbol(NamedTuple):
 def divide(rows, first, count, symbol, scale):
     """Divide each mode by the symbol of minus the Laplacian; empty modes become 0.
 
-    Parameters
-    ----------
-    rows, first, count : see `sweeps.Transform.columns`
-        One component, W/m3 before and K after, changed in place.
+    rows, first, count : see `sweeps.Transform.columns`; one component, W/m3 before and K after, changed in place
     symbol : Symbol
     scale : float
     """
@@ -65,11 +62,8 @@ def divide(rows, first, count, symbol, scale):
 def start(vectors, low, high):
     """residual = -work; work = weighted residual, ready for the preconditioner.  Padding is left alone.
 
-    Parameters
-    ----------
     vectors : Vectors
-    low, high : int
-        Planes of nodes.
+    low, high : int; planes of nodes
     """
     residual, work = vectors.residual, vectors.work
     for i in range(low, high):
@@ -85,12 +79,9 @@ def start(vectors, low, high):
 def step(vectors, alpha, low, high):
     """theta += alpha direction; residual -= alpha work; work = weighted residual.
 
-    Parameters
-    ----------
     vectors : Vectors
     alpha : float
-    low, high : int
-        Planes of nodes.
+    low, high : int; planes of nodes
     """
     theta, direction, residual, work = vectors.theta, vectors.direction, vectors.residual, vectors.work
     for i in range(low, high):
@@ -108,11 +99,8 @@ def step(vectors, alpha, low, high):
 def dot(vectors, low, high):
     """partial[i] = sum of residual * work over plane i.
 
-    Parameters
-    ----------
     vectors : Vectors
-    low, high : int
-        Planes of nodes.
+    low, high : int; planes of nodes
     """
     residual, work = vectors.residual, vectors.work
     for i in range(low, high):
@@ -128,12 +116,9 @@ def dot(vectors, low, high):
 def turn(vectors, beta, low, high):
     """direction = work + beta direction.
 
-    Parameters
-    ----------
     vectors : Vectors
     beta : float
-    low, high : int
-        Planes of nodes.
+    low, high : int; planes of nodes
     """
     direction, work = vectors.direction, vectors.work
     for i in range(low, high):

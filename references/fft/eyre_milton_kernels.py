@@ -28,12 +28,8 @@ class Sums(NamedTuple):
 def mirror(tensor, reference):
     """(K + c0)^-1 (K - c0) of symmetric tensors.
 
-    Parameters
-    ----------
-    tensor : (m, 6) float array, W/(m K)
-        K, replaced by the result, which has no unit; order xx, yy, zz, yz, xz, xy.
-    reference : float, W/(m K)
-        c0.
+    tensor : (m, 6) float array, W/(m K); K, replaced by the result, which has no unit; order xx, yy, zz, yz, xz, xy
+    reference : float, W/(m K); c0
     """
     for m in range(len(tensor)):
         t = tensor[m]
@@ -74,15 +70,10 @@ def _multiply(medium, i, j, x, y, z, result):
 def reflect(field, work, medium, sums, low, high):
     """Take the new field from `work`, and leave its reflection Z p there.
 
-    Parameters
-    ----------
-    field : (3, nx, ny, nz) float array, W/m2
-        p = q + c0 g; replaced by the new one.
+    field : (3, nx, ny, nz) float array, W/m2; p = q + c0 g; replaced by the new one
     work : (3, nx, ny, nz or more) float array, W/m2
-    medium : Medium
-        Z = (K - c0) / (K + c0).
-    sums : Sums
-        Out.
+    medium : Medium; Z = (K - c0) / (K + c0)
+    sums : Sums; out
     low, high : int
     """
     nz = field.shape[3]
@@ -111,14 +102,9 @@ def reflect(field, work, medium, sums, low, high):
 def gradient(field, work, medium, factor, low, high):
     """work = factor (p - Z p), which is g for factor = 1 / (2 c0).
 
-    Parameters
-    ----------
-    field : (3, nx, ny, nz) float array, W/m2
-        p.
-    work : (3, nx, ny, nz or more) float array, K/m
-        Out.
-    medium : Medium
-        Z.
+    field : (3, nx, ny, nz) float array, W/m2; p
+    work : (3, nx, ny, nz or more) float array, K/m; out
+    medium : Medium; Z
     factor : float, m K/W
     low, high : int
     """
@@ -137,14 +123,9 @@ def gradient(field, work, medium, factor, low, high):
 def conduct(work, medium, flux, low, high):
     """work = K work.
 
-    Parameters
-    ----------
-    work : (3, nx, ny, nz or more) float array
-        Gradient g, K/m; replaced by the flux q along it, W/m2.
-    medium : Medium
-        K, W/(m K).
-    flux : (nx, 3) float64 array, W/m2
-        Out: sums of q over each plane.
+    work : (3, nx, ny, nz or more) float array; gradient g, K/m; replaced by the flux q along it, W/m2
+    medium : Medium; K, W/(m K)
+    flux : (nx, 3) float64 array, W/m2; out: sums of q over each plane
     low, high : int
     """
     nz = medium.phase.shape[2]

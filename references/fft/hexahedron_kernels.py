@@ -37,20 +37,12 @@ class Sums(NamedTuple):
 def conduct_voxels(theta, work, body, gradient, sums, low, high):
     """Reduced-integration hexahedra: one temperature per corner, one gradient per voxel.
 
-    Parameters
-    ----------
-    theta : (mx, my, mz) float array, K
-        Temperature at the corners less the linear part, see `cg_kernels.Vectors`.
-    work : (mx, my, mz or more) float array, W/m3
-        Out: -div(q) at the corners, as the sum over the voxels of B^T q.
-    body : Body
-        Of a `Medium`.
-    gradient : (3,) float array, K/m
-        Linear part.
-    sums : Sums
-        Out.
-    low, high : int
-        Planes of `work` to fill.
+    theta : (mx, my, mz) float array, K; temperature at the corners less the linear part, see `cg_kernels.Vectors`
+    work : (mx, my, mz or more) float array, W/m3; out: -div(q) at the corners, as the sum over the voxels of B^T q
+    body : Body; of a `Medium`
+    gradient : (3,) float array, K/m; linear part
+    sums : Sums; out
+    low, high : int; planes of `work` to fill
     """
     medium, inverse, walls = body.material, body.inverse, body.walls
     nx, ny, nz = medium.phase.shape
@@ -156,15 +148,10 @@ def _scatter(near, far, flux, side, mz):
 def voxel_state(theta, body, gradient, center, flux, low, high):
     """Temperature and flux at the centre of every voxel, for `conduct_voxels`.
 
-    Parameters
-    ----------
     theta, body, gradient : see `conduct_voxels`
-    center : (nx, ny, nz) float array, K
-        Out: temperature less the linear part.
-    flux : (3, nx, ny, nz) float array, W/m2
-        Out: along the gradient, that is against Fourier's direction.
-    low, high : int
-        Planes of voxels to fill.
+    center : (nx, ny, nz) float array, K; out: temperature less the linear part
+    flux : (3, nx, ny, nz) float array, W/m2; out: along the gradient, that is against Fourier's direction
+    low, high : int; planes of voxels to fill
     """
     medium, inverse, walls = body.material, body.inverse, body.walls
     nx, ny, nz = medium.phase.shape

@@ -28,20 +28,13 @@ class Links(NamedTuple):
 def conduct_links(theta, work, body, gradient, sums, low, high):
     """Seven-point differences: one temperature per voxel centre, one conductivity per link between neighbours.
 
-    Parameters
-    ----------
-    theta : (nx, ny, nz) float array, K
-        Temperature at the voxel centres less the linear part; the isothermal walls are those across x.
-    work : (nx, ny, nz or more) float array, W/m3
-        Out: -div(q).
-    body : Body
-        Of `Links`.
-    gradient : (3,) float array, K/m
-        Linear part.
-    sums : Sums
-        Out; each link counts half on either side.
-    low, high : int
-        Planes of `work` to fill.
+    theta : (nx, ny, nz) float array, K; temperature at the voxel centres less the linear part; the isothermal walls are
+      those across x
+    work : (nx, ny, nz or more) float array, W/m3; out: -div(q)
+    body : Body; of `Links`
+    gradient : (3,) float array, K/m; linear part
+    sums : Sums; out; each link counts half on either side
+    low, high : int; planes of `work` to fill
     """
     inverse = body.inverse
     nx, ny, nz = theta.shape
@@ -102,13 +95,9 @@ def _link_row(low, high, minus, plus, link, gradient, flux, sums, i, axis):
 def link_state(theta, body, gradient, flux, low, high):
     """Flux at the centre of every voxel, for `conduct_links`: the mean of the two links along each axis.
 
-    Parameters
-    ----------
     theta, body, gradient : see `conduct_links`
-    flux : (3, nx, ny, nz) float array, W/m2
-        Out: along the gradient, that is against Fourier's direction.
-    low, high : int
-        Planes of voxels to fill.
+    flux : (3, nx, ny, nz) float array, W/m2; out: along the gradient, that is against Fourier's direction
+    low, high : int; planes of voxels to fill
     """
     nx, ny, nz = theta.shape
     row = np.empty((6, nz), theta.dtype)

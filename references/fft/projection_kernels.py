@@ -46,15 +46,10 @@ def reflect_modes(rows, first, count, waves, scale, mean):
 
     Gamma is real, so real and imaginary parts are treated alike.
 
-    Parameters
-    ----------
-    rows, first, count : see `sweeps.Transform.columns`
-        Three components, W/m2, changed in place.
-    waves : Waves
-        Entries of x twice.
+    rows, first, count : see `sweeps.Transform.columns`; three components, W/m2, changed in place
+    waves : Waves; entries of x twice
     scale : float
-    mean : (3,) float array, W/m2
-        Added to the mode of wave number 0.
+    mean : (3,) float array, W/m2; added to the mode of wave number 0
     """
     wave, free = waves.number, waves.free
     mz, a, edge = len(wave[2]), wave[0], free[0]
@@ -85,17 +80,11 @@ def reflect_modes(rows, first, count, waves, scale, mean):
 def split_modes(rows, first, count, waves, scale, mean, parts):
     """Keep the compatible part of a field, scale Gamma v + mean, and measure both parts.
 
-    Parameters
-    ----------
-    rows, first, count : see `sweeps.Transform.columns`
-        Three components of v, changed in place.
-    waves : Waves
-        Entries of x twice.
+    rows, first, count : see `sweeps.Transform.columns`; three components of v, changed in place
+    waves : Waves; entries of x twice
     scale : float
-    mean : (3,) float array
-        Added to the mode of wave number 0, in the unit of v.
-    parts : Parts
-        Out, per column: sums of |Gamma v|^2 and of |v - Gamma v - mean|^2, scaled.
+    mean : (3,) float array; added to the mode of wave number 0, in the unit of v
+    parts : Parts; out, per column: sums of |Gamma v|^2 and of |v - Gamma v - mean|^2, scaled
     """
     wave, free = waves.number, waves.free
     mz, a = len(wave[2]), wave[0]
@@ -127,15 +116,10 @@ def split_modes(rows, first, count, waves, scale, mean, parts):
 def integrate_modes(modes, potential, waves, low, high):
     """Potential of a compatible field, k.v / (i k^2), for complex Fourier coefficients.
 
-    Parameters
-    ----------
     modes : (3, mx, my, mz) complex array, K/m
-    potential : (1, mx, my, mz) complex array, K
-        Out.
-    waves : Waves
-        Entries of x once.
-    low, high : int
-        Planes of modes.
+    potential : (1, mx, my, mz) complex array, K; out
+    waves : Waves; entries of x once
+    low, high : int; planes of modes
     """
     wave = waves.number
     x, y, z = modes[0], modes[1], modes[2]
@@ -158,16 +142,11 @@ def reflect_waves(modes, waves, scale, mean, low, high):
     -c sin cos sin).  Coefficient i of a cosine belongs to wave number i, of a sine to i + 1; a component without the
     wave number counts as 0 there, and the slope of the highest sine is 0 at the voxel centres.
 
-    Parameters
-    ----------
-    modes : (3, nx, ny, nz) float array, W/m2
-        Changed in place.
+    modes : (3, nx, ny, nz) float array, W/m2; changed in place
     waves : Waves
     scale : float
-    mean : (3,) float array, W/m2
-        Its first component is added to the mode of wave number 0; a box knows no other.
-    low, high : int
-        Wave numbers along x, of 0 to nx.
+    mean : (3,) float array, W/m2; its first component is added to the mode of wave number 0; a box knows no other
+    low, high : int; wave numbers along x, of 0 to nx
     """
     wave, free = waves.number, waves.free
     nx, ny, nz = modes.shape[1:]
@@ -190,11 +169,8 @@ def reflect_waves(modes, waves, scale, mean, low, high):
 def split_waves(modes, waves, scale, mean, parts, low, high):
     """Same as `split_modes` for sine and cosine coefficients.
 
-    Parameters
-    ----------
     modes, waves, scale, mean, low, high : see `reflect_waves`
-    parts : Parts
-        Out, per wave number along x.
+    parts : Parts; out, per wave number along x
     """
     wave, free, multiplicity = waves.number, waves.free, waves.multiplicity
     nx, ny, nz = modes.shape[1:]
@@ -223,11 +199,8 @@ def split_waves(modes, waves, scale, mean, parts, low, high):
 def integrate_waves(modes, potential, waves, low, high):
     """Same as `integrate_modes` for sine and cosine coefficients.
 
-    Parameters
-    ----------
     modes, waves, low, high : see `reflect_waves`
-    potential : (1, nx, ny, nz) float array, K
-        Out: plane i holds wave number i + 1.
+    potential : (1, nx, ny, nz) float array, K; out: plane i holds wave number i + 1
     """
     wave = waves.number
     _, ny, nz = modes.shape[1:]

@@ -16,11 +16,8 @@ TILE = 8
 def take(modes, buffer, first, count):
     """buffer[c, r, i] = modes[c, i, first + r].
 
-    Parameters
-    ----------
     modes : (components, mx, columns) complex or float array
-    buffer : (components, count or more, mx) complex or float array
-        Out.
+    buffer : (components, count or more, mx) complex or float array; out
     first, count : int
     """
     for component in range(modes.shape[0]):
@@ -36,10 +33,7 @@ def take(modes, buffer, first, count):
 def put(modes, buffer, first, count):
     """modes[c, i, first + r] = buffer[c, r, i].
 
-    Parameters
-    ----------
-    modes, buffer, first, count : see `take`
-        Out: `modes`.
+    modes, buffer, first, count : see `take`; out: `modes`
     """
     for component in range(modes.shape[0]):
         target, source = modes[component], buffer[component]

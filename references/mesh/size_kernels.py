@@ -17,13 +17,9 @@ WIDTH = 6
 def size_at(x, y, z, size, table):
     """Size of elements at a point of the box.
 
-    Parameters
-    ----------
     x, y, z : float
-    size : float
-        Where no feature asks for less.
-    table : (n,) float array
-        As `references.mesh.sizes.table` makes it.
+    size : float; where no feature asks for less
+    table : (n,) float array; as `references.mesh.sizes.table` makes it
     """
     cell = 0
     for axis in range(3):

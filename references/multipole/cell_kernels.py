@@ -21,15 +21,11 @@ BLOCK = 8
 def near(order, cells, axes, sent, made, low, high):
     """What spheres and images in near cells make at the spheres of blocks low, ..., high - 1.
 
-    Parameters
-    ----------
     order : int
     cells : Cells
-    axes : Axes
-        Up to the order.
+    axes : Axes; up to the order
     sent : (2, n, entries) float array, K length^(l+1)
-    made : (2, receivers, entries) float array, K length^-l
-        Out.
+    made : (2, receivers, entries) float array, K length^-l; out
     low, high : int
     """
     width = (order + 1) * (order + 2) // 2
@@ -151,16 +147,11 @@ def _degree(ratio, negligible, order):
 def gather(order, degree, cells, axes, sent, made, low, high):
     """Multipoles of spheres about the middles of their cells, for lanes low, ..., high - 1 of spheres.
 
-    Parameters
-    ----------
-    order, degree : int
-        Of the spheres' multipoles and of the cells', the latter higher or equal.
+    order, degree : int; of the spheres' multipoles and of the cells', the latter higher or equal
     cells : Cells
-    axes : Axes
-        Up to the degree.
+    axes : Axes; up to the degree
     sent : (2, n, entries) float array, K length^(l+1)
-    made : (2, n, entries) float array, K length^(L+1)
-        Out.
+    made : (2, n, entries) float array, K length^(L+1); out
     low, high : int
     """
     tables, turns, work, powers = _shift_room(degree)
@@ -193,16 +184,11 @@ def gather(order, degree, cells, axes, sent, made, low, high):
 def spread(order, degree, cells, axes, local, made, low, high):
     """Add what cells' local coefficients are at their spheres, for lanes low, ..., high - 1 of receivers.
 
-    Parameters
-    ----------
-    order, degree : int
-        Of the spheres' local coefficients and of the cells', the latter higher or equal.
+    order, degree : int; of the spheres' local coefficients and of the cells', the latter higher or equal
     cells : Cells
-    axes : Axes
-        Up to the degree.
+    axes : Axes; up to the degree
     local : (2, cells, entries) float array, K length^-L
-    made : (2, receivers, entries) float array, K length^-l
-        In and out.
+    made : (2, receivers, entries) float array, K length^-l; in and out
     low, high : int
     """
     tables, turns, work, powers = _shift_room(degree)

@@ -17,13 +17,9 @@ from references.multipole.lane_kernels import compiled, inner
 def owners(points, spheres, owner):
     """Sphere that a point lies in or on, or -1, and its offset from that sphere's nearest image.
 
-    Parameters
-    ----------
-    points : (n, 3) float array, length
-        Changed in place where a sphere owns the point: to the offset.
+    points : (n, 3) float array, length; changed in place where a sphere owns the point: to the offset
     spheres : Spheres
-    owner : (n,) int array
-        Out.
+    owner : (n,) int array; out
     """
     centers, radii, size = spheres.centers, spheres.radii, spheres.size
     for k in range(len(points)):
@@ -43,13 +39,9 @@ def owners(points, spheres, owner):
 def regular(table, x, y, z, order):
     """R_l^m of one point.
 
-    Parameters
-    ----------
-    table : (entries,) complex array, length^l
-        Out.
+    table : (entries,) complex array, length^l; out
     x, y, z : float, length
-    order : int
-        Highest degree.
+    order : int; highest degree
     """
     square = x * x + y * y + z * z
     table[0] = 1.0
@@ -67,14 +59,9 @@ def regular(table, x, y, z, order):
 def irregular(table, x, y, z, order):
     """I_l^m of one point.
 
-    Parameters
-    ----------
-    table : (entries,) complex array, length^-(l+1)
-        Out.
-    x, y, z : float, length
-        Not all zero.
-    order : int
-        Highest degree.
+    table : (entries,) complex array, length^-(l+1); out
+    x, y, z : float, length; not all zero
+    order : int; highest degree
     """
     square = x * x + y * y + z * z
     table[0] = 1.0 / math.sqrt(square)
@@ -94,16 +81,11 @@ def inside(offsets, owner, coefficients, order, out):
 
     d/dz R_l^m = R_(l-1)^m and (d/dx + i d/dy) R_l^m = R_(l-1)^(m+1).
 
-    Parameters
-    ----------
-    offsets : (n, 3) float array, length
-        From the centres of these spheres.
+    offsets : (n, 3) float array, length; from the centres of these spheres
     owner : (n,) int array
     coefficients : (spheres, entries) complex array, K length^-l
-    order : int
-        Highest degree.
-    out : (n, 4) float array, K and K/length
-        Out: temperature, then its slope.
+    order : int; highest degree
+    out : (n, 4) float array, K and K/length; out: temperature, then its slope
     """
     table = np.zeros((order + 1) * (order + 2) // 2, dtype=np.complex128)
     for k in range(len(offsets)):
@@ -129,13 +111,9 @@ def inside(offsets, owner, coefficients, order, out):
 def screens(square, eta, screened):
     """Q(l+1/2, eta r^2) for l = 0, 1, ..., and twice its derivative by r^2.
 
-    Parameters
-    ----------
-    square : float, length^2
-        r^2.
+    square : float, length^2; r^2
     eta : float, length^-2
-    screened : (2, degrees) float array, 1 and length^-2
-        Out.
+    screened : (2, degrees) float array, 1 and length^-2; out
     """
     x = eta * square
     q, term = math.erfc(math.sqrt(x)), math.sqrt(x) * math.exp(-x) / (0.5 * math.sqrt(math.pi))
@@ -153,16 +131,12 @@ def near(points, spheres, multipoles, order, split, out):
 
     d/dz I_l^m = -I_(l+1)^m and (d/dx + i d/dy) I_l^m = I_(l+1)^(m+1).
 
-    Parameters
-    ----------
     points : (n, 3) float array, length
     spheres : Spheres
     multipoles : (spheres, entries) complex array, K length^(l+1)
-    order : int
-        Highest degree.
+    order : int; highest degree
     split : Splitting
-    out : (n, 4) float array, K and K/length
-        Temperature, then its slope.
+    out : (n, 4) float array, K and K/length; temperature, then its slope
     """
     centers, size, reach = spheres.centers, spheres.size, split.reach
     table = np.zeros((order + 2) * (order + 3) // 2, dtype=np.complex128)
@@ -214,15 +188,11 @@ def _add_screened(multipoles, table, screened, offset, out):
 def owners_by_cells(places, home, cells, owner):
     """Sphere that a point lies in or on, or -1, and its offset from that sphere's nearest image.
 
-    Parameters
-    ----------
-    places : (n, 3) float array, length
-        From the middle of the point's cell; changed in place where a sphere owns the point: to the offset.
-    home : (n,) int array
-        The points' cells.
+    places : (n, 3) float array, length; from the middle of the point's cell; changed in place where a sphere owns the
+      point: to the offset
+    home : (n,) int array; the points' cells
     cells : Cells
-    owner : (n,) int array
-        Out: by the cells' numbers.
+    owner : (n,) int array; out: by the cells' numbers
     """
     for k in range(len(places)):
         owner[k] = -1
@@ -242,19 +212,12 @@ def owners_by_cells(places, home, cells, owner):
 def near_by_cells(places, home, cells, multipoles, order, out):
     """Add what spheres and images in near cells make at points outside.
 
-    Parameters
-    ----------
-    places : (n, 3) float array, length
-        From the middle of the point's cell.
-    home : (n,) int array
-        The points' cells.
+    places : (n, 3) float array, length; from the middle of the point's cell
+    home : (n,) int array; the points' cells
     cells : Cells
-    multipoles : (spheres, entries) complex array, K length^(l+1)
-        By the cells' numbers.
-    order : int
-        Highest degree.
-    out : (n, 4) float array, K and K/length
-        Temperature, then its slope.
+    multipoles : (spheres, entries) complex array, K length^(l+1); by the cells' numbers
+    order : int; highest degree
+    out : (n, 4) float array, K and K/length; temperature, then its slope
     """
     table = np.zeros((order + 2) * (order + 3) // 2, dtype=np.complex128)
     bare, negligible = np.zeros((2, order + 1)), math.log(cells.negligible)
@@ -291,16 +254,11 @@ def _from_sphere(place, cells, step, j):
 def far(points, size, split, amplitudes, out):
     """Add 2 Re(F exp(i K.x)) over half of the reciprocal vectors, and its slope.
 
-    Parameters
-    ----------
     points : (n, 3) float array, length
-    size : (3,) float array, length
-        Of the cell.
+    size : (3,) float array, length; of the cell
     split : Splitting
-    amplitudes : (waves,) complex array, K
-        F.
-    out : (n, 4) float array, K and K/length
-        Temperature, then its slope.
+    amplitudes : (waves,) complex array, K; F
+    out : (n, 4) float array, K and K/length; temperature, then its slope
     """
     waves = split.waves
     most = np.abs(waves).max() if len(waves) else 0

@@ -25,8 +25,6 @@ LANES = 64
 def column(m, order):
     """Where the rows of one m begin, less m, in tables of all m from 0 and all l from m to the order.
 
-    Parameters
-    ----------
     m, order : int
     """
     return m * (order + 1) - m * (m + 1) // 2
@@ -38,12 +36,9 @@ def add_rows(out, part, row, source, of, first, step, table, entry, count):
 
     Whole arrays and numbers instead of views of them: counting references to views would cost more than the sum.
 
-    Parameters
-    ----------
     out : (2, rows, LANES) float array
     part, row : int
-    source : (2, rows, LANES) float array
-        Not out.
+    source : (2, rows, LANES) float array; not out
     of, first, step : int
     table : (n,) float array
     entry, count : int
@@ -80,11 +75,8 @@ def add_rows(out, part, row, source, of, first, step, table, entry, count):
 def swap_axes(degree, swap, table, out):
     """Exchange y and z in rows m = 0, ..., degree of one degree.
 
-    Parameters
-    ----------
     degree : int
-    swap : (n,) float array
-        That of `axes.Axes`.
+    swap : (n,) float array; that of `axes.Axes`
     table, out : (2, rows, LANES) float arrays
     """
     # (l + 1)^2 numbers for each lower degree.
@@ -103,18 +95,12 @@ def swap_axes(degree, swap, table, out):
 def turn_rows(source, first, cosine, sine, sign, out, to, rows):
     """Multiply rows m = 0, ..., rows - 1 by exp(sign i m angle), lane by lane.
 
-    Parameters
-    ----------
-    source : (2, n, LANES) float array
-        May be out.
-    first : int
-        Row of m = 0 there.
-    cosine, sine : (order + 1, LANES) float arrays
-        Of m times the angle.
+    source : (2, n, LANES) float array; may be out
+    first : int; row of m = 0 there
+    cosine, sine : (order + 1, LANES) float arrays; of m times the angle
     sign : float
     out : (2, n, LANES) float array
-    to : int
-        Row of m = 0 there.
+    to : int; row of m = 0 there
     rows : int
     """
     for m in range(rows):
@@ -128,17 +114,10 @@ def turn_rows(source, first, cosine, sine, sign, out, to, rows):
 def point(lane, x, y, z, turns):
     """Cosines and sines of phi and of theta of a direction, in rows 1 of `turns`; z itself for no direction.
 
-    Parameters
-    ----------
     lane : int
     x, y, z : float
-    turns : (4, order + 1, LANES) float array
-        Out: cosines and sines of m phi, then those of m theta; here m = 1.
-
-    Returns
-    -------
-    float
-        Length of (x, y, z).
+    turns : (4, order + 1, LANES) float array; out: cosines and sines of m phi, then those of m theta; here m = 1
+    Returns float: length of (x, y, z)
     """
     flat = math.sqrt(x * x + y * y)
     r = math.sqrt(flat * flat + z * z)
@@ -151,11 +130,8 @@ def point(lane, x, y, z, turns):
 def multiples(order, turns):
     """Cosines and sines of all multiples of the angles in rows 1.
 
-    Parameters
-    ----------
     order : int
-    turns : (4, order + 1, LANES) float array
-        In and out, as in `point`.
+    turns : (4, order + 1, LANES) float array; in and out, as in `point`
     """
     for angle in range(0, 4, 2):
         c, s = turns[angle], turns[angle + 1]
@@ -171,21 +147,13 @@ def multiples(order, turns):
 def forth(most, order, axes, turns, table, work, out):
     """Turn multipoles, or local coefficients, so that the direction of each lane becomes z.
 
-    Parameters
-    ----------
-    most : int
-        Highest degree.
-    order : int
-        Of the table out.
+    most : int; highest degree
+    order : int; of the table out
     axes : Axes
-    turns : (4, most + 1, LANES) float array
-        As `multiples` makes it.
-    table : (2, entries, LANES) float array
-        Degree by degree.
-    work : (2, 2, most + 1, LANES) float array
-        Overwritten.
-    out : (2, entries, LANES) float array
-        Order by order, rows as in `column`.
+    turns : (4, most + 1, LANES) float array; as `multiples` makes it
+    table : (2, entries, LANES) float array; degree by degree
+    work : (2, 2, most + 1, LANES) float array; overwritten
+    out : (2, entries, LANES) float array; order by order, rows as in `column`
     """
     one, two = work[0], work[1]
     for n in range(most + 1):
@@ -203,21 +171,13 @@ def forth(most, order, axes, turns, table, work, out):
 def back(most, order, axes, turns, table, work, out):
     """The reverse of `forth`.
 
-    Parameters
-    ----------
-    most : int
-        Highest degree.
-    order : int
-        Of the table.
+    most : int; highest degree
+    order : int; of the table
     axes : Axes
-    turns : (4, most + 1, LANES) float array
-        As `multiples` makes it.
-    table : (2, entries, LANES) float array
-        Order by order, rows as in `column`.
-    work : (2, 2, most + 1, LANES) float array
-        Overwritten.
-    out : (2, entries, LANES) float array
-        Degree by degree.
+    turns : (4, most + 1, LANES) float array; as `multiples` makes it
+    table : (2, entries, LANES) float array; order by order, rows as in `column`
+    work : (2, 2, most + 1, LANES) float array; overwritten
+    out : (2, entries, LANES) float array; degree by degree
     """
     one, two = work[0], work[1]
     for n in range(most + 1):

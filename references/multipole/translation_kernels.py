@@ -18,17 +18,11 @@ def translate(order, table, sent, made, low, high):
 
     I_l^m(X + y) = sum over l'm' of (-1)^l' conj(R_l'^m'(y)) I_(l+l')^(m+m')(X).
 
-    Parameters
-    ----------
-    order : int
-        Highest degree that spheres send and receive.
+    order : int; highest degree that spheres send and receive
     table : Translation
-    sent : (2, spheres, entries) float array, K length^(l+1)
-        Real and imaginary parts of the multipoles.
-    made : (2, receivers, entries) float array, K length^-l
-        Out: coefficients of R_l'^m'.
-    low, high : int
-        Rows of `made` to work out.
+    sent : (2, spheres, entries) float array, K length^(l+1); real and imaginary parts of the multipoles
+    made : (2, receivers, entries) float array, K length^-l; out: coefficients of R_l'^m'
+    low, high : int; rows of `made` to work out
     """
     spheres, width = sent.shape[1], 2 * order
     full = np.zeros((2, width + 1, 2 * width + 1))

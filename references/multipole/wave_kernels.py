@@ -17,16 +17,11 @@ def convolve(degree, sums, sent, made, low, high):
     Made of l'm' is the conjugate of (-1)^l' times the sum over l = 1, ..., degree and all m of I_(l+l')^(m+m') times
     the multipole lm, all by the kernels' harmonics (see `translation_kernels`).
 
-    Parameters
-    ----------
-    degree : int
-        Highest degree sent and made.
-    sums : (2, waves, entries of 2 degree) float array, length^-(L+1)
-        Real and imaginary parts of I.
-    sent : (waves, FIELDS, 2 entries) float array, K length^(l+1)
-        Real parts of all multipoles, then imaginary ones; those of m = 0, and degree 0, do not matter.
-    made : (waves, FIELDS, 2 entries) float array, K length^-l
-        Out.
+    degree : int; highest degree sent and made
+    sums : (2, waves, entries of 2 degree) float array, length^-(L+1); real and imaginary parts of I
+    sent : (waves, FIELDS, 2 entries) float array, K length^(l+1); real parts of all multipoles, then imaginary ones;
+      those of m = 0, and degree 0, do not matter
+    made : (waves, FIELDS, 2 entries) float array, K length^-l; out
     low, high : int
     """
     width, middle = (degree + 1) * (degree + 2) // 2, 2 * degree

@@ -28,24 +28,14 @@ class Found(NamedTuple):
 def gather(below, periodic, jump, found, state, most):
     """Go on with the search for bodies, through at most so many voxels.
 
-    Parameters
-    ----------
-    below : tuple of three (nx, ny, nz) bool arrays
-        For each axis whether heat passes the face between a voxel and the one before it, around the box.
-    periodic : bool
-        Whether faces of the box count.
-    jump : (3,) float array, K
-        Rise of the mean temperature over the box along each axis.
-    found : Found
-        In and out.
-    state : (4,) int64 array
-        Zeros at first: voxels done, in the queue, looked at as first ones; bodies. In and out.
+    below : tuple of three (nx, ny, nz) bool arrays; for each axis whether heat passes the face between a voxel and the
+      one before it, around the box
+    periodic : bool; whether faces of the box count
+    jump : (3,) float array, K; rise of the mean temperature over the box along each axis
+    found : Found; in and out
+    state : (4,) int64 array; zeros at first: voxels done, in the queue, looked at as first ones; bodies. In and out
     most : int
-
-    Returns
-    -------
-    bool
-        Whether anything is left to do.
+    Returns bool: whether anything is left to do
     """
     shape = np.array(found.label.shape)
     label, shift, climbs, queue = found.label.reshape(-1), found.shift, found.climbs, found.queue

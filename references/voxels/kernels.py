@@ -23,15 +23,9 @@ TIE = 1e-9
 def count(phase, phases):
     """How often each phase number occurs; without the copy to 64 bits that bincount makes.
 
-    Parameters
-    ----------
     phase : (n,) int array
-    phases : int
-        Numbers that there are.
-
-    Returns
-    -------
-    (phases,) int array
+    phases : int; numbers that there are
+    Returns (phases,) int array
     """
     result = np.zeros(phases, np.int64)
     for i in range(len(phase)):
@@ -51,20 +45,13 @@ def _shell(radius, spacing):
 def paint_sphere(grid, phase, center, radius, spacing, low, high):
     """Give every voxel whose centre lies in the sphere this phase; count the voxels that the surface may cut.
 
-    Parameters
-    ----------
-    grid : (nx, ny, nz) int array
-        Changed in place.
+    grid : (nx, ny, nz) int array; changed in place
     phase : int
     center : (3,) float array, m
     radius : float, m
     spacing : (3,) float array, m
-    low, high : (3,) int array
-        Voxels to look at, low <= index < high.
-
-    Returns
-    -------
-    count : int
+    low, high : (3,) int array; voxels to look at, low <= index < high
+    Returns count : int
     """
     inner, outer = _shell(radius, spacing)
     count = 0
@@ -87,17 +74,10 @@ def paint_sphere(grid, phase, center, radius, spacing, low, high):
 def paint_spheres(grid, windows, spacing):
     """`paint_sphere` for one window after the other.
 
-    Parameters
-    ----------
-    grid : (nx, ny, nz) int array
-        Changed in place.
+    grid : (nx, ny, nz) int array; changed in place
     windows : Windows
     spacing : (3,) float array, m
-
-    Returns
-    -------
-    count : int
-        Of the voxels that the surfaces may cut.
+    Returns count : int; of the voxels that the surfaces may cut
     """
     count = 0
     for n in range(len(windows.radius)):
@@ -110,19 +90,11 @@ def paint_spheres(grid, windows, spacing):
 def cut_spheres(shape, windows, spacing, cuts):
     """`cut_sphere` for one window after the other.
 
-    Parameters
-    ----------
-    shape : (3,) int array
-        Voxels of the whole grid, for the flat index.
+    shape : (3,) int array; voxels of the whole grid, for the flat index
     windows : Windows
     spacing : (3,) float array, m
-    cuts : Cuts
-        Out: as many rows as `paint_spheres` counts, and one of `moment` more.
-
-    Returns
-    -------
-    found : int
-        Rows filled.
+    cuts : Cuts; out: as many rows as `paint_spheres` counts, and one of `moment` more
+    Returns found : int; rows filled
     """
     found = 0
     for n in range(len(windows.radius)):
@@ -138,26 +110,16 @@ def cut_spheres(shape, windows, spacing, cuts):
 def cut_sphere(shape, center, radius, spacing, low, high, index, fraction, moment):
     """Voxels that the surface of a sphere cuts: their fraction inside and the second moment of the surface normal.
 
-    Parameters
-    ----------
-    shape : (3,) int array
-        Voxels of the whole grid, for the flat index.
+    shape : (3,) int array; voxels of the whole grid, for the flat index
     center : (3,) float array, m
     radius : float, m
     spacing : (3,) float array, m
-    low, high : (3,) int array
-        Voxels to look at, low <= index < high.
-    index : (count,) int array
-        Out: flat index of each cut voxel.
-    fraction : (count,) float array
-        Out: part of the voxel inside the sphere.
-    moment : (count, 6) float array, m2
-        Out: integral of n n over the surface inside the voxel, order xx, yy, zz, yz, xz, xy.
-
-    Returns
-    -------
-    found : int
-        Rows filled; fewer than `count` of `paint_sphere`, which only bounds it.
+    low, high : (3,) int array; voxels to look at, low <= index < high
+    index : (count,) int array; out: flat index of each cut voxel
+    fraction : (count,) float array; out: part of the voxel inside the sphere
+    moment : (count, 6) float array, m2; out: integral of n n over the surface inside the voxel, order xx, yy, zz, yz,
+      xz, xy
+    Returns found : int; rows filled; fewer than `count` of `paint_sphere`, which only bounds it
     """
     inner, outer = _shell(radius, spacing)
     corner = np.empty(3)
@@ -257,10 +219,8 @@ def _add_normal(moment, a, b, c, x, y, z, weight):
 def cut_links(resistance, change, center, radius, spacing):
     """Add a sphere's change of resistivity to the links along the last axis, by the part of each inside the sphere.
 
-    Parameters
-    ----------
-    resistance : (na, nb, n + 1) float array, m K/W
-        Changed in place.  Link i reaches from (i - 1/2) to (i + 1/2) spacings, less what lies outside the box.
+    resistance : (na, nb, n + 1) float array, m K/W; changed in place.  Link i reaches from (i - 1/2) to (i + 1/2)
+      spacings, less what lies outside the box
     change : float, m K/W
     center : (3,) float array, m
     radius : float, m
@@ -291,10 +251,7 @@ def cut_links(resistance, change, center, radius, spacing):
 def cut_links_by_spheres(resistance, change, center, radius, spacing):
     """`cut_links` by one sphere after the other.
 
-    Parameters
-    ----------
-    resistance : (na, nb, n + 1) float array, m K/W
-        Changed in place.
+    resistance : (na, nb, n + 1) float array, m K/W; changed in place
     change : (s,) float array, m K/W
     center : (s, 3) float array, m
     radius : (s,) float array, m
@@ -315,15 +272,10 @@ def _reached(center, radius, spacing, count):
 def keep_off(resistance, phase, least, periodic):
     """Keep surfaces off the nodes: a link between two phases resists at least a little like the poorer one.
 
-    Parameters
-    ----------
-    resistance : (na, nb, n + 1) float array, m K/W
-        Changed in place; see `cut_links`.
+    resistance : (na, nb, n + 1) float array, m K/W; changed in place; see `cut_links`
     phase : (na, nb, n) int array
-    least : (phases,) float array, m K/W
-        Of a link between two phases where theirs differ, the larger one.
-    periodic : bool
-        The first and the last link are one and the same, between the last voxel and the first.
+    least : (phases,) float array, m K/W; of a link between two phases where theirs differ, the larger one
+    periodic : bool; the first and the last link are one and the same, between the last voxel and the first
     """
     na, nb, n = phase.shape
     for i in range(na):

@@ -26,14 +26,9 @@ class Ties(NamedTuple):
 def rates(links, inverse, heat, x, out):
     """Rate of change of each node: heat received over capacity.
 
-    Parameters
-    ----------
-    links : Links
-        Of N nodes, held ones included.
-    inverse : (N,) float array, K/J
-        1 / capacity, 0 for held nodes.
-    heat : (N,) float array, W
-        What sources and imposed fluxes give.
+    links : Links; of N nodes, held ones included
+    inverse : (N,) float array, K/J; 1 / capacity, 0 for held nodes
+    heat : (N,) float array, W; what sources and imposed fluxes give
     x : (N,) float array, K
     out : (N,) float array, K/s, out
     """
@@ -49,10 +44,7 @@ def rates(links, inverse, heat, x, out):
 def forward(links, inverse, heat, step, x, out):
     """One step of explicit Euler: x + step times the rate of change.
 
-    Parameters
-    ----------
-    links, inverse, heat, x
-        As in `rates`.
+    links, inverse, heat, x: as in `rates`
     step : float, s
     out : (N,) float array, K, out
     """
@@ -70,20 +62,12 @@ def stage(links, inverse, heat, weights, start, first, last, other):
 
     other becomes start + mu (last - start) + nu (other - start) + a rate(last) + b first.
 
-    Parameters
-    ----------
-    links, inverse, heat
-        As in `rates`.
-    weights : (mu, nu, a, b)
-        Four floats; a and b in seconds.
-    start : (N,) float array, K
-        At the start of the step.
-    first : (N,) float array, K/s
-        Rate of change there.
-    last : (N,) float array, K
-        The last stage.
-    other : (N,) float array, K, in and out
-        The stage before it, then the new one.
+    links, inverse, heat: as in `rates`
+    weights : (mu, nu, a, b); four floats; a and b in seconds
+    start : (N,) float array, K; at the start of the step
+    first : (N,) float array, K/s; rate of change there
+    last : (N,) float array, K; the last stage
+    other : (N,) float array, K, in and out; the stage before it, then the new one
     """
     indptr, indices, conductance = links
     mu, nu, a, b = weights
@@ -99,8 +83,6 @@ def stage(links, inverse, heat, weights, start, first, last, other):
 def received(ties, x, out):
     """Add the heat flow from held nodes into their neighbours to the account of each side.
 
-    Parameters
-    ----------
     ties : Ties
     x : (N,) float array, K
     out : (sides,) float array, W, in and out

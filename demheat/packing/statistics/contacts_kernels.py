@@ -36,11 +36,8 @@ class Contacts(NamedTuple):
 def unit_vectors(centers, box, indptr, indices, out):
     """Unit vectors along listed pairs, nearest image; NaN where two centres coincide.
 
-    Parameters
-    ----------
     centers : (n, 3) float array, m
-    box : (3,) float array, m
-        Period of each axis, 0 where it is walled.
+    box : (3,) float array, m; period of each axis, 0 where it is walled
     indptr : (n + 1,) int64 array
     indices : (nnz,) uint32 array
     out : (nnz, 3) float array, out
@@ -64,11 +61,8 @@ def unit_vectors(centers, box, indptr, indices, out):
 def held(contacts, half_space, before, now):
     """Which of the particles held `before` are held by the contacts with each other and with walls.
 
-    Parameters
-    ----------
     contacts : Contacts
-    half_space : bool
-        FEWEST contacts are enough if False; they must also lie in no closed half-space if True.
+    half_space : bool; FEWEST contacts are enough if False; they must also lie in no closed half-space if True
     before : (n,) bool array
     now : (n,) bool array, out
     """

@@ -41,17 +41,13 @@ def _neighbours(i, p, grid, reach, buffer):
 def pair_counts(points, grid, origins, is_origin, reach, counts):
     """Histogram of distances from the origins to all particles, by equal bins up to a reach.
 
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Wrapped centre and radius.
+    points : (n, 4) float array, m; wrapped centre and radius
     grid : Grid
     origins : (m,) int array
     is_origin : (n,) bool array
-    reach : Reach
-        Its scale or its skin is 0: the longest distance, or largest ratio of distance to sum of radii, counted.
-    counts : (TASKS, 2, bins) int array, out
-        Partners SINGLE and DOUBLE.
+    reach : Reach; its scale or its skin is 0: the longest distance, or largest ratio of distance to sum of radii,
+      counted
+    counts : (TASKS, 2, bins) int array, out; partners SINGLE and DOUBLE
     """
     bins = counts.shape[2]
     for task in prange(TASKS):
@@ -84,14 +80,10 @@ def _distance2(p, q, box):
 def line_correlations(points, grid, lines, sums):
     """Sums over lines of the exact two-point function of the union of spheres along each, and of its start slope.
 
-    Parameters
-    ----------
-    points : (n, 4) float array, m
-        Wrapped centre and radius.
+    points : (n, 4) float array, m; wrapped centre and radius
     grid : Grid
     lines : Lines
-    sums : (TASKS, 2, m + 1) float array, out
-        SUM and SQUARES of S2 at each lag; in the last column of the slope, 1/m.
+    sums : (TASKS, 2, m + 1) float array, out; SUM and SQUARES of S2 at each lag; in the last column of the slope, 1/m
     """
     lags, m = lines.lags, len(lines.lags)
     window, number = lags[-1], len(lines.starts)

@@ -27,16 +27,10 @@ WIDEST, MOST_CORNERS = 4.0, 96
 def turned_patterns(first, last, start, turns, balls, points, normals):
     """Fibonacci points on spheres, each pattern turned.
 
-    Parameters
-    ----------
-    first, last : int
-        Spheres.
-    start : (m + 1,) int array
-        Where the points of each sphere begin.
-    turns : (m, 3, 3) float array
-        Rotation matrices.
-    balls : (m, 4) float array, m
-        Centres and radii.
+    first, last : int; spheres
+    start : (m + 1,) int array; where the points of each sphere begin
+    turns : (m, 3, 3) float array; rotation matrices
+    balls : (m, 4) float array, m; centres and radii
     points, normals : (start[m], 3) float arrays, m and outward unit vectors, out
     """
     golden = math.pi * (1.0 + math.sqrt(5.0))
@@ -76,26 +70,15 @@ def _image(d, side, per_side):
 def nearest_gaps(first, last, points, own, kin, balls, bins, reach, gaps):
     """Distance of points to the nearest spherical surface but their own, nearest image; infinite beyond a reach.
 
-    Parameters
-    ----------
-    first, last : int
-        Points.
+    first, last : int; points
     points : (n, 3) float array, m
-    own : (n,) int array
-        The kin of spheres that each point belongs to, which do not count; any other number for none.
-    kin : (m,) int array
-        Of each sphere.
-    balls : (m, 4) float array, m
-        Centres and radii.
-    bins : BallBins
-        Of the balls made larger by the reach.
+    own : (n,) int array; the kin of spheres that each point belongs to, which do not count; any other number for none
+    kin : (m,) int array; of each sphere
+    balls : (m, 4) float array, m; centres and radii
+    bins : BallBins; of the balls made larger by the reach
     reach : float, m
     gaps : (n,) float array, m, out
-
-    Returns
-    -------
-    int
-        Number of distances taken.
+    Returns int: number of distances taken
     """
     x, y, z = bins.size
     ix, iy, iz = (1.0 / x, 1.0 / y, 1.0 / z) if bins.periodic else (0.0, 0.0, 0.0)
@@ -124,11 +107,8 @@ def nearest_gaps(first, last, points, own, kin, balls, bins, reach, gaps):
 def ascending(values, start, order):
     """Stable order of numbers that are spread out: first into as many parts of their range, then by insertion.
 
-    Parameters
-    ----------
     values : (n,) float array
-    start : (n + 1,) int64 array
-        Scratch memory, 0 at first.
+    start : (n + 1,) int64 array; scratch memory, 0 at first
     order : (n,) int64 array, out
     """
     n, low, high = len(values), np.inf, -np.inf
@@ -155,23 +135,16 @@ def ascending(values, start, order):
 def thin(points, least, order, way_up, place, along, taken, there, below, free, chosen):
     """Choose points of a surface that keep their distance from each other and from those taken, closest-set first.
 
-    Parameters
-    ----------
     points : (n, 3) float array, m
-    least : (n,) float array, m
-        What each point keeps from the points chosen after it, and from those taken.
-    order : (n,) int64 array
-        Of `least`, ascending.
-    way_up, place, along : (n,) int64 and float arrays
-        Points in their order along an axis, the place of each in it, and coordinates along it, in that order.
-    taken : (t, 3) float array, m
-        Points that are there already.
-    there, below : (t,) float and int64 arrays
-        Their coordinates along the axis, and the first place that may be near to each.
-    free : (n,) bool array
-        Scratch memory, True at first.
-    chosen : (n,) bool array, out
-        False at first.
+    least : (n,) float array, m; what each point keeps from the points chosen after it, and from those taken
+    order : (n,) int64 array; of `least`, ascending
+    way_up, place, along : (n,) int64 and float arrays; points in their order along an axis, the place of each in it,
+      and coordinates along it, in that order
+    taken : (t, 3) float array, m; points that are there already
+    there, below : (t,) float and int64 arrays; their coordinates along the axis, and the first place that may be near
+      to each
+    free : (n,) bool array; scratch memory, True at first
+    chosen : (n,) bool array, out; false at first
     """
     n, widest = len(points), least[order[len(points) - 1]]
     for t in range(len(taken)):
@@ -289,18 +262,12 @@ def _facet(i, begin, end, normals, corners, other, found, cosines):
 def facet_areas(first, last, start, own, normals, areas):
     """Areas of the facets of the polyhedra {x : n.x <= 1 for all n}, one for each set of normals.
 
-    Parameters
-    ----------
-    first, last : int
-        Normals.
-    start : (m + 1,) int array
-        Where the normals of each polyhedron begin.
-    own : (k,) int array
-        The polyhedron of each normal, ascending.
-    normals : (k, 3) float array
-        Unit vectors, by ascending z within each polyhedron.
-    areas : (k,) float array, out
-        NaN where a facet has no end, or so many corners or so far away (4 or more) that it is as good as without.
+    first, last : int; normals
+    start : (m + 1,) int array; where the normals of each polyhedron begin
+    own : (k,) int array; the polyhedron of each normal, ascending
+    normals : (k, 3) float array; unit vectors, by ascending z within each polyhedron
+    areas : (k,) float array, out; NaN where a facet has no end, or so many corners or so far away (4 or more) that it
+      is as good as without
     """
     corners, other = np.empty((MOST_CORNERS, 2)), np.empty((MOST_CORNERS, 2))
     found, cosines = np.empty(AHEAD, np.int64), np.empty(AHEAD)

@@ -28,20 +28,12 @@ class Cells(NamedTuple):
 def conduct(theta, work, cells, load, energy, low, high):
     """Half the slope of the energy of a temperature.
 
-    Parameters
-    ----------
-    theta : (nx, ny, nz) float array, K
-        At the lower corner of each voxel, less the linear part.
-    work : (nx, ny, nz) float array
-        Out.
-    cells : Cells
-        Of conductivities.
-    load : (2, 3) float array
-        1 / spacing, and the gradient of the linear part.
-    energy : (nx,) float array
-        Out: the energy of each plane of voxels, times their number.
-    low, high : int
-        Planes of `work` to fill.
+    theta : (nx, ny, nz) float array, K; at the lower corner of each voxel, less the linear part
+    work : (nx, ny, nz) float array; out
+    cells : Cells; of conductivities
+    load : (2, 3) float array; 1 / spacing, and the gradient of the linear part
+    energy : (nx,) float array; out: the energy of each plane of voxels, times their number
+    low, high : int; planes of `work` to fill
     """
     nx, ny, nz = theta.shape
     inverse, gradient = load[0], load[1]
@@ -129,16 +121,10 @@ def _varied(slope, table, flux):
 def resist(flux, work, cells, low, high):
     """Half the slope of the energy of a flux.
 
-    Parameters
-    ----------
-    flux : (3, nx, ny, nz) float array
-        Normal flux through the lower face of each voxel across each axis.
-    work : (3, nx, ny, nz) float array
-        Out.
-    cells : Cells
-        Of resistivities.
-    low, high : int
-        Planes of `work` to fill.
+    flux : (3, nx, ny, nz) float array; normal flux through the lower face of each voxel across each axis
+    work : (3, nx, ny, nz) float array; out
+    cells : Cells; of resistivities
+    low, high : int; planes of `work` to fill
     """
     _, nx, ny, nz = flux.shape
     for i in range(low, high):
@@ -187,10 +173,7 @@ class Modes(NamedTuple):
 def balance(rows, first, count, modes, scale):
     """Of each mode the balanced flux for which the energy of a unit resistivity has the given slope, but for gradients.
 
-    Parameters
-    ----------
-    rows, first, count : see `references.fft.sweeps.Transform.columns`
-        Three components, changed in place.
+    rows, first, count : see `references.fft.sweeps.Transform.columns`; three components, changed in place
     modes : Modes
     scale : float
     """
