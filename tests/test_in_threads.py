@@ -41,7 +41,11 @@ def run(words, tmp_path, *, threads=2, layer=None):
     assert (done.returncode, done.stderr) == (0, "")
 
 
-@pytest.mark.parametrize("jobs, threads", [(ENGINE + PACKINGS, 2), (FEW, 1), (WITNESSES, 2)])
+# Some CPU-seconds each; what the engine shares between threads the first one sees.
+SLOW = [pytest.param(jobs, threads, marks=pytest.mark.slow) for jobs, threads in ((FEW, 1), (WITNESSES, 2))]
+
+
+@pytest.mark.parametrize("jobs, threads", [(ENGINE + PACKINGS, 2), *SLOW])
 def test_bits_are_those_of_one_thread(jobs, threads, tmp_path):
     run([str(TESTS / "in_threads.py"), *jobs], tmp_path, threads=threads)
 

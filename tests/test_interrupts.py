@@ -69,8 +69,8 @@ march(1e3)
 }
 
 
-# Two CPU-seconds each; these two loops stop as that of halos does: `make test-slow`.
-SLOW = ("radial distribution", "two-point probability")
+# Two CPU-seconds each; these loops stop as that of halos does: `make test-slow`.
+SLOW = ("radial distribution", "two-point probability", "neighbours")
 
 
 @pytest.mark.parametrize(

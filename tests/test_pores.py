@@ -171,17 +171,6 @@ def test_an_island_beside_what_conducts(name, load):
     assert field.conductivity > 0.2
 
 
-@pytest.mark.parametrize(
-    "scheme, rule",
-    [("cg", r) for r in ("auto", "plain", "laminate", "links")]
-    + [("eyre-milton", "plain"), ("eyre-milton", "laminate")],
-)
-@pytest.mark.parametrize("case", BLOCKED)
-def test_all_rules_of_voxels(scheme, rule, case):
-    field = fft.solve(BLOCKED[case], voxels=10, scheme=scheme, rule=rule, threads=1)
-    assert field.conductivity == 0.0 and not field.samples.flux.any()
-
-
 def test_poor_conductors_are_no_pores():
     """What conducts little is solved, beside a pore as well."""
     layer, ball = Layer(1, 0.31, 0.55, Material(1e-5)), Sphere((0.5, 0.8, 0.5), 0.1, PORE)
