@@ -11,8 +11,7 @@ rank: one body on one rank and on two, and as many particles for each rank.
 
 from studies.harness import methods
 from studies.harness.pick import largest, pick, present
-from studies.scaling.means import errors, fitted
-from studies.scaling.model import left_out, rows_of
+from studies.scaling.means import errors, fitted, on_ranks
 
 NUMBERS = (100, 1000, 3000)
 PER_INCLUSION = 50  # particles
@@ -211,7 +210,7 @@ def _engine(df):
 
 
 def _ranked(df):
-    """Two ranks beside one: the same answer, seconds that halve or stay, and how well the model knows a row."""
+    """Two ranks beside one: the same answer, and seconds that halve or stay."""
     ok = df[df["status"] == "ok"]
     for particles in STRONG:
         one, two = (pick(ok, part="strong", particles=particles, ranks=ranks) for ranks in RANKS)
@@ -220,7 +219,7 @@ def _ranked(df):
             yield f"MPI, {particles} particles: conductivity of two ranks against one, relative", abs(apart), 1e-8
             more = two["iterations"].iloc[0] / one["iterations"].iloc[0]
             yield f"MPI, {particles} particles: iterations of two ranks over those of one", more, 1.2
-    full = rows_of(df)
+    full = on_ranks(df)
     for part, particles, share in (("strong", STRONG[1:], 0.5), ("weak", WEAK, 1.0)):
         for each in particles:
             one = pick(full, part=part, particles=each, ranks=1)
@@ -230,9 +229,6 @@ def _ranked(df):
                 yield f"MPI, {part}, {each} particles{' a rank' * (part == 'weak')}: efficiency, CPU", gained, ">= 0.7"
     if len(full):
         yield "MPI: peak memory per unknown, bytes", (full["peak_mib"] * 2**20 / full["unknowns"]).max(), 900.0
-    off = left_out(full)
-    if off:
-        yield "MPI: the model's error on the CPU time of a row left out, %", max(map(abs, off)), 25.0
 
 
 def table(df):
@@ -244,10 +240,7 @@ def table(df):
     bandwidth of the product of the network's matrix with a vector over that of the triad, a = b + s c on arrays too
     large for caches, right after it with as many threads. Exponents are fitted to rows of 100 inclusions or 50 000
     unknowns and more, each with its standard error. The last lines say what 1e9 unknowns would take if the fits went
-    on, and what more cores would make of it by a model: work, messages and sums fitted to `strong` and `weak`
-    (`studies/scaling/model.py`), on a network that is assumed, of 2 microseconds and, for each node of 64 cores,
-    25 GB/s, which was not measured. `demheat.mpi` cuts slabs; bricks are the model's only, and so are more unknowns
-    than 32 bits number. Figures from the literature are other people's, for other equations and machines.
+    on.
     """
     from studies.scaling.tables import lines
 
@@ -265,7 +258,7 @@ def notes(df):
 
 
 def plot(df):
-    """Costs of methods and stages as lines of slope one and others; two threads; two ranks, and many by the model."""
+    """Costs of methods and stages as lines of slope one and others; two threads; two ranks."""
     from studies.scaling.figure import draw
 
     return draw(df[df["status"] == "ok"])

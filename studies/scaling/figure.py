@@ -6,21 +6,20 @@ import numpy as np
 
 from studies.harness.figures import BLACK, BLUE, GREEN, GREY, LOOK, ORANGE, PINK, RED, SKY, look
 from studies.harness.pick import pick
-from studies.scaling import model
-from studies.scaling.means import STAGES, fitted, of_stages
+from studies.scaling.means import STAGES, fitted, of_stages, on_ranks
 
 COLOUR = dict(zip(STAGES, (GREY, ORANGE, BLUE, PINK, GREEN, RED, SKY, BLACK), strict=True))
 
 
 def draw(df):
-    """Four panels, and two more of rows on ranks where there are some."""
+    """Four panels, and one more of rows on ranks where there are some."""
     from matplotlib import pyplot
 
-    ranked = model.rows_of(df)
+    ranked = on_ranks(df)
     figure, axes = pyplot.subplots(3 if len(ranked) else 2, 2, figsize=(13, 15 if len(ranked) else 10))
     if len(ranked):
         _ranked(axes[2, 0], ranked)
-        _many(axes[2, 1], model.plans(ranked))
+        axes[2, 1].set_axis_off()
     _inclusions(axes[0, 0], df)
     _stages(axes[0, 1], pick(df, part="inclusions", name="dem"), "number", "inclusions, 50 particles each")
     _stages(axes[1, 0], pick(df, part="elements", name="dem"), "unknowns", "unknowns, 83 spheres")
@@ -84,21 +83,3 @@ def _ranked(ax, rows):
     ax.set(xlabel="wall time, s", title="demheat.mpi: unknowns on one rank and on two")
     ax.legend(ncols=4, loc="upper left", bbox_to_anchor=(-0.2, -0.12))
     ax.invert_yaxis()
-
-
-def _many(ax, plans):
-    """What many cores would take, if bricks were built."""
-    if not plans:
-        ax.set_axis_off()
-        return
-    bricks = [plan for plan in plans if plan["shape"] == "bricks"]
-    for unknowns, style in zip(model.SIZES, ("-", "--"), strict=True):
-        here = [plan for plan in bricks if plan["unknowns"] == unknowns]
-        cores = [plan["cores"] for plan in here]
-        for what, colour in (("all", BLACK), ("cells", BLUE), ("iterate", RED), ("twins", ORANGE)):
-            label = f"{unknowns:.0e}: {what}"
-            ax.plot(cores, [plan[what] for plan in here], style, marker="o", markersize=4, color=colour, label=label)
-        ax.axvline(model.most_slabs(unknowns), color=GREY, linestyle=":")
-    ax.set(xscale="log", yscale="log", xlabel="cores", ylabel="wall time, s")
-    ax.set_title("By the model, network assumed (dotted: most slabs)")
-    ax.legend(ncols=2)

@@ -15,6 +15,7 @@ STAGES = ("packing", "twins", "cells", "phases", "network", "equations", "field"
 LEAST = 0.02
 # Rows of so many inclusions or elements and more are fitted: below, what does not grow weighs.
 FROM = {"number": 100, "unknowns": 50_000}
+MANY = 400_000
 BILLION = 1e9
 
 
@@ -104,3 +105,10 @@ def billion(df):
                 | {"exponent": float(power["exponent"].iloc[0])}
             )
     return lines
+
+
+def on_ranks(df):
+    """Rows on one rank and on two, of so many unknowns that what does not grow weighs little."""
+    if "ranks" not in df:
+        return df[:0]
+    return df[df["part"].isin(("strong", "weak")) & (df["status"] == "ok") & (df["unknowns"] >= MANY)]

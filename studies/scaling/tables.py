@@ -7,9 +7,7 @@ import math
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
-from studies.scaling import model
 from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
-from studies.scaling.published import PUBLISHED
 from studies.scaling.rows import REPLICA
 
 # Characters of a note on the page; the rows' file has them all.
@@ -22,7 +20,7 @@ def lines(df):
 
     df = df.reindex(columns=[*dict.fromkeys([*df.columns, *COLUMNS])])
     solved = errors(df[df["part"].isin(("inclusions", "kinds", "goal", "elements"))])
-    made = [_line(row) for _, row in solved.iterrows()] + [*_before(df), *_ranked(df), *_fits(df), *_many(df)]
+    made = [_line(row) for _, row in solved.iterrows()] + [*_before(df), *_ranked(df), *_fits(df)]
     return pd.DataFrame(made)
 
 
@@ -88,36 +86,6 @@ def _ranked(df):
         sent = f"{row['messages']:.0f} messages, {row['message_bytes'] / 1e6:.3g} MB and {row['reductions']:.0f} sums"
         iterations = f"{row['iterations']:.0f} iterations in {row['iterate_wall_s']:.2g} s"
         yield line | {"note": f"{iterations}; each rank {sent}; triad {row['triad_rank_gbs']:.2g} GB/s"}
-
-
-def _many(df):
-    """What many cores would take by the model, and what others have published."""
-    rows = model.rows_of(df)
-    plans, off = model.plans(rows), model.left_out(rows)
-    if plans:
-        fit = model.fitted(rows)
-        text = f"iterations at {fit.share:.2f} of the triad's {fit.triad / 1e9:.2g} GB/s; each {fit.messages:.0f} "
-        text += f"messages to a neighbour, {fit.sums:.0f} sums; {fit.held:.0f} bytes for a particle seen"
-        yield {"what": "model, fitted", "method": LOOK["dem"][0], "of": f"{len(rows)} rows", "note": text}
-    if off:
-        text = f"all seconds {min(off):+.0f} to {max(off):+.0f} %"
-        yield {"what": "model, a row left out", "method": LOOK["dem"][0], "of": f"{len(off)} rows", "note": text}
-    yield from map(_planned, plans)
-    for each in PUBLISHED if len(rows) else ():
-        line = {"what": "literature", "method": each.source, "of": each.what}
-        yield line | {"unknowns": each.unknowns, "threads": each.cores, "note": "others' equations and machines"}
-
-
-def _planned(plan):
-    built = plan["shape"] == "slabs" and plan["unknowns"] < model.COUNTED
-    line = {"what": f"model, {plan['shape']}" + ("" if built else ", not built"), "method": LOOK["dem"][0]}
-    line |= {"of": f"{plan['cores']} cores", "unknowns": plan["unknowns"], "threads": plan["cores"]}
-    stages = ("twins", "cells", "setup", "iterate", "field")
-    text = "GiB a core; seconds of stages: " + ", ".join(f"{name} {plan[name]:.2g}" for name in stages)
-    text += f"; of {plan['iterations']:.0f} iterations messages {plan['messages']:.2g}, sums {plan['sums']:.2g}"
-    if plan["unknowns"] >= model.COUNTED:
-        text += "; needs PETSc with 64-bit numbers"
-    return line | {"wall, s": plan["all"], "GiB": plan["gib"], "note": text}
 
 
 def _fits(df):

@@ -24,8 +24,6 @@ EXCEPTIONS = {
     ("peers/programs/openfoam.py", "solve"): "heat in and heat out",
     ("peers/python_elements.py", "solved"): "two outputs of one program",
     ("scaling/__init__.py", "_ranked"): "one body on one rank and on two",
-    ("scaling/model.py", "inner"): "share of a block's faces",
-    ("scaling/model.py", "left_out"): "seconds of a model over those of a row",
     ("sphere_benchmark/rows.py", "_at_points"): "flux at points of a file, over the mean one",
 }
 
