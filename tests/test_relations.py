@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 from changed_scenes import RELATIONS
-from drawn_scenes import COUNT, KINDS, drawn, kind
+from drawn_scenes import COUNT, drawn
 from method_scenes import METHODS
-from relations import applies, first, image_of, limit, second, spread
+from relations import applies, first, limit, second, spread
 
-from demheat import Sphere
 from demheat.method import PARTICLES, VOXELS
 
 # What is kept when a scene is moved or turned is asked on coarse grids, whatever they miss.
@@ -57,50 +56,3 @@ def test_relations(name):
     first.cache_clear()
     second.cache_clear()
     assert {"units", "load", "rotation"} <= set(asked) and wrong == []
-
-
-def test_scenes_are_drawn_by_seed_alone():
-    before = [drawn(seed) for seed in range(COUNT)]
-    drawn.cache_clear()
-    assert [drawn(seed) for seed in range(COUNT)] == before
-    assert len({repr(scene) for scene in before}) == COUNT
-    assert {(kind(seed), scene.periodic) for seed, scene in enumerate(before)} == {
-        (k, p) for k in KINDS for p in (0, 1)
-    }
-    contrasts = [m.conductivity / scene.matrix.conductivity for scene in before for m in scene.materials[1:]]
-    assert min(contrasts) < 0.02 and max(contrasts) > 50
-
-
-@pytest.mark.parametrize("relation", RELATIONS)
-def test_images_are_what_they_say(relation):
-    """A point lies in the same material, known by its conductivity, before and after."""
-    told = 0
-    for seed in range(COUNT):
-        scene, image = drawn(seed), image_of(relation, seed)
-        if image is None:
-            continue
-        points = np.random.default_rng(seed).random((200, 3)) * scene.size
-        before, after = scene.phase_at(points), image.scene.phase_at(image.points(points) % image.scene.size)
-        k = scene.conductivities[before] * image.conductivity
-        np.testing.assert_allclose(image.scene.conductivities[after], k, rtol=1e-12)
-        told += image.scene != scene
-        assert _share(image.scene) == pytest.approx(_share(scene), rel=1e-12)
-    assert told >= 15 or relation == "time"
-
-
-def _share(scene):
-    """Volume of all spheres over that of the box."""
-    return sum(each.volume for each in scene.inclusions if isinstance(each, Sphere)) / scene.volume
-
-
-def test_every_scene_has_its_turn():
-    names = [name for name, method in METHODS.items() if method.resolution is not None]
-    assert len({seed for name in names for seed in hand(name).values()}) > COUNT / 2
-
-
-def test_heat_settles_as_fast_in_other_units():
-    """Conductivity over capacity goes with the square of lengths; without that bricks were compared half-way."""
-    for seed in range(COUNT):
-        image = image_of("units", seed)
-        metre = image.scene.size[0] / drawn(seed).size[0]
-        assert image.capacity == pytest.approx(image.conductivity / metre**2, rel=1e-12)  # rounding

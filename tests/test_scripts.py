@@ -96,7 +96,7 @@ def test_settled_bed(run, tmp_path):
 
 def test_every_script_is_run_here_short_and_on_the_page():
     text = Path(__file__).read_text(encoding="utf-8")
-    assert len(SCRIPTS) == 7
+    assert len(SCRIPTS) == 7 and len(NOTEBOOKS) == 2
     for path in SCRIPTS:
         assert f'run("{path.name}")' in text and path.name in PAGE
         lines = path.read_text(encoding="utf-8").splitlines()
@@ -136,7 +136,3 @@ def test_a_notebook_is_committed_without_outputs(path):
         if cell["cell_type"] == "code":
             assert cell["outputs"] == [] and cell["execution_count"] is None
             assert not re.search(r"^[%!]", "".join(cell["source"]), re.MULTILINE)
-
-
-def test_there_are_two_notebooks():
-    assert len(NOTEBOOKS) == 2

@@ -51,8 +51,3 @@ def test_every_block_runs_and_prints_what_is_said(tmp_path, monkeypatch, capsys)
 def test_what_is_not_said_is_seen(printed, said):
     with pytest.raises(AssertionError):
         check_alike(printed, said)
-
-
-def test_numbers_may_be_a_little_off_and_lines_left_out():
-    check_alike("42.60 W\nmore\n", "42.61 W\n...")
-    check_alike("cost 3.2 s, 1 CPU-s\n", "cost ...\n")

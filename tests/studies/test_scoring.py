@@ -123,17 +123,3 @@ def test_what_is_excused_is_there():
 def test_an_error_is_seen(source):
     assert own_errors(source)
     assert own_errors(f"def f():\n    {source}", {"f"}) == []
-
-
-@pytest.mark.parametrize(
-    "source",
-    [
-        "x = referee.value_error(a, b)",
-        "x = last[:-1]; y = n - 1; z = (fine / coarse) ** (2 / 3) - 1",
-        "x = np.sqrt(scatter.var() + other.var())",
-        "x = 100 * (warm - LOW) / SPAN",
-        "x = df['cpu_s'] / df['peer_cpu_s']",
-    ],
-)
-def test_what_is_no_error_is_left_alone(source):
-    assert own_errors(source) == []
