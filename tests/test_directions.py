@@ -14,6 +14,7 @@ from demheat.dem.networks import network_of
 from demheat.laws import Laguerre
 from demheat.scene.negligible import negligible
 from demheat.scene.symmetry import reduced
+from demheat.terminal.commands.bounds import bounds_of
 from references import bracket, exact, fem, fft, multipole, zeta
 
 TENSOR = orthotropic(1, 2, 4, rotation=(0.0, 0.5, 0.0))
