@@ -119,19 +119,14 @@ def test_nothing_conducts():
 
 
 @pytest.mark.parametrize(
-    ("change", "error", "says"),
+    ("walls", "says"),
     [
-        ({"walls": {"y-": 0.0, "y+": Flux(1.0)}}, ValueError, "held"),
-        ({"walls": {"y-": 0.0}}, ValueError, "two opposite"),
-        ({"walls": {"y-": 1.0, "y+": 1.0}}, ValueError, "differ"),
-        ({"tolerance": 0.0}, ValueError, "tolerance"),
-        ({"width": 0.0}, ValueError, "width"),
-        ({"width": "1"}, ValueError, "width"),
-        ({"size": -1.0}, ValueError, "size"),
+        ({"y-": 0.0, "y+": Flux(1.0)}, "held"),
+        ({"y-": 0.0}, "two opposite"),
+        ({"y-": 1.0, "y+": 1.0}, "differ"),
     ],
 )
-def test_refusals(change, error, says):
-    walls = {"walls": change.pop("walls", {"y-": 0.0, "y+": 1.0})}
-    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 0.3, Material(2.0))], **walls)
-    with pytest.raises(error, match=says):
-        bracket.solve(scene, **change)
+def test_refusals(walls, says):
+    scene = Scene((1.0, 1.0, 1.0), Material(1.0), [Sphere((0.5, 0.5, 0.5), 0.3, Material(2.0))], walls=walls)
+    with pytest.raises(ValueError, match=says):
+        bracket.solve(scene)
