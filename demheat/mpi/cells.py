@@ -32,22 +32,13 @@ DEFECT = 1e-9
 
 
 class Cells(NamedTuple):
-    """The network that a slab sees.
+    """The network that a slab sees."""
 
-    Attributes
-    ----------
-    network : Network
-        The slab's own particles first; after them those of its neighbours, at the images that it meets, of which
-        the outermost lack links.
-    own : int
-        Number of the first.
-    packing : dict
-        How the whole packing was made, with its twins.
-    """
-
+    # The slab's own particles first; after them those of its neighbours, at the images that it meets, of which the
+    # outermost lack links
     network: Network
-    own: int
-    packing: dict
+    own: int  # Number of the first
+    packing: dict  # How the whole packing was made, with its twins
 
 
 def part_of(scene: Scene, law: Laguerre, wanted: Particles, slabs: Slabs, comm) -> Packing:

@@ -20,19 +20,12 @@ from demheat.scene import Scene
 
 
 class Sums(NamedTuple):
-    """What adds up over slabs.
+    """What adds up over slabs."""
 
-    Attributes
-    ----------
-    flux : (3,) float array, W/m2
-        Mean flux density, the slab's part of it.
-    volumes : (phases,) float array, m3
-    walls : (loaded walls, 3) float array
-        Of each: area times temperature where that is known, m2 K; that area, m2; heat that enters, W.
-    """
-
-    flux: np.ndarray
-    volumes: np.ndarray
+    flux: np.ndarray  # (3,) float array, W/m2: Mean flux density, the slab's part of it
+    volumes: np.ndarray  # (phases,) float array, m3
+    # (loaded walls, 3) float array: Of each: area times temperature where that is known, m2 K; that area, m2; heat that
+    # enters, W
     walls: np.ndarray
 
 

@@ -23,26 +23,15 @@ NOBODY = -1
 
 
 class Slabs(NamedTuple):
-    """Slabs of equal thickness across the longest side of a box.
-
-    Attributes
-    ----------
-    axis : int
-    length : float, m
-        Of that side.
-    ranks, rank : int
-        How many slabs, and which is ours.
-    periodic : bool
-    unit : float, m
-        Radius that equal spheres would have.
-    """
+    """Slabs of equal thickness across the longest side of a box."""
 
     axis: int
-    length: float
+    length: float  # m: Of that side
+    # ranks, rank: How many slabs, and which is ours
     ranks: int
     rank: int
     periodic: bool
-    unit: float
+    unit: float  # m: Radius that equal spheres would have
 
     @property
     def ends(self) -> tuple[float, float]:
