@@ -158,30 +158,3 @@ def words(df):
         f"with {particles:.0f} particles it is {dem:.2g} % off the conductivity of an image of {n}^3 voxels; "
         f"{methods.all_methods()[nearest].title}, on these voxels is {others[nearest]:.2g} % off"
     )
-
-
-def plot(df):
-    """Errors against the voxel: of the image, and of methods on it."""
-    from matplotlib import pyplot
-
-    from studies.harness.figures import GREY, look
-
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.8), sharex=True)
-    own = _own(df)
-    left.plot(list(own), np.abs(list(own.values())), color=GREY, linewidth=5, alpha=0.6, label="the image itself")
-    most = df["particles"].max()
-    for name in (*ON_VOXELS, "dem-plain"):
-        rows = pick(df, name=name, parts=1).sort_values("n")
-        rows = rows[rows["particles"] == most] if name == "dem-plain" else rows
-        left.plot(rows["n"], rows["error_percent"].abs(), **look(name))
-        known = rows[rows["n"].isin(list(own))]
-        added = [abs(e - own[n]) for n, e in zip(known["n"], known["error_percent"], strict=True)]
-        right.plot(known["n"], added, **look(name))
-    for axes, title in ((left, "from the exact value of the spheres"), (right, "from the image's own value")):
-        axes.set(xscale="log", yscale="log", xlabel="voxels along an edge", title=title)
-        axes.set_xticks(VOXELS, [str(n) for n in VOXELS])
-        axes.set_xticks([], minor=True)
-    left.set_ylabel("|difference of the conductivity|, %")
-    figure.suptitle(f"From 16 voxels an edge on the stairs are the larger error (DEM: {most:g} particles)")
-    figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=3)
-    return figure

@@ -140,25 +140,3 @@ def table(df):
     """Errors in %, of the temperature over the span; `from_linear` is the relative distance from the linear scene."""
     columns = ["body", "factor", "name", "particles", "edge", "conductivity", "error_percent", "rms_percent"]
     return df[[*columns, "from_linear", "rounds", "iterations", "unknowns"]]
-
-
-def plot(df):
-    """Errors of the temperature against unknowns, body by body."""
-    from matplotlib import pyplot
-
-    from studies.harness.figures import look
-
-    figure, panels = pyplot.subplots(1, 2, figsize=(11, 4.6), sharey=True)
-    for axes, body in zip(panels, BODIES, strict=True):
-        for (name, factor), rows in pick(df, body=body).groupby(["name", "factor"], sort=False):
-            rows, style = rows.sort_values("unknowns"), look(name)
-            style["label"] = f"{style['label']}, factor {factor:g}"
-            # Open marks for the weaker dependence.
-            style["markerfacecolor"] = "none" if factor == FACTORS[0] else style["color"]
-            axes.plot(rows["unknowns"], np.maximum(rows["rms_percent"], 1e-12), **style)
-        axes.set(xscale="log", yscale="log", xlabel="unknowns", title=body)
-    panels[0].set_ylabel("rms error of the temperature, % of the span")
-    exact = pick(df, body="layers", name="dem")["rms_percent"].max()
-    figure.suptitle(f"Particles: layers exact to {exact:.0e} %, the sphere as its linear problem, whatever the factor")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return figure

@@ -13,7 +13,6 @@ import numpy as np
 from demheat import Layer, Material, Sphere, gallery, referee
 from studies.harness import methods
 from studies.harness.cost import measured
-from studies.harness.figures import BLUE, GREEN, GREY, LOOK
 from studies.harness.pick import pick
 
 SILICA = {"matrix": gallery.EPOXY, "inclusion": gallery.SILICA}
@@ -212,40 +211,3 @@ def table(df):
     solved = df[df["method"] != "multipole"].sort_values("size", ascending=False)
     columns = ["scene", "method", "size", "closed", "cut", "loads", "left_out", "three_s", "once_s", "least_s"]
     return solved[[*columns, "once_error", "least_error"]]
-
-
-def plot(df):
-    """Processor seconds of the diagonal of the tensor over those of three solves, scene by scene."""
-    from matplotlib import pyplot
-
-    solved = df[df["method"] != "multipole"]
-    solved = pick(solved, size="full" if (solved["size"] == "full").any() else "coarse")
-    first = solved.drop_duplicates("scene").set_index("scene")
-    names = [name for name in SCENES if name in first.index]
-    height = 2.0 + 0.55 * len(names)
-    figure, axes = pyplot.subplots(1, len(FULL), figsize=(12, height), sharey=True, sharex=True)
-    bars = (("once_s", "one set-up for three loads", BLUE), ("least_s", "loads that are needed, on the part", GREEN))
-    for axis, method in zip(axes, FULL, strict=True):
-        rows = pick(solved, method=method).set_index("scene").reindex(names)
-        for number, (column, label, colour) in enumerate(bars):
-            share = rows[column] / rows["three_s"]
-            axis.barh(np.arange(len(names)) + 0.36 * number - 0.18, share, 0.34, color=colour, label=label)
-        for place, seconds in enumerate(rows["three_s"]):
-            axis.annotate(f" {seconds:.2g} s", (1.1, place), va="center", fontsize=8, color=GREY)
-        axis.axvline(1.0, color=GREY, linewidth=1)
-        axis.set_axisbelow(True)
-        axis.grid(axis="y", visible=False)
-        axis.set(xlabel="CPU time over that of three solves", xlim=(0, 1.3), title=LOOK[method][0])
-    axes[0].set(yticks=range(len(names)), yticklabels=[_said(name, first.loc[name]) for name in names])
-    axes[0].invert_yaxis()
-    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
-    return figure
-
-
-def _said(name, row):
-    """A scene and what it triggers."""
-    said = [f"1/{row['cut']:.0f} of it"] if row["cut"] > 1 else []
-    said += [f"{row['loads']:.0f} of 3 loads"] if row["loads"] < 3 else []
-    said += ["closed form"] if isinstance(row["closed"], str) and row["closed"] else []
-    said += [f"{row['left_out']:.0f} spheres do not matter"] if row["left_out"] else []
-    return f"{name}\n{', '.join(said)}" if said else name
