@@ -138,6 +138,7 @@ import warnings
 warnings.simplefilter("ignore")
 from studies.__main__ import study_names
 from studies.harness import runner, store, table
+from studies.harness.figures import look
 
 # Every cost that is measured begins with a search for garbage, which is spared here.
 name, folder = "stability", sys.argv[1]
@@ -153,9 +154,8 @@ for key, row in store.read_rows(path).items():
         print("row", row["status"], key, row["note"])
 claims, page = table.render(study, path)
 print(page)
-figure = study.plot(table.read_frame(study, path))
 print()
-print("legend", [text.get_text() for text in figure.legends[0].get_texts()])
+print("legend", look("toy"))
 print("studies", [each for each in study_names() if any(c.get("name") == "toy" for c in runner.load(each).CASES)])
 """
 

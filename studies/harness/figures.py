@@ -63,7 +63,7 @@ def of_claims(claims):
     from matplotlib import pyplot
 
     shown = [each for each in claims if np.isfinite(each.value)][::-1]
-    used = np.clip([1 / each.room for each in shown], 1 / FARTHEST, FARTHEST)
+    used = 1 / np.clip([each.room for each in shown], 1 / FARTHEST, FARTHEST)
     figure, axes = pyplot.subplots(figsize=(11, 1.2 + 0.2 * len(shown)))
     for verdict, colour in VERDICTS.items():
         here = [number for number, each in enumerate(shown) if each.verdict == verdict]
