@@ -45,6 +45,7 @@ NO_ROWS = {
     "demheat/terminal/ends.py": READ,
     "demheat/terminal/pictures.py": DRAWN,
     "references/mesh/export.py": DRAWN,
+    "demheat/scene/beats.py": REFUSED,
     "demheat/renamed.py": RENAMED,
     "demheat/streamed.py": RENAMED,
     "demheat/mpi": LARGE,

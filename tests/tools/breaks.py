@@ -40,7 +40,7 @@ PACKAGES = ("demheat", "references", "studies/harness")
 NEEDED = ("demheat", "references", "studies", "tests", "results", "docs", "benchmark", "examples", "*.md", "*.toml")
 NEEDED += ("Makefile", "CITATION.cff", "LICENSE")
 # What sees methods as wholes, for breaks that the tests of their folder let pass.
-WIDE = ("tests/test_methods.py", "tests/demheat/test_dem.py", "tests/demheat/test_laws.py", "tests/test_pores.py")
+WIDE = ("tests/test_methods.py", "tests/demheat/dem/test_dem.py", "tests/demheat/test_laws.py", "tests/test_pores.py")
 WIDE += ("tests/test_order.py", "tests/test_bad_inputs.py")
 COLUMNS = ("module", "line", "kind", "before", "after", "caught", "by", "note")
 # CPU-seconds of one test, compiling included, many times what the slowest needs; and seconds of a whole call, for what
