@@ -49,7 +49,7 @@ def solve(
     """
     law = Laguerre() if law is None else law
     wanted = Particles(particles=particles, seed=seed, replicas=replicas, allow_few=allow_few)
-    _check(scene, law, wanted, tolerance)
+    check(scene, law, wanted, tolerance)
     comm = world()
     slabs_of(scene, particles, comm.size, comm.rank)
     check_fits("particles", particles, BYTES * float(particles), comm)
@@ -62,7 +62,7 @@ def outlook(scene: Scene, *, particles: int = 1_000_000) -> str:
     return f"{particles} particles, {ranks.outlook(BYTES * float(particles), world())}"
 
 
-def _check(scene, law, wanted, tolerance):
+def check(scene: Scene, law: Laguerre, wanted: Particles, tolerance: float) -> None:
     """Raise unless a scene can be solved slab by slab."""
     check_scene(scene)
     check_solver("auto", tolerance)

@@ -1,4 +1,4 @@
-"""Only here: slabs of ranks whose rows are not the equations of the whole body."""
+"""Only here: slabs of ranks whose rows are not the equations of the whole body, or scenes that they cannot have."""
 
 import numpy as np
 import pytest
@@ -6,12 +6,13 @@ from ranks import on_ranks
 from scipy import sparse
 from scipy.sparse.linalg import spsolve
 
-from demheat import Laguerre, Material, Scene, Sphere, solve
+from demheat import Image, Laguerre, Layer, Material, Radiation, Scene, Sphere, solve
 from demheat.conduction.balance import system_of
 from demheat.dem.options import Particles
 from demheat.mpi.cells import cells_of, own_part, part_of
 from demheat.mpi.numbers import numbers_of
 from demheat.mpi.slabs import GHOSTS, NOBODY, slabs_of
+from demheat.mpi.solver import check
 
 LAW, A, B = Laguerre(), Material(10.0), Material(100.0)
 # A sphere across the first face, one across the face between two slabs.
@@ -109,3 +110,19 @@ def test_more_ranks_than_slabs_are_refused():
     slabs_of(CELL, 10_000, most, 0)
     with pytest.raises(ValueError, match=rf"ranks = {most + 1}: .* must be at most {most}"):
         slabs_of(CELL, 10_000, most + 1, 0)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        Scene((1.0, 1.0, 1.0), A, [Layer(0, 0.2, 0.4, Material(0.0))], walls={"x-": 0.0, "x+": 1.0}),
+        Scene((1.0, 1.0, 1.0), A, walls={"x-": 300.0, "x+": Radiation(0.5, 400.0)}),
+        Scene((1.0, 1.0, 1.0), A, domain="sphere", walls={"round": 300.0}),
+        Scene((1.0, 1.0, 1.0), Material(1.0, dependence=[(0.0, 1.0), (1.0, 2.0)]), walls={"x-": 0.0, "x+": 1.0}),
+        Scene.of_image(Image(np.arange(8).reshape(2, 2, 2) % 2, 0.5, {0: A, 1: B}), gradient=(1, 0, 0)),
+    ],
+)
+def test_other_scenes_are_refused(scene):
+    check(WALLS, LAW, Particles(particles=3000, seed=0), 1e-8)
+    with pytest.raises(NotImplementedError):
+        check(scene, LAW, Particles(particles=3000, seed=0), 1e-8)
