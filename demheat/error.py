@@ -13,7 +13,6 @@ import threading
 import warnings
 from collections.abc import Callable, Sequence
 from functools import partial
-from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -36,6 +35,11 @@ EDGES = 0.9
 # What else a method knows raises an interval by so much at most, where runs close in from one side: scenes of study
 # `intervals`, even seeds, ask for 1.08.
 RAISED = 1.15
+# What inclusions make of the conductivity goes with how much there is of them to some part: faces along the axes, even
+# seeds of that study, ask for 1.01.
+PLACED = 1.25
+# Coarser runs.
+LEVELS = 2
 # Filters of warnings belong to the process: one thread at a time changes and restores them.
 _QUIET = threading.Lock()
 
@@ -76,20 +80,19 @@ class Estimate(NamedTuple):
 class Refinement(NamedTuple):
     """How a method's error is read off coarser runs, each with elements so many times as long as the one before."""
 
+    how: str  # What is made coarser
     ratio: float  # Of the lengths
-    levels: int  # Coarser runs
-    # order, safety: Of the conductivity: the order its error falls with, and what the largest difference is raised by
-    order: float
+    order: float  # With which errors fall
+    # What the largest change is raised by, of the conductivity and of the temperature's root mean square
     safety: float
-    # temperature_order, temperature_safety: Of the temperature's root mean square
-    temperature_order: float
     temperature_safety: float
     also: float = 0.0  # What the change by another refinement is raised by, of what coarser runs do not show
-    # What all is raised by where inclusions lie in others, whose interval is then at least as wide, relatively, as the
-    # temperature is expected to be off: errors of coat and core may cancel in the conductivity, wholly so in neutral
-    # spheres, and what is left between runs is chance. 0: nothing of that
+    # Where inclusions lie in others the interval is at least so many times as wide, relatively, as the temperature is
+    # expected to be off: errors of coat and core may cancel in the conductivity, wholly so in neutral spheres, and what
+    # is left between runs is chance. 0: nothing of that
     coats: float = 0.0
-    # Whether elements hold too much or too little of phases by chance: changes between runs do not show that
+    # Whether elements hold too much or too little of phases by chance: changes between runs do not show that, and are
+    # taken between conductivities that are corrected for it
     chance: bool = False
 
 
@@ -130,19 +133,16 @@ def by_refinement(
     coarser: Callable,
     rule: Refinement,
     *,
-    how,
-    again: Callable | None = None,
     also: Callable | None = None,
     least=0.0,
     residual=0.0,
-    steps=0.0,
     fine=NOTHING,
 ) -> Estimate:
     """The estimate of a method by the changes that coarser elements make.
 
-    A coarser run may be made `again` on other elements of the same size: two are not often close to a finer one by
-    luck. Half of the interval is at `least` what a method knows besides, W/(m K), where coarser runs do not differ more
-    and more, as errors of two kinds cancel; elsewhere that raises it by `RAISED` at most.
+    Of each size there may be several coarser runs: two are not often close to a finer one by luck. Half of the interval
+    is at `least` what a method knows besides, W/(m K), where coarser runs do not differ more and more, as errors of two
+    kinds cancel; elsewhere that raises it by `RAISED` at most.
 
     Changes do not show what all elements see alike: fractions of phases that are not the body's, which count as far as
     the conductivity goes with them; and parts that are finer than any of the elements, which may be anything, within
@@ -150,33 +150,37 @@ def by_refinement(
 
     Warnings of the coarser runs, whose elements are too large for what the finest resolves, are kept back.
     """
-    fields = [field, *_coarser_runs(coarser, rule.levels)]
+    runs = [[field], *_coarser_runs(coarser)]
+    fields = [first for first, *_ in runs]
     other = quietly(also, fields[1]) if also else None
-    besides = [] if other is None else [fields[1], other]
-    twice = [field, *_coarser_runs(again, 1)] if again else []
     points, residual = _points(field.scene), residual + ROUNDING
     rule = _beside_edges(rule, edge_order(field.scene))
 
-    def lacks(read, apart, order, safety):
-        changes = [[apart(read(a), read(b)) for a, b in pairwise(runs)] for runs in (fields, twice, besides)]
-        most = max(missing(each, rule.ratio, order) for each in changes[:2] if each)
-        return safety * most + rule.also * sum(changes[2])
+    def lacks(read, apart, safety):
+        changes = [max(apart(read(a), read(b)) for b in each) for a, each in zip(fields, runs[1:], strict=False)]
+        more = 0.0 if other is None else apart(read(fields[1]), read(other))
+        return safety * missing(changes, rule.ratio, rule.order) + rule.also * more
 
     k = conductivity_of(field)
-    half = lacks(conductivity_of, _largest, rule.order, rule.safety)
+    half = lacks(_corrected if rule.chance else conductivity_of, _largest, rule.safety)
     half = max(half, least if _by_luck(fields) else min(least, RAISED * half)) + residual * abs(k)
     if k:
         # What inclusions make of the conductivity goes with how much there is of them.
         off = _unshown([misplaced(each) for each in fields], rule) + fine.rough
         half += off * abs(k - float(field.scene.mean_conductivities[0]))
-    flux = lacks(lambda each: each.mean_flux, _largest, rule.order, rule.safety) + residual * _size(field.mean_flux)
+    flux = lacks(lambda each: each.mean_flux, _largest, rule.safety) + residual * _size(field.mean_flux)
     warmth = partial(_level_free, points=points)
-    kelvin = lacks(warmth, _spread, rule.temperature_order, rule.temperature_safety)
-    kelvin += (residual + steps) * _span(field, warmth(field))
+    kelvin = lacks(warmth, _spread, rule.temperature_safety) + residual * _span(field, warmth(field))
     if rule.coats and np.any(field.scene.parents()):
-        half = rule.coats * max(half, abs(k) * kelvin / _drop(field, warmth(field)))
-    found = Estimate(how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(conductivity_of, fields)))
+        half = max(half, rule.coats * abs(k) * kelvin / _drop(field, warmth(field)))
+    found = Estimate(rule.how, max(k - half, 0.0), k + half, flux, kelvin, tuple(map(conductivity_of, fields)))
     return _with_unseen(found, field, k, fine)
+
+
+def _corrected(field):
+    """The conductivity less what inclusions make of it that is misplaced."""
+    k = conductivity_of(field)
+    return k - float(misplaced(field).sum()) * (k - float(field.scene.mean_conductivities[0]))
 
 
 def _by_luck(runs):
@@ -188,7 +192,7 @@ def _by_luck(runs):
 def _beside_edges(rule, power):
     """A rule whose orders are no higher than edges let them be."""
     most = EDGES * power if power < SMOOTH else math.inf
-    return rule._replace(order=min(rule.order, most), temperature_order=min(rule.temperature_order, most))
+    return rule._replace(order=min(rule.order, most))
 
 
 def misplaced(field) -> np.ndarray:
@@ -210,7 +214,9 @@ def misplaced(field) -> np.ndarray:
 
 def _unshown(off, rule):
     """What the first of some runs has misplaced, less what changes between them show already."""
-    if rule.chance or any(len(each) != len(off[0]) for each in off):
+    if rule.chance:
+        return PLACED * float(np.abs(off[0]).sum())
+    if any(len(each) != len(off[0]) for each in off):
         return float(np.abs(off[0]).sum())
     shown = [missing(np.abs(changes), rule.ratio, rule.order) for changes in np.diff(off, axis=0).T]
     return float(np.maximum(np.abs(off[0]) - shown, 0.0).sum())
@@ -254,11 +260,12 @@ def _largest(one, other):
     return float(np.max(np.abs(np.subtract(one, other))))
 
 
-def _coarser_runs(coarser, levels):
+def _coarser_runs(coarser):
+    """Fields of each size."""
     runs = []
-    for level in range(1, levels + 1):
+    for level in range(1, LEVELS + 1):
         try:
-            runs.append(quietly(coarser, level))
+            runs.append(quietly(lambda of: list(coarser(of)), level))
         except (ValueError, RuntimeError, NotImplementedError) as error:
             # The elements are too long for the scene: what there is must do.
             if not runs:

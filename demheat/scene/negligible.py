@@ -1,4 +1,4 @@
-"""Spheres that cannot matter: what leaving them out changes of the conductivity at most, a bound that is certain.
+"""Inclusions that cannot matter: what leaving them out changes of the conductivity at most, a bound that is certain.
 
 Let T' be the temperature of the body without the spheres S, K' its conductivity and e(B) the share of its energy in a
 ball B. Around a sphere of S, of radius a and s times its surroundings' conductivity, T' is harmonic in every ball in
@@ -12,7 +12,8 @@ K >= K' / (1 + sum of 3 |beta| (a/b)^3 / (1 - 2 |beta| (a/b)^3) e(b)). Last, |gr
 a ball is at most that over a larger one about the same point, e(b) <= (b/R)^3 e(R), up to the radius R at which the
 conductivity changes. What remains is 3 |beta| (a/R)^3 / (1 - 2 |beta| (a/b)^3) e(R), and shares sum to at most 1 where
 balls are apart. Good spheres only raise K, poor ones only lower it: the larger of both sums counts. No gap between
-other inclusions, however narrow or hot, enters: what the field is in S is bounded by the energy around it.
+other inclusions, however narrow or hot, enters: what the field is in S is bounded by the energy around it. What is no
+sphere changes no more than the ball about it would, as K rises with the conductivity at every point.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ class Negligible(NamedTuple):
 
 
 def negligible(scene: Scene, accuracy: float) -> Negligible:
-    """Spheres without which the conductivity changes by less than an accuracy, whatever else is in the body.
+    """Inclusions without which the conductivity changes by less than an accuracy, whatever else is in the body.
 
     Parameters
     ----------
@@ -54,8 +55,8 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
     Returns
     -------
     Negligible
-        As many of the smallest spheres as the bound allows: whole ones without a resistance on their surface, in
-        surroundings that conduct, that hold nothing and whose next neighbours are at least a radius away from them.
+        As many of the smallest as the bound allows: whole ones without a resistance on their surface, in surroundings
+        that conduct, that hold nothing and whose next neighbours are at least a radius away from the balls about them.
 
     Raises
     ------
@@ -75,7 +76,7 @@ def negligible(scene: Scene, accuracy: float) -> Negligible:
     check_scene(scene)
     scene.require("what may be left out is known of the conductivity between temperatures", takes=("resistance",))
     finite("accuracy", accuracy, "a number between 0 and 1", lambda v: 0 < v < 1)
-    radii, beta = _spheres(scene)
+    radii, beta = _balls(scene)
     # What even in the widest ball alone is too much need not be looked at.
     widest = min(scene.size) / 2
     open_ = np.isfinite(beta) & (3 * np.abs(beta) * (radii / widest) ** 3 <= accuracy)
@@ -92,7 +93,7 @@ def change_without(scene: Scene, numbers: Sequence[int], least: float = 0.0) -> 
     """By how much the conductivity changes, relatively and at most, without some inclusions; infinite if unknown."""
     if scene.anisotropic or scene.varies or scene.wall_exchanges or scene.wall_fluxes:
         return np.inf
-    radii, beta = _spheres(scene)
+    radii, beta = _balls(scene)
     chosen = np.zeros(len(radii), bool)
     chosen[list(numbers)] = True
     radii = np.where(chosen, np.maximum(radii, least), radii)
@@ -102,19 +103,20 @@ def change_without(scene: Scene, numbers: Sequence[int], least: float = 0.0) -> 
     return bound if np.all(kept == chosen) else np.inf
 
 
-def _spheres(scene):
-    """Radius and polarisability of each inclusion; NaN for what is no perfect sphere on its own in what conducts."""
+def _balls(scene):
+    """Radius and polarisability of the ball about each inclusion, NaN for what resists, has no end, or is in a pore."""
     k, parents = scene.conductivities, scene.parents()[1:]
     outer = k[parents]
     with np.errstate(invalid="ignore", divide="ignore"):
         beta = np.where(outer > 0, (k[1:] - outer) / (k[1:] + 2 * outer), np.nan)
     # Of spheres with a resistance other degrees may matter more than the first.
-    beta[[not shape.fills_ball or shape.resistance > 0 for shape in scene.inclusions]] = np.nan
-    return np.array([shape.ball()[1] for shape in scene.inclusions]).reshape(-1), beta
+    radii = np.array([shape.ball()[1] for shape in scene.inclusions]).reshape(-1)
+    beta[(scene.resistances[1:] > 0) | np.isinf(radii)] = np.nan
+    return radii, beta
 
 
 def _bound(scene, radii, beta, chosen):
-    """Those of some spheres that have room around them, and what leaving them out changes at most.
+    """Those of some balls that have room around them, and what leaving them out changes at most.
 
     One that holds another has no room: that is nearer to its middle than its own surface.
     """
@@ -136,7 +138,7 @@ def _bound(scene, radii, beta, chosen):
 
 
 def _room(scene, radii, chosen):
-    """Of each chosen sphere the radius of its surroundings, and the least distance of its surface to another chosen."""
+    """Of each chosen ball the radius of its surroundings, and the least distance of its surface to another chosen."""
     centers, own = _centers(scene)[chosen], radii[chosen]
     if scene.periodic:
         clear = np.full(len(own), min(scene.size) / 2)

@@ -2,10 +2,13 @@
 
 Runs on coarser meshes may hardly differ by luck: coarse elements lose as much volume of a body as they are too stiff.
 Linear elements tell how stiff elements are. What quadratic ones lack goes with the square of what linear ones do, where
-surfaces are smooth; beside edges of boxes both fall alike and keep their ratio.
+surfaces are smooth; beside edges of boxes both fall alike and keep their ratio. Around coats, where errors cancel and
+inclusions may make nothing of the conductivity, the temperature tells instead.
 """
 
 import math
+
+import numpy as np
 
 from demheat.error import Refinement, by_refinement, conductivity_of, quietly
 from demheat.scene.edges import SMOOTH, edge_order
@@ -14,9 +17,9 @@ from demheat.scene.edges import SMOOTH, edge_order
 RATIO = 1.4
 # Of quadratic elements on curved surfaces, the same on straight ones, linear ones and bricks.
 RULES = {
-    "curved": Refinement(RATIO, 2, 2.0, 2.0, 2.0, 1.2, coats=1.0),
-    "straight": Refinement(RATIO, 2, 2.0, 2.5, 2.0, 1.2),
-    "linear": Refinement(RATIO, 2, 2.0, 4.5, 2.0, 2.0),
+    "curved": Refinement("coarser meshes", RATIO, 2.0, 2.0, 1.2, coats=1.0),
+    "straight": Refinement("coarser meshes", RATIO, 2.0, 2.5, 1.2),
+    "linear": Refinement("coarser meshes", RATIO, 2.0, 4.5, 2.0),
 }
 # Quadratic elements lack of the conductivity such a part of what they differ by from linear ones beside edges, and of
 # smooth bodies so many times that part squared, of what inclusions make of the conductivity. Found on scenes of study
@@ -26,19 +29,18 @@ BESIDE_EDGES, ROUND = 0.4, 1.0
 
 def estimated(field, again, kind, *, steps=0.0):
     """Estimate of a field; `again` makes it of other knobs of its mesh."""
-    left = {"residual": field.stats["residual"], "steps": steps}
     least = _by_linear(field, again) if kind == "curved" else 0.0
 
     def coarser(level):
-        return again(coarser=RATIO**level)
+        yield again(coarser=RATIO**level)
 
-    return by_refinement(field, coarser, RULES[kind], how="coarser meshes", least=least, **left)
+    return by_refinement(field, coarser, RULES[kind], least=least, residual=field.stats["residual"] + steps)
 
 
 def _by_linear(field, again):
     """What quadratic elements lack of the conductivity, by what linear ones of the same lengths do, W/(m K)."""
     k, scene = conductivity_of(field), field.scene
-    if not k or not math.isfinite(k) or not scene.inclusions:
+    if not k or not math.isfinite(k) or not scene.inclusions or np.any(scene.parents()):
         return 0.0
     try:
         apart = abs(conductivity_of(quietly(lambda order: again(order=order, curved=False), 1)) - k)

@@ -7,9 +7,9 @@ from references.fft.rules import unsure
 
 # By rule.
 RULES = {
-    "plain": Refinement(2**0.5, 2, 1.0, 2.0, 1.0, 1.0, chance=True),
-    "laminate": Refinement(2**0.5, 2, 1.0, 1.2, 1.0, 1.0),
-    "links": Refinement(2**0.5, 2, 1.0, 1.5, 1.0, 1.0),
+    "plain": Refinement("larger voxels", 2**0.5, 1.0, 2.2, 1.0, chance=True),
+    "laminate": Refinement("larger voxels", 2**0.5, 1.0, 1.2, 1.0),
+    "links": Refinement("larger voxels", 2**0.5, 1.0, 1.5, 1.0),
 }
 
 
@@ -18,9 +18,9 @@ def estimated(field, solve):
     rule, shape = RULES[field.stats["rule"]], field.stats["voxels"]
 
     def coarser(level):
-        return solve(field.scene, voxels=[max(1, round(n / rule.ratio**level)) for n in shape])
+        yield solve(field.scene, voxels=[max(1, round(n / rule.ratio**level)) for n in shape])
 
     half_diagonal = 0.5 * float(np.linalg.norm(np.array(field.scene.size) / shape))
     # A voxel that touches a small sphere, all of it, and what is left of the sphere itself.
     fine = Fine(unsure(field.scene, field.stats["rule"], shape), radius=2 * half_diagonal)
-    return by_refinement(field, coarser, rule, how="larger voxels", residual=field.stats["residual"], fine=fine)
+    return by_refinement(field, coarser, rule, residual=field.stats["residual"], fine=fine)

@@ -30,8 +30,11 @@ from references.threads import Team
 from references.voxels.paint import Medium, Voxels, medium
 
 # Iterations after which the pace is looked at, and then after twice as many; and the part of those that rate and pace
-# ask for (found are .56 to 1.5 of the rate's, at contrasts of 1e-4 to 1e6) below which a limit is too low.
-FIRST_LOOK, LEAST_NEEDED = 40, 0.5
+# ask for below which a limit is too low, and the most (of the rate's .56 to 1.5 were found at contrasts 1e-4 to 1e6).
+FIRST_LOOK, LEAST_NEEDED, MOST_NEEDED = 40, 0.5, 1.5
+# The same of the pace alone where two looks agree to so much: it slows down until it is that of the end, but after
+# errors have grown. Of spheres, layers and half-spaces, contrasts 1e4 to 1e6, .94 of it and more were needed then.
+SETTLED, PACED = 1.25, 0.9
 
 
 class _Scheme(NamedTuple):
@@ -145,23 +148,27 @@ def _on_modes(problem, scheme, transform, kernel, *arguments, backward=True):
         transform.columns(forward=False)
 
 
-def _check_pace(iterations, before, error, problem):
-    """Raise NotImplementedError if at its present pace the iteration cannot end within its limit.
+def _check_pace(iterations, before, error, problem, last=math.inf):
+    """Raise NotImplementedError if at its present pace the iteration cannot end within its limit; what it asks for.
 
     The contrast alone does not tell: across layers, or where little flux meets what conducts well, it ends far sooner
-    than as the root of the contrast. Nor does the pace alone, as errors may grow at first: asked is where both say so.
+    than as the root of the contrast. Nor does one look at the pace, as errors may grow at first: asked is where both
+    say so, or where the pace is that of the last look.
     """
     low, high = _extremes(problem.voxels)
     # Each contracts by (root - 1) / (root + 1).
     rate = -math.log(problem.tolerance) * math.sqrt(high / low) / 2
     pace = 2 * math.log(before / error) / iterations if error < before else 0.0
     needed = iterations + (math.log(error / problem.tolerance) / pace if pace else math.inf)
-    if LEAST_NEEDED * min(rate, needed) > problem.max_iterations:
+    settled = last < SETTLED * needed < math.inf
+    least = min(PACED * needed, MOST_NEEDED * rate) if settled else LEAST_NEEDED * min(rate, needed)
+    if least > problem.max_iterations:
         raise NotImplementedError(
-            f"fft.solve: scheme 'eyre-milton' at a contrast of {high / low:.1e} takes about {rate:.1e} iterations, as "
-            f"the root of the contrast, and max_iterations = {problem.max_iterations}: use scheme 'cg', or more "
-            "iterations or a larger tolerance"
+            f"fft.solve: scheme 'eyre-milton' at a contrast of {high / low:.1e} takes about "
+            f"{needed if settled else rate:.1e} iterations, as the root of the contrast, and max_iterations = "
+            f"{problem.max_iterations}: use scheme 'cg', or more iterations or a larger tolerance"
         )
+    return needed
 
 
 def _iterate(problem, scheme, transform, field):
@@ -175,7 +182,7 @@ def _iterate(problem, scheme, transform, field):
         component[:] = value
     transform.planes(kernels.reflect, field, work, scheme.mirror, sums, forward=True)
     iterations, error, first, clock = 0, math.inf, math.inf, Clock(transform)
-    before, looked = math.inf, FIRST_LOOK
+    before, looked, needed = math.inf, FIRST_LOOK, math.inf
     with clock, stage("iterations") as done:
         while error > problem.tolerance and iterations < problem.max_iterations:
             _on_modes(problem, scheme, transform, kernel, scale, mean)
@@ -188,7 +195,7 @@ def _iterate(problem, scheme, transform, field):
             if iterations == looked // 2:
                 before = error
             elif iterations == looked and error > problem.tolerance:
-                _check_pace(iterations, before, error, problem)
+                needed = _check_pace(iterations, before, error, problem, needed)
                 before, looked = error, 2 * looked
     return iterations, error, clock.cost()
 

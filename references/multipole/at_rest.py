@@ -24,7 +24,8 @@ def at_rest(scene, spheres, points_per_axis) -> Field:
         return Samples(points, volumes, temperature(points), scene.phase_at(points), np.zeros(points.shape))
 
     shares = np.bincount(spheres.original, 4 / 3 * math.pi * spheres.radii**3, spheres.count) / np.prod(spheres.size)
-    stats = {"order": 0, "unknowns": 0, "iterations": 0, "residual": 0.0, "truncation": 0.0, "field_truncation": 0.0}
+    stats = dict.fromkeys(("order", "unknowns", "iterations"), 0)
+    stats |= dict.fromkeys(("residual", "truncation", "remainder", "field_truncation"), 0.0)
     return Field(
         scene=scene,
         mean_flux=np.zeros(3),

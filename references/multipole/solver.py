@@ -26,7 +26,7 @@ from references.multipole.arrangement import arrange, smallest_gap
 from references.multipole.at_rest import at_rest
 from references.multipole.field import Evaluator
 from references.multipole.third_order import check_order
-from references.multipole.truncation import converged, field_truncation, truncation
+from references.multipole.truncation import converged, field_truncation, remainder, truncation
 from references.threads import MOST_THREADS
 
 
@@ -65,9 +65,9 @@ def solve(
     Field
         The temperature of a periodic cell is the mean gradient times the position plus a periodic part of zero mean. Of
         its `stats`, `truncation` is the relative error of the mean flux that higher degrees would remove, extrapolated
-        from the last changes; `field_truncation` the largest term of the last two degrees in the flux at an interface,
-        over the mean gradient; `smallest_gap` in metres, mirror images included; `convergence` pairs (order,
-        conductivity).
+        from the last changes; `remainder` the same as gaps ask for, by which the interval goes; `field_truncation` the
+        largest term of the last two degrees in the flux at an interface, over the mean gradient; `smallest_gap` in
+        metres, mirror images included; `convergence` pairs (order, conductivity).
 
     Raises
     ------
@@ -165,7 +165,7 @@ def _degrees(field):
     stats, widest = field.stats, max((each.radius for each in field.scene.inclusions), default=0.0)
     slope = field.scene.gradient if field.scene.periodic else np.ptp(list(field.wall_temperature.values()))
     slope = np.linalg.norm(slope) / (1.0 if field.scene.periodic else field.scene.size[field.scene.axis])
-    relative = stats["truncation"] + stats["residual"]
+    relative = stats["remainder"] + stats["residual"]
     return known(field, relative, "higher degrees", temperature=float(stats["field_truncation"] * slope * widest))
 
 
@@ -184,6 +184,7 @@ def _stats(scene, arrangement, history):
         "iterations": last.iterations,
         "residual": last.residual,
         "truncation": truncation(history),
+        "remainder": remainder(history, smallest_gap(spheres)),
         "field_truncation": field_truncation(spheres, last, gradient),
         "smallest_gap": smallest_gap(spheres) * unit,
         "convergence": tuple((solved.order, float(k * solved.mean_flux @ gradient)) for solved in history),

@@ -1,12 +1,14 @@
-"""Only here: spheres left out that lose more than is told."""
+"""Only here: inclusions left out that lose more than is told."""
 
 import numpy as np
 import pytest
 
 from demheat import Layer, Material, Scene, Sphere, gallery
-from demheat.scene.negligible import negligible
+from demheat.scene import Ellipsoid
+from demheat.scene.negligible import change_without, negligible
 from demheat.tensor import conductivity_tensor
 from references import exact, multipole
+from references.exact.ellipsoids import maxwell
 
 MATRIX, BEST, PORE = Material(1.0), Material(1e6), Material(0.0)
 
@@ -76,6 +78,20 @@ def test_what_matters_or_is_not_known_stays():
     assert negligible(cell(tiny, touching), 1e-3).inclusions == ()
     # One of a pair stays, and the other is far from the rest.
     assert negligible(cell(tiny, touching, Sphere((0.75, 0.75, 0.75), 1e-3, BEST)), 1e-3).inclusions == (2,)
+
+
+@pytest.mark.parametrize("material", [BEST, PORE])
+@pytest.mark.parametrize("axes", [(0.1, 0.01, 0.01), (0.1, 0.1, 0.01)])
+def test_what_is_no_sphere_changes_no_more_than_the_ball_about_it(material, axes):
+    slender = cell(Ellipsoid((0.5, 0.5, 0.5), axes, material), gradient=(1.0, 0.0, 0.0))
+    ball = cell(Sphere((0.5, 0.5, 0.5), 0.1, material), gradient=(1.0, 0.0, 0.0))
+    # Maxwell's estimate of few, to the first order of their volume of a thousandth or so.
+    share = 4 / 3 * np.pi * np.prod(axes)
+    lost = abs(maxwell(material.conductivity, axes, share)[0, 0] - 1)
+    assert 0 < lost < change_without(slender, [0]) == change_without(ball, [0])
+    assert negligible(slender, 0.1).inclusions == (0,)
+    beside = Sphere((0.5, 0.5, 0.56), 0.01, BEST)  # within the ball
+    assert change_without(cell(*slender.inclusions, beside), [0]) == np.inf
 
 
 def test_all_of_a_material_stay_as_one_limit():

@@ -1,6 +1,8 @@
 """Solvers on voxels at their limits: odd grids, float32, contrasts, gaps; what has not converged is no answer."""
 
 import contextlib
+import itertools
+import math
 import warnings
 from types import SimpleNamespace
 
@@ -9,8 +11,9 @@ import pytest
 from fft_scenes import SCHEMES, dispersion, sphere_cell
 from numpy.testing import assert_allclose
 
+from demheat import gallery
 from demheat.scene import Layer, Material, Scene, Sphere
-from references import fft
+from references import exact, fft
 from references.fft import eyre_milton, rules
 from references.voxels import links as voxel_links
 
@@ -185,3 +188,29 @@ def test_a_contrast_alone_refuses_nothing(monkeypatch, contrast, error, hopeless
     problem = SimpleNamespace(voxels=None, tolerance=1e-6, max_iterations=400)
     with pytest.raises(NotImplementedError) if hopeless else contextlib.nullcontext():
         eyre_milton._check_pace(40, 1.0, error, problem)
+
+
+@pytest.mark.parametrize(
+    ("looks", "hopeless"),
+    # Errors at 20, 40, 80 and 160 iterations, of which 1e-6 is asked within 400: those of a pace for 480; of one for
+    # 440, which may do; and those that fall fast after they have grown.
+    [([0.56, 0.316, 0.1, 1e-2], True), ([0.533, 0.284, 0.0808, 6.5e-3], False), ([9.0, 8.0, 0.5, 2e-3], False)],
+)
+def test_a_pace_that_stays_is_believed(monkeypatch, looks, hopeless):
+    monkeypatch.setattr(eyre_milton, "_extremes", lambda voxels: (1.0, 1e4))
+    problem, last = SimpleNamespace(voxels=None, tolerance=1e-6, max_iterations=400), math.inf
+    with pytest.raises(NotImplementedError, match="takes about 4.8e") if hopeless else contextlib.nullcontext():
+        for number, (before, error) in enumerate(itertools.pairwise(looks)):
+            last = eyre_milton._check_pace(40 * 2**number, before, error, problem, last)
+
+
+@pytest.mark.parametrize("contrast", [3e5, 1e6])
+def test_eyre_milton_at_high_contrasts_holds_the_truth_or_refuses(contrast):
+    """Its iterations, as many as the root of the contrast, end just within the limit at 3e5 here, not at 1e6."""
+    scene = gallery.simple_cubic(contrast, fraction=0.3)
+    if contrast == 1e6:
+        with pytest.raises(NotImplementedError, match="takes about 5.8e"):
+            fft.solve(scene, voxels=8, scheme="eyre-milton", threads=1)
+        return
+    error = fft.solve(scene, voxels=8, scheme="eyre-milton", threads=1).error
+    assert error.lower <= exact.solve(scene).conductivity <= error.upper

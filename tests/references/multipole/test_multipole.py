@@ -77,6 +77,8 @@ def test_conductivity_rises_to_its_limit_and_the_stated_error_covers_what_is_lef
         errors.append(limit - found.conductivity)
         # Truncated multipoles are trial fields: spheres that conduct better approach from below.
         assert 0 < errors[-1] < found.stats["truncation"] * limit < 30 * errors[-1]
+        # The interval's: the smallest gap tells how slowly changes fall at last.
+        assert errors[-1] < found.stats["remainder"] * limit < 10 * errors[-1]
     assert all(b < 0.5 * a for a, b in zip(errors[:-1], errors[1:], strict=True))
     free = multipole.solve(scene, accuracy=1e-4)
     assert abs(free.conductivity / limit - 1) < 1e-4
@@ -95,6 +97,16 @@ def test_touching_spheres_are_refused_or_their_error_is_said():
     # It converges like a power of the order there: the geometric estimate says the size of the error, not more.
     assert left > 1e-3
     assert rough.stats["truncation"] > 0.3 * left
+
+
+@pytest.mark.parametrize("gap", [0.02, 0.1])
+def test_changes_fall_at_last_as_the_gap_asks(gap):
+    """Good conductors in cubic order; of two steps, since every other degree hardly matters there."""
+    scene = gallery.simple_cubic(1e9, fraction=4 / 3 * math.pi * (0.5 / (1 + gap)) ** 3)
+    values = [k for _, k in multipole.solve(scene, order=18).stats["convergence"]]
+    changes = np.diff(values[-4:])
+    # At 18 degrees, still a little faster.
+    assert changes[-1] / changes[-3] == pytest.approx(math.exp(-8 * math.acosh(1 + gap)), rel=0.25)
 
 
 # What is refused.
