@@ -277,6 +277,21 @@ def test_methods_raise_what_they_lack_by_what_drawn_scenes_asked_for(of, conduct
     assert estimate.temperature == pytest.approx(0.1 / 3 * temperature, rel=1e-9)
 
 
+def test_particles_beside_edges_are_of_first_order():
+    rod = Scene((1.0,) * 3, Material(1.0), [Box((0.5,) * 3, (0.5,) * 3, Material(1e9))], gradient=(1.0, 0.0, 0.0))
+
+    def of(error):
+        field = off_by(error, packing={})
+        field.scene, field.fractions = rod, fractions(rod)
+        return field
+
+    def answer(law, wanted):
+        return of(0.1 * 4 ** ({4000: 1, 1000: 2}[wanted.particles] / 3))
+
+    estimate = estimator_of(Laguerre(), Particles(particles=16000, seed=0), answer)(of(0.1))
+    assert (estimate.upper - estimate.lower) / 2 == pytest.approx(0.1, rel=1e-9)
+
+
 @pytest.mark.parametrize("name", ["dem", "fem", "fft", "multipole"])
 def test_methods_know_how_far_they_are_off(name):
     """On the sphere in a cube, at the suite's coarse resolution; off the middle, for no symmetry to help."""
