@@ -219,6 +219,9 @@ def _checked_materials(materials, found):
 
 def _occurring(slab):
     """Labels of a slab, a set of int."""
+    most = np.iinfo(np.int64).max
+    if slab.dtype.kind == "u" and slab.max() > most:
+        raise ValueError(f"Image.labels: {slab.max()} is the largest; must be at most {most}")
     slab = slab.astype(np.int64)
     low = int(slab.min())
     if int(slab.max()) - low < MOST_LABELS:

@@ -200,13 +200,13 @@ class LevelSet(Solid):
 
     def _values(self, points):
         beat("a level set")
-        values = np.asarray(self.function(points.copy()), dtype=float)
-        if values.shape != (len(points),) or not np.all(np.isfinite(values)):
+        values = np.asarray(self.function(points.copy()))
+        if values.shape != (len(points),) or values.dtype.kind not in "biuf" or not np.all(np.isfinite(values)):
             raise ValueError(
-                f"LevelSet.function: gave values of shape {values.shape} for {len(points)} points, or some not "
-                "finite; must give one finite number for each point"
+                f"LevelSet.function: gave values of shape {values.shape} and type {values.dtype} for {len(points)} "
+                "points, or some not finite; must give one finite number for each point"
             )
-        return values
+        return np.asarray(values, dtype=float)
 
     def _inside(self, offsets):
         inside = np.zeros(len(offsets), bool)

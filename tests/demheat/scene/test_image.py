@@ -88,6 +88,8 @@ def test_a_turned_image():
     "change, words",
     [
         ({"labels": np.zeros((2, 2, 2))}, "labels of type float64: must be whole numbers"),
+        # As int64 it would be a label below zero.
+        ({"labels": np.full((2, 2, 2), 2**63 + 5, np.uint64)}, "9223372036854775813 is the largest; must be at most"),
         ({"labels": np.zeros((2, 0, 2), int)}, "labels of shape (2, 0, 2): must be (nx, ny, nz), of one voxel or more"),
         ({"labels": [[[0, 1]], [[0]]]}, "rows of unlike lengths"),
         ({"labels": np.arange(27).reshape(3, 3, 3)}, "none for labels 2, 3, 4, 5, 6, 7, 8, 9 and 17 more"),

@@ -176,6 +176,7 @@ def test_a_level_set_is_checked_once():
         (lambda: LevelSet(torus, ((0.3,) * 3, (0.7,) * 3), OTHER), "on the limits; must be above 0 there"),
         (lambda: LevelSet(lambda p: 1 + p[:, 0] ** 2, LIMITS, OTHER), "above 0 at all of"),
         (lambda: LevelSet(lambda p: p, LIMITS, OTHER), "must give one finite number for each point"),
+        (lambda: LevelSet(lambda p: torus(p) + 0j, LIMITS, OTHER), "of shape .* and type complex128"),
         (lambda: Cylinder((0, 0, 0), 0.1, (0, 0, 0), OTHER), "Cylinder.axis = .*must be a direction"),
         (lambda: Cylinder((0, 0, 0), 0.1, (0, 0, 1), OTHER, length=0.0), "Cylinder.length = 0.0: must be None, or"),
         (lambda: Ellipsoid((0, 0, 0), (1, 1, 0), OTHER), "Ellipsoid.semi_axes = .*three lengths > 0 m"),
