@@ -1,7 +1,5 @@
 """Temperatures of a network in time, under a scene's walls and sources."""
 
-from functools import partial
-
 import numpy as np
 
 from demheat.conduction.integrators.march import march
@@ -11,8 +9,7 @@ from demheat.conduction.robin import loaded_areas, radiating_walls, with_convect
 from demheat.conduction.steady import Solution
 from demheat.network.base import SIDES
 from demheat.scene import Convection, Flux, Radiation
-from demheat.scene.functions import initial_at, load_at
-from demheat.scene.parts import driver
+from demheat.scene.functions import changing_loads, initial_at, load_at
 
 
 def capacities(network, scene):
@@ -39,15 +36,6 @@ def evolve(
     pace = pace_of(changing_loads(scene), transits, float(times[-1]), accuracy)
     for state in march(system, start, times, integrator=integrator, accuracy=accuracy, step=step, pace=pace):
         yield state.time, Solution(state.temperature, np.zeros(3), *_walls(network, scene, system, state), state.stats)
-
-
-def changing_loads(scene):
-    """Loads of walls that are functions of time, (time, s) -> float; what is not finite is an error."""
-    return [
-        partial(load_at, name, load, kelvin=scene.radiates and not isinstance(load, Flux))
-        for name, load in (scene.walls or {}).items()
-        if callable(driver(load))
-    ]
 
 
 def check_callables(scene):

@@ -101,12 +101,22 @@ def _check_walls(walls, valid, *, or_none):
         if not isinstance(value, Flux | Convection | Radiation) and not callable(value):
             numbers = f"a finite temperature of at most {MOST:g}, a function of time, Flux, Convection or Radiation"
             finite(f"Scene.walls[{name!r}]", value, numbers, lambda v: abs(v) <= MOST)
-    imposed = {name: driver(value) for name, value in walls.items() if not isinstance(value, Flux)}
-    held = {name: float(value) for name, value in imposed.items() if not callable(value)}
     if any(isinstance(value, Radiation) for value in walls.values()):
-        for name, value in held.items():
+        for name, value in _held(walls).items():
             finite(f"Scene.walls[{name!r}], with a wall that radiates,", value, KELVIN, _absolute)
-    held = list(held.values())
+    # In time the body itself may differ from walls that are nearly alike.
+    if not or_none:
+        check_differences(walls)
+
+
+def _held(walls):
+    imposed = {name: driver(value) for name, value in walls.items() if not isinstance(value, Flux)}
+    return {name: float(value) for name, value in imposed.items() if not callable(value)}
+
+
+def check_differences(walls) -> None:
+    """Raise ValueError where heat flows in a steady state between temperatures of which rounding leaves little."""
+    held = list(_held(walls).values())
     span, largest = max(held, default=0.0) - min(held, default=0.0), max(map(abs, held), default=0.0)
     if 0 < span < max(LEAST, RESOLVED * largest):
         raise ValueError(

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from demheat.scene.inputs import MOST, finite
-from demheat.scene.parts import HOTTEST, Radiation, driver
+from demheat.scene.parts import HOTTEST, Flux, Radiation, driver
 
 
 def load_at(name, load, time, *, kelvin=False) -> float:
@@ -21,6 +23,15 @@ def load_at(name, load, time, *, kelvin=False) -> float:
     if kelvin or isinstance(load, Radiation):
         return finite(what, found, f"a finite temperature >= 0 K of at most {HOTTEST:g}", lambda v: 0 <= v <= HOTTEST)
     return finite(what, found, f"a finite number of at most {MOST:g}", lambda v: abs(v) <= MOST)
+
+
+def changing_loads(scene):
+    """Loads of walls that are functions of time, (time, s) -> float; what is not finite is an error."""
+    return [
+        partial(load_at, name, load, kelvin=scene.radiates and not isinstance(load, Flux))
+        for name, load in (scene.walls or {}).items()
+        if callable(driver(load))
+    ]
 
 
 def initial_at(scene, points) -> np.ndarray:

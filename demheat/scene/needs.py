@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from demheat.scene.checks import check_differences
 from demheat.scene.edges import SLOWEST, edge_order
 from demheat.scene.parts import driver
 
@@ -58,6 +59,7 @@ def check_steady(scene) -> None:
     changing = [name for name, load in (scene.walls or {}).items() if callable(driver(load))]
     if changing:
         raise ValueError(f"Scene.walls: {changing} depend on time; must be numbers for a steady solution")
+    check_differences(scene.walls or {})
     if not scene.periodic and not scene.imposed_temperatures:
         raise ValueError(
             f"Scene.walls = {dict(scene.walls)}: a steady solution needs at least one wall with a temperature, its own "

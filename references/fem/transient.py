@@ -12,8 +12,9 @@ from demheat.field import Field
 from demheat.runtime.limits import check_steps
 from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
-from demheat.scene.functions import initial_at
+from demheat.scene.functions import changing_loads, initial_at
 from demheat.scene.inputs import chosen, finite, whole
+from demheat.scene.pace import SHARP, paced, sampled
 from references.fem.bricks import EDGES as BRICKS
 from references.fem.bricks import checked_size, hexahedra
 from references.fem.estimate import estimated
@@ -62,8 +63,8 @@ def evolve(
     elements : {"tetrahedra", "hexahedra"}
         The latter are the bricks of a grid, for boxes with layers at most, or the voxels of an image.
     step : float, s, optional
-        Longest time step; steps are then equal between two asked times. Default: by the estimated error, which sees
-        loads only at the times it tries: a short pulse after long rest needs an asked time at its start.
+        Longest time step; steps are then equal between two asked times. Default: by the estimated error and by where
+        loads jump or change fast, of which a thousand parts of the run tell: a shorter pulse needs asked times.
     accuracy : float
         Largest estimated error of one step, root mean square over the body, as a part of the span of all temperatures
         so far; unused if a step is given.
@@ -139,7 +140,8 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
     inverse = space.separable(free) if space.separable and len(free) and not loads.robin.walls else None
     solver = Shifted(*blocks, space.quadratic(free), tolerance, inverse)
     problem = Problem(loads, solver, free)
-    ticks, begun = Clock(problem, accuracy, step), clock.perf_counter()
+    ticks = Clock(problem, accuracy, step, pace=_pace(scene, times[-1]), leap=SHARP * times[-1])
+    begun = clock.perf_counter()
     # A thousandth of the first step asked for, or of the time to the first field.
     hint = 1e-3 * (step or max(times[0], times[-1]) / 100 or 1.0)
     state = begin(problem, initial - level, 0.0, hint)
@@ -152,6 +154,12 @@ def _fields(scene, times, cells, *, coarser=1.0, step, accuracy, tolerance):
         again = partial(_at, scene, float(time), cells, step=step, accuracy=accuracy, tolerance=tolerance)
         estimator = partial(estimated, again=again, kind=kind, steps=accuracy)
         yield _field(scene, problem, state, initial - level, space.stats | stats, estimator)
+
+
+def _pace(scene, end):
+    """Where loads jump until a time, and how long steps may be."""
+    found = [sampled(function, end) for function in changing_loads(scene)] if end > 0 else []
+    return paced(*([part for each in found for part in each[which]] for which in range(2)), end)
 
 
 def _at(scene, time, cells, coarser, **knobs):

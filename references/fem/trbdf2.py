@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.scene.pace import ANY
 from references.fem.loads import Loads
 
 GAMMA = 2 - math.sqrt(2)  # place of the middle stage: both stages then have the same matrix
@@ -72,6 +73,13 @@ def begin(problem, temperature, time, hint) -> State:
     span = np.array([min(temperature.min(), y.min()), max(temperature.max(), y.max())])
     rates = loads.rates(entering, y, loading)
     return State(time, y, rate, entering, rates, heats, float(np.abs(heats[:-1]).sum()), span)
+
+
+def begin_again(problem, state, time, hint) -> State:
+    """State a moment later, when loads have jumped."""
+    new, (low, high) = begin(problem, state.temperature, time, hint), state.span
+    span = np.array([min(low, new.span[0]), max(high, new.span[1])])
+    return new._replace(heats=state.heats + new.heats, turnover=state.turnover + new.turnover, span=span)
 
 
 def advance(problem, state, step, *, estimate):
@@ -136,21 +144,38 @@ def _error(problem, stages, step):
 
 
 class Clock:
-    """Steps from asked time to asked time: given ones, or as long as the wanted accuracy allows."""
+    """Steps from asked time to asked time: given ones, or as long as the wanted accuracy and the loads allow.
 
-    def __init__(self, problem, accuracy, step=None):
+    Jumps of loads lie between two breaks that are no farther apart than twice `leap`, s: what is between is left out.
+    """
+
+    def __init__(self, problem, accuracy, step=None, *, pace=ANY, leap=0.0):
         self.problem, self.accuracy, self.given, self.wanted = problem, accuracy, step, None
         self.steps, self.rejected, self.last, self.first = 0, 0, 0.0, 0.0
+        # A jump right after the start has its first break there.
+        at_once = len(pace.breaks) and pace.breaks[0] <= 2 * leap
+        self.pace, self.leap, self.broken = pace, leap, 0.0 if at_once else -math.inf
 
     def run(self, state, time):
         """State at a later time."""
         if self.given is not None:
             return self._equal(state, time)
+        ahead = (self.pace.breaks > state.time) & (self.pace.breaks < time)
+        for stop in (*self.pace.breaks[ahead].tolist(), time):
+            if stop - self.broken <= 2 * self.leap:
+                state, self.wanted = begin_again(self.problem, state, stop, 1e-3 * self.first or self.leap), None
+            else:
+                state = self._chosen(state, stop)
+            if stop in self.pace.breaks:
+                self.broken = stop
+        return state
+
+    def _chosen(self, state, time):
         if self.wanted is None:
             self.wanted = self.first = first_step(state, time)
         while state.time < time:
-            left = time - state.time
-            step = left if self.wanted >= left * (1 - 1e-9) else min(self.wanted, left / 2)
+            left, most = time - state.time, min(self.wanted, self.pace.allowed(state.time))
+            step = left if most >= left * (1 - 1e-9) else min(most, left / 2)
             if step < min(SHORTEST * time, SHORTEST_OF_FIRST * self.first):
                 raise RuntimeError(
                     f"finite elements: step {step:.2e} s at {state.time:.6g} s after {self.steps} steps: the estimated "

@@ -8,9 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from demheat.conduction.integrators.pace import ANY
 from demheat.conduction.integrators.system import ACCOUNTS
 from demheat.runtime.progress import in_parts
+from demheat.scene.pace import ANY
 
 # How large the estimated error of a step may be, for an accuracy eps at the asked time and n more steps of this size:
 #     SAFETY eps (eps / USUAL)^((1 + DAMPED) / 2) n^DAMPED, in units of the temperature span.

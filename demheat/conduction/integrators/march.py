@@ -7,12 +7,13 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.conduction.integrators import choose, control, euler, rkl2, trbdf2
-from demheat.conduction.integrators.pace import ANY, STEP, Pace
+from demheat.conduction.integrators.pace import STEP
 from demheat.conduction.integrators.spectrum import spectrum as spectrum_of
 from demheat.conduction.integrators.system import System, initial_state
 from demheat.network.base import SIDES
 from demheat.runtime.limits import check_steps
 from demheat.scene.inputs import LEAST, MOST, chosen, finite, moderate, reals
+from demheat.scene.pace import ANY, Pace
 
 METHODS = {"euler": euler, "rkl2": rkl2, "tr-bdf2": trbdf2, "tr-bdf2-multigrid": trbdf2}
 # An implicit solve may leave an error of this part of the accuracy asked for. What solves leave adds up over the steps,
