@@ -16,6 +16,7 @@ from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
 from demheat.dem.estimate import check_contrast, estimator_of
+from demheat.dem.gaps import reaching
 from demheat.dem.networks import network_of, networks_of
 from demheat.dem.options import MIB, Particles, check_fits, expected_bytes, expected_unknowns
 from demheat.dem.warm import Helper, cells, parts_of
@@ -212,8 +213,8 @@ def solve_axes(
         return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
 
 
-def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
-    """Solve scenes that differ in their loads only, as they were checked."""
+def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS, change=None):
+    """Solve scenes that differ in their loads only, as they were checked; `change` makes other networks of theirs."""
     wanted.check(scenes[0], law)
     begun, needed = time.perf_counter(), expected_bytes(expected_unknowns(scenes[0], law, wanted))
     with announced("DEM", needed), Helper(parts_of(law, wanted.particles)) as helper:
@@ -222,6 +223,8 @@ def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITER
         helper.join(cells)
         networks = networks_of(scenes, packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy
+        if change is not None:
+            networks = [change(network, scene) for network, scene in zip(networks, scenes, strict=True)]
         helper.join()
     with announced("DEM", needed):
         how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
@@ -239,14 +242,15 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
         else:
             solution = solve_checked(network, scene, **how, kept=kept)
         took = spent | {"solve_s": time.perf_counter() - connected}
-        estimator = estimator_of(law, wanted, partial(_answer, scene, solver=solver, tolerance=tolerance))
+        answer = partial(_answer, scene, solver=solver, tolerance=tolerance)
+        estimator = partial(reaching, estimator_of(law, wanted, answer), answer=partial(answer, law, wanted))
         with stage("field"):
             fields.append(field_of(scene, network, solution, stats=took, estimator=estimator))
     return fields
 
 
-def _answer(scene, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS):
-    how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
+def _answer(scene, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS, change=None):
+    how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations, "change": change}
     return _answers([scene], law, wanted, **how)[0]
 
 
