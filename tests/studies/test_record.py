@@ -34,6 +34,7 @@ WALKS = "no study asks for it yet: held against exact values by tests of its own
 CROWDS = "asked where spheres are many or walls cut them, which quick rows do not mesh: tests of its own"
 INLINED = "compiled into kernels that rows do execute, and called by nothing else"
 SHIPPED = "made the tiles that are shipped: a test makes one again"
+TOUCHING = "asked where good conductors touch, which no quick row has: tests of its own"
 RENAMED = "an old name: a test asks for it"
 CLAIMS = "claims extrapolate rows by it; no row does"
 NO_ROWS = {
@@ -71,6 +72,7 @@ NO_ROWS = {
     "demheat/scene/shapes/torus.py": BODIES,
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
+    "demheat/network/bridges.py": TOUCHING,
     "references/exact/inclined.py": FORMS,
     "references/multipole/at_rest.py": FORMS,
     "references/multipole/lane_kernels.py": INLINED,

@@ -57,9 +57,9 @@ def test_what_lies_in_each_other_or_conducts_little_better_stays():
 
 @pytest.mark.parametrize("load", [{"walls": {"y-": 0.0, "y+": 1.0}}, {"gradient": (0, 1, 0)}])
 def test_intervals_of_touching_spheres_reach_down_to_what_series_say(load):
-    # Of a sphere that touches both walls 2000 particles had 85.7 [72.8, 98.5]: no more than 15 is right.
+    # Of a sphere that touches both walls 2000 particles had 85.7 [72.8, 98.5]: series say 20 at most.
     told = multipole.solve(Scene(UNIT, Material(1.0), [TOUCHING], gradient=(0, 1, 0)), order=20).error
     field = solve(Scene(UNIT, Material(1.0), [TOUCHING], **load), particles=2000)
-    assert told.upper < 15 < field.conductivity
+    assert told.upper < 20 < field.conductivity
     assert field.error.lower < told.upper and field.error.upper > field.conductivity
     assert field.error.temperature > 0
