@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from demheat.conduction.products import advance, apply, dot
+from demheat.conduction.products import advance, dot, multiplier
 
 
 def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
@@ -13,7 +13,7 @@ def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
     """
     z, q = np.empty_like(r), np.empty_like(r)
     norm, p, rz = np.sqrt(dot(r, r)), np.zeros_like(r), 1.0
-    alpha = 0.0
+    alpha, multiply = 0.0, multiplier(links, diagonal, len(r))
     first = norm
     for iteration in range(most):
         if norm <= limit:
@@ -24,7 +24,7 @@ def preconditioned(links, diagonal, precondition, r, x, limit, most, done):
         rz = dot(r, z)
         p *= beta
         p += z
-        product = apply(links, diagonal, p, q)
+        product = multiply(p, q)
         if not product > 0.0:  # rounding has made the matrix indefinite
             return iteration + 1
         alpha = rz / product

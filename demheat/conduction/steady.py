@@ -223,11 +223,11 @@ def _jacobi(system):
 
 
 def _by(system, precondition):
-    """Conjugate gradients with a preconditioner."""
+    """Conjugate gradients with a preconditioner; their own sums are not by BLAS."""
     links, diagonal = links_of(system.network), system.diagonal
 
     def solve(r, x, limit, most):
-        with one_blas_thread(), stage("equations") as done:
+        with stage("equations") as done:
             return preconditioned(links, diagonal, precondition, r, x, limit, most, done), x
 
     return solve
@@ -250,7 +250,13 @@ def _multigrid(system, kept, coarse):
         with one_blas_thread():
             kept["precondition"] = preconditioner(links_of(system.network), diagonal, coarse)
         kept["matrix"] = system.network.conductance, diagonal
-    return _by(system, kept["precondition"])
+    solve = _by(system, kept["precondition"])
+
+    def by_one_thread(*given):
+        with one_blas_thread():
+            return solve(*given)
+
+    return by_one_thread
 
 
 def _serves(one, other, factor):

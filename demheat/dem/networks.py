@@ -13,9 +13,10 @@ from demheat.network.calibrated import contact_facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import drop_empty_cells, laguerre
 from demheat.network.platonic import platonic_facets
+from demheat.network.repeated import farthest_of, known_cells
 from demheat.packing.base import Packing
 from demheat.packing.gate import check_packing
-from demheat.packing.twins.conforming import conform
+from demheat.packing.twins.conforming import conformed
 from demheat.runtime.limits import check_memory
 from demheat.runtime.progress import stage
 from demheat.scene import Scene, check_scene
@@ -108,12 +109,17 @@ def _tessellated(scene, packing, law, seed):
     check_numbers(scene)
     scene.require(ON_FACETS, takes=law.takes)
     check_packing(packing)
-    begun = time.perf_counter()
+    begun, known = time.perf_counter(), None
     if law.conforming:
-        asked, packing = packing.number, conform(packing, scene, seed=seed, gap_spacing=law.gap_spacing)
+        asked = packing
+        how = {"seed": seed, "gap_spacing": law.gap_spacing, "farthest": farthest_of(asked)}
+        made = conformed(asked, scene, **how)
+        packing = made.packing
         check_memory("particles, twins in narrow gaps among them,", packing.number, BYTES * packing.number)
-        warn_of_twins(packing, asked)
-    return *_facets(packing, law), time.perf_counter() - begun
+        warn_of_twins(packing, asked.number)
+        known = known_cells(asked, made)
+        del made, asked  # what is large
+    return *_facets(packing, law, known), time.perf_counter() - begun
 
 
 def _connected(scene, law, packing, facets, tessellation_s):
@@ -137,16 +143,17 @@ def _connected(scene, law, packing, facets, tessellation_s):
     return network._replace(stats=said | spent)
 
 
-def _cells(packing, law):
-    return laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic, domain=packing.domain)
+_CONTACTS = {Calibrated: contact_facets, Platonic: platonic_facets}
 
 
-_FACETS = {Laguerre: _cells, Calibrated: contact_facets, Platonic: platonic_facets}
-
-
-def _facets(packing, law):
+def _facets(packing, law, known=None):
     """The particles that take part, and their facets before they are calibrated."""
-    return drop_empty_cells(packing, _FACETS[type(law)](packing, law))
+    if law.cells:
+        body = {"periodic": packing.periodic, "domain": packing.domain}
+        facets = laguerre(packing.centers, packing.radii**2, packing.size, known=known, **body)
+    else:
+        facets = _CONTACTS[type(law)](packing, law)
+    return drop_empty_cells(packing, facets)
 
 
 def _calibrated(scene, packing, facets, law):

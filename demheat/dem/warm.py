@@ -26,7 +26,7 @@ from demheat.conduction.multigrid import preconditioner
 from demheat.conduction.products import advance, apply, dot
 from demheat.conduction.steady import AMG_UNKNOWNS, solve_checked
 from demheat.network import laguerre_kernels
-from demheat.network.base import Facets
+from demheat.network.base import FEW, Facets
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.network.links_kernels import links_of
@@ -36,8 +36,9 @@ from demheat.runtime.progress import stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Material, Scene
 
-# Lattice planes of what is solved for the sake of its kernels: enough for a multigrid with two levels.
-SIDE = 6
+# Lattice planes of what is solved for the sake of its kernels: enough for those of many rows, and a multigrid with two
+# levels.
+SIDE = 17
 # Seconds that the second process is waited for at most.
 PATIENCE = 300.0
 # Seconds between looks whether it is done.
@@ -144,8 +145,12 @@ PARTS = (cells, multigrid, steady)
 
 
 def parts_of(law, particles: int, *, steady_state: bool = True):
-    """What a first solve of so many particles needs: nothing where facets do not bound cells."""
-    if not law.cells:
+    """What a first solve of so many particles needs from a second process.
+
+    That is nothing where facets do not bound cells, and where few particles are not packed: what these need is compiled
+    before another process would begin.
+    """
+    if not law.cells or (law.conforming and particles <= FEW // 2):
         return ()
     large = (multigrid,) if particles > AMG_UNKNOWNS else ()
     return (cells, *large, steady) if steady_state else (cells,)

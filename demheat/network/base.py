@@ -8,6 +8,8 @@ from demheat.scene import WALLS
 
 # Names of the walls by their codes in `wall_side`.
 SIDES = (*WALLS, "round")
+# Rows for which nothing need be compiled: NumPy is as fast, and to compile takes longer than to solve.
+FEW = 4096
 
 
 class Facets(NamedTuple):
@@ -136,7 +138,9 @@ def row_numbers(indptr):
 
 def branches(centers, size, indptr, indices, image):
     """Vectors from each row's centre to the centre (image) of its neighbour."""
-    return centers[indices] + image_shifts(image, size) - np.repeat(centers, np.diff(indptr), axis=0)
+    way, away = centers[indices] - np.repeat(centers, np.diff(indptr), axis=0), np.flatnonzero(image != HERE)
+    way[away] += image_shifts(image[away], size)
+    return way
 
 
 def without_links(network, still):

@@ -14,9 +14,10 @@ particles in a sphere).
 from typing import NamedTuple
 
 import numpy as np
-from scipy.spatial import ConvexHull, cKDTree
+from scipy.spatial import cKDTree
 
 from demheat.network.base import SIDES
+from demheat.packing.twins.surfaces import circumscribed_volume
 from demheat.scene import ROUND_AXES
 
 # Width of a wall facet in mean spacings of the particles.
@@ -70,24 +71,6 @@ def fibonacci(number):
     turn = np.pi * (1.0 + np.sqrt(5.0)) * index
     ring = np.sqrt(1.0 - height**2)
     return np.column_stack([ring * np.cos(turn), ring * np.sin(turn), height])
-
-
-def circumscribed_volume(normals):
-    """Volume of the polyhedron of the planes normal.x <= 1, exact to rounding.
-
-    Its vertices are the poles of the triangles of the convex hull of the normals. Each triangle and each of its edges
-    make two signed tetrahedra with corners in the middle, a tangent point, the edge's nearest point and the vertex.
-    """
-    a, b, c = (normals[corner] for corner in ConvexHull(normals).simplices.T)
-    pole = np.cross(b - a, c - a)
-    flip = np.einsum("ij,ij->i", pole, a) < 0  # counter-clockwise seen from outside
-    b, c = np.where(flip[:, None], c, b), np.where(flip[:, None], b, c)
-    vertex = pole / np.einsum("ij,ij->i", pole, a)[:, None]
-    total = 0.0
-    for p, q in ((a, b), (b, c), (c, a)):
-        near = (p + q) / (1.0 + np.einsum("ij,ij->i", p, q))[:, None]
-        total += np.einsum("ij,ij->", np.cross(p, near) + np.cross(near, q), vertex)
-    return total / 6.0
 
 
 def round_distances(wall, points, normals):

@@ -3,7 +3,9 @@
 import numpy as np
 
 from demheat.laws import RULES
-from demheat.network.base import HERE, Network, image_shifts
+from demheat.network.base import FEW, Network, branches
+from demheat.network.links_kernels import Places, lengths
+from demheat.runtime.threads import shared_out
 
 # Rows connected at once: bounds the scratch memory (some 1.5 kB a row, 25 MB).
 BLOCK = 16384
@@ -54,13 +56,12 @@ def connect(packing, facets, phase, conductivities, *, rule="harmonic", cells=Tr
 
 def _conductances(packing, facets, conductivity, rule):
     """Conductance of each link, (m,) float array, W/K; block by block."""
-    conductance = np.empty(len(facets.indices))
+    conductance = _lengths(packing, facets)
     for start in range(0, packing.number, BLOCK):
         rows = np.arange(start, min(packing.number, start + BLOCK))
         links = slice(facets.indptr[rows[0]], facets.indptr[rows[-1] + 1])
         row = np.repeat(rows, np.diff(facets.indptr[start : start + len(rows) + 1]))
-        there = facets.indices[links]
-        length = _lengths(packing.centers, packing.size, row, there, facets.image[links])
+        there, length = facets.indices[links], conductance[links]
         k, beyond = conductivity[row], conductivity[there]
         unlike = np.flatnonzero(k != beyond)
         share = facets.distance[links][unlike] / length[unlike]
@@ -80,13 +81,12 @@ def _resisted(conductance, facets, phase, resistance):
     return conductance
 
 
-def _lengths(centers, size, row, indices, image):
-    """Distance between the centres of some links, (m,) float array, m."""
-    total, away = np.zeros(len(indices)), np.flatnonzero(image != HERE)
-    shifts = image_shifts(image[away], size)
-    for k in range(3):
-        x = np.ascontiguousarray(centers[:, k])
-        way = x[indices] - x[row]
-        way[away] += shifts[:, k]
-        total += way * way
-    return np.sqrt(total)
+def _lengths(packing, facets):
+    """Distance between the centres of each link, (m,) float array, m."""
+    links = facets.indptr, facets.indices
+    if packing.number <= FEW:
+        way = branches(packing.centers, packing.size, *links, facets.image)
+        return np.sqrt(np.einsum("ij,ij->i", way, way))
+    length, places = np.empty(len(facets.indices)), Places(packing.centers, packing.size, facets.image)
+    shared_out(lengths, packing.number, *links, places, length, piece=BLOCK)
+    return length

@@ -1,5 +1,7 @@
 """Radical (Laguerre) tessellation: the transmission surfaces that make a lattice exact for linear fields."""
 
+from contextlib import suppress
+
 import numpy as np
 
 from demheat.network import laguerre_kernels as kernels
@@ -8,6 +10,7 @@ from demheat.network.bins import bin_points
 from demheat.network.curved import ROUND_SIDE, round_distances, round_wall, tangents_within
 from demheat.network.links_kernels import match_links
 from demheat.network.polyhedron_kernels import empty_polyhedron
+from demheat.network.repeated_kernels import nothing_known
 from demheat.network.sites_kernels import Sites, empty_candidates
 from demheat.packing.base import check_domain
 from demheat.runtime.progress import stage
@@ -33,25 +36,37 @@ FIRST, FACTOR, MAX_LEVELS = 1.5, 3.0, 12
 SLIVER = 1e-11
 
 
-def laguerre(centers, weights, size, *, periodic=True, domain="box"):
+def laguerre(centers, weights, size, *, periodic=True, domain="box", known=None):
     """Cells of the radical tessellation of weighted points in a box, or in a round body inscribed in it.
 
     The facet between p and q lies at (d^2 + w_p - w_q)/(2 d) from p; with w = R^2 it is the radical plane of two
     spheres. The facet vectors of every cell sum to zero and the cells fill the body. Cells at a round wall end at
-    tangent planes that enclose its exact volume (see `demheat.network.curved`); a cell may meet several of them.
+    tangent planes that enclose its exact volume (see `demheat.network.curved`); a cell may meet several of them. Cells
+    that are known (see `demheat.network.repeated`) are not cut.
     """
-    return tessellated(centers, weights, size, periodic=periodic, domain=domain)[0]
+    return tessellated(centers, weights, size, periodic=periodic, domain=domain, known=known)[0]
 
 
-def tessellated(centers, weights, size, *, periodic=True, domain="box"):
-    """The same as `laguerre` with what the search for neighbours cost."""
+def tessellated(centers, weights, size, *, periodic=True, domain="box", known=None):
+    """The same as `laguerre` with what the search for neighbours cost.
+
+    Should a known cell be another's after all, its neighbours do not see the facets that it has: then all are cut.
+    """
+    given = centers, weights, size
+    if known is not None:
+        with suppress(RuntimeError):
+            return _tessellated(*given, periodic, domain, known)
+    return _tessellated(*given, periodic, domain, nothing_known())
+
+
+def _tessellated(centers, weights, size, periodic, domain, known):
     centers, weights, size, periodic = _checked(centers, weights, size, periodic)
     check_domain(domain, size, periodic)
     spacing = (domain_volume(domain, size) / len(centers)) ** (1.0 / 3.0)
     wall = round_wall(domain, size, spacing)
     _check_round(centers, wall, domain)
     sites = filed(centers, weights, size, periodic, spacing)
-    volumes, number, links, (particle, side, *walls), again = _cut_all(sites, wall, spacing)
+    volumes, number, links, (particle, side, *walls), again = _cut_all(sites, wall, spacing, known)
     del sites
     _check_filled(volumes, domain_volume(domain, size), domain)
     links = _matched(number, links, spacing)
@@ -158,7 +173,7 @@ WALLS = (np.int64, np.int64, float, float)  # particle, side, area, distance
 MATCHED = 16384
 
 
-def _cut_all(sites, wall, spacing):
+def _cut_all(sites, wall, spacing, known):
     """Volumes, numbers of links, columns of links and of walls, and the share of cells begun more than once."""
     n = len(sites.points)
     volumes, number, again = np.empty(n), np.empty(n, np.int32), 0
@@ -166,7 +181,7 @@ def _cut_all(sites, wall, spacing):
     with stage("cells") as done:
         for start in range(0, n, BLOCK):
             stop = min(n, start + BLOCK)
-            block, parts, begun = _cut_block(start, stop, sites, wall, spacing)
+            block, parts, begun = _cut_block(start, stop, sites, known, wall, spacing)
             volumes[start:stop], number[start:stop] = block.volume, block.links
             again += begun
             _gather(parts, links.grow(int(block.links.sum()), stop / n), lambda used: slice(used[0]))
@@ -186,7 +201,7 @@ def _gather(parts, columns, taken, names=FACETS):
             np.concatenate([getattr(cut, name)[place, of] for cut, place, of in ordered], out=column)
 
 
-def _cut_block(start, stop, sites, wall, spacing):
+def _cut_block(start, stop, sites, known, wall, spacing):
     """Cut a block of rows; what became of them, their facets in parts (chunks and Cut), and how many began anew.
 
     Chunks that had too little room, or saw too little of a round wall, are cut again.
@@ -201,7 +216,7 @@ def _cut_block(start, stop, sites, wall, spacing):
         round_wall = (None, None)
         if len(wall.normals):
             round_wall = wall, tangents_within(wall, sites.points[start:stop], reach)
-        what = todo, start, sites, *round_wall, _limits(sites, wall, spacing, reach), cut
+        what = todo, start, sites, known, *round_wall, _limits(sites, wall, spacing, reach), cut
         shared_out(_cut_chunks, len(todo), *what, piece=PIECE)
         blind = _unseen(cut.status, len(wall.normals) and reach < 2 * sites.size.max())
         total = cut.used.sum(axis=1)

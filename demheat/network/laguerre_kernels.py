@@ -22,6 +22,7 @@ from demheat.network.polyhedron_kernels import (
     measure,
     start_box,
 )
+from demheat.network.repeated_kernels import repeat_cell
 from demheat.network.sites_kernels import (
     HIGH,
     LOW,
@@ -78,11 +79,13 @@ class Cut(NamedTuple):
 
 
 @njit(**ONCE)
-def _farthest(cell, count):
-    """Distance of the farthest vertex from the site."""
+def _farthest(vertex, count):
+    """Distance of the farthest of some vertices from the site."""
     most = 0.0
     for v in range(count):
-        most = max(most, cell.vertex[X, v] ** 2 + cell.vertex[Y, v] ** 2 + cell.vertex[Z, v] ** 2)
+        square = vertex[X, v] ** 2 + vertex[Y, v] ** 2 + vertex[Z, v] ** 2
+        if square > most:
+            most = square
     return np.sqrt(most)
 
 
@@ -184,14 +187,14 @@ def _cut_sites(cell, count, planes, farthest, found, m, eps):
             state, count = TANGLED, 0
             break
         planes += 1
-        farthest = _farthest(cell, count)
+        farthest = _farthest(cell.vertex, count)
     return state, count, planes, farthest
 
 
 @njit(**ONCE)
 def _cut_level(i, level, sites, cell, count, planes, found, eps):
     """Cut by the sites of a level, ring by ring, until those left cannot; (status, vertex count, number of planes)."""
-    farthest, ring = _farthest(cell, count), 1
+    farthest, ring = _farthest(cell.vertex, count), 1
     find_home(i, level, sites, found)
     while True:
         m = gather_ring(i, ring, level, farthest, sites, found)
@@ -210,17 +213,15 @@ def _cut_level(i, level, sites, cell, count, planes, found, eps):
 
 
 @njit(**ONCE)
-def _secured(i, sites, found, farthest):
+def _secured(i, sites, farthest):
     """Whether no site of any level that lies beyond one image of the box to either side might still cut the cell."""
-    for level in range(len(sites.heaviest)):
-        find_home(i, level, sites, found)
-        ring, ended = 1, False
-        while not ended:
-            ring += 1
-            distance, ended = ring_distance(ring, found.grid, found.frame)
-        if distance < cutting_reach(farthest, sites.weights[i], sites.heaviest[level]):
-            return False
-    return True
+    least = np.inf
+    for k in range(3):
+        if sites.periodic[k]:
+            off = min(sites.points[i, k], sites.size[k] - sites.points[i, k])
+            least = min(least, sites.size[k] + off)
+    heaviest = sites.heaviest[len(sites.heaviest) - 1]
+    return least >= cutting_reach(farthest, sites.weights[i], heaviest)
 
 
 @njit(**ONCE)
@@ -246,7 +247,7 @@ def _cell(i, half, sites, wall, tangents, eps, limits, found, cell):
             state, wide = OK, True
     if state != OK or count == 0:
         return state, 0, 0
-    if wide and not _secured(i, sites, found, _farthest(cell, count)):
+    if wide and not _secured(i, sites, _farthest(cell.vertex, count)):
         return UNSECURED, 0, 0
     if wall is not None:
         skip = tangents[first] if first >= 0 else -1
@@ -278,15 +279,17 @@ def _note_facets(row, chunk, planes, cell, sliver, out):
 
 
 @njit(**PLAIN, nogil=True)
-def cut_cells(first, last, chunks, start, sites, wall, near, limits, found, cell, out):
+def cut_cells(first, last, chunks, start, sites, known, wall, near, limits, found, cell, out):
     """Cut the cells of some chunks of CHUNK rows, those in places from first / CHUNK to last / CHUNK in a list.
 
-    Each chunk has rows and facets of its own. Python's lock is not held: threads may cut other chunks meanwhile.
+    Cells that are known are noted as they are. Each chunk has rows and facets of its own. Python's lock is not held:
+    threads may cut other chunks meanwhile.
 
     first, last : int; CHUNK times places; to go on, more
     chunks : (c,) int64 array; numbers of the chunks among the rows of `out`
     start : int; the site of its first row
     sites : Sites
+    known : Known
     wall : RoundWall or None; tangent planes normal.(x - middle) <= radius; None for a box, for which half as much is
       compiled
     near : Tangents or None; the planes of the wall that touch the body within reach of each row's site
@@ -304,6 +307,8 @@ def cut_cells(first, last, chunks, start, sites, wall, near, limits, found, cell
         if row >= len(out.status):
             continue
         i = start + row
+        if repeat_cell(i, row, place, known, out):
+            continue
         half = min(limits.box + 2.0 * np.sqrt(sites.weights[i] - limits.lightest), limits.widest)
         eps, state, count, planes, volume, tangents = limits.eps, OK, 0, 0, 0.0, None
         if near is not None:

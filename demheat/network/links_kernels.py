@@ -10,6 +10,10 @@ from numba import njit
 IN_PIECES = {"cache": True, "error_model": "numpy", "_nrt": False, "nogil": True}
 
 
+# Code of the image in the box itself.
+HERE = 13
+
+
 class Links(NamedTuple):
     """Links of a network in compressed rows; each stands in both of its rows."""
 
@@ -38,6 +42,17 @@ def places_of(network):
     return Places(network.centers, network.size, network.image)
 
 
+@njit(cache=True, error_model="numpy", _nrt=False, inline="always")
+def _way(i, j, code, centers, size):
+    """Vector from a particle to an image of another."""
+    u, v, w = centers[j, 0] - centers[i, 0], centers[j, 1] - centers[i, 1], centers[j, 2] - centers[i, 2]
+    if code != HERE:  # few are not
+        u += (code // 9 - 1) * size[0]
+        v += (code // 3 % 3 - 1) * size[1]
+        w += (code % 3 - 1) * size[2]
+    return u, v, w
+
+
 @njit(cache=True, error_model="numpy", _nrt=False)
 def rise_along(i, e, links, places, gradient, x):
     """Rise of the temperature from a particle to its neighbour (image) along a link, and the way there.
@@ -51,12 +66,24 @@ def rise_along(i, e, links, places, gradient, x):
     rise : float, K
     u, v, w : float, m; vector from the particle to its neighbour
     """
-    code = np.int64(places.image[e])
-    j, centers, size = links.indices[e], places.centers, places.size
-    u = centers[j, 0] - centers[i, 0] + (code // 9 - 1) * size[0]
-    v = centers[j, 1] - centers[i, 1] + (code // 3 % 3 - 1) * size[1]
-    w = centers[j, 2] - centers[i, 2] + (code % 3 - 1) * size[2]
+    j = links.indices[e]
+    u, v, w = _way(i, j, np.int64(places.image[e]), places.centers, places.size)
     return x[j] - x[i] + gradient[0] * u + gradient[1] * v + gradient[2] * w, u, v, w
+
+
+@njit(**IN_PIECES)
+def lengths(first, last, indptr, indices, places, length):
+    """Distances between the ends of links of rows from first to last.
+
+    indptr : (n + 1,) int64 array; row pointers
+    indices : (m,) uint32 array; the other particle of each link
+    places : Places
+    length : (m,) float array, m, out
+    """
+    for i in range(np.uint64(first), np.uint64(last)):
+        for e in range(np.uint64(indptr[i]), np.uint64(indptr[i + np.uint64(1)])):
+            u, v, w = _way(i, indices[e], np.int64(places.image[e]), places.centers, places.size)
+            length[e] = np.sqrt(u * u + v * v + w * w)
 
 
 @njit(**IN_PIECES)

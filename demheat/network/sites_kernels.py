@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from demheat.network.links_kernels import HERE
 from demheat.network.polyhedron_kernels import ONCE, PLAIN
 
-# Code of the image in the box itself: no shift along any axis.
-HERE = 13
 LOW, HIGH, WIDTH = range(3)
 HOME, COUNT, PERIODIC = range(3)
 # Bins that candidates are put in order by.

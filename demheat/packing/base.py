@@ -56,6 +56,11 @@ class Packing(NamedTuple):
 
 def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: str = "box") -> Packing:
     """Check, cast and sort the arrays of a packing."""
+    return sorted_packing(centers, radii, size, periodic, provenance, domain=domain)[0]
+
+
+def sorted_packing(centers, radii, size, periodic, provenance: dict, *, domain: str = "box"):
+    """The same and the order of its particles among those given, (n,) int array."""
     size, periodic = check_box(size, periodic)
     check_domain(domain, size, periodic)
     centers = np.array(reals("centers", centers, "(n, 3) finite numbers, n > 0"))
@@ -78,7 +83,7 @@ def make_packing(centers, radii, size, periodic, provenance: dict, *, domain: st
         raise ValueError(f"centers[{which}] = {centers[which].tolist()}: lies outside the domain {domain!r}")
     centers = wrap(centers, size, periodic)
     order = morton_order(centers, size)
-    return Packing(centers[order], radii[order], size, periodic, dict(provenance), domain)
+    return Packing(centers[order], radii[order], size, periodic, dict(provenance), domain), order
 
 
 def check_box(size, periodic):

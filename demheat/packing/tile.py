@@ -36,6 +36,8 @@ STRETCH, OFF = 1.3, 0.05
 # Found on the centred sphere, 8000 and 27 000 particles, contrasts .01, 10, 100: from 1.7 to .8 an error of .0005,
 # .0013, .0022 %; to 1.0 .0006, .0015, .0027; drawn in over six radii .0028, .0061, .0102.
 LAYER, FIRST = 1.7, 0.8
+# Mean radii: no place in a tile is farther from a particle.
+FARTHEST = 1.6
 
 
 class Choice(NamedTuple):
@@ -44,6 +46,15 @@ class Choice(NamedTuple):
     number: int
     counts: tuple[int, int, int]
     edges: tuple[float, float, float]
+
+
+class Places(NamedTuple):
+    """Which point of which tile the particles of a packing are."""
+
+    points: np.ndarray  # (t, 3) m, of the tile at the box's corner
+    edges: np.ndarray  # (3,) m, of a tile
+    counts: np.ndarray  # (3,) of tiles along each axis
+    place: np.ndarray  # (n,) t times the number of the tile, along the last axis first, plus the point's; -1 if moved
 
 
 def numbers() -> list[int]:
@@ -65,25 +76,63 @@ def tiled(number: int, *, size, periodic: bool = True, seed: int = 0, keep: Call
     choice = _chosen(number, size, periodic)
     if choice is None:
         raise ValueError(f"number = {number!r} in a box of {size.tolist()}: no tile fits it")
-    points = _turned(_tile(choice.number), seed)
-    radius = cube_root(0.75 / math.pi * PHI * math.prod(choice.edges) / choice.number)
-    cells = np.stack(np.meshgrid(*map(np.arange, choice.counts), indexing="ij"), axis=-1).reshape(-1, 3)
-    cells = cells[morton_order(cells + 0.5, np.array(choice.counts, dtype=float))]
-    parts, made = [], 0
-    for cell in cells:
-        centers = (points + cell) * choice.edges
-        if not periodic:
-            centers = _layered(centers[np.all(centers <= size, axis=1)], size, radius)
+    radius, parts, made = _radius(choice), [], 0
+    for _, centers, _ in _laid(choice, size, periodic, seed):
         made += len(centers)
         parts.append(centers if keep is None else centers[keep(centers)])
-    centers = np.concatenate(parts)
-    if periodic:
-        # Rounding may put the last one on the far face, which is the first.
-        centers = np.minimum(centers, np.nextafter(size, 0.0))
+    centers = _within(np.concatenate(parts), size, periodic)
     provenance = {"algorithm": "tile", "seed": int(seed), "tile": choice.number, "repeats": list(choice.counts)}
     provenance |= {"asked": int(number), "stretch": max(choice.edges) / min(choice.edges)}
     provenance |= {"number": made, "phi": PHI}
     return Packing(centers, np.full(len(centers), radius), size, np.full(3, periodic), provenance)
+
+
+def choice_of(packing: Packing) -> Choice | None:
+    """The tile and repeats that a packing says that it is made of; None if it says nothing, or has other radii."""
+    asked, seed = (packing.provenance.get(name) for name in ("asked", "seed"))
+    if packing.provenance.get("algorithm") != "tile" or not (isinstance(asked, int) and isinstance(seed, int)):
+        return None
+    choice = _chosen(asked, packing.size, bool(packing.periodic.all())) if asked > 0 and seed >= 0 else None
+    return None if choice is None or np.any(packing.radii != _radius(choice)) else choice
+
+
+def places_of(packing: Packing) -> Places | None:
+    """Where the particles of a packing stand in tiles; None if it is not what `tiled` makes, to the bit."""
+    choice, periodic = choice_of(packing), bool(packing.periodic.all())
+    if choice is None:
+        return None
+    seed = packing.provenance["seed"]
+    parts, place = [], []
+    for cell, centers, which in _laid(choice, packing.size, periodic, seed):
+        first = choice.number * int(np.ravel_multi_index(cell, choice.counts))
+        parts.append(centers)
+        place.append(np.where(which < 0, -1, which + first).astype(np.int32))
+    if not np.array_equal(_within(np.concatenate(parts), packing.size, periodic), packing.centers):
+        return None
+    edges = np.array(choice.edges)
+    return Places(_turned(_tile(choice.number), seed) * edges, edges, np.array(choice.counts), np.concatenate(place))
+
+
+def _laid(choice, size, periodic, seed):
+    """Tile by tile its place among them, its centres, and which of its points these are: -1 where they were moved."""
+    points = _turned(_tile(choice.number), seed)
+    cells = np.stack(np.meshgrid(*map(np.arange, choice.counts), indexing="ij"), axis=-1).reshape(-1, 3)
+    for cell in cells[morton_order(cells + 0.5, np.array(choice.counts, dtype=float))]:
+        centers, which = (points + cell) * choice.edges, np.arange(choice.number)
+        if not periodic:
+            which = np.flatnonzero(np.all(centers <= size, axis=1))
+            laid, centers = centers[which], _layered(centers[which], size, _radius(choice))
+            which = np.where(np.any(centers != laid, axis=1), -1, which)
+        yield cell, centers, which
+
+
+def _radius(choice):
+    return cube_root(0.75 / math.pi * PHI * math.prod(choice.edges) / choice.number)
+
+
+def _within(centers, size, periodic):
+    """Rounding may put the last one on the far face of a period, which is the first."""
+    return np.minimum(centers, np.nextafter(size, 0.0)) if periodic else centers
 
 
 def _chosen(number, size, periodic):

@@ -21,6 +21,7 @@ THREADS = 2
 RANKS = (1, 2)
 STRONG, WEAK = (20_000, 1_000_000), (500_000, 1_000_000)  # particles of all ranks, and of each
 BEFORE = "b4da0d3"
+RELEASED = "0ab3669"  # version 0.2.0
 ACCURACY = 1e-4  # of the multipoles
 PAPER = {}
 # Largest error of what a method spends on an inclusion, %.
@@ -110,8 +111,9 @@ def run(name, part, number=None, kind=None, fraction=None, *, method, **knobs):
     if method == "dem":
         # Stages are called one by one, with the law that the method fixes.
         knobs = {key: value for key, value in knobs.items() if key not in methods.all_methods()[name].knobs}
-    if part in ("before", "start"):
-        return {"before": whole.before_row, "start": whole.start_row}[part](**knobs)
+    whole_runs = {"before": whole.before_row, "most": whole.most_row, "start": whole.start_row}
+    if part in whole_runs:
+        return whole_runs[part](**knobs)
     if part == "cutter":
         from studies.common.cutter import compared
 
@@ -188,10 +190,16 @@ def _cached(rows):
 
 
 def _engine(df):
-    rows = pick(df, part="before")
+    for then, text, limit in (
+        (BEFORE, "DEM, 1e6: CPU time over that of the code before", 0.6),
+        (RELEASED, "DEM, 8e6: CPU time over that of version 0.2.0", 0.34),
+    ):
+        rows = pick(df, part="before", then=then)
+        if len(rows):
+            yield text, (rows["cpu_s"] / rows["then_cpu_s"]).iloc[0], limit
+    rows = pick(df, part="most")
     if len(rows):
-        row = rows.iloc[0]
-        yield "DEM, 1e6: CPU time over that of the code before", row["cpu_s"] / row["then_cpu_s"], 0.6
+        yield "DEM, 3e7: peak memory per unknown, bytes", (rows["peak_mib"] * 2**20 / rows["unknowns"]).iloc[0], 600.0
     rows = pick(df, part="elements", name="dem", particles=PARTICLES[-1])
     if len(rows):
         yield "DEM, 1e6: error against the multipoles, %", largest(rows, "error_percent"), 0.01
@@ -249,7 +257,7 @@ def table(df):
 
 def notes(df):
     """What is left of the code before once the packing, which both have, is taken from both."""
-    for _, row in pick(df, part="before").iterrows():
+    for _, row in pick(df, part="before", then=BEFORE).iterrows():
         now, then = row["wall_s"] - row["packing_s"], row["then_wall_s"] - row["then_packing_s"]
         yield (
             f"The code before: without the packing, which is the same in both and takes {row['packing_s']:.0f} of "

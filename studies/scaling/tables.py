@@ -20,7 +20,8 @@ def lines(df):
 
     df = df.reindex(columns=[*dict.fromkeys([*df.columns, *COLUMNS])])
     solved = errors(df[df["part"].isin(("inclusions", "kinds", "goal", "elements"))])
-    made = [_line(row) for _, row in solved.iterrows()] + [*_before(df), *_ranked(df), *_fits(df)]
+    rows = [*_before(df), *_most(df), *_ranked(df), *_fits(df)]
+    made = [_line(row) for _, row in solved.iterrows()] + rows
     return pd.DataFrame(made)
 
 
@@ -63,13 +64,21 @@ def _before(df):
         change = 100 * referee.value_error(row["k"], row["then_k"])
         reason = f"k {change:+.4f} % from the code before, whose margin beside twins was narrower"
         for code, before, note in (("today", "", reason), (row["then"], "then_", "")):
-            cost = {key: row[before + key] for key in ("unknowns", "cpu_s", "wall_s", "peak_mib")}
-            yield (
-                {"what": "before", "method": LOOK[row["name"]][0], "of": f"code of {code}"}
-                | {"unknowns": cost["unknowns"], "CPU, s": cost["cpu_s"], "wall, s": cost["wall_s"]}
-                | {"GiB": cost["peak_mib"] / 1024, "bytes each": cost["peak_mib"] * 2**20 / cost["unknowns"]}
-                | {"note": note}
-            )
+            yield _whole(row, f"code of {code}", before) | {"note": note}
+
+
+def _most(df):
+    """As many particles as memory holds."""
+    for _, row in pick(df[df["status"] == "ok"], part="most").iterrows():
+        yield _whole(row, f"{row['particles']:.0f} particles")
+
+
+def _whole(row, what, before=""):
+    """A run that is timed as a whole."""
+    cost = {key: row[before + key] for key in ("unknowns", "cpu_s", "wall_s", "peak_mib")}
+    line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": what, "unknowns": cost["unknowns"]}
+    line |= {"CPU, s": cost["cpu_s"], "wall, s": cost["wall_s"], "GiB": cost["peak_mib"] / 1024}
+    return line | {"bytes each": cost["peak_mib"] * 2**20 / cost["unknowns"]}
 
 
 def _ranked(df):

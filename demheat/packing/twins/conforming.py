@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from demheat.packing.base import Packing, make_packing
+from demheat.packing.base import Packing, sorted_packing
 from demheat.packing.gate import check_packing
 from demheat.packing.twins.gaps import Interfaces
 from demheat.packing.twins.patterns import LEAST_OFFSET, LEAST_SPACING, SPACING, Tally, patterns
@@ -34,6 +34,8 @@ NEAR_WALL = 0.3
 # Of a mean radius: offsets in columns of twins, whose cells are prisms, may be as small as rounding allows, and two
 # surfaces' twins that are nearer to each other than this are one.
 LEAST_COLUMN, ONE = 1e-6, 1e-9
+# Twins are nearer to interfaces than so many mean radii, those in columns and of very few facets apart.
+AWAY = 0.25 * NARROW + 0.05
 # In a gap, over its width: as `demheat.Laguerre` has it.
 GAP_SPACING = 0.85
 # Every point of an interface lies within this many spacings of a twin: a triangular pattern would need 0.58, Fibonacci
@@ -52,6 +54,7 @@ class _Twins(NamedTuple):
     offsets: np.ndarray  # (k, 2) m, against the normal and along it
     reach: np.ndarray  # (k, 2) m, how far their cells go from the interface
     weights: np.ndarray  # (k, 2) m2
+    away: np.ndarray  # (k,) m, from the interface at most
 
 
 class Part(NamedTuple):
@@ -65,27 +68,57 @@ class Part(NamedTuple):
     holds: Callable
 
 
+class Conformed(NamedTuple):
+    """A packing with twins, and where its particles come from."""
+
+    packing: Packing
+    origin: np.ndarray  # (n,) int array: Number of each particle in the packing that was given; -1 of twins
+    alone: np.ndarray  # (n,) bool array: Which of them no twin can have a facet with
+
+
 def conform(
     packing: Packing, scene: Scene, *, seed: int = 0, gap_spacing: float = GAP_SPACING, part: Part | None = None
 ) -> Packing:
     """Replace the particles near every interface of a scene by mirrored twins."""
+    return conformed(packing, scene, seed=seed, gap_spacing=gap_spacing, part=part).packing
+
+
+def conformed(
+    packing: Packing,
+    scene: Scene,
+    *,
+    seed: int = 0,
+    gap_spacing: float = GAP_SPACING,
+    part: Part | None = None,
+    farthest: float = np.inf,
+) -> Conformed:
+    """The same, and what became of the particles; no place of a cell without twins is farther than that from its own.
+
+    That length, m, says which cells are beyond the reach of twins: none, if it is infinite.
+    """
     check_packing(packing)
     check_scene(scene)
     if not scene.inclusions:
         none = dict.fromkeys(("twins", "even_twins", "pairs_left_out", "shells"), 0)
-        return packing._replace(provenance={**packing.provenance, **none})
+        packing = packing._replace(provenance={**packing.provenance, **none})
+        return Conformed(packing, np.arange(packing.number), np.ones(packing.number, dtype=bool))
     if part is None:
         part = Part(packing.radii.mean(), packing.radii.max(), lambda points: np.ones(len(points), dtype=bool))
         _check_number(packing, scene, part.radius)
     radius = part.radius
     columns = {"close": SPACING / GAP_SPACING * radius, "least": LEAST_SPACING * radius}
-    interfaces = Interfaces(scene, _reach(part, gap_spacing), closer=gap_spacing / GAP_SPACING, **columns)
+    columns["closer"] = gap_spacing / GAP_SPACING
+    interfaces = Interfaces(scene, _reach(part, gap_spacing), **columns)
+    # Farther than any other gap is looked for, to tell which cells twins do not reach.
+    wide = interfaces
+    if np.isfinite(farthest):
+        wide = Interfaces(scene, max(interfaces.reach, _beyond(farthest, radius)), **columns)
     tally = Tally()
     twins, number, left_out = _twins_on(interfaces, part, seed, tally, gap_spacing)
     centers, weights = np.concatenate(_sides(twins)), twins.weights.T.ravel()
     if interfaces.stacks.members:
         centers, weights = _once(packing, centers, weights, radius)
-    near = interfaces.gap(packing.centers)
+    near = wide.gap(packing.centers)
     keep = near > _cleared(packing, twins, radius, near)
     kept = np.minimum(packing.radii**2, near**2 - margin(radius))[keep]
     # Radical facets do not change when all weights grow alike: make the least one positive.
@@ -93,9 +126,28 @@ def conform(
     counts = {"twins": number, "even_twins": tally.even, "pairs_left_out": left_out}
     counts["shells"] = int(np.count_nonzero(np.isfinite(interfaces.stacks.spacing)))
     provenance = packing.provenance | counts
-    return make_packing(
-        np.concatenate([packing.centers[keep], centers]), np.sqrt(raised), packing.size, packing.periodic, provenance
-    )
+    centers = np.concatenate([packing.centers[keep], centers])
+    made, order = sorted_packing(centers, np.sqrt(raised), packing.size, packing.periodic, provenance)
+    origin, alone = np.full(len(centers), -1), np.zeros(len(centers), dtype=bool)
+    origin[: len(kept)] = np.flatnonzero(keep)
+    alone[: len(kept)] = _alone(twins, farthest, np.where(np.isinf(near), wide.reach, near)[keep], radius)
+    return Conformed(made, origin[order], alone[order])
+
+
+def _alone(twins, farthest, near, radius):
+    """Which of the particles so near to interfaces at least have cells that no twin reaches."""
+    heavier = max(0.0, twins.weights.max(initial=0.0) - radius**2)
+    return near > _reached(farthest, heavier, twins.away.max(initial=0.0))
+
+
+def _beyond(farthest, radius):
+    """The same where twins are as heavy and as far away as they mostly are at most."""
+    return _reached(farthest, (AWAY**2 + EXCESS - 1.0) * radius**2, AWAY * radius)
+
+
+def _reached(farthest, heavier, away):
+    """How far from an interface cells may be reached by twins that are so much heavier and so far away from it."""
+    return farthest + np.sqrt(farthest**2 + heavier) + away
 
 
 def _check_number(packing, scene, radius):
@@ -127,7 +179,7 @@ def _reach(part, gap_spacing):
 
 def _twins_on(interfaces, part, seed, tally, gap_spacing):
     """Pairs that fit on all surfaces and belong to the part; of the whole the twins, and the pairs that do not fit."""
-    parts, number, left_out = [_Twins(*map(np.empty, ((0, 3), (0, 3), (0, 2), (0, 2), (0, 2))))], 0, 0
+    parts, number, left_out = [_Twins(*map(np.empty, ((0, 3), (0, 3), (0, 2), (0, 2), (0, 2), (0,))))], 0, 0
     radius = part.radius
     with stage("twins") as done:
         for points, normals, own in patterns(interfaces, radius, seed, tally, gap_spacing):
@@ -142,7 +194,8 @@ def _twins_on(interfaces, part, seed, tally, gap_spacing):
             left_out += int(np.sum(width < LEAST_SPACING * radius))
             reach = np.minimum(2.0 * OFFSET * radius, np.where(np.isfinite(apart), 0.5 * apart, 2.0 * offsets))
             weights = offsets**2 + EXCESS * radius**2 + interfaces.stacks.rise[own, None]
-            twins = _Twins(*(column[fits] for column in (points, normals, offsets, reach, weights)))
+            away = offsets.max(axis=1) + lift
+            twins = _Twins(*(column[fits] for column in (points, normals, offsets, reach, weights, away)))
             good = _in_place(twins, interfaces.scene)
             number += 2 * int(good.sum())
             good &= part.holds(twins.points)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from demheat.packing.twins import surfaces
 from demheat.packing.twins import surfaces_kernels as kernels
 from demheat.packing.twins.interfaces import pattern_count
 from demheat.runtime.threads import shared_out
@@ -32,10 +33,12 @@ class Spheres:
     def pattern(self, numbers, spacing, turns):
         """Evenly spread points on some of the spheres."""
         start = np.concatenate([[0], np.cumsum(pattern_count(self.radii[numbers], spacing))])
+        where, own = (start, turns, self.balls[numbers]), np.repeat(numbers, np.diff(start))
+        if start[-1] <= surfaces.FEW:
+            return *surfaces.turned_patterns(*where), own
         points, normals = np.empty((start[-1], 3)), np.empty((start[-1], 3))
-        where = start, turns, self.balls[numbers], points, normals
-        shared_out(kernels.turned_patterns, len(numbers), *where, piece=SPHERES)
-        return points, normals, np.repeat(numbers, np.diff(start))
+        shared_out(kernels.turned_patterns, len(numbers), *where, points, normals, piece=SPHERES)
+        return points, normals, own
 
     def touched(self, points, normals, own):
         """The points moved inwards, onto the polyhedra of the spheres' volumes with their tangent planes as facets."""
@@ -53,9 +56,11 @@ class Spheres:
     def gap(self, points, own, kin, leader):
         """Distance of points to the nearest surface that is no kin, periodic images included, (n,) float array, m."""
         gaps = np.full(len(points), np.inf)
-        if len(self):
-            where = points, kin, leader[: len(self)], self.balls, self.bins, self.reach, gaps
-            shared_out(kernels.nearest_gaps, len(points), *where, piece=POINTS)
+        where = points, kin, leader[: len(self)], self.balls, self.bins, self.reach
+        if len(self) and len(points) <= surfaces.FEW:
+            gaps = surfaces.nearest_gaps(*where)
+        elif len(self):
+            shared_out(kernels.nearest_gaps, len(points), *where, gaps, piece=POINTS)
         for number in self.lonely:
             mine = np.flatnonzero(own == number)
             if len(mine):
@@ -72,6 +77,9 @@ class Spheres:
 
 def inscribed_radii(normals, count):
     """Radii of spheres inscribed in polyhedra with these facet normals and the volume of the unit sphere."""
+    if len(count) <= surfaces.FEW_SPHERES and len(normals) <= surfaces.FEW_NORMALS:
+        parts = np.split(normals, np.cumsum(count)[:-1])
+        return np.cbrt(4.0 / 3.0 * np.pi / np.array([surfaces.circumscribed_volume(part) for part in parts]))
     own = np.repeat(np.arange(len(count)), count)
     order = np.lexsort((normals[:, 2], own))
     areas = np.empty(len(normals))

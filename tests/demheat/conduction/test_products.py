@@ -108,7 +108,24 @@ def test_flows_and_moments():
     for begin, end in ((0, 11), (11, n)):
         kernels.flows(begin, end, links, places, GRADIENT, x, *again[:3])
         kernels.reconstruct(begin, end, links, places, area, GRADIENT, x, *again[3:])
-    assert all(map(np.array_equal, found, again))
-    for values, right in zip(found, (heat, passing, first, shape, flow), strict=True):
+    for values, compiled, right in zip(found, again, (heat, passing, first, shape, flow), strict=True):
         # Rounding of sums of some six numbers of order ten.
         assert_allclose(values, right, rtol=0, atol=1e-13)
+        assert_allclose(compiled, right, rtol=0, atol=1e-13)
+
+
+def test_of_few_rows_is_what_is_compiled():
+    """A network whose last row has no link, and vectors that go on beyond the rows."""
+    n = 60
+    links, diagonal = balanced(n)
+    (p,), found, compiled, partial = vectors(1, n), np.empty(n), np.empty(n), np.empty(1)
+    product = products.apply(links, diagonal, p, found)
+    kernels.apply(0, 1, links, diagonal, p, compiled, partial)
+    # Rounding of sums of some ten numbers of order one to ten.
+    assert_allclose(found, compiled, rtol=0, atol=1e-13)
+    assert_allclose(product, partial[0], rtol=1e-12)
+    q, x, r = vectors(3, n, seed=2)
+    there, left = x.copy(), r.copy()
+    kernels.advance(0, 1, 0.7, p, q, there, left, partial)
+    assert_allclose(products.advance(0.7, p, q, x, r), partial[0], rtol=1e-13)
+    assert_allclose([x, r], [there, left], rtol=0, atol=1e-15)

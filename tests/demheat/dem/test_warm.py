@@ -8,6 +8,7 @@ import pytest
 from demheat import Laguerre, Platonic
 from demheat.conduction.steady import solve_checked
 from demheat.dem import warm
+from demheat.network.base import FEW
 from demheat.network.laguerre import laguerre
 
 
@@ -47,6 +48,10 @@ def test_the_lattice_needs_no_iteration():
     assert solve_checked(network, scene, solver="cg", tolerance=1e-8).stats["iterations"] == 0
 
 
+def test_the_lattice_is_no_small_one():
+    assert warm.SIDE**3 > FEW
+
+
 def test_all_parts_run():
     for part in warm.PARTS:
         part()
@@ -54,8 +59,10 @@ def test_all_parts_run():
 
 def test_parts_are_those_that_a_solve_needs():
     assert warm.parts_of(Laguerre(), 100_000) == warm.PARTS
-    assert warm.parts_of(Laguerre(), 1000) == (warm.cells, warm.steady)
-    assert warm.parts_of(Laguerre(), 1000, steady_state=False) == (warm.cells,)
+    assert warm.parts_of(Laguerre(), 10_000) == (warm.cells, warm.steady)
+    assert warm.parts_of(Laguerre(), 10_000, steady_state=False) == (warm.cells,)
+    assert warm.parts_of(Laguerre(), 1000) == ()
+    assert warm.parts_of(Laguerre(conforming=False), 1000) == (warm.cells, warm.steady)
     assert warm.parts_of(Platonic(), 100_000) == ()
     with warm.Helper(()) as helper:
         assert helper.process is None

@@ -11,11 +11,12 @@ from scipy.spatial import ConvexHull, HalfspaceIntersection
 
 from demheat.conduction.steady import Solution, matrix
 from demheat.network.base import SIDES, branches, row_numbers
-from demheat.network.curved import ROUND_SIDE, circumscribed_volume, fibonacci, round_wall, tangents_within
+from demheat.network.curved import ROUND_SIDE, fibonacci, round_wall, tangents_within
 from demheat.network.interface import connect
 from demheat.network.laguerre import laguerre
 from demheat.packing.domain import cut
 from demheat.packing.relax import relax, settle
+from demheat.packing.twins.surfaces import circumscribed_volume
 from demheat.sampling.field_of import field_of
 from demheat.scene import ROUND_AXES, Material, Scene, domain_volume
 

@@ -12,6 +12,7 @@ from demheat.network import laguerre_kernels as kernels
 from demheat.network.curved import round_wall, tangents_within
 from demheat.network.laguerre import FACETS, LINKS, filed
 from demheat.network.polyhedron_kernels import empty_polyhedron
+from demheat.network.repeated_kernels import nothing_known
 from demheat.network.sites_kernels import empty_candidates
 from demheat.scene import ROUND_AXES, domain_volume
 
@@ -37,7 +38,10 @@ def cut_all(points, weights, size, periodic, wall, *, room=60 * kernels.CHUNK, r
     at, end, more = 0, len(chunks) * kernels.CHUNK, 1
     while at < end:
         scratch = empty_candidates(more * kernels.ROOM), empty_polyhedron(more * kernels.PLANES)
-        at, more = kernels.cut_cells(at, end, chunks, 0, sites, *round_wall, limits, *scratch, cut), 4 * more
+        at, more = (
+            kernels.cut_cells(at, end, chunks, 0, sites, nothing_known(), *round_wall, limits, *scratch, cut),
+            4 * more,
+        )
     return cut
 
 

@@ -5,7 +5,7 @@ import pytest
 from numpy.testing import assert_allclose
 from random_links import branch, each_link, random_links, received
 
-from demheat.network.links_kernels import match_links, rise_along
+from demheat.network.links_kernels import lengths, match_links, rise_along
 
 
 @pytest.mark.twin
@@ -39,3 +39,13 @@ def test_links_get_the_mean_of_both_areas():
     right = [0.0 if b is None else 0.5 * (a + b) for a, b in zip(area, back, strict=True)]
     assert np.array_equal(matched, right)
     assert 0 < right.count(0.0) < len(right) / 2
+
+
+@pytest.mark.twin
+def test_lengths_of_links():
+    links, places = random_links(20)
+    found = np.full(len(links.indices), np.nan)
+    for first, last in ((0, 7), (7, 20)):
+        lengths(first, last, links.indptr, links.indices, places, found)
+    right = [np.linalg.norm(branch(i, e, links, places)) for i, e, _, _ in each_link(links)]
+    assert_allclose(found, right, rtol=0, atol=1e-15)  # rounding of coordinates of order one

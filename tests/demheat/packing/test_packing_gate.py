@@ -46,6 +46,7 @@ CALLS = {
     "walls.check_margin": lambda p: walls.check_margin(p, 1.0),
     "walls.bulk": lambda p: walls.bulk(p, 1.0),
     "twins.conforming.conform": lambda p: conforming.conform(p, CELL),
+    "twins.conforming.conformed": lambda p: conforming.conformed(p, CELL),
     "gate.check_packing": lambda p: check_packing(p),
     "statistics.regions.packing_fraction": lambda p: statistics.packing_fraction(p),
     "statistics.correlations.radial_distribution": lambda p: statistics.radial_distribution(p, r_max=0.9),
@@ -68,6 +69,8 @@ OTHERS = {
 }
 # Of functions behind the gate, with the reason.
 BEHIND = {
+    "tile.choice_of": "of what is made to conform",
+    "tile.places_of": "of what is made to conform",
     "statistics.regions.core_volume": "after check_margin",
     "statistics.regions.core_bounds": "after check_margin",
     "statistics.regions.inscribed_box": "after check_margin",

@@ -217,7 +217,15 @@ def test_numbers_of_the_source_are_integers_like_others():
 
     # Others' kernels are left to Numba.
     more.py_func.__module__ = "demheat.made_up"
-    assert sums(2) == 6 and len(more.signatures) == 1
+    assert sums(2) == 6 and len(more.within.signatures) == 1
+    # Python cannot call what was compiled for kernels alone: for it there is another, which further kernels take.
+    assert not more.signatures and more(2) == 3 and len(more.signatures) == 1
+
+    @numba.njit
+    def again(n):
+        return more(n) + more(1.5)
+
+    assert again(2) == 5.5 and len(more.within.signatures) == 2
 
 
 def damages(folder):

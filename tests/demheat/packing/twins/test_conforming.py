@@ -101,7 +101,7 @@ def test_twins_keep_off_walls(periodic):
     given, offset = scene(Layer(0, 0.2, 0.5, OTHER), periodic=periodic), 0.1
     y = np.array([0.29, 0.31]) * offset
     points = np.array([(0.5, at, 0.5) for at in (*y, *(1 - y))])
-    twins = conforming._Twins(points, np.tile([1.0, 0.0, 0.0], (4, 1)), *np.full((3, 4, 2), offset))
+    twins = conforming._Twins(points, np.tile([1.0, 0.0, 0.0], (4, 1)), *np.full((3, 4, 2), offset), np.full(4, offset))
     assert conforming._in_place(twins, given).tolist() == [periodic, True] * 2
 
 
@@ -176,7 +176,7 @@ def test_closer_twins_in_gaps_are_asked_of_the_law():
 def test_twins_beyond_the_other_side_are_none():
     """Both would be of the matrix."""
     normals = fibonacci_sphere(20)
-    twins = conforming._Twins(0.5 + 0.01 * normals, normals, *np.tile([[0.003], [0.03]], (3, 10, 2)))
+    twins = conforming._Twins(0.5 + 0.01 * normals, normals, *np.tile([[0.003], [0.03]], (3, 10, 2)), np.full(20, 0.03))
     assert conforming._in_place(twins, scene(Sphere((0.5, 0.5, 0.5), 0.01, OTHER))).tolist() == [True, False] * 10
 
 

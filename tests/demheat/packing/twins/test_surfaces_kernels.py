@@ -143,7 +143,7 @@ def test_many_corners_are_no_crash():
     ring = np.stack([np.cos(angle), np.sin(angle), np.full(200, 0.2)], axis=1)
     ring /= np.linalg.norm(ring, axis=1)[:, None]
     normals = np.concatenate([ring, ring * [1, 1, -1], [[0, 0, 1.0], [0, 0, -1.0]]])
-    assert np.isnan(inscribed_radii(normals, np.array([len(normals)]))[0])
+    assert np.isnan(inscribed_radii(np.tile(normals, (3, 1)), np.full(3, len(normals)))).all()
 
 
 def test_a_cube_and_what_has_no_end():
