@@ -147,6 +147,13 @@ def test_a_load_that_jumps_at_once_is_as_one_that_is_there():
     assert_allclose(sudden.samples.temperature, there.samples.temperature, atol=1e-4)
 
 
+def test_times_may_be_next_to_each_other():
+    of = cube(walls={"y-": 0.0, "y+": 1.0})
+    one, other = fem.evolve(of, [0.1, np.nextafter(0.1, 1.0)], elements="hexahedra", size=0.25)
+    # Of a step of 1e-17 s rounding leaves as much.
+    assert_allclose(other.samples.temperature, one.samples.temperature, rtol=1e-12)
+
+
 def test_a_wall_may_come_near_to_another():
     # In a steady state rounding would leave nothing of what flows.
     of = cube(walls={"y-": 25.0, "y+": lambda t: 25.0 + 10.0 * math.exp(-t)}, initial=25.0)
