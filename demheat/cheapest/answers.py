@@ -36,11 +36,16 @@ def answer(way: Way, loads: Loads) -> Answer:
     errors = {axis: each.error for axis, each in fields.items()}
     if loads.diagonal:
         tensor = np.diag([fields[axis].conductivity for axis in loads.alike])
-        half = np.diag([(errors[axis].upper - errors[axis].lower) / 2 for axis in loads.alike])
+        half = np.diag([_farthest(fields[axis].conductivity, errors[axis]) for axis in loads.alike])
         return Answer(tensor, half, errors[0].how)
     tensor = conductivity_tensor([fields[axis] for axis in range(3)])
     half = np.tile([errors[axis].flux / abs(fields[axis].scene.gradient[axis]) for axis in range(3)], (3, 1))
     return Answer((tensor + tensor.T) / 2, np.maximum(half, half.T), errors[0].how)
+
+
+def _farthest(k, error):
+    """How far an interval reaches from a conductivity, which need not be its middle."""
+    return max(error.upper - k, k - error.lower)
 
 
 def excess(found: Answer, accuracy: float) -> float:
