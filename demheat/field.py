@@ -6,6 +6,10 @@ exactly none and has one temperature: that of the wall it reaches, NaN where it 
 periodic cell each such body's temperature less that of the mean gradient has zero mean over the body, as levels there
 are free. If all bodies are cut off from the load, the effective conductivity is exactly 0. In time pores do have a
 temperature, the initial one and what sources put into them.
+
+Perfect conductors are phases of infinite conductivity. All of such a body has one temperature, that of the wall it
+reaches, else the one at which it takes up as much heat as it gives; the flux in it is the limit for good conductors.
+Where perfect conductors join two temperatures the effective conductivity is infinite: a ValueError says so.
 """
 
 from __future__ import annotations

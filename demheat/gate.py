@@ -5,7 +5,8 @@ harmonic mean over those fractions (Wiener's bounds) hold for whatever it solves
 temperature that is linear, or the flux that is uniform, is one of those among which the true one has the least energy.
 Where turns of the body take all axes to each other the narrower bounds of Hashin and Shtrikman hold. Both are widened
 by what elements of that size may not see: half of one on either side of every surface. What lies beyond is wrong,
-whatever the reason, and so are fractions that differ by more than that from the body's own.
+whatever the reason, and so are fractions that differ by more than that from the body's own. Beside perfect conductors
+the upper bounds are infinite.
 """
 
 from __future__ import annotations
@@ -90,7 +91,8 @@ def check_bracket(scene, lower, upper) -> None:
 def _within(k, bounds, more):
     least = bounds.lower * (1 - more[0]) if more[0] < 1 else 0.0
     # Not a number where no wall has a temperature: pores all over.
-    return not (k < least - NOTHING * bounds.upper or k > bounds.upper * (1 + more[1]))
+    most = bounds.upper if math.isfinite(bounds.upper) else abs(k)
+    return not (k < least - NOTHING * most or k > bounds.upper * (1 + more[1]))
 
 
 def wiener(scene, fractions, moved=None) -> Bounds:
@@ -102,12 +104,13 @@ def wiener(scene, fractions, moved=None) -> Bounds:
     along, across = conductances(scene)
     with np.errstate(divide="ignore", invalid="ignore"):
         resist = 1.0 / across
-        upper = fractions @ along
+        upper = fractions[fractions > 0] @ along[fractions > 0]
         blocked = np.any((across == 0) & (fractions > 0)) or scene.resistances.any()
         lower = 0.0 if blocked else 1.0 / (fractions[across > 0] @ resist[across > 0])
         if moved is not None:
             parents = parents_of(scene)
-            upper += moved @ np.abs(along - along[parents])
+            # One perfect conductor on another changes nothing.
+            upper += np.nansum(moved * np.abs(along - along[parents]))
             lower = 0.0 if not lower else 1.0 / (1.0 / lower + np.nansum(moved * np.abs(resist - resist[parents])))
     return Bounds(float(lower), float(upper), "Wiener's")
 
@@ -123,7 +126,7 @@ def hashin_shtrikman(scene, fractions, moved=None) -> Bounds:
     """Hashin and Shtrikman's bounds, of bodies that are `isotropic`."""
     k = scene.mean_conductivities
     parents = None if moved is None else parents_of(scene)
-    if fractions @ k == 0:
+    if not np.any(k[fractions > 0]):
         return Bounds(0.0, 0.0, "Hashin and Shtrikman's")
     ends = []
     for other in (k.min(), k.max()):

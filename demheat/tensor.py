@@ -50,7 +50,7 @@ def axis_loads(scene: Scene) -> tuple[Scene, Scene, Scene]:
         "insulated; only these have a tensor",
         steady=True,
         walls="one isothermal pair",
-        takes=("resistance", "anisotropy", "dependence", "image"),
+        takes=("resistance", "anisotropy", "dependence", "image", "perfect"),
     )
     if scene.periodic:
         steep = math.hypot(*scene.gradient)

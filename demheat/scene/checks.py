@@ -54,6 +54,15 @@ def check_dependence(scene) -> None:
         )
 
 
+def check_perfect(scene) -> None:
+    """Raise ValueError if nothing in a Scene has a finite conductivity."""
+    if all(material.perfect for material in scene.materials):
+        raise ValueError(
+            f"Material.conductivity = {scene.matrix.conductivity} in all phases of a Scene: must be finite in one at "
+            "least"
+        )
+
+
 def check_image(scene) -> None:
     """Raise ValueError unless the image of a Scene, if it has one, is all of it."""
     image = scene.image

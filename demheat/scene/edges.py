@@ -66,7 +66,10 @@ def power(conductivities, angles=(np.pi / 2,) * 4) -> float:
     Around the edge, through wedges of some angles, the temperature and the flux across its rays come back to
     themselves.
     """
-    k = np.maximum(conductivities, LEAST * max(conductivities)) if max(conductivities) > 0 else np.ones(len(angles))
+    k = np.asarray(conductivities, dtype=float)
+    # Perfect conductors are as those that conduct so many times better than the rest.
+    k = np.where(np.isinf(k), (k[np.isfinite(k)].max(initial=0.0) or 1.0) / LEAST, k)
+    k = np.maximum(k, LEAST * k.max()) if k.max() > 0 else np.ones(len(angles))
     turned = np.eye(2)
     for each, angle in zip(k, angles, strict=True):
         cosine, sine = np.cos(angle * TRIED), np.sin(angle * TRIED)

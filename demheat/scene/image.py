@@ -205,6 +205,8 @@ def _checked_materials(materials, found):
         if not isinstance(label, Integral):
             raise ValueError(f"Image.materials: label {label!r} must be a whole number")
         check_material(f"Image.materials[{label}]", material)
+        if material.perfect:
+            raise ValueError(f"Image.materials[{label}] = {material}: must have a finite conductivity in an image")
     if len(found) > MOST_LABELS:
         raise ValueError(f"Image.labels: {len(found)} different ones; must be at most {MOST_LABELS}")
     lacking = [label for label in found if label not in materials]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -21,8 +22,9 @@ class Material:
     Parameters
     ----------
     conductivity : float, W/(m K), or (3, 3) array_like
-        Finite and not negative; 0 is a perfect insulator (a pore), see `demheat.field`. A symmetric positive definite
-        tensor where it differs with direction, see `demheat.scene.tensors.orthotropic`; it is kept as three tuples.
+        Not negative; 0 is a perfect insulator (a pore), `math.inf` a perfect conductor, which few methods take: see
+        `demheat.field`. A symmetric positive definite tensor where it differs with direction, see
+        `demheat.scene.tensors.orthotropic`; it is kept as three tuples.
     density : float, kg/m3, optional
         Needed by transients only.
     heat_capacity : float, J/(kg K), optional
@@ -38,7 +40,7 @@ class Material:
     >>> Material(conductivity=-1.0)
     Traceback (most recent call last):
         ...
-    ValueError: Material.conductivity = -1.0: must be a finite number >= 0 W/(m K)...
+    ValueError: Material.conductivity = -1.0: must be a number >= 0 W/(m K)...
     """
 
     conductivity: float | tuple[tuple[float, float, float], ...]
@@ -57,6 +59,11 @@ class Material:
                 object.__setattr__(self, "dependence", Dependence(self.dependence))
             except ValueError as error:
                 raise ValueError(str(error).replace("Dependence.points", "Material.dependence", 1)) from None
+        if self.dependence is not None and self.perfect:
+            raise ValueError(
+                f"Material.dependence = {self.dependence!r} of a perfect conductor: must be None, or the conductivity "
+                "finite"
+            )
 
     @property
     def isotropic(self) -> bool:
@@ -64,9 +71,14 @@ class Material:
         return isinstance(self.conductivity, float)
 
     @property
+    def perfect(self) -> bool:
+        """Whether it conducts without bound: all of a body of it has one temperature."""
+        return self.conductivity == math.inf
+
+    @property
     def tensor(self) -> np.ndarray:
         """Its conductivity as a tensor, (3, 3) float array, W/(m K)."""
-        return self.conductivity * np.eye(3) if self.isotropic else np.array(self.conductivity)
+        return np.diag([self.conductivity] * 3) if self.isotropic else np.array(self.conductivity)
 
     @property
     def mean_conductivity(self) -> float:

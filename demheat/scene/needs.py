@@ -32,6 +32,7 @@ WALLS = {
 EXCHANGE = "heat exchanged with surroundings is for the DEM and finite elements, in time also for series of slabs"
 IMAGE = "images are for FFT, finite elements, the DEM and bounds on voxels"
 TENSOR = "tensors are for steady states of finite elements and of voxels"
+PERFECT = "perfect conductors are for steady states of multipoles and exact forms"
 DEPENDENCE = "that is for steady states of the DEM and finite elements"
 
 
@@ -47,8 +48,14 @@ def _dependences(scene):
         yield f"Material.dependence in phase {number}, a conductivity that follows the temperature", DEPENDENCE
 
 
+def _perfect(scene):
+    if scene.perfect:
+        number = next(n for n, material in enumerate(scene.materials) if material.perfect)
+        yield f"Material.conductivity in phase {number} is infinite", PERFECT
+
+
 # What few methods take of materials.
-MATERIALS = {"anisotropy": _tensors, "dependence": _dependences}
+MATERIALS = {"anisotropy": _tensors, "dependence": _dependences, "perfect": _perfect}
 
 
 def check_steady(scene) -> None:
@@ -84,6 +91,13 @@ def check_transient(scene) -> None:
         for name in ("density", "heat_capacity"):
             if getattr(material, name) is None:
                 raise ValueError(f"Material.{name} = None in phase {phase}: a transient needs it; must be > 0")
+
+
+def refusal(found: str, knows: str, others: str) -> str:
+    """One sentence: what is in a Scene, what a method knows instead, and who can."""
+    # A remedy of the method's own goes before those of others; perfect conductors have none.
+    reasons = [others] if others == PERFECT else [knows] if "; use " in knows else [knows, others]
+    return ": ".join(filter(None, (found, "; ".join(filter(None, reasons)))))
 
 
 def refusals(scene, *, walls, domain, shapes, nested, pores, takes) -> Iterator[tuple[str, str]]:

@@ -20,6 +20,7 @@ from demheat.scene.checks import (
     check_geometry,
     check_image,
     check_initial,
+    check_perfect,
     check_reached,
     checked_inclusions,
     checked_load,
@@ -31,7 +32,7 @@ from demheat.scene.functions import load_at
 from demheat.scene.image import Image
 from demheat.scene.inputs import LEAST, MOST, moderate, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.needs import check_steady, check_transient, refusals
+from demheat.scene.needs import check_steady, check_transient, refusal, refusals
 from demheat.scene.parts import Convection, Flux, MovingCylinder, Radiation, UniformSource, driven, driver
 from demheat.scene.shapes import Shape
 from demheat.scene.shapes.holders import Holders
@@ -113,6 +114,7 @@ class Scene:
         object.__setattr__(self, "inclusions", checked_inclusions(self.inclusions))
         check_domain(self)
         check_image(self)
+        check_perfect(self)
         for name, value in checked_load(self).items():
             object.__setattr__(self, name, value)
         object.__setattr__(self, "sources", checked_sources(self.sources))
@@ -202,6 +204,11 @@ class Scene:
     def varies(self) -> bool:
         """Whether the conductivity of a phase depends on temperature: the equations are then not linear."""
         return any(material.dependence is not None for material in self.materials)
+
+    @cached_property
+    def perfect(self) -> bool:
+        """Whether a phase is a perfect conductor."""
+        return any(material.perfect for material in self.materials)
 
     @property
     def dependences(self) -> Dependences:
@@ -361,9 +368,9 @@ class Scene:
             Whether inclusions may lie in others.
         pores : bool
             Whether a conductivity may be 0.
-        takes : tuple of {"resistance", "exchange", "anisotropy", "dependence", "image"}
+        takes : tuple of {"resistance", "exchange", "anisotropy", "dependence", "image", "perfect"}
             What few methods know and all others refuse: surfaces with a resistance, walls that exchange heat with
-            surroundings, conductivities that are tensors, or that depend on temperature, images.
+            surroundings, conductivities that are tensors, that depend on temperature, or are infinite, images.
 
         Raises
         ------
@@ -376,9 +383,7 @@ class Scene:
             (check_steady if steady else check_transient)(self)
         can = {"walls": walls, "domain": domain, "shapes": shapes, "nested": nested, "pores": pores}
         for found, others in refusals(self, **can, takes=takes):
-            # A remedy of the method's own goes before those of others.
-            reasons = [knows] if "; use " in knows else [knows, others]
-            raise NotImplementedError(": ".join(filter(None, (found, "; ".join(filter(None, reasons))))))
+            raise NotImplementedError(refusal(found, knows, others))
 
 
 def check_scene(scene, name="scene") -> None:

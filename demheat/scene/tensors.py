@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from numbers import Real
+
 import numpy as np
 
 from demheat.scene.inputs import LEAST, MOST, finite, moderate, reals, shown
@@ -11,13 +14,15 @@ from demheat.scene.rotations import rotation as rows_of
 # Relative to the largest entry: rounding of a tensor that a user has turned; the least of the smallest conductivity.
 SAME, FLATTEST = 1e-12, 1e-10
 VALID = (
-    f"a finite number >= 0 W/(m K), of {LEAST:g} to {MOST:g} where it is not 0, or a symmetric positive definite "
-    f"(3, 3) tensor of such, least over {FLATTEST:g} of the largest in any direction"
+    f"a number >= 0 W/(m K), of {LEAST:g} to {MOST:g} where it is neither 0 nor infinite, or a symmetric positive "
+    f"definite (3, 3) tensor of finite ones, least over {FLATTEST:g} of the largest in any direction"
 )
 
 
 def checked_conductivity(name: str, value) -> float | tuple[tuple[float, float, float], ...]:
     """A conductivity as users give it: a float, or a tensor as three tuples; an isotropic one is a float."""
+    if isinstance(value, Real) and value == math.inf:
+        return math.inf
     if not isinstance(value, list | tuple) and not (isinstance(value, np.ndarray) and value.ndim):
         return finite(name, value, VALID, lambda v: v >= 0 and moderate(v))
     tensor = reals(name, value, VALID)

@@ -40,7 +40,11 @@ def plot_scene(scene: Scene, *, pixels: int = PIXELS) -> Figure:
     matrix, *others = scene.mean_conductivities.tolist()
     kinds = np.array([matrix, *sorted(set(others) - {matrix})])
     named = len(kinds) <= len(COLOURS)
-    look = _named(len(kinds)) if named else {"cmap": "viridis", "vmin": kinds.min(), "vmax": kinds.max()}
+    look = (
+        _named(len(kinds))
+        if named
+        else {"cmap": "viridis", "vmin": kinds.min(), "vmax": kinds[np.isfinite(kinds)].max()}
+    )
     for across, panel in enumerate(panels):
         points, mask = plane(scene, axis=across, at=scene.size[across] / 2, n=pixels)
         k = scene.mean_conductivities[scene.phase_at(points)]
@@ -87,9 +91,16 @@ def plot_comparison(scene, entries, bounds, temperature=None):
     """Conductivities with their intervals, bounds behind them, and a slice of temperature beside them."""
     figure, panels = _figure(1 if temperature is None else 2)
     panel = panels[0]
-    for (name, low, high, *_), colour in zip(bounds, BARS, strict=False):
-        panel.axvspan(low, high, color=colour, label=f"{name}: {low:.5g} to {high:.5g}", zorder=0)
     least, most = _limits(entries)
+    for (name, low, high, *_), colour in zip(bounds, BARS, strict=False):
+        # Beside perfect conductors there is no upper one.
+        panel.axvspan(
+            low,
+            high if np.isfinite(high) else max(low, most),
+            color=colour,
+            label=f"{name}: {low:.5g} to {high:.5g}",
+            zorder=0,
+        )
     for place, (_, k, low, high) in enumerate(entries):
         panel.plot([low, high], [place, place], color=POINT, linewidth=4, alpha=0.4, solid_capstyle="butt")
         # What lies beyond the picture is at its edge.

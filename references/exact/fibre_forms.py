@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from demheat.scene import Cylinder
+from demheat.scene.perfect import INFINITE
 from references.exact import fibres, fibres_field
 from references.exact.forms import SAME, Closed, mean_load
 
@@ -31,6 +32,10 @@ def fibre_array(scene):
     fraction = len(scene.inclusions) * math.pi * first.radius**2 / (scene.size[across[0]] * scene.size[across[1]])
     array, digits = _solved(kind, ki / k, fraction, first.resistance * k / first.radius)
     along = np.where(np.arange(3) == axes[2], gradient, 0.0)
+    if scene.matrix.perfect or (math.isinf(ki) and along.any()):
+        raise ValueError(INFINITE)
+    # Nothing is driven along perfect conductors.
+    beside = 0.0 if math.isinf(ki) else ki
 
     def places(points):
         return (points[:, across] - center[across]) / spacing
@@ -40,12 +45,12 @@ def fibre_array(scene):
         return level + center[across] @ gradient[across] + points @ along + here
 
     def flux(points):
-        result = 0.0 - np.where(scene.phase_at(points) > 0, ki, k)[:, None] * along
+        result = 0.0 - np.where(scene.phase_at(points) > 0, beside, k)[:, None] * along
         result[:, across] = k * fibres_field.flux(array, places(points), gradient[across])
         return result
 
     mean = -k * array.conductivity * gradient
-    mean[axes[2]] = 0.0 - ((1 - fraction) * k + fraction * ki) * gradient[axes[2]]
+    mean[axes[2]] = 0.0 - ((1 - fraction) * k + fraction * beside) * gradient[axes[2]]
     stats = {
         "unknowns": len(array.source),
         "order": array.order,

@@ -88,12 +88,11 @@ def _parts(array, gradient):
     degree, kind, s = array.degree, array.kind, array.contrast
     sign = np.where(degree % FOLD[kind] == 1, 1, -1)
     sources, outer = array.source * (g + 1j * sign * h), array.outer * (g - 1j * sign * h)
-    # On the circle what falls off is the conjugate of what grows.
-    back = np.conj(sources)
+    # Without the cancellation of what grows and what falls off, which at high contrasts leaves rounding.
     if math.isinf(s):
-        inner, flow = 0 * outer, outer - back
+        inner, flow = 0 * outer, 2 * outer / (1 + array.resistance * degree)
     else:
-        inner = (outer + back) / (1 + s * array.resistance * degree)
+        inner = 2 * outer / (s + 1 + s * array.resistance * degree)
         flow = s * inner
     return _Parts(sources, _far(array, sources, g - 1j * h), inner, flow)
 

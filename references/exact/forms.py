@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.scene import Flux, Layer, Sphere
+from demheat.scene.perfect import INFINITE, touching_spheres
 from demheat.scene.resistances import between
 from references.exact import lattice, lattice_field
 from references.exact.insulated import sphere_temperature
@@ -50,8 +51,13 @@ def laminate(scene):
         pieces(scene, normal) if layered else (np.array([0.0, length]), np.zeros(1, int), np.zeros(2))
     )
     k, thickness = k[phase], np.diff(breaks)
-    along = float(thickness @ k / length)
-    across = length / float(np.sum(thickness / k) + resist[1:].sum()) if np.all(k > 0) else 0.0
+    along, series = (
+        float(thickness @ k / length),
+        float(np.sum(thickness / k) + resist[1:].sum()) if k.all() else np.inf,
+    )
+    if series == 0:
+        raise ValueError(INFINITE)
+    across = length / series
     slope = across / k if across else np.zeros(len(k))
     # Plain homogeneous material also takes an imposed flux along its layers, for it has none.
     means = np.full(3, along if np.all(k == k[0]) else np.nan)
@@ -63,6 +69,10 @@ def laminate(scene):
     rise = np.concatenate([[0.0], np.cumsum(slope * thickness)])
     jumps = across * np.cumsum(resist)[:-1]
     sideways = np.where(np.arange(3) == normal, 0.0, gradient)
+    if math.isinf(along) and sideways.any():
+        raise ValueError(INFINITE)
+    # Nothing is driven along perfect conductors.
+    beside = np.where(np.isinf(k), 0.0, k)
 
     flat = None if across else _flat(scene, normal, breaks, k > 0, load)
 
@@ -85,11 +95,11 @@ def laminate(scene):
     def flux(points):
         _, x = where(points)
         piece = np.clip(np.searchsorted(breaks, x, side="right") - 1, 0, len(k) - 1)
-        result = 0.0 - k[piece][:, None] * sideways
+        result = 0.0 - beside[piece][:, None] * sideways
         result[:, normal] = 0.0 - across * gradient[normal]
         return result
 
-    mean = 0.0 - along * sideways
+    mean = 0.0 - (0.0 if math.isinf(along) else along) * sideways
     mean[normal] = 0.0 - across * gradient[normal]
     plain = len(set(k.tolist())) == 1 and not resist.any()
     form = "homogeneous" if plain else "laminate"
@@ -117,8 +127,11 @@ def cubic_array(scene):
     if load is None:
         return None
     gradient, level = load
+    touching_spheres(scene)
     first, k = spheres[0], scene.matrix.conductivity
     center, ki = np.array(first.center), first.material.conductivity
+    if scene.matrix.perfect:
+        raise ValueError(INFINITE)
     resistance = first.resistance * k / first.radius
     contrast = ki / k if k > 0 else math.inf
     fraction = len(spheres) * 4 / 3 * math.pi * (first.radius / edge) ** 3
@@ -178,7 +191,10 @@ def coated_spheres(scene):
             unit = apart[shell] / r[shell, None]
             bent = (outer.radius / r[shell, None]) ** 3 * (gradient - 3 * unit * (unit @ gradient)[:, None])
             result[shell] = -outer.material.conductivity * (uniform * gradient + dipole * bent)
-            result[kernel] = -inner.material.conductivity * core * gradient
+            # As what enters at its surface: a good conductor's own slope is rounding, a perfect one has none.
+            through = outer.material.conductivity * (uniform - 2 * dipole * (outer.radius / inner.radius) ** 3)
+            good = inner.material.conductivity > outer.material.conductivity
+            result[kernel] = -(through if good else inner.material.conductivity * core) * gradient
         return result
 
     stats = {"unknowns": 3 * len(pairs), "digits": 12.0}
@@ -319,6 +335,8 @@ def _ratio(outer, inner):
     """Neutral conductivity over that of the coat, as numerator and denominator: (1 + 2 beta f) / (1 - beta f)."""
     k1, k2 = outer.material.conductivity, inner.material.conductivity
     f = (inner.radius / outer.radius) ** 3
+    if inner.material.perfect:
+        return 1 + 2 * f, 1 - f
     return k2 + 2 * k1 + 2 * (k2 - k1) * f, k2 + 2 * k1 - (k2 - k1) * f
 
 

@@ -166,7 +166,8 @@ def _far(solution):
 def polarisability(contrast, degree, resistance=0.0):
     """alpha_l of the module docstring."""
     if math.isinf(contrast):
-        return (1 - resistance * degree) / (1 + resistance * (degree + 1))
+        # What has one temperature has no source, which is degree 0.
+        return np.where(np.asarray(degree) > 0, (1 - resistance * degree) / (1 + resistance * (degree + 1)), 0.0)
     # What the surface adds to the resistance of the sphere itself, for each degree.
     more = contrast * resistance * degree
     return degree * (contrast - 1 - more) / (degree * contrast + degree + 1 + (degree + 1) * more)

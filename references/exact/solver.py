@@ -42,7 +42,8 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     Raises
     ------
     ValueError
-        If the load does not fix a steady temperature, or drives heat through a body of no conductivity.
+        If the load does not fix a steady temperature, or drives heat through a body of no conductivity, or if perfect
+        conductors join two temperatures.
     NotImplementedError
         If the scene has no closed form here.
 
@@ -58,7 +59,9 @@ def solve(scene: Scene, *, points_per_axis: int = 24) -> Field:
     """
     check_scene(scene)
     check_points_per_axis(points_per_axis)
-    scene.require(steady=True, takes=("resistance", "anisotropy", "dependence"))
+    scene.require(steady=True, takes=("resistance", "anisotropy", "dependence", "perfect"))
+    if scene.anisotropic:
+        scene.require("layers of tensors are finite ones here", takes=("resistance", "anisotropy", "dependence"))
     closed = (layers(scene) or transformed(scene, _linear)) if scene.varies else _linear(scene)
     if closed is None:
         load = "a mean gradient" if scene.periodic else f"walls {', '.join(sorted(scene.walls))}"

@@ -15,6 +15,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from demheat.scene import Sphere
+from demheat.scene.perfect import INFINITE, touching_spheres
 from references.multipole.translations import Spheres, unmirrored
 
 # Of the box: rounding of coordinates that users type or work out.
@@ -33,7 +34,8 @@ class Arrangement(NamedTuple):
 def arrange(scene, *, any_matrix=False) -> Arrangement:
     """Read a scene."""
     gradient, level = _load(scene)
-    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, takes=("resistance",))
+    scene.require("multipole knows disjoint spheres", shapes=(Sphere,), nested=False, takes=("resistance", "perfect"))
+    _check_perfect(scene)
     k = scene.matrix.conductivity
     if k == 0 and not any_matrix:
         raise NotImplementedError("multipole: a matrix of no conductivity; disjoint spheres then carry no heat")
@@ -81,6 +83,21 @@ def wrapped(points, size):
     """Points moved into a periodic cell, as trees want them: from 0 to below its size."""
     inside = points - size * np.floor(points / size)
     return np.where(inside < size, inside, 0.0)
+
+
+def _check_perfect(scene):
+    """Raise unless perfect conductors are apart, and none of them is the matrix, which is one body."""
+    if not scene.perfect:
+        return
+    if scene.matrix.perfect:
+        raise ValueError(INFINITE)
+    found = touching_spheres(scene)
+    if found is not None:
+        one, other = (f"Scene.inclusions[{number}]" for number in found)
+        raise NotImplementedError(
+            f"multipole: perfect conductors touch, {one} and {'a wall or its image' if one == other else other}: their "
+            "series has no end; must be apart, or resist"
+        )
 
 
 def _load(scene):

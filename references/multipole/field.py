@@ -38,13 +38,15 @@ class Evaluator:
             self.amplitudes = _amplitudes(spheres, solved, self.split)
 
     def __call__(self, points):
-        """Temperature and its slope, and which sphere owns the point."""
+        """Temperature and its slope, in perfect conductors the limit of s times it, and which sphere owns the point."""
         points = np.asarray(points, dtype=float)
         offsets, owner = self._owners(points)
         result = np.zeros((len(points), 4))
         inner, outer = np.flatnonzero(owner >= 0), np.flatnonzero(owner < 0)
         part = np.empty((len(inner), 4))
         kernels.inside(offsets[inner], owner[inner], self.regular, self.order, part)
+        perfect = np.isinf(self.spheres.contrasts)[owner[inner]]
+        part[perfect, 0] = self.regular[owner[inner][perfect], 0].real
         # The mean gradient takes the series, which is that of one cell, to where the point is.
         part[:, 0] += (points[inner] - offsets[inner]) @ self.gradient
         result[inner] = part
@@ -79,7 +81,11 @@ def _regular(spheres, solved):
     n, _ = entries(solved.order)
     root = scales(np.ones(1), solved.order).made
     s, rho = spheres.contrasts[:, None], spheres.resistances[:, None]
-    factor = (2 * n + 1) / (n * s + n + 1 + (n + 1) * n * s * rho)
+    with np.errstate(invalid="ignore"):
+        factor = (2 * n + 1) / (n * s + n + 1 + (n + 1) * n * s * rho)
+    # Degree 0 is the one temperature of a perfect conductor, the others tell its flux.
+    limit = np.where(n > 0, (2 * n + 1) / (np.maximum(n, 1) * (1 + (n + 1) * rho)), 1.0)
+    factor = np.where(np.isinf(s), limit, factor)
     return complex_table(solved.local * factor / root * spheres.radii[:, None] ** -n.astype(float))
 
 

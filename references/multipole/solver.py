@@ -72,7 +72,7 @@ def solve(
     Raises
     ------
     ValueError
-        If an argument is out of range.
+        If an argument is out of range, or perfect conductors join two temperatures.
     NotImplementedError
         For other walls, layers, nested spheres, spheres cut by a wall beside their centre.
     RuntimeError
@@ -88,7 +88,7 @@ def solve(
     with budget(seconds):
         _check_knobs(order, accuracy, tolerance, points_per_axis, threads)
         check_scene(scene)
-        scene.require(steady=True, takes=("resistance",))
+        scene.require(steady=True, takes=("resistance", "perfect"))
         wanted = {"order": order, "accuracy": accuracy, "tolerance": tolerance, "threads": threads}
         return _solved(scene, points_per_axis, wanted)
 
@@ -127,6 +127,8 @@ def _solved(scene, points_per_axis, wanted):
 
 def _field(scene, arrangement, history, points_per_axis):
     (spheres, gradient, level, unit), conductivities, made = arrangement, scene.conductivities, []
+    # Slopes in perfect conductors are the limit of s times them.
+    conductivities[np.isinf(conductivities)] = scene.matrix.conductivity
     inclusion = np.append(spheres.original + 1, 0)
 
     @one_blas_thread()

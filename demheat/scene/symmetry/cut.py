@@ -72,7 +72,7 @@ def reduced(scene: Scene) -> Reduced:
     (2, 2, 2)
     """
     planes = _clear(scene, mirrors(scene))
-    scene.require(steady=True, takes=("resistance",))
+    scene.require(steady=True, takes=("resistance", "perfect"))
     cut = _along(scene, planes) if scene.periodic else _between(scene, planes)
     if not any(cut):
         return Reduced(scene, scene, (1, 1, 1), (0.0, 0.0, 0.0))

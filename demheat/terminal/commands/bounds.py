@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.gate import hashin_shtrikman, wiener
 from demheat.scene import Sphere
 from references import bounds as formulas
 from references.bracket import voxels
@@ -46,6 +47,8 @@ def bounds_of(scene) -> list[Bound]:
         fractions = fractions_of(scene)
     except NotImplementedError:
         return []
+    if scene.perfect:
+        return _of_perfect(scene, fractions)
     k = scene.conductivities
     low, high = formulas.reuss(k, fractions), formulas.voigt(k, fractions)
     found = [Bound("Reuss, Voigt", float(low), float(high), "all bodies")]
@@ -53,6 +56,15 @@ def bounds_of(scene) -> list[Bound]:
     if len(kinds) == 2 and scene.only(Sphere):
         low, high = formulas.hashin_shtrikman(*kinds, min(math.fsum(fractions[k == kinds[1]]), 1.0))
         found.append(Bound("Hashin-Shtrikman", float(low), float(high), "isotropic bodies of two phases"))
+    return found
+
+
+def _of_perfect(scene, fractions):
+    """Beside perfect conductors the upper ones are infinite."""
+    found = [Bound("Reuss, Voigt", wiener(scene, fractions).lower, math.inf, "all bodies")]
+    if len(set(scene.conductivities.tolist())) == 2 and scene.only(Sphere):
+        low = float(hashin_shtrikman(scene, fractions).lower)
+        found.append(Bound("Hashin-Shtrikman", low, math.inf, "isotropic bodies of two phases"))
     return found
 
 

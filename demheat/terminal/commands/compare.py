@@ -5,6 +5,7 @@ Each row is stored as soon as its method is done; the same command goes on where
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from functools import partial
@@ -111,7 +112,7 @@ def table(made, bounds) -> str:
 def _outside(value, bounds):
     """What is to be said of a value that no such body can have; a method in doubt is the value's, not the bound's."""
     for bound in bounds:
-        room = ROUNDING * bound.upper
+        room = ROUNDING * (bound.upper if math.isfinite(bound.upper) else value)
         if bound.certain and not bound.lower - room <= value <= bound.upper + room:
             side, limit = ("below", bound.lower) if value < bound.lower else ("above", bound.upper)
             yield f"{value:.6g} is {side} {limit:.6g}, which is certain ({bound.name}): its error is no less than that"

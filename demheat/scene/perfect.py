@@ -1,0 +1,96 @@
+"""Perfect spheres that touch: which are one body, and whether such a body joins two temperatures.
+
+What touches without a resistance has one temperature, however small the contact: between perfect conductors the heat
+across a gap rises without bound as it closes.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import breadth_first_order
+
+from demheat.scene.shapes.base import TOUCH
+
+INFINITE = "perfect conductors join two temperatures: the effective conductivity is infinite"
+
+
+def touching_spheres(scene) -> tuple[int, int] | None:
+    """Places of two perfect spheres that touch, or of one that touches a held wall, twice; None if all are apart.
+
+    Raises
+    ------
+    ValueError
+        If what touches joins walls of two temperatures, or a periodic cell to its images along the gradient.
+    """
+    ids = np.array([n for n, s in enumerate(scene.inclusions) if s.material.perfect and s.resistance == 0], int)
+    if not len(ids):
+        return None
+    centers, radii = (np.array([getattr(scene.inclusions[n], name) for n in ids]) for name in ("center", "radius"))
+    one, two, shift = _pairs(centers, radii, scene.period)
+    walls = _walls(scene, centers, radii)
+    _check_apart(len(ids), one, two, shift, walls, scene)
+    if len(one):
+        return int(ids[one[0]]), int(ids[two[0]])
+    # One that a wall halves is its own image there.
+    met = [int(ids[sphere]) for sphere, _, halved in walls if not halved]
+    return (met[0], met[0]) if met else None
+
+
+def _pairs(centers, radii, period):
+    """Spheres that touch, and by how many cells the second is shifted: two (n,) and an (n, 3) int array."""
+    from scipy.spatial import cKDTree
+
+    own, shift, reach = np.arange(len(radii)), np.zeros((len(radii), 3), int), 2 * radii.max() * (1 + TOUCH)
+    if period is not None:
+        turns = np.floor(centers / period).astype(int)
+        inside = centers - turns * period
+        cells = np.stack(np.meshgrid(*[np.arange(-1, 2)] * 3, indexing="ij"), axis=-1).reshape(-1, 1, 3)
+        near = np.all((inside + cells * period >= -reach) & (inside + cells * period <= period + reach), axis=2)
+        cell, own = np.nonzero(near)
+        # Cells are those of the spheres as they are given.
+        shift = cells[cell, 0] - turns[own]
+    places = centers[own] + (shift * period if period is not None else 0.0)
+    at = centers - (turns * period if period is not None else 0.0)
+    found = cKDTree(places).query_ball_point(at, reach)
+    one, other = np.repeat(np.arange(len(radii)), [len(each) for each in found]), np.concatenate(found).astype(int)
+    two = own[other]
+    back = shift[other] + (turns[one] if period is not None else 0)
+    apart = np.linalg.norm(places[other] - at[one], axis=1)
+    touch = (apart <= (radii[one] + radii[two]) * (1 + TOUCH)) & ((one < two) | ((one == two) & back.any(axis=1)))
+    return one[touch], two[touch], back[touch]
+
+
+def _walls(scene, centers, radii):
+    """Spheres that meet a wall, its temperature, and whether it goes through their middle."""
+    found = []
+    for name, value in scene.wall_temperatures.items():
+        axis = "xyz".index(name[0])
+        away = centers[:, axis] if name[1] == "-" else scene.size[axis] - centers[:, axis]
+        halved = np.abs(away) <= TOUCH * radii
+        found += [(int(n), value, halved[n]) for n in np.flatnonzero(away <= radii * (1 + TOUCH))]
+    return found
+
+
+def _check_apart(count, one, two, shift, walls, scene):
+    """Raise ValueError if a body of touching spheres has two temperatures."""
+    graph = coo_array((np.ones(len(one)), (one, two)), shape=(count, count)).tocsr()
+    graph = graph + graph.T
+    steps = {}
+    for a, b, step in zip(one.tolist(), two.tolist(), shift, strict=True):
+        steps[a, b], steps[b, a] = step, -step
+    place, body = np.zeros((count, 3), int), np.full(count, -1)
+    for start in range(count):
+        if body[start] >= 0:
+            continue
+        order, before = breadth_first_order(graph, start, directed=False)
+        body[order] = start
+        for each in order[1:].tolist():
+            place[each] = place[before[each]] + steps[int(before[each]), each]
+    held = {}
+    for sphere, value, _ in walls:
+        held.setdefault(int(body[sphere]), set()).add(value)
+    drop = scene.gradient if scene.periodic else (0.0, 0.0, 0.0)
+    rises = (place[one] + shift - place[two]) * scene.size @ np.array(drop)
+    if any(len(values) > 1 for values in held.values()) or np.any(rises != 0):
+        raise ValueError(INFINITE)
