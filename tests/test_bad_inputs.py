@@ -131,7 +131,7 @@ BOUNDS = ("maxwell", "hashin_shtrikman", "bruggeman", "bruggeman_differential", 
 
 # Function, good arguments, and what is bad of which.
 TABLE = [
-    (demheat.Material, {"conductivity": 1.0}, {"conductivity": PART, "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
+    (demheat.Material, {"conductivity": 1.0}, {"conductivity": tuple(each for each in PART if not (isinstance(each, float) and each == INF)), "density": or_none(POSITIVE), "heat_capacity": or_none(POSITIVE)}),
     (demheat.Material, {"conductivity": 1.0}, {"dependence": or_none(FACTORS)}),
     (demheat.Image, {"labels": np.zeros((2, 2, 2), int), "voxel": 0.1, "materials": {0: OTHER}}, {"labels": (None, "a", 0.5, np.zeros((2, 2)), np.zeros((2, 2, 2)), np.ones((2, 2, 2), int), np.zeros((0, 2, 2), int)), "voxel": (*POSITIVE, (0.1, 0.1)), "materials": (None, [OTHER], {"a": OTHER}, {0: 1.0}, {})}),
     (demheat.Dependence, {"points": [(0.0, 1.0), (1.0, 2.0)]}, {"points": FACTORS}),
