@@ -149,6 +149,17 @@ def test_a_cubic_array(load, resistance, expected):
     assert_allclose(alike(multipole.solve, scene_of).conductivity / MATRIX, expected, rtol=1e-5)
 
 
+@pytest.mark.parametrize("load", [X, CELL], ids=["walls", "cell"])
+def test_spheres_without_symmetry(load):
+    """Some resist, some do not: none of them is a source of heat."""
+
+    def scene_of(k):
+        places = ((0.3, 0.4, 0.5), 0.2, 0.0), ((0.7, 0.6, 0.3), 0.15, 0.05), ((0.65, 0.3, 0.75), 0.1, 0.0)
+        return body(*(Sphere(at, radius, Material(k), resistance=film) for at, radius, film in places), **load)
+
+    alike(multipole.solve, scene_of)
+
+
 def test_one_temperature_and_a_flux_that_goes_on():
     field = multipole.solve(spheres((0.3, 0.4, 0.5), radius=0.2, **X), order=20)
     turns = POINTS - 0.5
@@ -221,9 +232,12 @@ def test_a_chain_that_spans_is_infinite(load):
 def test_a_chain_through_faces_of_a_cell():
     """Far from where it starts a chain comes back to itself: not along the load, along it, and broken."""
     chain = [(x % 1, 0.9, 0.1) for x in (0.9, 1.1, 1.3, 1.5, 1.7)]
-    with pytest.raises(ValueError, match=INFINITE):
-        touching_spheres(spheres(*chain, radius=0.1, **CELL))
-    assert touching_spheres(spheres(*chain, radius=0.1, gradient=(0.0, 1.0, 0.0))) is not None
+    # Centres may lie in any of the cells.
+    for shifts in ((0, 0, 0, 0, 0), (0, 1, -1, 2, 0)):
+        moved = [(x + shift, y - shift, z) for (x, y, z), shift in zip(chain, shifts, strict=True)]
+        with pytest.raises(ValueError, match=INFINITE):
+            touching_spheres(spheres(*moved, radius=0.1, **CELL))
+        assert touching_spheres(spheres(*moved, radius=0.1, gradient=(0.0, 1.0, 0.0))) is not None
     assert touching_spheres(spheres(*chain[:4], radius=0.1, **CELL)) == (0, 1)
     assert touching_spheres(spheres(*chain[::2], radius=0.099, **CELL)) is None
 

@@ -79,12 +79,12 @@ def _check_apart(count, one, two, shift, walls, scene):
     steps = {}
     for a, b, step in zip(one.tolist(), two.tolist(), shift, strict=True):
         steps[a, b], steps[b, a] = step, -step
-    place, body = np.zeros((count, 3), int), np.full(count, -1)
-    for start in range(count):
-        if body[start] >= 0:
+    place, body, open_ = np.zeros((count, 3), int), np.arange(count), np.diff(graph.indptr) > 0
+    for start in np.flatnonzero(open_).tolist():
+        if not open_[start]:
             continue
         order, before = breadth_first_order(graph, start, directed=False)
-        body[order] = start
+        body[order], open_[order] = start, False
         for each in order[1:].tolist():
             place[each] = place[before[each]] + steps[int(before[each]), each]
     held = {}
