@@ -75,7 +75,7 @@ class Laguerre:
     def takes(self) -> tuple[str, ...]:
         """What few laws know, of `Scene.require`: facets on surfaces may resist, and have temperatures of their own."""
         on_facets = self.conforming and self.interface == "harmonic"
-        return ("exchange", "image", "resistance", "dependence") if on_facets else ("exchange", "image")
+        return ("exchange", "image", "resistance", "dependence", "perfect") if on_facets else ("exchange", "image")
 
     def check(self, scene: Scene) -> None:
         """Raise NotImplementedError if the law cannot do a scene."""
@@ -234,7 +234,7 @@ class Platonic(_Contacts):
 
 def check_numbers(scene: Scene) -> None:
     """Raise NotImplementedError if a conductivity is a tensor: no law of two points can do with one."""
-    scene.require(TWO_POINTS, takes=("resistance", "exchange", "dependence", "image"))
+    scene.require(TWO_POINTS, takes=("resistance", "exchange", "dependence", "image", "perfect"))
 
 
 LAWS = {kind.name: kind for kind in (Laguerre, Calibrated, Platonic)}

@@ -2,16 +2,19 @@
 
 import math
 import warnings
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from method_scenes import METHODS, answered
 from numpy.testing import assert_allclose
 
-from demheat import Cylinder, Image, Layer, Material, Scene, Sphere, damage, dem, gallery, orthotropic
+from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, evolve, gallery, orthotropic
 from demheat.cheapest import effective, recommend
+from demheat.dem.networks import network_of
 from demheat.gate import hashin_shtrikman, wiener
 from demheat.io import scenes
+from demheat.packing.relax import relax
 from demheat.scene.edges import edge_order
 from demheat.scene.negligible import negligible
 from demheat.scene.perfect import INFINITE, touching_spheres
@@ -23,6 +26,7 @@ from references.exact import lattice
 PERFECT, LARGE, MATRIX = math.inf, 1e15, 2.0
 MIDDLE = (0.5, 0.5, 0.5)
 X, Y, CELL = {"walls": {"x-": 0.0, "x+": 1.0}}, {"walls": {"y-": 0.0, "y+": 1.0}}, {"gradient": (1.0, 0.0, 0.0)}
+HEAVY, LIGHT = (Material(k, density=1.0, heat_capacity=1.0) for k in (MATRIX, PERFECT))
 POINTS = np.random.default_rng(0).random((300, 3))
 # Of a gradient of 1 in a matrix of 2: s differs from its limit by 1e-15, and its sums round some hundred times as much.
 SAME = {"rtol": 0, "atol": 1e-12}
@@ -94,13 +98,17 @@ def test_a_file(tmp_path):
     assert "inf W/(m K)" in scene._repr_html_()
 
 
-WITNESSES = ("exact", "multipole")
+TAKES = ("dem", "exact", "multipole")
 
 
-@pytest.mark.parametrize("name", [name for name in METHODS if name not in WITNESSES])
+@pytest.mark.parametrize("name", [name for name in METHODS if name not in TAKES])
 def test_all_other_methods_refuse(name):
     with pytest.raises(NotImplementedError, match=r"^Material.conductivity in phase 1 is infinite: [^\n]*$"):
         answered(METHODS[name], spheres(MIDDLE, **X))
+
+
+def heavy(scene):
+    return replace(scene, initial=0.0, matrix=HEAVY, inclusions=[Sphere(MIDDLE, 0.25, LIGHT)])
 
 
 def beside(scene):
@@ -113,7 +121,14 @@ def beside(scene):
         "walkers": lambda: walkers.solve(scene),
         "negligible": lambda: negligible(scene, 1e-3),
         "zeta2": lambda: multipole.zeta2(spheres(MIDDLE, **CELL)),
-        "dem.solve_axes": lambda: dem.solve_axes(scene, particles=200),
+        "network_of": lambda: network_of(scene, relax(200, seed=0), Laguerre()),
+        "evolve": lambda: list(
+            evolve(
+                replace(scene, initial=0.0, matrix=HEAVY, inclusions=[Sphere(MIDDLE, 0.25, LIGHT)]),
+                [0.1],
+                particles=200,
+            )
+        ),
         "damage": lambda: damage.solve(scene, particles=200),
     }
 

@@ -36,7 +36,7 @@ def bodies(network, scene):
         return None
     solid = conductivity[network.phase] > 0
     gradient = np.array(scene.gradient if scene.periodic else (0.0, 0.0, 0.0))
-    found, count = _gathered(network, solid, gradient * network.size)
+    found, count = gathered(network, solid, gradient * network.size)
     if scene.periodic:
         passing = found.climbs[:count]
     else:
@@ -58,7 +58,7 @@ def level_off(temperature, label, volumes):
     kernels.level_off(temperature, label, volumes, np.zeros(count), np.zeros(count))
 
 
-def _gathered(network, solid, jump):
+def gathered(network, solid, jump):
     """What the search finds, and the number of bodies."""
     n, state = len(solid), np.zeros(4, dtype=np.int64)
     found = kernels.Found(

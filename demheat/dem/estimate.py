@@ -127,7 +127,7 @@ def check_contrast(scene: Scene, wanted: Particles, tolerance: float, answer: Ca
     that of the middle: a limit of the contrast alone would refuse such scenes.
     """
     number = wanted.particles if wanted.packing is None else len(wanted.packing.radii)
-    if contrast_of(scene) < HIGH_CONTRAST or number <= FEW:
+    if contrast_of(scene) < HIGH_CONTRAST or number <= FEW or scene.perfect:
         return
     how = {"tolerance": min(LENIENT * tolerance, LOOSEST), "max_iterations": MOST}
     few = replace(wanted, particles=FEW, packing=None, replicas=None, allow_few=True)

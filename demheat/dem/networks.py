@@ -107,7 +107,7 @@ def _tessellated(scene, packing, law, seed):
     if not isinstance(law, tuple(LAWS.values())):
         raise ValueError(f"law = {law!r}: must be a law, such as Laguerre() or Calibrated(wall='surface')")
     check_numbers(scene)
-    scene.require(ON_FACETS, takes=law.takes)
+    scene.require(ON_FACETS, takes=tuple(each for each in law.takes if each != "perfect"))
     check_packing(packing)
     begun, known = time.perf_counter(), None
     if law.conforming:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
+from demheat.conduction.perfect import as_good, check_perfect, solve_perfect
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_checked
 from demheat.conduction.transient import check_callables
@@ -134,8 +136,9 @@ def solve(
     wanted = Particles(particles=particles, seed=seed, packing=packing, replicas=replicas, allow_few=allow_few)
     law = choices.law(law)
     check_fits(wanted, law)
-    scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image"))
+    scene.require(TWO_POINTS, steady=True, takes=("resistance", "exchange", "dependence", "image", "perfect"))
     law.check(scene)
+    check_perfect(scene)
     with budget(seconds):
         check_contrast(scene, wanted, tolerance, partial(_answer, scene, law, solver=solver))
         return _answer(scene, law, wanted, solver=solver, tolerance=tolerance)
@@ -208,6 +211,7 @@ def solve_axes(
     law = choices.law(law)
     check_fits(wanted, law)
     law.check(scene)
+    check_perfect(scene)
     with budget(seconds):
         check_contrast(scene, wanted, tolerance, partial(_answers, loads, law, solver=solver))
         return tuple(_answers(loads, law, wanted, solver=solver, tolerance=tolerance))
@@ -221,7 +225,7 @@ def _answers(scenes, law, wanted, *, solver, tolerance, max_iterations=MOST_ITER
         packing = wanted.packed(scenes[0], law)
         spent = {"expected_mib": needed / MIB, "packing_s": time.perf_counter() - begun}
         helper.join(cells)
-        networks = networks_of(scenes, packing, law, seed=wanted.seed)
+        networks = networks_of([as_good(each) for each in scenes], packing, law, seed=wanted.seed)
         del packing  # twins may have been added to a copy
         if change is not None:
             networks = [change(network, scene) for network, scene in zip(networks, scenes, strict=True)]
@@ -237,7 +241,9 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
     how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
-        if scene.varies:
+        if scene.perfect:
+            solution = solve_perfect(network, scene, **how)
+        elif scene.varies:
             network, solution = solve_varying(network, scene, **how)
         else:
             solution = solve_checked(network, scene, **how, kept=kept)
@@ -245,7 +251,8 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
         answer = partial(_answer, scene, solver=solver, tolerance=tolerance)
         estimator = partial(reaching, estimator_of(law, wanted, answer), answer=partial(answer, law, wanted))
         with stage("field"):
-            fields.append(field_of(scene, network, solution, stats=took, estimator=estimator))
+            field = field_of(as_good(scene), network, solution, stats=took, estimator=estimator)
+            fields.append(replace(field, scene=scene) if scene.perfect else field)
     return fields
 
 

@@ -66,6 +66,7 @@ NO_ROWS = {
     "references/mesh/worker.py": LARGE,
     "demheat/scene/shapes/occ.py": LARGE,
     "references/mesh/size_kernels.py": LARGE,
+    "demheat/conduction/perfect.py": FORMS,
     "demheat/scene/perfect.py": FORMS,
     "demheat/scene/shapes/traced.py": BODIES,
     "demheat/scene/shapes/creases.py": BODIES,

@@ -1,0 +1,144 @@
+"""Perfect conductors by particles: the limit of good ones, held by walls, whole by heat, infinite where they span."""
+
+import math
+import warnings
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Scene, Sphere, dem, solve
+from demheat.scene.perfect import INFINITE
+from demheat.scene.shapes import Union
+from references.exact import lattice
+
+MATRIX, MIDDLE = 2.0, (0.5, 0.5, 0.5)
+X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
+POINTS = np.random.default_rng(0).random((200, 3))
+PERFECT = Material(math.inf)
+
+
+@pytest.fixture(autouse=True)
+def coarse_without_infinities():
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", RuntimeWarning)
+        warnings.simplefilter("ignore", UserWarning)
+        yield
+
+
+def body(*shapes, **load):
+    return Scene((1.0, 1.0, 1.0), Material(MATRIX), list(shapes), **load)
+
+
+BODIES = {
+    "sphere": lambda k: body(Sphere(MIDDLE, 0.4, k), **X),
+    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
+    "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
+    "half at a flux": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Flux(5.0)}),
+    "layer at a wall": lambda k: body(Layer(0, 0.0, 0.4, k), **X),
+    "layer that resists": lambda k: body(Layer(0, 0.3, 0.7, k, resistance=0.1), **CELL),
+    "rod": lambda k: body(Cylinder(MIDDLE, 0.2, (1, 0.2, 0), k, length=0.6), **X),
+    "fibre across": lambda k: body(Cylinder(MIDDLE, 0.2, (0, 0, 1), k), **CELL),
+    "union": lambda k: body(Union([Sphere((0.4, 0.5, 0.5), 0.2, k), Box((0.6, 0.5, 0.5), (0.3, 0.2, 0.2), k)], k), **X),
+    "unlike": lambda k: body(
+        Sphere((0.3, 0.4, 0.5), 0.2, k),
+        Sphere((0.75, 0.6, 0.5), 0.15, k, resistance=0.02),
+        Sphere((0.2, 0.85, 0.2), 0.1, Material(7.0)),
+        **X,
+    ),
+    "shell": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, Material(1.0)), **X),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_limit_of_good_conductors(name):
+    """At 1e6 times the matrix's conductivity all is off by some millionths, by its own."""
+    perfect, good = (solve(BODIES[name](Material(k)), particles=2000) for k in (math.inf, MATRIX * 1e6))
+    assert_allclose(perfect.conductivity, good.conductivity, rtol=2e-5)
+    assert_allclose(perfect.temperature_at(POINTS), good.temperature_at(POINTS), rtol=0, atol=2e-4)
+    most = np.abs(good.flux_at(POINTS)).max()
+    assert_allclose(perfect.flux_at(POINTS), good.flux_at(POINTS), rtol=0, atol=1e-4 * most)
+    assert_allclose(perfect.mean_flux, good.mean_flux, rtol=0, atol=2e-5 * np.abs(good.mean_flux).max())
+    assert perfect.scene.perfect
+    assert perfect.error.lower < perfect.conductivity < perfect.error.upper
+    # Bodies of one unknown: fewer of them, and a contrast that nobody sees.
+    assert perfect.stats["unknowns"] < good.stats["unknowns"]
+    assert perfect.stats["iterations"] < good.stats["iterations"]
+    if not perfect.scene.periodic:
+        heat = perfect.wall_heat
+        # What goes in comes out, to the solver's tolerance over a hundred wall cells.
+        assert_allclose(heat["x-"], -heat["x+"], rtol=1e-6)
+
+
+@pytest.mark.parametrize("resistance", [0.0, 0.2])
+def test_a_cubic_array(resistance):
+    radius = lattice.radius("sc", 0.4)
+    scene = body(Sphere(MIDDLE, radius, PERFECT, resistance=resistance * radius / MATRIX), **X)
+    expected = lattice.conductivity("sc", math.inf, 0.4, resistance=resistance)
+    # At contrast 1e6: .33 % and .0013 %.
+    assert_allclose(solve(scene, particles=5000).conductivity / MATRIX, expected, rtol=5e-3 if not resistance else 1e-4)
+
+
+def test_layers_are_exact_and_one_temperature():
+    field = solve(body(Layer(0, 0.3, 0.7, PERFECT), **X), particles=1000)
+    assert_allclose(field.conductivity, MATRIX / 0.6, rtol=1e-7)
+    inside = POINTS * (0.3, 1, 1) + (0.35, 0, 0)
+    # The best there is: 1e8 times the matrix's conductivity.
+    assert_allclose(field.temperature_at(inside), 25.0, rtol=0, atol=1e-6)
+    assert_allclose(field.flux_at(inside), np.tile(field.mean_flux, (len(inside), 1)), rtol=0, atol=1e-4)
+
+
+def test_multigrid_and_all_axes():
+    scene = body(Sphere(MIDDLE, 0.4, PERFECT), **X)
+    by_size, multigrid = (solve(scene, particles=2000, solver=solver).conductivity for solver in ("cg", "amg"))
+    assert_allclose(multigrid, by_size, rtol=1e-7)
+    fields = dem.solve_axes(scene, particles=2000)
+    assert_allclose(fields[0].conductivity, by_size, rtol=1e-12)
+    assert [field.scene.axis for field in fields] == [0, 1, 2]
+
+
+SPHERES = (0.25, 0.5, 0.5), (0.75, 0.5, 0.5)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
+        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
+        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **X),
+        body(*(Sphere(at, 0.25, PERFECT) for at in SPHERES), **X),
+    ],
+    ids=["layer along", "fibre in a cell", "fibre between walls", "chain"],
+)
+def test_what_spans_is_infinite(scene):
+    with pytest.raises(ValueError, match=INFINITE):
+        solve(scene, particles=1000)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        body(*(Sphere(at, 0.25, PERFECT) for at in SPHERES), **Y),
+        body(Sphere((0.25, 0.5, 0.5), 0.25, PERFECT), **X),
+        body(*(Box((x, 0.5, 0.5), (0.4, 0.4, 0.4), PERFECT) for x in (0.3, 0.7)), **CELL),
+        body(Sphere((0.25, 0.5, 0.5), 0.2, PERFECT), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X),
+        Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(1.0))], **X),
+        body(Sphere(MIDDLE, 0.2, PERFECT), walls={"x-": 0.0, "x+": Convection(1.0, 1.0)}),
+    ],
+    ids=["spheres", "a wall", "boxes", "pores", "matrix", "convection"],
+)
+def test_what_particles_do_not_know_is_refused(scene):
+    with pytest.raises(NotImplementedError) as error:
+        solve(scene, particles=1000)
+    assert "\n" not in str(error.value)
+
+
+def test_a_gap_to_a_wall_that_cells_close():
+    near = Box((0.5, 0.5, 0.5), (0.9998, 0.5, 0.5), PERFECT)
+    try:
+        field = solve(body(near, **X), particles=300)
+    except NotImplementedError as error:
+        assert "too thin for these particles" in str(error)  # noqa: PT017 - either is right
+    else:
+        # Gaps of 1e-4 on either side, .25 wide: that much heat at least.
+        assert field.conductivity > 0.25 * MATRIX / 2e-4
