@@ -88,6 +88,15 @@ def test_layers_are_exact_and_one_temperature():
     assert_allclose(field.flux_at(inside), np.tile(field.mean_flux, (len(inside), 1)), rtol=0, atol=1e-4)
 
 
+def test_a_film_between_two_perfect_layers():
+    """What resists parts them, and heat crosses it."""
+    layers = Layer(0, 0.2, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 0.7, PERFECT)
+    for load in (X, CELL):
+        field = solve(body(*layers, **load), particles=1000)
+        # Half of the matrix, and two films: 1/(.5/2 + .2).
+        assert_allclose(field.conductivity, 1 / 0.45, rtol=1e-7)
+
+
 def test_multigrid_and_all_axes():
     scene = body(Sphere(MIDDLE, 0.4, PERFECT), **X)
     by_size, multigrid = (solve(scene, particles=2000, solver=solver).conductivity for solver in ("cg", "amg"))

@@ -177,11 +177,10 @@ def _within(network, label, ties, heat, how):
     """By what temperatures differ in good bodies that take up heat here and give it there, to walls or none."""
     inside, count = label >= 0, int(label.max(initial=-1)) + 1
     diagonal = np.bincount(row_numbers(network.indptr), network.conductance, minlength=len(label)) + ties
-    # Of bodies that no wall holds what the equations left over is spread, and the mean is 0.
+    # Of bodies that no wall holds what the equations left over is spread.
     own = np.where(np.bincount(label[inside], ties[inside], count)[label] == 0, label, -1)
     free = own >= 0
     spread = np.bincount(own[free], heat[free], count) / np.maximum(np.bincount(own[free], minlength=count), 1)
     heat = np.where(inside & (diagonal > 0), heat - np.where(free, spread[own], 0.0), 0.0)
     x, _, _ = _solved(links_of(network), diagonal, heat, "cg", *how)
-    components.level_off(x, own.astype(label.dtype), network.volumes)
     return x
