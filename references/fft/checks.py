@@ -47,8 +47,8 @@ def checked(scheme, rule, precision, tolerance, max_iterations, threads) -> Knob
 def check_load(scene: Scene) -> None:
     """Raise NotImplementedError if the load is another than those that are solved."""
     check_scene(scene)
-    takes = ("exchange", "anisotropy", "image")
-    scene.require("on voxels temperatures jump nowhere, and conductivities are constants", steady=True, takes=takes)
+    takes = ("exchange", "anisotropy", "image", "resistance")
+    scene.require("on voxels conductivities are constants", steady=True, takes=takes)
     scene.require(
         "FFT knows a periodic cell and two opposite walls with temperatures, the others insulated; only their "
         "homogeneous problem is inverted by sines and cosines here",
@@ -63,6 +63,11 @@ def rule_of(scene: Scene, grid, knobs: Knobs) -> Knobs:
         knobs = knobs._replace(rule=automatic(knobs.scheme, scene, grid))
     if scene.image is not None:
         knobs = _of_image(scene, knobs)
+    if knobs.rule != "laminate" or knobs.scheme == "eyre-milton":
+        scene.require(
+            "surfaces that resist heat are between corners of voxels; use scheme 'cg' and rule 'laminate'",
+            takes=("exchange", "anisotropy", "image"),
+        )
     _check_tensors(scene, knobs.scheme, knobs.rule)
     return knobs
 

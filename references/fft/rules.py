@@ -50,9 +50,7 @@ def automatic(scheme, scene, shape) -> str:
     """
     if scene.image is not None or not all(shape.traceable for shape in scene.inclusions):
         return "plain"
-    if scheme == "eyre-milton":
-        return "laminate"
-    if scene.anisotropic:
+    if scheme == "eyre-milton" or scene.anisotropic or scene.resistances.any():
         return "laminate"
     conductivity = scene.conductivities
     rounded = np.array([True] + [not shape.flat for shape in scene.inclusions])

@@ -194,6 +194,9 @@ def _field(scene, grid, units, solution, knobs, said):
         temperature, flux = solution.state()
         temperature *= units.temperature
         flux *= -units.flux
+        if grid.voxels.rise is not None:
+            own = flux.reshape(3, -1)[:, grid.voxels.cut]
+            temperature.reshape(-1)[grid.voxels.cut] -= np.einsum("mi,im->m", grid.voxels.rise, own)
         if grid.bodies is not None:
             settle(grid.bodies, grid.scene, temperature, grid.slope, grid.slope[0] * grid.scene.size[0])
             flux[:, np.append(~grid.bodies.passing, True)[grid.bodies.label]] = 0.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from references.voxels import kernels
+from references.voxels.slopes import MOST
 
 
 def phase_parts(n_phases, rank, cuts, parent, background):
@@ -23,12 +24,22 @@ def phase_parts(n_phases, rank, cuts, parent, background):
     return voxel, key % n_phases, total / np.bincount(voxel, total)[voxel]
 
 
-def laminate_tensors(part, conductivities, moment):
-    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal."""
+def laminate_tensors(part, conductivities, moment, slopes=None):
+    """Tensors (number of cut voxels, 6): arithmetic mean in the tangent plane, harmonic mean along the normal.
+
+    Where films let slopes of phases in the tangent plane differ, it is what they conduct there together, over the
+    square of the slope that the corners see; both given as `slopes`, of phases and of cut voxels.
+    """
     voxel, phase, fraction = part
     # A pore blocks the normal direction; the smallest normal number stands for its zero conductivity.
     resistance = fraction / np.maximum(conductivities[phase], np.finfo(float).tiny)
     arithmetic = np.bincount(voxel, fraction * conductivities[phase])
+    if slopes is not None:
+        own, seen = slopes
+        most = np.zeros(len(moment))
+        np.maximum.at(most, voxel, conductivities[phase])
+        together = np.bincount(voxel, fraction * conductivities[phase] * own[phase] ** 2)
+        arithmetic = np.minimum(together / seen**2, MOST * most)
     with np.errstate(over="ignore"):
         harmonic = 1.0 / np.bincount(voxel, resistance)
     direction = moment / moment[:, :3].sum(axis=1, keepdims=True)

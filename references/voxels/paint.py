@@ -18,6 +18,7 @@ from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from references.voxels import kernels
 from references.voxels.cut import laminate_tensors, phase_parts
+from references.voxels.films import films_of, slopes_of, with_films
 from references.voxels.laminates import cut_tensors, packed
 from references.voxels.planes import kept, reaches
 from references.voxels.solids import cut_voxels, window
@@ -44,6 +45,9 @@ class Voxels(NamedTuple):
     # (1 + number of inclusions, 6) float array, W/(m K), optional: Of each phase, where that of one is a tensor; see
     # `references.voxels.laminates`
     tensors: np.ndarray | None = None
+    # (m, 3) float array, m2 K/W, optional: Times the flux against Fourier's direction, how much warmer the phase of
+    # each cut voxel's centre is than the mean of its corners, where surfaces resist (`references.voxels.films`)
+    rise: np.ndarray | None = None
 
 
 class Medium(NamedTuple):
@@ -120,11 +124,14 @@ def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
     count = count - np.bincount(phase.ravel()[cut], minlength=len(conductivity))
     fractions = (count + np.bincount(part[1], part[2], minlength=len(conductivity))) / phase.size
     moment = np.stack([np.bincount(rank, column, len(cut)) for column in cuts.moment.T], axis=1)
+    films = films_of(scene, shape) if scene.resistances.any() else None
     if scene.anisotropic:
-        own = cut_tensors(part, scene.tensors, moment)
+        own, slopes = cut_tensors(part, scene.tensors, moment), None
     else:
-        own = laminate_tensors(part, conductivity, moment)
-    return Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
+        slopes = films and slopes_of(films, scene, shape, fractions)
+        own = laminate_tensors(part, conductivity, moment, slopes and (slopes[0], slopes[1][cut]))
+    voxels = Voxels(spacing, phase, conductivity, cut, own, fractions, tensors)
+    return with_films(voxels, films, slopes) if films else voxels
 
 
 def _of_image(scene, spacing, planes):
@@ -153,8 +160,9 @@ def turned(voxels: Voxels, order: Sequence[int]) -> Voxels:
     columns = [PAIRS.index(tuple(sorted((order[a], order[b])))) for a, b in PAIRS]
     tensor = voxels.tensor[np.ix_(ascending, columns)]
     tensors = None if voxels.tensors is None else voxels.tensors[:, columns]
+    rise = None if voxels.rise is None else voxels.rise[np.ix_(ascending, list(order))]
     turned = {"spacing": voxels.spacing[list(order)], "phase": phase, "cut": cut[ascending], "tensor": tensor}
-    return voxels._replace(**turned, tensors=tensors)
+    return voxels._replace(**turned, tensors=tensors, rise=rise)
 
 
 def centers(shape, spacing) -> list:
