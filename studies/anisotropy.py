@@ -158,3 +158,30 @@ def table(df):
     """Tensors in W/(m K), their error where there is an exact one, and what they lack of being symmetric."""
     columns = ["body", "name", "edge", "voxels", *(f"k_{entry}" for entry in ENTRIES)]
     return df[[*columns, "error_percent", "asymmetry", "unknowns"]]
+
+
+def plot(df):
+    """Distance of the sphere's tensor from that of the finest quadratic elements."""
+    from matplotlib import pyplot
+
+    from studies.harness.figures import look
+
+    figure, axes = pyplot.subplots(figsize=(6.5, 4.8))
+    rows = pick(df, body="sphere")
+    best = _finest(pick(rows, name="fem"))
+    axes.grid(visible=True, which="both", axis="y")
+    for name, group in rows.groupby("name", sort=False):
+        group = group.sort_values("unknowns")
+        off = np.array([apart_percent(row, best) for _, row in group.iterrows()])
+        # The finest elements are what others are compared with.
+        axes.plot(group["unknowns"][off > 0], off[off > 0], **look(name))
+    axes.set(xscale="log", yscale="log", xlabel="unknowns", ylabel="tensor apart from finest quadratic elements, %")
+    near = [f"{_words(name)} {apart_percent(_finest(pick(rows, name=name)), best):.2g} %" for name in ("fft", "fem-p1")]
+    figure.suptitle("A sphere of one orthotropic material in another, at the finest:")
+    axes.set_title(f"{' and '.join(near)} from quadratic elements")
+    axes.legend()
+    return figure
+
+
+def _words(name):
+    return methods.all_methods()[name].title

@@ -15,8 +15,9 @@ import numpy as np
 from demheat import referee
 from demheat.gallery import sphere_in_cube
 from studies.harness import methods
+from studies.harness.figures import GREY, look
 from studies.harness.methods import resolution
-from studies.harness.pick import pick, present
+from studies.harness.pick import finest, pick, present
 from studies.harness.tolerance import Tolerance
 
 EXTREMES = (0.0, 1e-6, 1e6, math.inf)
@@ -199,3 +200,35 @@ def _verdict(row):
     if row["status"] != "ok":
         return {"unsupported": "refused"}.get(row["status"], row["status"])
     return f"{row['error_percent']:.2g}" + (" (warns)" if isinstance(row["warning"], str) else "")
+
+
+def plot(df):
+    """Error on each scene of each method's finest row, in double precision; refusals above all of them."""
+    from matplotlib import pyplot
+
+    solves = df[(df["name"] != "lattice") & (df["contrast"] < math.inf) & df["precision"].isna()]
+    shown = solves.groupby(["name", "fraction", "contrast"], sort=False, group_keys=False)[list(solves)].apply(finest)
+    scenes = _scenes(shown)
+    figure, axes = pyplot.subplots(figsize=(11, 5))
+    top = 30 * max(LIMIT, shown["error_percent"].abs().max())
+    compared = methods.compared()
+    for number, method in enumerate(compared):
+        rows = pick(shown, name=method.name)
+        place = rows.apply(_scene, axis=1).map(scenes.index) + 0.64 * ((number + 0.5) / len(compared) - 0.5)
+        height = rows["error_percent"].abs().fillna(top)
+        axes.plot(place, height, **look(method.name, linestyle="", label=method.title))
+    for border in range(len(scenes) - 1):
+        axes.axvline(border + 0.5, color="#DDDDDD", linewidth=0.8)
+    axes.axhline(LIMIT, color=GREY, linewidth=1)
+    axes.annotate(f"{LIMIT:g} %", (len(scenes) - 0.5, LIMIT), fontsize=8, color=GREY, ha="right", va="bottom")
+    axes.axhline(top, color=GREY, linewidth=0.8, linestyle=":")
+    axes.annotate("refused, with its reason", (len(scenes) - 0.5, top), fontsize=8, color=GREY, ha="right", va="bottom")
+    axes.set(yscale="log", ylabel="|error of the conductivity|, %", xticks=range(len(scenes)))
+    axes.set_xticklabels(scenes, rotation=40, ha="right")
+    axes.set(xlabel="volume fraction f and contrast of the sphere (neighbours touch at f = 0.5236)")
+    axes.grid(False, axis="x")
+    right, refused = int(_right(shown).sum()), int((shown["status"] == "unsupported").sum())
+    verdict = f"{right} right within {LIMIT:g} % ({QUICK_LIMIT:g} % where coarse), {refused} refused"
+    axes.set_title(f"{len(shown)} extreme cases: {verdict}, {len(shown) - right - refused} wrong")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+    return figure

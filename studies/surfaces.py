@@ -8,10 +8,12 @@ of conductivities at the interface.
 
 from dataclasses import replace
 
+import numpy as np
+
 from demheat import Flux, referee
 from demheat.gallery import EDGE, TEMPERATURES, sphere_in_cube
 from studies.harness import methods
-from studies.harness.figures import LOOK
+from studies.harness.figures import BLACK, GREY, LOOK, look
 from studies.harness.pick import mean_errors, order, pick, present, worst
 
 NUMBERS = (1_000, 10_000, 100_000, 400_000)
@@ -134,3 +136,35 @@ def table(df):
         fitted = contrast != 1.0 and len(known) > 1
         rows.append(row | {"order": order(known.index.to_numpy(float) ** (-1 / 3), known) if fitted else float("nan")})
     return pd.DataFrame(rows)
+
+
+def plot(df):
+    """Error against the number of particles, at a low and a high contrast."""
+    from matplotlib import pyplot
+
+    figure, panels = pyplot.subplots(1, 2, figsize=(11, 5.2), sharey=True)
+    for axes, contrast in zip(panels, (0.01, 10.0), strict=True):
+        for name in ("dem", *SIDE_BY_SIDE):
+            rows = pick(df, name=name, contrast=contrast)
+            errors = abs(mean_errors(rows, by="particles"))
+            axes.plot(errors.index, errors, **look(name))
+            if name == "dem":
+                axes.plot(rows["particles"], abs(rows["error_percent"]), ".", color=LOOK[name][1], alpha=0.4)
+                _slopes(axes, errors)
+        axes.set(xscale="log", yscale="log", xlabel="particles", title=f"sphere {contrast:g} times as conducting")
+    panels[0].set_ylabel("|error of the effective conductivity|, %")
+    shown = df[(df["name"] == "dem") & df["contrast"].isin((0.01, 10.0)) & (df["particles"] >= 100_000)]
+    late = shown["error_percent"].abs().max()
+    figure.suptitle(f"With facets on the interface the DEM errs by {late:.2g} % at most from 100 000 particles on")
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+    return figure
+
+
+def _slopes(axes, errors):
+    """Lines of first and second order through the coarsest error."""
+    numbers = np.array([errors.index.min(), errors.index.max()], dtype=float)
+    for power, text, colour in ((1, "order 1", GREY), (2, "order 2", BLACK)):
+        line = errors.iloc[0] * (numbers / numbers[0]) ** (-power / 3)
+        axes.plot(numbers, line, color=colour, linewidth=0.8, linestyle=(0, (1, 2)))
+        place = {"xytext": (0, 7), "textcoords": "offset points", "ha": "right", "va": "bottom"}
+        axes.annotate(text, (numbers[1], line[1]), fontsize=8, color=colour, **place)

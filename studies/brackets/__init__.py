@@ -144,3 +144,10 @@ def table(df):
     from studies.brackets.tables import lines
 
     return lines(df)
+
+
+def plot(df):
+    """Width against cost; the drawn scenes with the exact value between their bounds."""
+    from studies.brackets.figure import draw
+
+    return draw(df)

@@ -105,3 +105,10 @@ def table(df):
 def notes(df):
     """The best set, the printed one and that of half its spread, in words made of the rows."""
     return means.in_words(df)
+
+
+def plot(df):
+    """Maps of what is printed over spread and links, one block for each mean radius."""
+    from studies.ct_search.figure import draw
+
+    return draw(df)

@@ -168,3 +168,10 @@ def notes(df):
             f"Elements half as large leave {fine:.3f} % of {coarse:.3f} %: spheres and gaps set the size of elements "
             f"whatever is asked for, and {unknowns.iloc[-1]:.0f} unknowns become {unknowns.iloc[0]:.0f}."
         )
+
+
+def plot(df):
+    """Conductivity against damage of each kind, with what is known of it as lines."""
+    from studies.damage.figure import draw
+
+    return draw(df)

@@ -122,3 +122,10 @@ def table(df):
     from studies.grains.tables import lines
 
     return lines(df)
+
+
+def plot(df):
+    """Errors against the gap; against the radius of contacts; networks beside the continuum."""
+    from studies.grains.figure import draw
+
+    return draw(df)

@@ -133,3 +133,10 @@ def table(df):
     from studies.hard_cases.tables import lines
 
     return lines(df)
+
+
+def plot(df):
+    """Outcomes by method and family, and the errors of what is verified or warned of."""
+    from studies.hard_cases.figure import draw
+
+    return draw(df)

@@ -206,3 +206,10 @@ def _means(df, columns):
         found.insert(0, "packings", grouped.size())
         found.insert(2, "phi_sd", grouped["phi_reached"].std())
     return found.reset_index()
+
+
+def plot(df):
+    """Cost, contacts and isotropy."""
+    from studies.packings.figure import draw
+
+    return draw(df, LARGE)

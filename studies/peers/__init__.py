@@ -137,6 +137,13 @@ def _claims(df):
         yield words, None if math.isinf(ratio) else ratio, ">= 1"
 
 
+def plot(df):
+    """Errors against costs on four bodies."""
+    from studies.peers.figure import draw
+
+    return draw(df[df["status"] == "ok"])
+
+
 def table(df):
     """Errors of the conductivity, % of the known value; CPU time and memory of a solve, median.
 

@@ -158,3 +158,10 @@ def table(df):
     from studies.resistance.tables import lines
 
     return lines(df)
+
+
+def plot(df):
+    """Errors against the Kapitza length; the fall of the conductivity; the resistance that the gap asks for."""
+    from studies.resistance.figure import draw
+
+    return draw(df)

@@ -263,3 +263,10 @@ def notes(df):
             f"The code before: without the packing, which is the same in both and takes {row['packing_s']:.0f} of "
             f"{row['wall_s']:.0f} s, the wall time is {now / then:.2f} of what it was. CPU time is not split so."
         )
+
+
+def plot(df):
+    """Costs of methods and stages as lines of slope one and others; two threads; two ranks."""
+    from studies.scaling.figure import draw
+
+    return draw(df[df["status"] == "ok"])

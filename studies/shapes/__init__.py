@@ -171,3 +171,10 @@ def words(df):
         ratios.extend((dem["error_percent"] / fft["error_percent"]).abs())
     both = [methods.resolution({"name": name} | _at(part, name, 1)) for name in ("fft", "dem")]
     return f"with {both[0]} is {min(ratios):.0f} to {max(ratios):.0f} times nearer than the DEM with {both[1]}"
+
+
+def plot(df):
+    """Errors by shape and method; those of fibres against the contrast."""
+    from studies.shapes.figure import draw
+
+    return draw(df)

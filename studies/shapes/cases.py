@@ -18,6 +18,8 @@ PARTS = {
     "capped rod": ((CONTRAST,), tuple(SPENT)),
 }
 BALLS, FEW = 0.2, 0.002
+# Fields beside edges that a smooth surface has not.
+SINGULAR = ("square rods", "diagonal", "capped rod")
 
 # Largest error of the conductivity, %, coarse and fine, of rows of a part at some contrasts.
 LIMITS = (

@@ -180,3 +180,35 @@ def table(df):
              "rejected", "stages", "iterations", "spectral_ratio", "energy_error", "million_particle_steps",
              "bandwidth_share", "extrapolated", "links_per_particle", "over_lammps", "difference"]  # fmt: skip
     return df[[name for name in shown if name in df]]
+
+
+def plot(df):
+    """CPU time over the temporal error, a panel for each body."""
+    from matplotlib import pyplot
+
+    from studies.harness.figures import BLACK, BLUE, GREEN, GREY, RED
+
+    looks = {
+        "euler": ("explicit Euler at its limit", BLACK, "s"),
+        "rkl2": ("Runge-Kutta-Legendre", RED, "o"),
+        "tr-bdf2": ("TR-BDF2, Jacobi", BLUE, "^"),
+        "tr-bdf2-multigrid": ("TR-BDF2, multigrid", GREEN, "D"),
+    }
+    bodies = [each for each in BODIES if len(pick(df, body=each[0], particles=each[1]))]
+    shape = (1, 1) if len(bodies) == 1 else (-(-len(bodies) // 2), 2)
+    figure, axes = pyplot.subplots(*shape, figsize=(5.5 * shape[1], 4 * shape[0]), squeeze=False)
+    for panel, (body, particles) in zip(axes.flat, bodies, strict=False):
+        for name, (label, colour, marker) in looks.items():
+            rows = pick(df, body=body, particles=particles, integrator=name).sort_values("error_percent")
+            panel.plot(rows["error_percent"], rows["cpu_s"], marker=marker, color=colour, label=label)
+            for cost in rows[rows["error_percent"].isna()]["cpu_s"]:
+                panel.axhline(cost, color=colour, linestyle=":")
+                panel.annotate("explicit Euler, extrapolated", (0.02, cost), xycoords=("axes fraction", "data"),
+                               xytext=(0, -12), textcoords="offset points", fontsize=8)  # fmt: skip
+        panel.axvline(TARGET, color=GREY, linewidth=0.8)
+        panel.set(xscale="log", yscale="log", xlabel="temporal error, % of the span", ylabel="CPU seconds")
+        panel.set_title(f"{body}, {particles} particles")
+    for panel in axes.flat[len(bodies) :]:
+        panel.set_axis_off()
+    axes[0, 0].legend(fontsize=8)
+    return figure

@@ -154,3 +154,10 @@ def table(df):
     from studies.tuning.tables import lines
 
     return lines(df)
+
+
+def plot(df):
+    """Errors against the factors; parts of the error against the particle size."""
+    from studies.tuning.figure import draw
+
+    return draw(df)

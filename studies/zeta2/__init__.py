@@ -236,3 +236,10 @@ def notes(df):
     if len(rows):
         width = (rows["hs_upper"] - rows["hs_lower"]) / (rows["upper"] - rows["lower"])
         yield f"Hashin and Shtrikman's bounds are {width.min():.1f} to {width.max():.1f} times as wide as these."
+
+
+def plot(df):
+    """zeta_2 over f beside the polynomial; errors of voxels; what it does to bounds; S2."""
+    from studies.zeta2.figure import draw
+
+    return draw(df[df["status"] == "ok"])
