@@ -11,6 +11,7 @@ QUANTITIES = {"temperature", "flux", "conductivity", "k_ratio", "mean_flux"}
 # Where the same arithmetic says something else, and what.
 EXCEPTIONS = {
     ("common/field_errors.py", "field_pictures"): "temperature over that of the coldest wall",
+    ("crystal/rows.py", "_received"): "heat that flows along links",
     ("damage/means.py", "theory"): "share of links that is left",
     ("damage/means.py", "first_loss"): "share of the conductivity that is lost",
     ("damage/means.py", "above_bound"): "distance to a bound",
@@ -25,6 +26,7 @@ EXCEPTIONS = {
     ("peers/python_elements.py", "solved"): "two outputs of one program",
     ("scaling/__init__.py", "_ranked"): "one body on one rank and on two",
     ("sphere_benchmark/rows.py", "_at_points"): "flux at points of a file, over the mean one",
+    ("zeta2/figure.py", "_two_point"): "tangent of the two-point probability",
 }
 
 
