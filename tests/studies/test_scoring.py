@@ -11,7 +11,6 @@ QUANTITIES = {"temperature", "flux", "conductivity", "k_ratio", "mean_flux"}
 # Where the same arithmetic says something else, and what.
 EXCEPTIONS = {
     ("common/field_errors.py", "field_pictures"): "temperature over that of the coldest wall",
-    ("crystal/rows.py", "_received"): "heat that flows along links",
     ("damage/means.py", "theory"): "share of links that is left",
     ("damage/means.py", "first_loss"): "share of the conductivity that is lost",
     ("damage/means.py", "above_bound"): "distance to a bound",
