@@ -101,7 +101,7 @@ def test_set_up_once(monkeypatch):
         function = getattr(place, name)
         monkeypatch.setattr(place, name, lambda *a, **k: calls.append(name) or function(*a, **k))
 
-    counted(networks, "conform"), counted(networks, "laguerre"), counted(networks, "connect")
+    counted(networks, "conformed"), counted(networks, "laguerre"), counted(networks, "connect")
     counted(steady, "preconditioner")
     counted(references.fem.solver, "make"), counted(references.fem.system, "assemble_loads")
     counted(references.fem.multigrid, "multigrid")
@@ -113,7 +113,7 @@ def test_set_up_once(monkeypatch):
     fft.solve_axes(cell, **SMALL[fft])
     fft.solve_axes(cell, scheme="eyre-milton", **SMALL[fft])
     multipole.solve_axes(cell, **SMALL[multipole])
-    once = ["conform", "laguerre", "connect", "preconditioner", "make", "assemble_loads", "multigrid"]
+    once = ["conformed", "laguerre", "connect", "preconditioner", "make", "assemble_loads", "multigrid"]
     assert calls == [*once, "voxelise", "_system", "voxelise", "_scheme", "exchange"]
 
 
