@@ -23,7 +23,6 @@ from demheat.runtime.process_state import one_blas_thread
 from demheat.runtime.progress import stage
 from demheat.scene.perfect import INFINITE, touching_spheres
 from demheat.scene.resistances import between
-from demheat.scene.shapes import Sphere
 from demheat.scene.shapes.base import TOUCH
 
 # Of the best of the rest: half of the digits are left for what differs in it, half of them for the flux beside it.
@@ -38,8 +37,7 @@ def check_perfect(scene) -> None:
     scene.require(what, pores=False, takes=("resistance", "perfect"))
     if scene.matrix.perfect:
         raise NotImplementedError("Scene.matrix: particles know perfect conductors as inclusions")
-    spheres = replace(scene, inclusions=[each for each in scene.inclusions if isinstance(each, Sphere)])
-    if touching_spheres(spheres) is not None:
+    if touching_spheres(scene) is not None:
         raise NotImplementedError(
             "perfect spheres touch each other or a held wall: particles know those apart, or that resist"
         )

@@ -23,7 +23,9 @@ def touching_spheres(scene) -> tuple[int, int] | None:
     ValueError
         If what touches joins walls of two temperatures, or a periodic cell to its images along the gradient.
     """
-    ids = np.array([n for n, s in enumerate(scene.inclusions) if s.material.perfect and s.resistance == 0], int)
+    inclusions = enumerate(scene.inclusions)
+    ids = [n for n, s in inclusions if s.kind == "sphere" and s.material.perfect and s.resistance == 0]
+    ids = np.array(ids, int)
     if not len(ids):
         return None
     centers, radii = (np.array([getattr(scene.inclusions[n], name) for n in ids]) for name in ("center", "radius"))
