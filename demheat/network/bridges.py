@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from demheat.network.base import SIDES, Network, image_shifts
+from demheat.network.base import SIDES, Network, image_shifts, row_numbers
 
 # Conductivities of bodies over that between them, or the other way round, from which facets across gaps matter: below
 # it the answers are right to what fewer particles tell.
@@ -29,7 +29,7 @@ def filled(network: Network, scene) -> Network:
     k, parent = scene.mean_conductivities, scene.parents()
     # Of the surroundings of each phase; the matrix has none.
     beside = k[parent]
-    row = np.repeat(np.arange(len(network.centers)), np.diff(network.indptr))
+    row = row_numbers(network.indptr)
     links = np.flatnonzero((network.phase[row] > 0) & (network.phase[network.indices] > 0))
     links = links[_over_gaps(network, scene, parent, row[links], links)]
     here, there = network.phase[row[links]], network.phase[network.indices[links]]

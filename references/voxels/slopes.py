@@ -2,7 +2,7 @@
 
 A voxel knows one gradient, by its corners. Along a film those on one side see the slope s of that side, those on the
 other the other's, so the voxel conducts sum(f k s^2) over the square of their mean, f the parts of its phases: without
-that a body of good conductors behind a film would conduct where only its outside has a slope, a quarter too much.
+that a body of good conductors behind a film would conduct where only its outside has a slope.
 """
 
 from __future__ import annotations

@@ -123,6 +123,7 @@ def test_of_few_rows_is_what_is_compiled():
     kernels.apply(0, 1, links, diagonal, p, compiled, partial)
     # Rounding of sums of some ten numbers of order one to ten.
     assert_allclose(found, compiled, rtol=0, atol=1e-13)
+    # Rounding of a sum of 60 products, some of which cancel, and of 60 squares.
     assert_allclose(product, partial[0], rtol=1e-12)
     q, x, r = vectors(3, n, seed=2)
     there, left = x.copy(), r.copy()

@@ -40,8 +40,8 @@ def test_copies_of_a_sphere_are_parted_where_they_touch(middle):
         assert np.all(net.image[changed] != HERE)
         assert len(changed) == np.sum((net.image != HERE) & (net.phase[row] == 1) & (net.phase[net.indices] == 1))
     length = np.linalg.norm(there - net.centers[row], axis=1)[changed]
-    assert_allclose(found.conductance[changed], 2.0 * net.area[changed] / length, rtol=1e-12)
-    # As from one end so from the other.
+    assert_allclose(found.conductance[changed], 2.0 * net.area[changed] / length, rtol=1e-12)  # rounding
+    # As from one end so from the other; a facet is cut anew from either, and small ones round the more.
     assert_allclose(np.sort(found.conductance[changed])[::2], np.sort(found.conductance[changed])[1::2], rtol=1e-9)
 
 

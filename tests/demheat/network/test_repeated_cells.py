@@ -58,7 +58,7 @@ def test_networks_are_the_same(name, periodic):
     assert_allclose(areas, area, atol=1e-12 * spacing**2)
     assert_allclose(distances, distance, atol=1e-12 * spacing)
     for column in ("wall_particle", "wall_side", "wall_area", "wall_distance"):
-        assert_allclose(getattr(found, column), getattr(cut, column), rtol=1e-12)
+        assert_allclose(getattr(found, column), getattr(cut, column), rtol=1e-12)  # rounding
 
 
 def test_cells_that_are_known_are_not_cut(monkeypatch):
@@ -70,6 +70,7 @@ def test_cells_that_are_known_are_not_cut(monkeypatch):
     taken = found > 4.0 * right
     # Those beside a particle that has gone or become lighter are cut all the same.
     assert 0.95 < np.mean(taken[there]) < 1.0 and not taken[~there].any()
+    # Rounding of places in the box, over cells of any size.
     assert_allclose(found, np.where(taken, 8.0, 1.0) * right, rtol=1e-9)
 
 
