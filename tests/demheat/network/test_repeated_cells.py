@@ -7,12 +7,13 @@ from scipy.spatial import Voronoi, cKDTree
 
 from demheat import Box, Layer, Material, Scene, Sphere
 from demheat.network import repeated
+from demheat.network.base import row_numbers
 from demheat.network.laguerre import LINKS, laguerre
 from demheat.network.laguerre_kernels import Cut
 from demheat.network.repeated import farthest_of, known_cells
 from demheat.network.repeated_kernels import Known, repeat_cell
 from demheat.packing import tile
-from demheat.packing.tile import FARTHEST, PHI, numbers, places_of, tiled
+from demheat.packing.tile import FARTHEST, FIRST, PHI, numbers, places_of, tiled
 from demheat.packing.twins.conforming import Conformed, conformed
 
 OTHER = Material(10.0)
@@ -35,7 +36,7 @@ def made(name, *, periodic=True, size=(1.0, 1.1, 0.8), number=8000, seed=3):
 
 def by_place(facets):
     """Links in one order: row, other, image, area, distance."""
-    row = np.repeat(np.arange(len(facets.volumes)), np.diff(facets.indptr))
+    row = row_numbers(facets.indptr)
     order = np.lexsort((facets.image, facets.indices, row))
     return row[order], *(getattr(facets, name)[order] for name in ("indices", "image", "area", "distance"))
 
@@ -72,6 +73,14 @@ def test_cells_that_are_known_are_not_cut(monkeypatch):
     assert 0.95 < np.mean(taken[there]) < 1.0 and not taken[~there].any()
     # Rounding of places in the box, over cells of any size.
     assert_allclose(found, np.where(taken, 8.0, 1.0) * right, rtol=1e-9)
+
+
+def test_cells_that_a_wall_may_reach_are_not_known():
+    """No site is nearer to a wall than the first layer, and none that it moved is nearer to a cell than it may reach."""
+    asked, conform, known = made("none", periodic=False)
+    centers = conform.packing.centers
+    room = np.minimum(centers, conform.packing.size - centers).min(axis=1)
+    assert room[known.place >= 0].min() > (FIRST + 2.0 * FARTHEST) * asked.radii[0]
 
 
 def test_what_is_taken_for_known_and_is_not_is_cut():
