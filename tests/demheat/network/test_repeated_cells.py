@@ -76,7 +76,7 @@ def test_cells_that_are_known_are_not_cut(monkeypatch):
 
 
 def test_cells_that_a_wall_may_reach_are_not_known():
-    """No site is nearer to a wall than the first layer, and none that it moved is nearer to a cell than it may reach."""
+    """Sites of the first layer are not in their places, and a cell that one may reach is cut."""
     asked, conform, known = made("none", periodic=False)
     centers = conform.packing.centers
     room = np.minimum(centers, conform.packing.size - centers).min(axis=1)
