@@ -1,7 +1,6 @@
 """What every rank of a row runs: `mpiexec -n 2 python on_ranks.py`, with what is asked for on standard input, as JSON.
 
-The first rank prints what the row says as its last line. Kernels are loaded, and the replica of the packing is made,
-before anything is timed: it is the same work whatever the number of ranks.
+The first rank prints what the row says as its last line. Kernels are loaded before anything is timed.
 """
 
 from __future__ import annotations
@@ -23,8 +22,6 @@ CONTRAST = 5.0
 TOLERANCE = 1e-10
 # Loads all kernels; more would cost, fewer make no slabs.
 FIRST = 4000
-# Particles of a replica, about: soon made.
-REPLICA = 60_000
 STAGES = ("packing", "cells", "solve", "field")
 
 
@@ -48,29 +45,13 @@ def main():
     folder = comm.bcast(tempfile.mkdtemp() if comm.rank == 0 else None, root=0)
     os.environ["DEMHEAT_CACHE"] = folder
     mpi.solve(scene, particles=FIRST * comm.size, **knobs)
-    replicas = _packed(scene, given, comm)
     _forget_peak()
     engine.Log.begin()
-    field = mpi.solve(scene, particles=given["particles"], replicas=replicas, **knobs)
-    row = _said(field) | _logged(engine, comm) | {"replicas": replicas, "triad_rank_gbs": _triad(comm)}
+    field = mpi.solve(scene, particles=given["particles"], **knobs)
+    row = _said(field) | _logged(engine, comm) | {"triad_rank_gbs": _triad(comm)}
     if comm.rank == 0:
         shutil.rmtree(folder)
         print(json.dumps(row))
-
-
-def _packed(scene, given, comm):
-    """Replicas along the shortest side, the one that they repeat being made before, and kept."""
-    from demheat.packing.cache import relaxed, replica
-    from demheat.packing.domain import replica_counts
-
-    replicas = max(1, round((given["particles"] / given["number"] / REPLICA) ** (1 / 3)))
-    counts, body = replica_counts(given["particles"], scene.size, replicas), {"size": scene.size, "seed": given["seed"]}
-    if comm.rank == 0 and counts.prod() > 1:
-        replica(given["particles"], counts, **body)
-    elif comm.rank == 0:
-        relaxed(given["particles"], periodic=scene.periodic, allow_few=False, **body)
-    comm.Barrier()
-    return replicas
 
 
 def _forget_peak():

@@ -2,19 +2,25 @@
 
 from __future__ import annotations
 
-import math
 import tempfile
 import warnings
 
 import numpy as np
 
+from demheat.conduction.steady import solve_checked
+from demheat.dem.options import Particles
 from demheat.gallery import EPOXY, SILICA, dispersion, simple_cubic
+from demheat.laws import Laguerre
+from demheat.network.interface import connect
+from demheat.network.laguerre import drop_empty_cells, laguerre
+from demheat.network.repeated import farthest_of, known_cells
+from demheat.packing.twins.conforming import conformed
+from demheat.runtime.threads import thread_limit
+from demheat.sampling.field_of import field_of
 from studies.common import silica_epoxy
 from studies.harness import methods
 from studies.harness.cost import measured, triad_gbs
 
-# Particles in one replica of the packing, at most: what is repeated is soon made and kept.
-REPLICA = 130_000
 # Radius of the largest over that of the smallest sphere.
 RATIOS = {"equal": 1.0, "polydisperse": 10.0}
 CONTRAST = SILICA.conductivity / EPOXY.conductivity
@@ -71,26 +77,17 @@ class Stages:
 
 
 def dem_row(scene, particles, seed, *, cores=None):
-    """Every stage of the DEM, its packing replicas of one that is made anew."""
-    from demheat.conduction.steady import solve_checked
-    from demheat.laws import Laguerre
-    from demheat.network.interface import connect
-    from demheat.network.laguerre import drop_empty_cells, laguerre
-    from demheat.packing.cache import replicated
-    from demheat.packing.twins.conforming import conform
-    from demheat.runtime.threads import thread_limit
-    from demheat.sampling.field_of import field_of
-
-    counts = [math.ceil((particles / REPLICA) ** (1 / 3))] * 3
-    box = {"size": scene.size, "periodic": True}
-    stage = Stages()
+    """Every stage of the DEM, its packing made anew."""
+    law, stage = Laguerre(), Stages()
     with thread_limit(cores):
-        packing = stage("packing", replicated, particles, counts, **box, seed=seed)
-        packing = stage("twins", conform, packing, scene, seed=seed)
-        facets = stage("cells", laguerre, packing.centers, packing.radii**2, packing.size)
+        asked = stage("packing", Particles(particles=particles, seed=seed).packed, scene, law)
+        made = stage("twins", conformed, asked, scene, seed=seed, farthest=farthest_of(asked))
+        packing = made.packing
+        facets = stage("cells", _cells, asked, made)
+        del made, asked
         packing, facets = drop_empty_cells(packing, facets)
         phase = stage("phases", scene.phase_at, packing.centers)
-        network = stage("network", connect, packing, facets, phase, scene.conductivities, rule=Laguerre().interface)
+        network = stage("network", connect, packing, facets, phase, scene.conductivities, rule=law.interface)
         del facets
         solution = stage("equations", solve_checked, network, scene, solver="auto", tolerance=1e-8)
         field = stage("field", field_of, scene, network, solution, stats={})
@@ -101,6 +98,13 @@ def dem_row(scene, particles, seed, *, cores=None):
         row |= _product(network, cores)
     row |= {"twins": packing.provenance["twins"], "links": len(network.indices)}
     return row | _said(scene, field)
+
+
+def _cells(asked, made):
+    """The cells of a packing with its twins, those that tiles repeat cut once."""
+    packing = made.packing
+    known = known_cells(asked, made)
+    return laguerre(packing.centers, packing.radii**2, packing.size, periodic=packing.periodic, known=known)
 
 
 def _product(network, cores):
