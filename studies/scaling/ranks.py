@@ -55,13 +55,11 @@ def missing() -> str | None:
 
 def row(number: int, particles: int, seed: int, ranks: int) -> dict:
     """One body solved on so many ranks."""
-    from studies.scaling import on_ranks
-
     why = missing()
     if why:
         raise NotImplementedError(why)
     given = {"number": number, "particles": particles, "seed": seed}
-    command = [shutil.which("mpiexec"), "-n", str(ranks), python(), on_ranks.__file__]
+    command = [shutil.which("mpiexec"), "-n", str(ranks), python(), str(Path(__file__).with_name("on_ranks.py"))]
     how = {"input": json.dumps(given), "timeout": LIMIT, "env": environment()}
     done = subprocess.run(command, capture_output=True, text=True, **how)
     if done.returncode:
