@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 from demheat import referee
 from studies.harness.figures import LOOK
 from studies.harness.pick import pick
 from studies.scaling.means import STAGES, billion, efficiencies, errors, fitted
-from studies.scaling.rows import REPLICA
 
 # Characters of a note on the page; the rows' file has them all.
 NOTE = 100
@@ -37,21 +34,13 @@ def _line(row):
         scene += ", sizes to 10"
     if row["fraction"] == row["fraction"]:
         scene += f", f = {row['fraction']:g}"
-    line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": scene, "packing": _packing(row["particles"])}
+    line = {"what": row["part"], "method": LOOK[row["name"]][0], "of": scene}
     line |= {"unknowns": row["unknowns"], "threads": row["cores"], "CPU, s": row["cpu_s"], "wall, s": row["wall_s"]}
     line |= {"GiB": row["peak_mib"] / 1024, "bytes each": row["peak_mib"] * 2**20 / row["unknowns"]}
     costs = {name: row.get(f"{name}_cpu_s") for name in STAGES}
     line["stages, CPU s"] = ", ".join(f"{k} {v:.2g}" for k, v in costs.items() if v is not None and v == v)
     line["of triad"] = row["product_gbs"] / row["triad_here_gbs"]
     return line | {"error, %": row["error_percent"], "note": _cut(row["note"]) if row["status"] != "ok" else ""}
-
-
-def _packing(particles):
-    """Whether a packing of so many particles was made as a whole; empty where there is none."""
-    if particles != particles:
-        return ""
-    number = math.ceil((particles / REPLICA) ** (1 / 3)) ** 3
-    return "whole" if number == 1 else f"{number} times one"
 
 
 def _cut(note):
