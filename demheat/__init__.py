@@ -10,6 +10,9 @@ import demheat.renamed as _renamed  # noqa: F401 - and then old names
 import demheat.terminal.ends as _ends  # noqa: F401 - first: from here on a command is interrupted without a traceback
 from demheat.field import Field, Samples
 from demheat.io.fields import write as _write
+from demheat.io.libraries import to_dataframe as _to_dataframe
+from demheat.io.libraries import to_pyvista as _to_pyvista
+from demheat.io.libraries import to_xarray as _to_xarray
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.runtime.deadline import budget
 from demheat.runtime.lazy import lazy_names
@@ -60,15 +63,17 @@ __all__ = [
     "recommend",
     "solve",
     "sweep",
-    *_shapes.__all__,
 ]
+__all__ += _shapes.__all__
 HOMES = {
     "demheat.cheapest": ("effective", "recommend"),
     "demheat.dem": ("evolve", "solve"),
     "demheat.sweeps": ("sweep",),
 }
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, HOMES)
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, HOMES)
 
 # What is solved knows nothing of those who store and draw it: it is given them here.
 Field.plot, Field.write, Scene.plot = _plot_field, _write, _plot_scene
+Field.to_dataframe, Field.to_xarray, Field.to_pyvista = _to_dataframe, _to_xarray, _to_pyvista

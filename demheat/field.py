@@ -18,7 +18,7 @@ import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -29,6 +29,8 @@ from demheat.scene.frozen import ReadOnly, read_only, table_of
 from demheat.scene.inputs import axis_number, finite, reals
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from demheat.error import Estimate
 
 # Of the box: points computed to lie on a wall may be so far beyond it.
@@ -67,6 +69,12 @@ class Samples(NamedTuple):
     temperature: np.ndarray
     phase: np.ndarray
     flux: np.ndarray
+
+    def columns(self) -> dict[str, np.ndarray]:
+        """All of it as columns of (n,) numbers: `pandas.DataFrame(field.samples.columns())`, and other tables."""
+        one = {"volume": self.volumes, "temperature": self.temperature, "phase": self.phase}
+        places = {axis: self.points[:, number] for number, axis in enumerate("xyz")}
+        return places | one | {f"flux_{axis}": self.flux[:, number] for number, axis in enumerate("xyz")}
 
 
 @dataclass(frozen=True, repr=False)
@@ -128,11 +136,11 @@ class Field:
     mean_flux: np.ndarray
     fractions: np.ndarray
     sampler: Callable[[], Samples]
-    temperature_at: Callable[[np.ndarray], np.ndarray]
-    flux_at: Callable[[np.ndarray], np.ndarray]
+    temperature_at: Callable[[ArrayLike], np.ndarray]
+    flux_at: Callable[[ArrayLike], np.ndarray]
     wall_temperature: Mapping[str, float] = field(default_factory=dict)
     wall_heat: Mapping[str, float] = field(default_factory=dict)
-    stats: Mapping[str, object] = field(default_factory=dict)
+    stats: Mapping[str, Any] = field(default_factory=dict)
     time: float | None = None
     through: Callable[[int, float], float] | None = None
     estimator: Callable[[Field], Estimate] | None = None
@@ -140,7 +148,10 @@ class Field:
     slack: tuple[float, float] = (0.0, 0.0)
     # Given by the package's front: a field knows nothing of those who store and draw it.
     write: ClassVar[Callable[..., None]]
-    plot: ClassVar[Callable[..., object]]
+    plot: ClassVar[Callable[..., Any]]
+    to_dataframe: ClassVar[Callable[..., Any]]
+    to_xarray: ClassVar[Callable[..., Any]]
+    to_pyvista: ClassVar[Callable[..., Any]]
 
     def __post_init__(self):
         # What is handed out cannot be changed: what is worked out later would be wrong without a word.
@@ -195,7 +206,7 @@ class Field:
             raise NotImplementedError("Field.error: this method does not know its error")
         return self.estimator(self)
 
-    def heat_through(self, axis, position) -> float:
+    def heat_through(self, axis: int, position: float) -> float:
         """Heat that crosses a section of the body, W, by the method's own balance.
 
         For the DEM the section is made of the facets between cells with centres on either side of a plane: in a steady

@@ -90,6 +90,6 @@ BESIDE = {
     ),
     # Short names of what lies in folders.
     "references.series": ("references.exact.series",),
-    "references.zeta": ("references.fft.zeta",),
+    "references.zeta": ("demheat.runtime", "references.fft.zeta"),
     "references": (),
 }

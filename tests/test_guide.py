@@ -35,8 +35,8 @@ def test_the_example_of_estimates_runs(first, capsys):
 def test_the_example_of_bounds_runs(first):
     names = dict(first)
     exec(_block("errors.md", "bracket.solve("), names)
-    assert names["found"].lower < EXACT < names["found"].upper
-    assert names["found"].width <= 1e-3
+    assert names["sure"].lower < EXACT < names["sure"].upper
+    assert names["sure"].width <= 1e-3
 
 
 def test_the_example_of_a_choice_runs(capsys):

@@ -7,7 +7,7 @@ import pytest
 from imported import DECLARING, ROOT
 
 HEAVY = ("numba", "gmsh", "meshio", "skfem", "pyfftw", "pyamg", "pandas", "matplotlib", "scipy", "tifffile", "nrrd")
-HEAVY += ("dask", "distributed", "cloudpickle", "zarr")
+HEAVY += ("dask", "distributed", "cloudpickle", "zarr", "xarray", "pyvista")
 
 
 @pytest.mark.parametrize(

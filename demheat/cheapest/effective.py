@@ -188,7 +188,7 @@ def _found(loads, accuracy, allowed, memory):
                 way = finer(way, loads, missing, memory)
             except TimeoutError as error:
                 return _so_far(best, accuracy, f"{way.method}: {one_line(error)}", passed)
-            except (NotImplementedError, RuntimeError, ValueError, MemoryError) as error:
+            except (NotImplementedError, RuntimeError, ValueError, MemoryError, ImportError) as error:
                 way = way._replace(refused=one_line(error))
         if way.refused:
             passed.append(f"{way.method}: {way.refused}")

@@ -10,6 +10,7 @@ from demheat import dem
 from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import measures
+from demheat.runtime.extras import lacking
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
 
@@ -112,6 +113,8 @@ def _multipole(loads, accuracy, memory):
 
 
 def _refined(name, loads, accuracy, memory):
+    if why := lacking(name):
+        return Way(name, {}, refused=why)
     if any(whole.resistances.any() for whole in loads.wholes.values()):
         return Way(name, {}, refused="its laws of error know perfect interfaces only")
     (knob, power), (law, part) = KNOBS[name], _law(name, loads)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.spatial import cKDTree
 
 from demheat.damage.links import cut, pairs
@@ -78,7 +79,7 @@ class Disc:
         n = np.array(self.normal) / np.linalg.norm(self.normal)
         return np.array([*across(n), n])
 
-    def beyond(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def beyond(self, u: ArrayLike, v: ArrayLike) -> np.ndarray:
         """Distance from the rim of points of its plane, m, negative inside.
 
         Parameters
@@ -160,7 +161,7 @@ class Rectangle:
         u, v = (np.array(each) / np.linalg.norm(each) for each in (self.along, self.across))
         return np.array([u, v, np.cross(u, v)])
 
-    def beyond(self, u: np.ndarray, v: np.ndarray) -> np.ndarray:
+    def beyond(self, u: ArrayLike, v: ArrayLike) -> np.ndarray:
         """Distance from the rim of points of its plane, m, negative inside.
 
         Parameters

@@ -93,5 +93,6 @@ METHODS = (
     ),
 )
 
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, {"demheat.dem.solver": ("evolve", "solve", "solve_axes")})
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, {"demheat.dem.solver": ("evolve", "solve", "solve_axes")})

@@ -55,8 +55,8 @@ def read_contacts(
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     _ = Path(folder, "pairs.dump").write_text(dump)
     ...     found = grains.read_contacts(Path(folder, "pairs.dump"), columns={"id1": 1, "id2": 2, "radius": "c_p[3]"})
-    >>> found.first.tolist(), found.second.tolist(), found.radius.tolist()
-    ([0], [1], [0.25])
+    >>> print(found.first, found.second, found.radius)
+    [0] [1] [0.25]
     """
     path = checked_path(path)
     strange = [name for name in columns or {} if name not in KNOWN]

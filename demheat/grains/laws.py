@@ -27,6 +27,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike
 from scipy.special import xlogy, zeta
 
 from demheat.scene.inputs import LEAST, MOST, finite
@@ -86,7 +87,7 @@ class Overlap:
     [0.6, 0.0]
     """
 
-    def radius(self, distance, first, second):
+    def radius(self, distance: ArrayLike, first: ArrayLike, second: ArrayLike) -> np.ndarray:
         """Contact radius of each pair, (m,) float array, m; 0 where spheres do not overlap.
 
         Parameters
@@ -138,7 +139,7 @@ class Hertz:
             finite("Hertz.young", self.young, "a finite number > 0 Pa", lambda v: v > 0)
         finite("Hertz.poisson", self.poisson, "from -1 to 0.5", lambda v: -1 < v <= 0.5)
 
-    def radius(self, distance, first, second):
+    def radius(self, distance: ArrayLike, first: ArrayLike, second: ArrayLike) -> np.ndarray:
         """Contact radius of each pair by its overlap, (m,) float array, m.
 
         Parameters
@@ -204,7 +205,7 @@ class Fixed:
         finite("Fixed.ratio", self.ratio, "a number > 0, below 1", lambda v: 0 < v < 1)
         finite("Fixed.within", self.within, "a number >= 0, at most 0.5", lambda v: 0 <= v <= 0.5)
 
-    def radius(self, distance, first, second):
+    def radius(self, distance: ArrayLike, first: ArrayLike, second: ArrayLike) -> np.ndarray:
         """Contact radius of each pair, (m,) float array, m; 0 where spheres do not touch.
 
         Parameters

@@ -37,7 +37,7 @@ class Contacts(NamedTuple):
     >>> import numpy as np
     >>> from demheat import grains
     >>> millimetres = grains.Contacts(np.array([0]), np.array([1]), radius=np.array([0.2]))
-    >>> millimetres.scaled(1e-3).radius.tolist()
+    >>> print(millimetres.scaled(1e-3).radius)
     [0.0002]
     """
 

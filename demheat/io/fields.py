@@ -82,7 +82,7 @@ def _points(field, stream, cells):
 
 
 def _grid(field, stream, cells):
-    shape, data = _voxels(field) or _on_cells(field, cells)
+    shape, data = grid_of(field, cells)
     blocks = Blocks()
     extent = " ".join(f"0 {count}" for count in shape)
     spacing = " ".join(repr(side / count) for side, count in zip(field.scene.size, shape, strict=True))
@@ -92,7 +92,12 @@ def _grid(field, stream, cells):
     put_down(stream, "ImageData", parts, blocks.arrays, more=more)
 
 
-def _voxels(field):
+def grid_of(field: Field, cells: int) -> tuple[list[int], dict[str, np.ndarray]]:
+    """Shape of a grid, and what a field has there, z fastest: its own voxels, else so many cells along the box."""
+    return voxels_of(field) or _on_cells(field, cells)
+
+
+def voxels_of(field: Field) -> tuple[list[int], dict[str, np.ndarray]] | None:
     """Shape of the grid that a field's own samples are on, and what is there; None if they are on none."""
     own, size = field.samples, np.array(field.scene.size)
     shape = [len(np.unique(np.round(own.points[:, axis] / size[axis], 9))) for axis in range(3)]

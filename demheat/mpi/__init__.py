@@ -14,5 +14,6 @@ if TYPE_CHECKING:
 
 __all__ = ["solve"]
 
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, {"demheat.mpi.solver": ("solve",)})
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, {"demheat.mpi.solver": ("solve",)})

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from demheat.field import check_field
 from demheat.referee.values import rms, value_error, vector_error, worst
@@ -103,7 +104,7 @@ def span(scene: Scene, reference: Field | None = None) -> float:
 def temperature_error(
     field: Field,
     reference: Field,
-    points: np.ndarray | None = None,
+    points: ArrayLike | None = None,
     *,
     values: np.ndarray | None = None,
     mask: Mask | None = None,
@@ -151,7 +152,7 @@ def temperature_error(
 def flux_error(
     field: Field,
     reference: Field,
-    points: np.ndarray | None = None,
+    points: ArrayLike | None = None,
     *,
     values: np.ndarray | None = None,
     mask: Mask | None = None,

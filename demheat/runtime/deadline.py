@@ -51,12 +51,13 @@ def budget(seconds: float | None, *, begun: float | None = None) -> AbstractCont
     Examples
     --------
     >>> import demheat
+    >>> from demheat import gallery
     >>> from references import fft
     >>> with demheat.budget(60.0):
-    ...     field = fft.solve(demheat.gallery.sphere_in_cube(5.0), voxels=32)
+    ...     field = fft.solve(gallery.sphere_in_cube(5.0), voxels=32)
     >>> try:
     ...     with demheat.budget(1e-9):
-    ...         demheat.solve(demheat.gallery.sphere_in_cube(5.0))
+    ...         demheat.solve(gallery.sphere_in_cube(5.0))
     ... except TimeoutError as error:
     ...     print(error)
     seconds = 1e-09 are over, in ...

@@ -76,7 +76,7 @@ def on_progress(hook: Callable[[Report], None] | None):
     Examples
     --------
     >>> import demheat
-    >>> heard = []
+    >>> heard: list[tuple[str, float]] = []
     >>> demheat.on_progress(lambda report: heard.append((report.stage, report.share)))
     >>> demheat.on_progress(None)
     """

@@ -32,7 +32,8 @@ class Dependence:
     --------
     >>> from demheat import Dependence, Material
     >>> rising = Dependence.linear(2e-3, 20.0, (0.0, 100.0))  # 1 + 0.002 (T - 20), constant beyond
-    >>> Material(16.0, dependence=rising).dependence.factor([20.0, 70.0, 500.0]).round(12).tolist()
+    >>> iron = Material(16.0, dependence=rising)
+    >>> rising.factor([20.0, 70.0, 500.0]).round(12).tolist()
     [1.0, 1.1, 1.16]
     """
 

@@ -16,6 +16,10 @@ class ReadOnly(dict):
 
     __setitem__ = __delitem__ = __ior__ = clear = pop = popitem = setdefault = update = _refused
 
+    def __hash__(self):
+        """That of what it holds: a scene with walls can be a key."""
+        return hash(frozenset(self.items()))
+
     def __reduce__(self):
         """Copies and pickles are made from a plain dict."""
         return type(self), (dict(self),)

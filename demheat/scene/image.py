@@ -52,7 +52,7 @@ class Image:
     """
 
     labels: np.ndarray
-    voxel: tuple[float, float, float]
+    voxel: float | Sequence[float]
     materials: Mapping[int, Material]
 
     def __post_init__(self):

@@ -46,7 +46,7 @@ class Material:
     conductivity: float | tuple[tuple[float, float, float], ...]
     density: float | None = None
     heat_capacity: float | None = None
-    dependence: Dependence | None = None
+    dependence: Dependence | Sequence[tuple[float, float]] | None = None
 
     def __post_init__(self):
         checked = checked_conductivity("Material.conductivity", self.conductivity)

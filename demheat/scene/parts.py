@@ -54,8 +54,8 @@ class Convection:
     Examples
     --------
     >>> from demheat import Convection, Material, Scene, solve
-    >>> walls = {"x-": 100.0, "x+": Convection(coefficient=20.0, temperature=0.0)}
-    >>> wall = Scene((0.1, 0.1, 0.1), Material(2.0), walls=walls)
+    >>> air = Convection(coefficient=20.0, temperature=0.0)
+    >>> wall = Scene((0.1, 0.1, 0.1), Material(2.0), walls={"x-": 100.0, "x+": air})
     >>> print(f"{solve(wall, particles=1000).wall_heat['x-']:.4f} W, by hand {0.1**2 * 100 / (0.1 / 2 + 1 / 20):.4f} W")
     10.0000 W, by hand 10.0000 W
     """
@@ -86,8 +86,8 @@ class Radiation:
     Examples
     --------
     >>> from demheat import Material, Radiation, Scene, solve
-    >>> walls = {"x-": 1000.0, "x+": Radiation(emissivity=0.9, temperature=300.0)}
-    >>> wall = Scene((0.1, 0.1, 0.1), Material(1.0), walls=walls)
+    >>> sky = Radiation(emissivity=0.9, temperature=300.0)
+    >>> wall = Scene((0.1, 0.1, 0.1), Material(1.0), walls={"x-": 1000.0, "x+": sky})
     >>> hot = solve(wall, particles=1000).wall_temperature["x+"]
     >>> given, passed = 0.9 * 5.670374e-8 * (hot**4 - 300.0**4), 1.0 * (1000.0 - hot) / 0.1
     >>> print(f"{given / passed:.4f}")
@@ -187,7 +187,7 @@ class MovingCylinder:
         if not isinstance(self.clip, bool):
             raise ValueError(f"MovingCylinder.clip = {self.clip!r}: must be True or False")
 
-    def position(self, time):
+    def position(self, time: float) -> np.ndarray:
         """Where its axis is at a time in seconds, (2,) float array, m."""
         return np.array(self.start) + np.array(self.velocity) * time
 

@@ -6,12 +6,13 @@ A scene knows nothing of meshes, voxels or particles; every method reads the sam
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from demheat.scene.bodies import domain_volume
 from demheat.scene.checks import (
@@ -91,17 +92,17 @@ class Scene:
     ValueError: Scene.gradient, Scene.walls: neither given; ...
     """
 
-    size: tuple[float, float, float]
+    size: Sequence[float]
     matrix: Material
-    inclusions: tuple[Shape, ...] = ()
-    gradient: tuple[float, float, float] | None = None
+    inclusions: Sequence[Shape] = ()
+    gradient: Sequence[float] | None = None
     walls: Mapping[str, float | Callable[[float], float] | Flux | Convection | Radiation] | None = None
-    initial: float | Callable | None = None
-    sources: tuple[UniformSource | MovingCylinder, ...] = ()
+    initial: float | Callable[[np.ndarray], np.ndarray] | None = None
+    sources: Sequence[UniformSource | MovingCylinder] = ()
     domain: str = "box"
     image: Image | None = None
     # Given by the package's front: a scene knows nothing of those who draw it.
-    plot: ClassVar[Callable[..., object]]
+    plot: ClassVar[Callable[..., Any]]
 
     def __post_init__(self):
         size = vector("Scene.size", self.size)
@@ -128,10 +129,10 @@ class Scene:
         cls,
         image: Image,
         *,
-        gradient: tuple[float, float, float] | None = None,
+        gradient: Sequence[float] | None = None,
         walls: Mapping[str, float | Callable[[float], float] | Flux | Convection | Radiation] | None = None,
-        initial: float | Callable | None = None,
-        sources: tuple[UniformSource | MovingCylinder, ...] = (),
+        initial: float | Callable[[np.ndarray], np.ndarray] | None = None,
+        sources: Sequence[UniformSource | MovingCylinder] = (),
     ) -> Scene:
         """The scene of an image.
 
@@ -277,7 +278,7 @@ class Scene:
             for image in shape.images(self.size, periodic=self.periodic)
         ]
 
-    def phase_at(self, points: np.ndarray) -> np.ndarray:
+    def phase_at(self, points: ArrayLike) -> np.ndarray:
         """Phase number (0 = matrix, i + 1 = inclusion i) at points, (n, 3) float array in metres -> (n,) int array."""
         points = np.asarray(points, dtype=float).reshape(-1, 3)
         if self.image is not None:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from os import PathLike
+from typing import Any
 
 from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import finite
@@ -15,8 +17,13 @@ __all__ = ["sweep"]
 
 
 def sweep(
-    function: Callable, cases: Mapping | Iterable[Mapping], *, client=None, out=None, timeout: float | None = None
-) -> list[dict]:
+    function: Callable[..., object],
+    cases: Mapping[str, Any] | Iterable[Mapping[str, Any]],
+    *,
+    client: object | None = None,
+    out: str | PathLike[str] | None = None,
+    timeout: float | None = None,
+) -> list[dict[str, Any]]:
     """Call a function for each of many cases; a case that fails is a row with its error, not the end.
 
     Without a client cases are computed one after another in this process, and the first pays for what is loaded and
@@ -56,8 +63,8 @@ def sweep(
 
     Examples
     --------
-    >>> from demheat import gallery, solve, sweep
-    >>> def conductivity(contrast, particles):
+    >>> from demheat import Field, gallery, solve, sweep
+    >>> def conductivity(contrast: float, particles: int) -> Field:
     ...     return solve(gallery.sphere_in_cube(contrast), particles=particles)
     >>> rows = sweep(conductivity, {"contrast": [2.0, 5.0, -1.0], "particles": [1000]})
     >>> [round(row["conductivity"], 1) for row in rows if not row["error"]]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from demheat.field import Field, check_field
+from demheat.runtime.extras import extra
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import axis_number, finite, whole
 from demheat.terminal.slices import filled, on_plane, plane
@@ -147,7 +148,8 @@ def _limits(entries):
 
 def _figure(number):
     """A figure and its panels in a row."""
-    from matplotlib.figure import Figure
+    with extra("a picture"):
+        from matplotlib.figure import Figure
 
     figure = Figure(figsize=(4.0 * number + 1.4, 4.4), layout="constrained")
     return figure, np.atleast_1d(figure.subplots(1, number))

@@ -67,5 +67,6 @@ METHODS = (
     ),
 )
 
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, {"references.bounds.scenes": ("estimate",)})
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, {"references.bounds.scenes": ("estimate",)})

@@ -11,14 +11,17 @@ from demheat.runtime.lazy import lazy_names
 from references.bracket import voxels
 
 if TYPE_CHECKING:
-    from references.bracket.solver import Bracket, solve
-    from references.bracket.tensor import Tensor, solve_tensor
+    from references.bracket.answers import Bracket, Tensor
+    from references.bracket.solver import solve
+    from references.bracket.tensor import solve_tensor
 
 __all__ = ["Bracket", "Tensor", "solve", "solve_tensor", "voxels"]
 
 HOMES = {
-    "references.bracket.solver": ("Bracket", "solve"),
-    "references.bracket.tensor": ("Tensor", "solve_tensor"),
+    "references.bracket.answers": ("Bracket", "Tensor"),
+    "references.bracket.solver": ("solve",),
+    "references.bracket.tensor": ("solve_tensor",),
 }
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, HOMES)
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, HOMES)

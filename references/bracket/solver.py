@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,8 +11,9 @@ from demheat.gate import check_bracket
 from demheat.runtime.deadline import budget
 from demheat.runtime.limits import free_memory
 from demheat.runtime.process_state import cpu_seconds, one_blas_thread
-from demheat.scene import Layer, Scene, Sphere, check_scene
+from demheat.scene import Scene
 from demheat.scene.inputs import finite
+from references.bracket.answers import ROUNDING, Bracket, check
 from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.equations import balanced_flux
 from references.bracket.surfaces import pushed
@@ -35,27 +36,6 @@ FASTEST = 1 / 4
 FIRST = 2.5
 # Of the best conductor: what conducts less is stopped by pores, and no ratio of bounds tells how well it is known.
 NOTHING = 1e-9
-# More than rounding makes of sums over millions of elements: bounds of exact solutions, as of laminates, need it.
-ROUNDING = 1e-11
-
-
-@dataclass(frozen=True)
-class Bracket:
-    """Bounds of a conductivity."""
-
-    # lower, upper: W/(m K): The scene's conductivity along its load lies between them
-    lower: float
-    upper: float
-    # `size` (m), `elements`, `temperatures` and `fluxes`, each with `unknowns`, `iterations` and `residual`;
-    # `unbalanced`, how much of the lower bound was given up for the residual; `cpu_s` of mesh, lower and upper
-    stats: dict = field(repr=False, default_factory=dict)
-
-    @property
-    def width(self) -> float:
-        """Upper over lower bound, less 1; 0 where both are 0."""
-        if self.lower > 0:
-            return self.upper / self.lower - 1
-        return 0.0 if self.upper == 0 else math.inf
 
 
 def solve(
@@ -119,14 +99,6 @@ def solve(
             found = _narrowed(scene, size, width, tolerance, drop, power)
         check_bracket(scene, found.lower, found.upper)
         return found
-
-
-def check(scene: Scene, tolerance: float, *, takes: tuple[str, ...] = ()) -> None:
-    """Refuse what has no bounds here; raises what `solve` does."""
-    check_scene(scene)
-    finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
-    text = "bounds are known on spheres and layers in a box"
-    scene.require(text, steady=True, domain="box", shapes=(Sphere, Layer), takes=takes)
 
 
 def _narrowed(scene, size, width, tolerance, drop, power):

@@ -2,55 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 
 from demheat.runtime.deadline import budget
 from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene
+from references.bracket.answers import ROUNDING, Tensor, check
 from references.bracket.energies import flux_energies, temperature_energies
 from references.bracket.equations import balanced_flux, linear_temperature
-from references.bracket.solver import DROPS, OF_MOMENTS, ROUNDING, check
+from references.bracket.solver import DROPS, OF_MOMENTS
 from references.bracket.surfaces import pushed
 from references.fem.system import solve_nodes
 from references.mesh import make
-
-
-@dataclass(frozen=True)
-class Tensor:
-    """Bounds of a conductivity tensor."""
-
-    # least, greatest: (3, 3) float array, W/(m K): Symmetric. Along any direction g the conductivity lies between g .
-    # least g and g . greatest g
-    least: np.ndarray
-    greatest: np.ndarray
-    stats: dict = field(repr=False, default_factory=dict)  # `size` (m) and `elements`
-
-    @property
-    def middle(self) -> np.ndarray:
-        """Halfway between both, (3, 3) float array, W/(m K)."""
-        return (self.least + self.greatest) / 2
-
-    @property
-    def radius(self) -> np.ndarray:
-        """What each entry may be off from the middle, (3, 3) float array, W/(m K).
-
-        Where E and D/2 - E and D/2 + E are the true tensor less the middle, and non-negative, |E_ij| is at most half
-        the root of D_ii D_jj.
-        """
-        apart = np.diagonal(self.greatest - self.least)
-        return np.sqrt(np.outer(apart, apart)) / 2
-
-    @property
-    def lower(self) -> np.ndarray:
-        """Lower bound of each entry, (3, 3) float array, W/(m K)."""
-        return self.middle - self.radius
-
-    @property
-    def upper(self) -> np.ndarray:
-        """Upper bound of each entry, (3, 3) float array, W/(m K)."""
-        return self.middle + self.radius
 
 
 def solve_tensor(

@@ -42,9 +42,11 @@ def linear(scene: Scene) -> tuple[Scene, Dependence] | None:
     >>> from demheat import Material, Scene
     >>> from references.exact.kirchhoff import linear
     >>> iron = Material(80.0, dependence=[(0.0, 1.0), (100.0, 0.8)])
-    >>> transformed, own = linear(Scene((1.0, 1.0, 1.0), iron, walls={"x-": 0.0, "x+": 100.0}))
-    >>> transformed.walls["x+"], own.inverse(90.0).item()
-    (90.0, 100.0)
+    >>> found = linear(Scene((1.0, 1.0, 1.0), iron, walls={"x-": 0.0, "x+": 100.0}))
+    >>> if found is not None:  # as it is where walls exchange heat
+    ...     transformed, own = found
+    ...     print(transformed.wall_temperatures["x+"], own.inverse(90.0))
+    90.0 100.0
     """
     kinds = {each.dependence for each in scene.materials if each.mean_conductivity > 0}
     if len(kinds) != 1 or None in kinds or scene.resistances.any() or scene.wall_exchanges or scene.periodic:

@@ -81,5 +81,6 @@ HOMES = {
     "references.fem.solver": ("solve", "solve_axes"),
     "references.fem.transient": ("evolve",),
 }
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, HOMES)
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, HOMES)

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from demheat.runtime.extras import extra
+
 
 def write(path, mesh, field=None):
     """Write a mesh for ParaView or another format that meshio knows by its suffix."""
-    import meshio
+    with extra("writing a mesh"):
+        import meshio
 
     points, cells = {}, {"phase": [mesh.phase]}
     if field is not None:

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from demheat.runtime.extras import missing
 from demheat.runtime.progress import stage
 from references.mesh.apart import run_apart
 
@@ -61,12 +62,12 @@ def load_gmsh():
     try:
         return importlib.import_module("gmsh")
     except ModuleNotFoundError as error:
-        raise ImportError("gmsh is not installed: pip install gmsh") from error
+        raise ImportError(missing("gmsh", "meshing")) from error
     except OSError as error:
-        missing = [name for name in PACKAGES if not _loads(name)]
-        packages = " ".join(PACKAGES[name] for name in missing) or "none of the usual ones is missing"
+        lacking = [name for name in PACKAGES if not _loads(name)]
+        packages = " ".join(PACKAGES[name] for name in lacking) or "none of the usual ones is missing"
         raise ImportError(
-            f"gmsh cannot load its library ({error}). Missing system libraries: {', '.join(missing) or 'unknown'}. "
+            f"gmsh cannot load its library ({error}). Missing system libraries: {', '.join(lacking) or 'unknown'}. "
             f"On Debian or Ubuntu: apt-get install {packages}"
         ) from error
 

@@ -15,5 +15,6 @@ if TYPE_CHECKING:
 __all__ = ["Walked", "solve"]
 
 HOMES = {"references.walkers.solver": ("Walked", "solve")}
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, HOMES)
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, HOMES)

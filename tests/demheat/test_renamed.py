@@ -1,7 +1,9 @@
-"""Only here: old names that users have met and that no longer work or warn."""
+"""Only here: old names that users have met and that no longer work or warn, and misspelt ones."""
 
 import sys
 from importlib import import_module
+from importlib.util import find_spec
+from pydoc import locate
 
 import numpy as np
 import pytest
@@ -40,6 +42,32 @@ def test_unknown_names_are_no_attributes():
         _ = demheat.Heater
     with pytest.raises(AttributeError, match="no attribute 'tiles'"):
         _ = domain.tiles
+
+
+@pytest.mark.parametrize(
+    ("statement", "meant"),
+    [
+        ("import demheat.sovle", "from demheat import solve"),
+        ("from demheat import sovle", "from demheat import solve"),
+        ("import demheat.solve", "from demheat import solve"),  # a function
+        ("import references.ftt", "from references import fft"),
+        ("from demheat.io import scene", "from demheat.io import scenes"),
+    ],
+)
+def test_misspelt_names_are_told(statement, meant):
+    with pytest.raises(ModuleNotFoundError, match=f"did you mean `{meant}`"):
+        exec(statement)
+
+
+def test_who_asks_for_a_module_has_an_answer():
+    assert find_spec("demheat.sovle") is None and locate("demheat.sovle") is None
+
+
+@pytest.mark.parametrize("statement", ["import demheat.nothing", "from demheat import nothing"])
+def test_what_is_like_no_name_is_as_anywhere(statement):
+    with pytest.raises(ImportError) as told:
+        exec(statement)
+    assert "did you mean" not in str(told.value)
 
 
 @pytest.mark.parametrize(("old", "new"), MOVED.items())

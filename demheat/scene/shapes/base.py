@@ -10,6 +10,7 @@ from itertools import product
 from typing import ClassVar
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from demheat.scene.inputs import moderate, number
 from demheat.scene.material import WITHIN, Material
@@ -84,7 +85,7 @@ class Shape(ABC):
                 )
 
     @abstractmethod
-    def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def distance(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance of points to the surface, negative inside.
 
         Parameters
@@ -99,7 +100,7 @@ class Shape(ABC):
         """
 
     @abstractmethod
-    def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def normal(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Outward normal of the surface where it is nearest to points, the gradient of `distance`.
 
         Parameters
@@ -127,7 +128,7 @@ class Shape(ABC):
     def turned(self, order: Sequence[int]) -> Shape:
         """The same shape with axes order[0], order[1], order[2] as axes 0, 1, 2."""
 
-    def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def contains(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Which points lie inside or on the surface; up to rounding those whose distance is not positive.
 
         Parameters
@@ -243,7 +244,7 @@ class Shape(ABC):
             raise NotImplementedError(f"no closed form for the volume of a {self.kind} at {self.center} cut by a wall")
         return self.volume
 
-    def surface(self, points: np.ndarray, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def surface(self, points: ArrayLike, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """`distance` and `normal` of points, at once where that is faster.
 
         Parameters
@@ -259,7 +260,7 @@ class Shape(ABC):
         """
         return self.distance(points, period=period), self.normal(points, period=period)
 
-    def sure_distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def sure_distance(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance that a point surely has to the surface at least, outside; inside less than 0 where that is exact.
 
         Parameters

@@ -55,7 +55,7 @@ class Box(Solid):
     center: tuple[float, float, float]
     sides: tuple[float, float, float]
     material: Material
-    rotation: tuple[tuple[float, ...], ...] = field(default=IDENTITY, kw_only=True)
+    rotation: Sequence[float] | Sequence[Sequence[float]] = field(default=IDENTITY, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
 
     stored = {"center": "point", "sides": "lengths", "rotation": "rotation"}

@@ -52,7 +52,7 @@ class Ellipsoid(Solid):
     center: tuple[float, float, float]
     semi_axes: tuple[float, float, float]
     material: Material
-    rotation: tuple[tuple[float, ...], ...] = field(default=IDENTITY, kw_only=True)
+    rotation: Sequence[float] | Sequence[Sequence[float]] = field(default=IDENTITY, kw_only=True)
     resistance: float = field(default=0.0, kw_only=True)
 
     stored = {"center": "point", "semi_axes": "lengths", "rotation": "rotation"}

@@ -56,10 +56,11 @@ class LevelSet(Solid):
     >>> import numpy as np
     >>> from demheat import Material
     >>> from demheat.scene import LevelSet
-    >>> def torus(points):
-    ...     x, y, z = (points - 0.5).T
-    ...     return np.hypot(np.hypot(x, y) - 0.3, z) - 0.1
-    >>> ring = LevelSet(torus, limits=((0.05, 0.05, 0.35), (0.95, 0.95, 0.65)), material=Material(5.0))
+    >>> ring = LevelSet(
+    ...     lambda p: np.hypot(np.hypot(p[:, 0] - 0.5, p[:, 1] - 0.5) - 0.3, p[:, 2] - 0.5) - 0.1,
+    ...     limits=((0.05, 0.05, 0.35), (0.95, 0.95, 0.65)),
+    ...     material=Material(5.0),
+    ... )
     >>> ring.contains(np.array([[0.5, 0.5, 0.5], [0.8, 0.5, 0.55]])).tolist()
     [False, True]
     >>> print(f"{ring.volume / (2 * np.pi**2 * 0.3 * 0.1**2):.3f}")

@@ -8,6 +8,7 @@ from dataclasses import fields
 from itertools import product
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from demheat.scene.shapes.base import TOUCH, Shape
 
@@ -37,19 +38,19 @@ class Solid(Shape):
     def _inside(self, offsets):
         return self._distance(offsets) <= 0.0
 
-    def contains(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def contains(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Which points lie inside or on the surface; see `Shape.contains`."""
         return self._inside(self._home(points, period))
 
-    def distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def distance(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance of points to the surface of the nearest image, m, negative inside; see `Shape.distance`."""
         return self._nearest(points, period)[1]
 
-    def normal(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
+    def normal(self, points: ArrayLike, *, period: np.ndarray | None = None) -> np.ndarray:
         """Outward normal of the nearest image where that is nearest; see `Shape.normal`."""
         return self._normal(self._nearest(points, period)[0])
 
-    def surface(self, points: np.ndarray, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
+    def surface(self, points: ArrayLike, *, period: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
         """`distance` and `normal` of points at once; see `Shape.surface`."""
         if period is None:
             return self._surface(points - np.array(self.center))

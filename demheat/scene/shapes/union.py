@@ -57,7 +57,7 @@ class Union(Solid):
     0.0641 0.0670
     """
 
-    shapes: tuple[Shape, ...]
+    shapes: Sequence[Shape]
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
 

@@ -47,8 +47,11 @@ def run(file, options) -> int:
     made = compared(file.scene, wanted, path, **how)
     bounds = bounds_of(file.scene)
     print("\n" + table(made, bounds))
-    drawn = picture(file.scene, made, bounds, path)
-    print(f"\nrows {path}, picture {drawn}")
+    try:
+        drawn = f"picture {picture(file.scene, made, bounds, path)}"
+    except ImportError as error:
+        drawn = f"no picture: {one_line(error)}"
+    print(f"\nrows {path}, {drawn}")
     return 1 if any(row["status"] in ("failed", "invalid", "stopped") for row in made) else 0
 
 

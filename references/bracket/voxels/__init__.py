@@ -24,5 +24,6 @@ HOMES = {
     "references.bracket.voxels.solver": ("solve",),
     "references.bracket.voxels.tensor": ("bounds_tensor", "solve_tensor"),
 }
-# What is heavy loads with the first use.
-__getattr__ = lazy_names(__name__, HOMES)
+# What is heavy loads with the first use; type checkers do not see it, see `lazy_names`.
+if not TYPE_CHECKING:
+    __getattr__, __dir__ = lazy_names(__name__, HOMES)

@@ -11,7 +11,7 @@ import numpy as np
 from demheat.runtime.limits import check_memory
 from demheat.runtime.process_state import one_blas_thread
 from demheat.scene.inputs import LEAST, MOST, finite, reals, vector, whole
-from references.bracket.solver import ROUNDING, Bracket
+from references.bracket.answers import ROUNDING, Bracket
 from references.bracket.voxels import fluxes, temperatures
 from references.bracket.voxels.voxel_kernels import Cells
 from references.threads import Team, thread_count

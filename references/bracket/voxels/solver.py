@@ -13,7 +13,7 @@ from demheat.runtime.limits import check_memory
 from demheat.runtime.progress import stage
 from demheat.scene import Scene
 from demheat.scene.symmetry import mirrors
-from references.bracket.solver import Bracket, check
+from references.bracket.answers import Bracket, check
 from references.bracket.voxels.image import (
     BYTES,
     Load,

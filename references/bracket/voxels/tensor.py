@@ -8,8 +8,7 @@ import numpy as np
 
 from demheat.runtime.deadline import budget
 from demheat.scene import Scene
-from references.bracket.solver import ROUNDING
-from references.bracket.tensor import Tensor
+from references.bracket.answers import ROUNDING, Tensor
 from references.bracket.voxels.image import (
     check_pores,
     checked_effort,
