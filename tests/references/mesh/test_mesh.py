@@ -221,7 +221,7 @@ def test_missing_system_libraries_are_named_with_their_packages(monkeypatch):
         raise ModuleNotFoundError(name)
 
     monkeypatch.setattr(importlib, "import_module", absent)
-    with pytest.raises(ImportError, match="pip install gmsh"):
+    with pytest.raises(ImportError, match=r"pip install 'demheat\[fem\]'"):
         mesh.make(scene(ball()))
 
 
