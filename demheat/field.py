@@ -188,20 +188,15 @@ class Field:
         """How far conductivity and temperature may be off: an interval, and what was done to know it.
 
         What solves on elements solves the scene again on coarser ones, which costs about half of a large solve, and as
-        much as a small one or more.
+        much as a small one or more; an image, or a block out of its middle, on voxels that are split.
 
         Raises
         ------
         NotImplementedError
-            If the method does not know its error, or the scene is an image.
+            If the method does not know its error.
         RuntimeError
             If no coarser run can be made.
         """
-        if self.scene.image is not None:
-            raise NotImplementedError(
-                "Field.error: an image has no other voxels to compare with; bounds on voxels hold its conductivity for "
-                "certain (`demheat compare`, references.bracket.voxels)"
-            )
         if self.estimator is None:
             raise NotImplementedError("Field.error: this method does not know its error")
         return self.estimator(self)

@@ -12,7 +12,7 @@ ENGINE = {
     # What all methods share.
     "nouns": (
         (
-            *("demheat.gate", "demheat.error", "demheat.field", "demheat.tensor"),
+            *("demheat.gate", "demheat.error", "demheat.splitting", "demheat.field", "demheat.tensor"),
             *("demheat.laws", "demheat.method"),
         ),
         ("scene",),

@@ -125,12 +125,18 @@ def _value(law, m, refined):
 
 def predicted_by(law: Law, m: Measures, value: float) -> Predicted:
     """What a law predicts."""
-    number = unknowns(law, m, value)
-    return Predicted(
-        error=float(math.exp(error_terms(law.knob, m, value) @ _error_powers(law))),
-        cpu_s=float(math.exp(cost_terms(m, number) @ _cost_powers(law))),
-        bytes=float(law.bytes * number),
-    )
+    error = math.exp(error_terms(law.knob, m, value) @ _error_powers(law))
+    return _work(law, m, unknowns(law, m, value))._replace(error=float(error))
+
+
+def work(method: str, m: Measures, number: float) -> Predicted:
+    """What so many unknowns cost at the contrast of a scene; of the error nothing is known."""
+    return _work(law_of(method), m, number)
+
+
+def _work(law, m, number):
+    cpu_s = math.exp(cost_terms(m, number) @ _cost_powers(law))
+    return Predicted(math.nan, float(cpu_s), float(law.bytes * number))
 
 
 def law_of(method: str) -> Law:

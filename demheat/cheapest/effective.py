@@ -200,6 +200,9 @@ def _found(loads, accuracy, allowed, memory):
         except TimeoutError as error:
             return _so_far(best, accuracy, f"bracket: {one_line(error)}", passed)
         return found, Way("bracket", knobs), tuple(passed), ""
+    missing, found, way = best
+    if found is not None:
+        passed.append(f"nearest is {way.method}, accuracy {missing * accuracy:.2g}")
     raise RuntimeError(f"effective: no method gets to accuracy = {accuracy:g} here. " + "; ".join(passed))
 
 

@@ -23,6 +23,11 @@ class Loads(NamedTuple):
     saved: tuple[str, ...]  # tuple of str: What was saved, in words
 
     @property
+    def body(self) -> Scene:
+        """The body under one of the loads."""
+        return next(iter(self.wholes.values()))
+
+    @property
     def together(self) -> bool:
         """Whether three loads act on one body, so that one set-up does for all."""
         if len(self.parts) < 3:
@@ -36,8 +41,9 @@ def loads_of(scene: Scene) -> Loads:
     wholes = dict(enumerate(axis_loads(scene)))
     if not scene.periodic and len(set(scene.wall_temperatures.values())) < 2:
         raise ValueError(f"Scene.walls = {dict(scene.walls)}: must differ in temperature, or no conductivity follows")
-    text = "what is cheapest is known of shapes of constant conductivities alone; `solve` by one method takes others"
-    scene.require(text, takes=("resistance",))
+    # Symmetry is known of shapes whose conductivities are numbers.
+    if scene.image is not None or scene.anisotropic or scene.varies:
+        return Loads(wholes, wholes, (0, 1, 2), not scene.periodic, ())
     planes = [plane is not None for plane in mirrors(scene)]
     diagonal = not scene.periodic or sum(planes) >= 2
     if not diagonal:

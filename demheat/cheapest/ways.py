@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from typing import NamedTuple
 
 from demheat import dem
-from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted
+from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted, work
 from demheat.cheapest.loads import Loads
-from demheat.cheapest.measures import measures
+from demheat.cheapest.measures import PORE, measures
 from demheat.runtime.extras import lacking
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
@@ -25,6 +25,12 @@ HOMES = {
 }
 # Knobs that refine each, and what stands for an element's edge in them: value ~ edge^power.
 KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.0)}
+# What few methods take of a scene: those that are refined.
+TAKES = {
+    "fem": ("resistance", "anisotropy", "dependence", "image"),
+    "fft": ("resistance", "anisotropy", "image"),
+    "dem": ("resistance", "dependence", "image", "perfect"),
+}
 # An interval is so many times the error, in the median: what is asked of the laws is the error.
 INTERVAL = 2.5
 # Orders with which intervals fall, at least: errors scatter.
@@ -39,6 +45,8 @@ LEAST_SAVED = 0.98
 ENOUGH = (32, 32, 32)
 # What coarser runs for the interval cost, of the solve.
 BESIDES = 1.5
+# Parts of an image's voxels along each axis from one run to the next at most; voxels of the block that tells the error.
+MOST_PARTS, BLOCK = 3, 64**3
 
 
 class Way(NamedTuple):
@@ -71,6 +79,8 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     told = f"half of its interval is {missing:.2g} times what is allowed with {knobs_of(way) or 'nothing to refine'}"
     if way.method not in KNOBS or way.rounds >= ROUNDS:
         return way._replace(refused=told)
+    if loads.body.image is not None:
+        return finer_image(way, loads, missing, memory, told)
     knob, power = KNOBS[way.method]
     wanted = min(0.9 * missing ** (-1 / ORDERS[way.method]), LARGEST)
     value, (law, part) = way.knobs[knob], _law(way.method, loads)
@@ -104,7 +114,7 @@ def _multipole(loads, accuracy, memory):
             arrange(whole, any_matrix=True)
     except NotImplementedError as error:
         return Way("multipole", {}, refused=one_line(error))
-    whole = next(iter(loads.wholes.values()))
+    whole = loads.body
     knobs = {"accuracy": accuracy}
     if not whole.inclusions:
         return Way("multipole", knobs, accuracy)
@@ -115,8 +125,12 @@ def _multipole(loads, accuracy, memory):
 def _refined(name, loads, accuracy, memory):
     if why := lacking(name):
         return Way(name, {}, refused=why)
-    if any(whole.resistances.any() for whole in loads.wholes.values()):
-        return Way(name, {}, refused="its laws of error know perfect interfaces only")
+    try:
+        loads.body.require(takes=TAKES[name])
+    except NotImplementedError as error:
+        return Way(name, {}, refused=one_line(error))
+    if loads.body.image is not None:
+        return on_image(name, loads, memory)
     (knob, power), (law, part) = KNOBS[name], _law(name, loads)
     value = needed(law, part, accuracy / INTERVAL, sure=False)
     cost, first = predicted(law, part, value), value
@@ -130,6 +144,37 @@ def _refined(name, loads, accuracy, memory):
     way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads), cost.bytes), memory)
     least = predicted(law, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
+
+
+def on_image(name, loads, memory):
+    """A way on an image: voxels are its own, and are split where that is too coarse; by the FFT, the cheapest there."""
+    if name != "fft":
+        return Way(name, {}, doubt="on an image the FFT costs less")
+    way = _on_voxels(loads, 1)
+    return way._replace(refused=f"needs {_gib(way.bytes)}") if way.bytes > memory else way
+
+
+def finer_image(way, loads, missing, memory, told):
+    """The same on voxels that are split further."""
+    if way.method != "fft":
+        return way._replace(refused=told)
+    parts = way.knobs["voxels"][0] // loads.body.image.shape[0]
+    finer = _on_voxels(loads, parts * min(max(math.ceil(missing / parts), 2), MOST_PARTS))
+    if finer.bytes > memory:
+        return way._replace(refused=f"{told}; smaller ones would need {_gib(finer.bytes)}")
+    return finer._replace(rounds=way.rounds + 1)
+
+
+def _on_voxels(loads, parts):
+    """The FFT on the voxels of an image, each split into some parts along each axis."""
+    k, shape = loads.body.mean_conductivities, [n * parts for n in loads.body.image.shape]
+    contrast = math.log(k.max() / max(k.min(), k.max() / PORE)) if k.max() else 0.0
+    m, whole = measures(loads.body)._replace(contrast=contrast), math.prod(shape)
+    # The interval is that of a block, whose voxels are split in two.
+    split = 9 * min(whole, BLOCK)
+    costs = [work("fft-plain", m, number) for number in (whole, split)]
+    cpu_s = len(loads.wholes) * sum(each.cpu_s for each in costs)
+    return Way("fft", {"voxels": tuple(shape)}, cpu_s=cpu_s, bytes=max(each.bytes for each in costs))
 
 
 def _law(method, loads):
@@ -155,8 +200,13 @@ def _all(cost, loads):
 
 def knobs_of(way) -> str:
     """Knobs of a way, or of what was found by one, in words; empty without one."""
-    told = {name: value if isinstance(value, int) else f"{value:.3g}" for name, value in way.knobs.items()}
-    return ", ".join(f"{name} = {value}" for name, value in told.items())
+    return ", ".join(f"{name} = {_worded(value)}" for name, value in way.knobs.items())
+
+
+def _worded(value):
+    if isinstance(value, tuple):
+        return " x ".join(map(str, value))
+    return str(value) if isinstance(value, int) else f"{value:.3g}"
 
 
 def _within(way, memory):

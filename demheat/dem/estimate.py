@@ -11,7 +11,7 @@ import numpy as np
 
 from demheat.conduction.steady import HIGH_CONTRAST, Unsolved, contrast_of
 from demheat.dem.options import Particles
-from demheat.error import LEVELS, Estimate, Fine, Refinement, beside, by_refinement, misplaced, quietly
+from demheat.error import LEVELS, Estimate, Fine, Refinement, beside, by_refinement, conductivity_of, misplaced, quietly
 from demheat.laws import Calibrated, Laguerre, Platonic
 from demheat.runtime.progress import stage
 from demheat.scene import Scene
@@ -60,6 +60,8 @@ def estimator_of(law: Laguerre | Calibrated | Platonic, wanted: Particles, answe
 
 def _by_fewer(field, *, law, wanted, answer, steps) -> Estimate:
     """Radical cells converge: runs with fewer particles tell how far, one with closer twins how far in gaps."""
+    if field.scene.image is not None:
+        return _by_means(field, answer(replace(law, interface="arithmetic"), wanted))
     number = wanted.particles if wanted.packing is None else len(wanted.packing.radii)
 
     def fewer(level, law=law, seed=wanted.seed):
@@ -85,6 +87,23 @@ def _by_fewer(field, *, law, wanted, answer, steps) -> Estimate:
 
     left = {"residual": LEFT * field.stats["residual"] + steps, "fine": _fine(field, number, law)}
     return by_refinement(field, coarser, rule, also=closer, **left)
+
+
+def _by_means(field, other) -> Estimate:
+    """Of an image, whose faces links cross where they happen to: harmonic means are too low, arithmetic ones too high.
+
+    On images of noise, Gaussian fields and spheres (12^3 voxels, 5000 particles, contrasts .01 to 100) the conductivity
+    of the image lies half way between, .45 to .56; fewer particles may differ by a fifth of the error.
+    """
+    if field.scene.mean_conductivities.min() == 0:
+        raise NotImplementedError(
+            "Field.error: beside pores of an image both means are 0, and fewer particles do not tell how far facets "
+            "are off the faces of voxels; FFT and finite elements know it of themselves"
+        )
+    flux = float(np.max(np.abs(field.mean_flux - other.mean_flux)))
+    k, runs = conductivity_of(field), (conductivity_of(field), conductivity_of(other))
+    half = abs(runs[1] - k)
+    return Estimate("arithmetic means between particles instead", max(k - half, 0.0), k + half, flux, math.nan, runs)
 
 
 def _fine(field, number, law):

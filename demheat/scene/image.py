@@ -93,6 +93,30 @@ class Image:
             phase[part] = np.searchsorted(known, self.labels[part])
         return read_only(phase)
 
+    def phase_on(self, shape: Sequence[int]) -> np.ndarray:
+        """Phase number of each cell of a grid that splits voxels into equal parts, (shape) uint8 or uint16 array."""
+        phase = self.phase
+        for axis, (n, own) in enumerate(zip(shape, self.shape, strict=True)):
+            phase = np.repeat(phase, n // own, axis) if n > own else phase
+        return phase
+
+    def cropped(self, low: Sequence[int], high: Sequence[int]) -> Image:
+        """The voxels from low to below high along each axis, a body of its own.
+
+        Raises
+        ------
+        ValueError
+            If they are not whole numbers with 0 <= low < high <= shape along each axis.
+        """
+        ends = list(zip(low, high, self.shape, strict=False))
+        whole = all(isinstance(each, Integral) for end in ends for each in end)
+        if len(ends) != 3 or not whole or not all(0 <= a < b <= n for a, b, n in ends):
+            sides = " x ".join(map(str, self.shape))
+            raise ValueError(
+                f"low = {low!r}, high = {high!r}: must be whole numbers, 0 <= low < high, within {sides} voxels"
+            )
+        return replace(self, labels=self.labels[tuple(slice(a, b) for a, b, _ in ends)])
+
     @cached_property
     def fractions(self) -> np.ndarray:
         """Volume fraction of each phase, (number of phases,) float array."""

@@ -148,10 +148,8 @@ def _of_image(image, size):
     parts = [math.ceil(h / size * (1 - SAME)) for h in image.voxel]
     counts = [n * m for n, m in zip(image.shape, parts, strict=True)]
     check_memory("Scene.image, as bricks,", counts, BYTES * math.prod(counts), power=3)
-    phase = image.phase
-    for axis, m in enumerate(parts):
-        phase = np.repeat(phase, m, axis) if m > 1 else phase
-    return tuple(np.linspace(0.0, side, n + 1) for side, n in zip(image.size, counts, strict=True)), phase
+    grid = tuple(np.linspace(0.0, side, n + 1) for side, n in zip(image.size, counts, strict=True))
+    return grid, image.phase_on(counts)
 
 
 def nodes_of(grid) -> np.ndarray:

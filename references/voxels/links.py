@@ -46,7 +46,7 @@ def _resistances(scene, shape, axis, resistivity):
     counts = np.array(shape)
     counts[axis] += 1
     if scene.image is not None:
-        return _halves(resistivity[scene.image.phase], axis)
+        return _halves(resistivity[scene.image.phase_on(shape)], axis)
     resistance = np.full(counts, resistivity[0])
     # Half links at both ends, where a face of the box cuts them.
     np.moveaxis(resistance, axis, 2)[:, :, [0, -1]] *= 0.5

@@ -73,12 +73,16 @@ class Cuts(NamedTuple):
 
 def grid_shape(scene: Scene, voxels, usual: int | None = None) -> tuple[int, int, int]:
     """Voxels along each side."""
-    if scene.image is not None:
-        shape = scene.image.shape
-        if voxels is not None and _counted(scene, voxels) != shape:
-            raise ValueError(f"voxels = {voxels!r}: must be those of the image, {shape}, or be left out")
-        voxels = shape
-    return _counted(scene, usual if voxels is None else voxels)
+    if scene.image is None:
+        return _counted(scene, usual if voxels is None else voxels)
+    own = scene.image.shape
+    shape = own if voxels is None else _counted(scene, voxels)
+    if any(n % m for n, m in zip(shape, own, strict=True)):
+        raise ValueError(
+            f"voxels = {voxels!r}: must be those of the image, {own}, or split each of them into equal parts, or be "
+            "left out"
+        )
+    return shape
 
 
 def _counted(scene, voxels):
@@ -107,7 +111,7 @@ def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
     if len(scene.inclusions) >= MOST_PHASES:
         raise ValueError(f"Scene.inclusions: {len(scene.inclusions)} are more than the {MOST_PHASES - 1} a grid takes")
     if scene.image is not None:
-        return _of_image(scene, spacing, planes)
+        return _of_image(scene, shape, planes)
     # The system gives memory to what is written only: of some planes to them.
     phase = np.zeros(shape, dtype=np.uint16)
     cuts = _paint(scene, phase, spacing, laminate, planes)
@@ -134,15 +138,15 @@ def voxelise(scene: Scene, shape, *, laminate: bool, planes=None) -> Voxels:
     return with_films(voxels, films, slopes) if films else voxels
 
 
-def _of_image(scene, spacing, planes):
-    """Its own voxels, all of them whole."""
+def _of_image(scene, shape, planes):
+    """Its own voxels or equal parts of them, all of them whole."""
     none, conductivity = (np.empty(0, np.int64), np.empty((0, 6))), scene.mean_conductivities
-    phase, fractions = scene.image.phase, scene.image.fractions
+    phase, fractions = scene.image.phase_on(shape), scene.image.fractions
     if planes is not None:
         phase = phase[slice(*planes)]
         fractions = kernels.count(phase.ravel(), len(conductivity)) / phase.size
     phase = np.ascontiguousarray(phase, dtype=np.uint16)
-    return Voxels(spacing, phase, conductivity, *none, fractions, _tensors(scene))
+    return Voxels(np.array(scene.size) / shape, phase, conductivity, *none, fractions, _tensors(scene))
 
 
 def _tensors(scene):

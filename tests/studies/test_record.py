@@ -75,6 +75,7 @@ NO_ROWS = {
     "demheat/scene/shapes/union.py": BODIES,
     "references/bracket/voxels/tensor.py": FORMS,
     "demheat/network/bridges.py": TOUCHING,
+    "demheat/splitting.py": FORMS,
     "references/exact/inclined.py": FORMS,
     "references/multipole/at_rest.py": FORMS,
     "references/multipole/lane_kernels.py": INLINED,

@@ -102,7 +102,7 @@ def on_grid(scene: Scene, voxels, bytes_each: int, tolerance: float) -> tuple[Ce
     spacing, conductivity = np.array(scene.size) * factors / shape, scene.conductivities
     load = scaled_load(conductivity, shape, spacing, scene.gradient if scene.periodic else np.eye(3)[scene.axis])
     if scene.image is not None:
-        values = (conductivity / load.unit)[_mirrored(scene.image.phase, factors)]
+        values = (conductivity / load.unit)[_mirrored(scene.image.phase_on(own), factors)]
         return conducting(values), resisting(values), load, 0.0
     images = mirrored(scene.images(), scene.size, [factor == 2 for factor in factors])
     with stage("voxels"):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, recommend
+from demheat import Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, orthotropic, recommend, solve
 from demheat.cheapest import answers, cost_laws, ways
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.measures import measures
@@ -173,3 +173,41 @@ def test_intervals_that_reach_to_one_side_are_held_whole():
     found = answers.answer(ways.Way("fft", {"voxels": 24}), loads._replace(parts=loads.wholes))
     assert error.lower == pytest.approx(1.0, abs=1e-9) and error.upper > 1.0001
     assert np.all(np.diag(found.tensor + found.half) >= error.upper - 1e-12)
+
+
+BALL = (0.5, 0.5, 0.45), 0.3
+OTHERS = {
+    "tensor": Scene((1, 1, 1), Material(1.0), [Sphere(*BALL, Material(orthotropic(2, 4, 9)))], gradient=(0, 1, 0)),
+    "k(T)": Scene(
+        (1, 1, 1),
+        Material(1.0),
+        [Sphere(*BALL, Material(4.0, dependence=[(0.0, 1.0), (9.0, 2.0)]))],
+        walls={"y-": 0.0, "y+": 9.0},
+    ),
+    "infinite": Scene((1, 1, 1), Material(1.0), [Sphere(*BALL, Material(np.inf))], gradient=(0, 1, 0)),
+    "resistance": Scene((1, 1, 1), Material(1.0), [Sphere(*BALL, Material(9.0), resistance=0.1)], gradient=(0, 1, 0)),
+}
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_what_few_methods_take(name):
+    scene = OTHERS[name]
+    told = {way.method: way.refused for way in recommend(scene, 2e-2).ways}
+    assert (told["fft"] == "") == (name in ("tensor", "resistance"))
+    assert (told["dem"] == "") == (name != "tensor")
+    found = effective(scene, accuracy=2e-2, method=("fft", "dem"))
+    assert found.accuracy <= 2e-2 and not found.cut
+    by = {"k(T)": solve, "infinite": solve}.get(name, fft.solve)
+    knobs = {"particles": 20_000} if by is solve else {"voxels": 48}
+    right = by(scene, **knobs).conductivity
+    # What is right is right to a few thousandths itself.
+    assert found.lower[1, 1] * (1 - 2e-3) <= right <= found.upper[1, 1] * (1 + 2e-3)
+
+
+def test_what_methods_take_is_what_they_refuse():
+    """Each entry of `TAKES`, and each that is not there, is asked of the method itself."""
+    for name, takes in ways.TAKES.items():
+        for kind, scene in (("anisotropy", "tensor"), ("dependence", "k(T)"), ("perfect", "infinite")):
+            if kind not in takes:
+                with pytest.raises(NotImplementedError):
+                    ways.HOMES[name].solve(OTHERS[scene])

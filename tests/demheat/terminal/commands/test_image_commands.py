@@ -1,5 +1,7 @@
 """Only here: commands on an image that take it for shapes, or another image for the same."""
 
+import re
+
 import numpy as np
 import pytest
 
@@ -24,7 +26,10 @@ def test_compare_an_image(path, tmp_path, capsys):
     assert "image of 4 x 5 x 6 voxels, 1 to 4 W/(m K)" in told and "voxels, certain" in told
     who = "images are for FFT, finite elements, the DEM and bounds on voxels\n"
     assert f"maxwell refused: Scene.image: formulas are of spheres in a matrix; {who}" in told
-    assert "fem: no interval: an image has no other voxels" in told
+    rows = {line.split()[0]: line.split() for line in told.splitlines() if line.startswith(("fft ", "fem "))}
+    bound = bounds_of(scenes.read(path))[-1]
+    for value, low, high in (map(float, row[1:4]) for row in rows.values()):
+        assert low < value < high and low < bound.upper and high > bound.lower
     assert (tmp_path / "out" / "scene.png").stat().st_size > 10_000
     # The same image is known again, another is not.
     main(words)
@@ -49,9 +54,17 @@ def test_three_labels_and_pores_have_fewer_bounds():
     assert general.lower == 0 and general.upper == pytest.approx((3 * 1 + 3 * 2) / 8)
 
 
-def test_solve_writes_and_effective_refuses(path, tmp_path, capsys):
+def test_solve_writes(path, tmp_path):
     assert main(["solve", str(path), "--method", "fem", "--write", str(tmp_path / "x.vti")]) == 0
     assert (tmp_path / "x.vti").exists()
-    assert main(["effective", str(path)]) != 0
-    # In words of the terminal.
-    assert "`solve` by one method takes others; images are for FFT" in capsys.readouterr().err
+
+
+def test_effective_of_an_image_splits_its_voxels(path, capsys):
+    assert main(["recommend", str(path), "--accuracy", "1e-2"]) == 0
+    assert "beginning with voxels = 4 x 5 x 6" in capsys.readouterr().out
+    assert main(["effective", str(path), "--accuracy", "2e-2"]) == 0
+    told = capsys.readouterr().out
+    k, half = (float(part) for part in re.search(r"^y .*?\+-.*? ([\d.]+) \+- ([\d.e-]+)", told, re.MULTILINE).groups())
+    bound = bounds_of(scenes.read(path))[-1]
+    assert bound.lower - half < k < bound.upper + half and half < 2e-2 * k
+    assert "principal values, and their directions" in told and "by fft, voxels = " in told
