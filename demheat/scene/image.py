@@ -103,6 +103,14 @@ class Image:
     def cropped(self, low: Sequence[int], high: Sequence[int]) -> Image:
         """The voxels from low to below high along each axis, a body of its own.
 
+        Parameters
+        ----------
+        low, high : (3,) sequence of int
+
+        Returns
+        -------
+        Image
+
         Raises
         ------
         ValueError
