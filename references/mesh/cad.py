@@ -1,8 +1,9 @@
-"""Tetrahedra that conform to every interface of a scene, by gmsh's OpenCASCADE kernel.
+"""Tetrahedra that conform to every interface of a scene, by gmsh's OpenCASCADE kernel or on a lattice.
 
 The box, its layers and its spheres (with their periodic images) are cut into one another, so no element straddles an
 interface; second-order elements follow the spheres. All lengths are divided by the longest edge of the box before they
-reach gmsh, whose tolerances are absolute.
+reach gmsh, whose tolerances are absolute. Where a shape has no volume of OpenCASCADE all are cut out of a lattice
+(`references.mesh.lattice`).
 """
 
 from __future__ import annotations
@@ -16,8 +17,9 @@ from demheat.scene import WALLS, Shape, check_scene
 from demheat.scene.inputs import finite, flag
 from references.mesh.cells import MATCH, Mesh, bent, check, snap, straighten, volumes_of, wall
 from references.mesh.gmsh_session import Elements, attempts, call_gmsh, look_up, session, tetrahedra
+from references.mesh.lattice import make_lattice
 from references.mesh.size_table import table
-from references.mesh.sizes import GROWTH, check_cost, checked_size, unit_lengths, wanted_sizes
+from references.mesh.sizes import GROWTH, Sizes, check_cost, checked_size, unit_lengths, wanted_sizes
 from references.mesh.solids import known
 from references.mesh.turns import turn
 
@@ -33,10 +35,12 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     flag("curved", curved)
     # What surfaces resist and phases conduct does not change where they are.
     takes = ("resistance", "exchange", "anisotropy", "dependence")
-    text = "elements are known in a box, around shapes that have a volume of OpenCASCADE, `Shape.cad`"
-    scene.require(text, domain="box", shapes=known, takes=takes)
+    scene.require("elements are known in a box", domain="box", takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))
+    if not all(map(known, scene.inclusions)):
+        check_cost(Sizes(size, *(np.zeros((0, width)) for width in (5, 6, 4))), scene.size, order)
+        return make_lattice(scene, size=size, order=order, curved=curved)
     wanted = wanted_sizes(scene, size, coarser=coarser)
     cells = check_cost(wanted, scene.size, order)
     sizes = unit_lengths(wanted, max(scene.size))

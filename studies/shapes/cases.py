@@ -7,7 +7,7 @@ SPENT_ON_ELLIPSOID = {"dem": (20_000, 100_000), "fft": (64, 96), "fem": (1 / 6, 
 CONTRASTS, FRACTIONS = (0.01, 0.1, 10.0, 100.0), (0.3, 0.6)
 # The fibre whose temperature is looked at, too.
 CONTRAST, FRACTION = 10.0, 0.3
-# Contrasts of each part besides fibres, and the methods that take it: voxels know no resistance, FEM no level set.
+# Contrasts of each part besides fibres, and the methods that take it: voxels knew no resistance, FEM no level set.
 PARTS = {
     "neutral fibre": ((CONTRAST,), ("dem", "fem")),
     "square rods": ((0.1, 10.0), tuple(SPENT)),

@@ -11,9 +11,9 @@ from itertools import product
 import numpy as np
 
 from demheat.scene.beats import beat
-from demheat.scene.inputs import moderate, vector
+from demheat.scene.inputs import flag, moderate, vector
 from demheat.scene.material import Material, check_material
-from demheat.scene.shapes.base import check_resistance
+from demheat.scene.shapes.base import TOUCH, check_resistance
 from demheat.scene.shapes.samples import CELLS, volume_by_cells
 from demheat.scene.shapes.solid import Solid
 from demheat.scene.shapes.traced import CELLS as FINEST
@@ -25,8 +25,8 @@ STEP, ON = 1e-5, 1e-12
 STEPS, ALONG, LONGEST = 12, 6, 0.25
 # Sine of the angle to the normal from which on a nearer point is sought.
 ASIDE = 1e-6
-# Points along each side of a face that are looked at.
-LOOKED_AT = 25
+# Points along each side of a face that are looked at; how far opposite ones of a period may differ, of the largest.
+LOOKED_AT, ALIKE = 25, 1e-6
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,9 @@ class LevelSet(Solid):
     material : Material
     resistance : float, m2 K/W
         Of its surface towards whatever it lies in, as that of a `Sphere`.
+    periodic : bool
+        Whether `limits` are one period of the function, which is then asked within them alone: the set goes on in all
+        directions without end, as a gyroid does. Sides of a periodic cell must be multiples of the period's.
 
     Examples
     --------
@@ -71,6 +74,7 @@ class LevelSet(Solid):
     limits: tuple[tuple[float, float, float], tuple[float, float, float]]
     material: Material
     resistance: float = field(default=0.0, kw_only=True)
+    periodic: bool = field(default=False, kw_only=True)
 
     kind = "level set"
     convex = False
@@ -90,6 +94,7 @@ class LevelSet(Solid):
         object.__setattr__(self, "limits", (low, high))
         check_material("LevelSet.material", self.material)
         check_resistance(self)
+        flag("LevelSet.periodic", self.periodic)
         self._check_function()
 
     @property
@@ -98,15 +103,38 @@ class LevelSet(Solid):
         return tuple(0.5 * (a + b) for a, b in zip(*self.limits, strict=True))
 
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
-        """Its limits, two (3,) float arrays, m."""
+        """Its limits, two (3,) float arrays, m; infinite if it is periodic."""
+        return (np.full(3, -np.inf), np.full(3, np.inf)) if self.periodic else self._ends()
+
+    def _ends(self):
         return np.array(self.limits[0]), np.array(self.limits[1])
 
-    @cached_property
+    @property
     def volume(self) -> float:
         """Volume, m3: in cells that the surface cuts by the plane nearest to their middles, of two sizes."""
+        return math.inf if self.periodic else self._volume
+
+    @cached_property
+    def _volume(self):
+        """Of what lies in the limits."""
         if self.traceable:
-            return volume_by_cells(self, *self.bounds())
+            return volume_by_cells(self, *self._ends())
         return float(np.prod(np.subtract(*self.limits))) * -len(self._inner) / CELLS**3
+
+    def volume_in(self, size: Sequence[float], *, periodic: bool) -> float:
+        """Volume of the part in a box, m3; see `Shape.volume_in`."""
+        if self.periodic and periodic:
+            return self._volume * math.prod(size) / float(np.prod(np.subtract(*self.limits[::-1])))
+        return super().volume_in(size, periodic=periodic)
+
+    def check_fit(self, name: str, size: Sequence[float], *, periodic: bool) -> None:
+        """Raise ValueError unless its period goes into a periodic cell; see `Shape.check_fit`."""
+        times = np.array(size) / np.subtract(*self.limits[::-1])
+        if self.periodic and periodic and np.any(np.abs(times - np.maximum(1, np.round(times))) > TOUCH * times):
+            raise ValueError(
+                f"{name}: a period of {np.subtract(*self.limits[::-1]).tolist()} m in a periodic cell of {size} m; "
+                "sides of the cell must be multiples of the period's"
+            )
 
     @property
     def traceable(self) -> bool:
@@ -119,8 +147,9 @@ class LevelSet(Solid):
         if self._made_from is not None:
             shape, move = self._made_from
             return move(shape._trace) if isinstance(shape._trace, Traced) else shape._trace
-        low, high = self.bounds()
-        return leads(self._onto, self._holds, low, high) or traced(self._holds, low, high)
+        low, high = self._ends()
+        period = high - low if self.periodic else None
+        return leads(self._onto, self._holds, low, high, period) or traced(self._holds, low, high)
 
     def turned(self, order: Sequence[int]) -> LevelSet:
         """The same set with axes order[0], order[1], order[2] as axes 0, 1, 2."""
@@ -149,7 +178,9 @@ class LevelSet(Solid):
 
     def sure_distance(self, points: np.ndarray, *, period: np.ndarray | None = None) -> np.ndarray:
         """Distance to its limits, 0 within, m; see `Shape.sure_distance`."""
-        low, high = self.bounds()
+        if self.periodic:
+            return np.zeros(len(points))
+        low, high = self._ends()
         beyond = np.abs(self._home(points, period)) - 0.5 * (high - low)
         return np.linalg.norm(np.maximum(beyond, 0.0), axis=1)
 
@@ -160,16 +191,19 @@ class LevelSet(Solid):
 
     def point_in(self, size: Sequence[float], *, periodic: bool) -> np.ndarray:
         """A point of the box that lies inside, (3,) float array, m; see `Shape.point_in`."""
-        points = self._inner
+        points = self._held(np.zeros(3), np.array(size)) if self.periodic and not periodic else self._inner
         if periodic:
             return points[0] % np.array(size)
         inside = points[np.all((points > 0) & (points < size), axis=1)]
-        return inside[0] if len(inside) else np.clip(points[0], 0.0, size)
+        return inside[0] if len(inside) else np.clip([*points, self.center][0], 0.0, size)
 
     @cached_property
     def _inner(self):
         """Points within, the one with the lowest value first, (m, 3) float array, m."""
-        low, high = self.bounds()
+        return self._held(*self._ends())
+
+    def _held(self, low, high):
+        """The same of a box."""
         ticks = (np.arange(CELLS) + 0.5) / CELLS
         found, values = [], []
         for x in ticks:
@@ -181,13 +215,15 @@ class LevelSet(Solid):
 
     def _check_function(self):
         """Refuse functions that are none of points, that are not above 0 on the limits, or nowhere below 0."""
-        low, high = self.bounds()
+        low, high = self._ends()
         ticks = np.linspace(0.0, 1.0, LOOKED_AT)
         for axis, end in product(range(3), (0.0, 1.0)):
             own = np.array(list(product(*([end] if a == axis else ticks for a in range(3)))))
             points = low + own * (high - low)
-            values = self._values(points)
-            if values.min() <= 0:
+            values = self._asked(points)
+            if self.periodic:
+                self._check_period(axis, points, values)
+            elif values.min() <= 0:
                 at = tuple(points[np.argmin(values)].tolist())
                 raise ValueError(
                     f"LevelSet.function: {values.min():.3g} at {at}, on the limits; must be above 0 there: the set "
@@ -198,8 +234,29 @@ class LevelSet(Solid):
                 f"LevelSet.function: above 0 at all of {CELLS**3} points within limits {self.limits}; must be "
                 "below 0 somewhere, or have narrower limits"
             )
+        if len(self._inner) == CELLS**3:
+            raise ValueError(f"LevelSet.function: nowhere above 0 within limits {self.limits}; must be somewhere")
+
+    def _check_period(self, axis, points, values):
+        other = points.copy()
+        other[:, axis] = self.limits[0][axis] + self.limits[1][axis] - points[:, axis]
+        off = np.abs(self._asked(other) - values)
+        if off.max() > ALIKE * max(np.abs(values).max(), 1e-300):
+            at = tuple(points[np.argmax(off)].tolist())
+            raise ValueError(
+                f"LevelSet.function: differs by {off.max():.3g} between {at} and the opposite limit; a periodic one must "
+                "be the same there"
+            )
 
     def _values(self, points):
+        return self._asked(self._home_period(points))
+
+    def _home_period(self, points):
+        """Points moved by periods into the limits, if it is periodic."""
+        low, high = self._ends()
+        return low + (points - low) % (high - low) if self.periodic else points
+
+    def _asked(self, points):
         beat("a level set")
         values = np.asarray(self.function(points.copy()))
         if values.shape != (len(points),) or values.dtype.kind not in "biuf" or not np.all(np.isfinite(values)):
@@ -210,6 +267,8 @@ class LevelSet(Solid):
         return np.asarray(values, dtype=float)
 
     def _inside(self, offsets):
+        if self.periodic:
+            return self._values(offsets + self.center) <= 0
         inside = np.zeros(len(offsets), bool)
         within = np.flatnonzero(np.all(np.abs(offsets) <= 0.5 * np.subtract(self.limits[1], self.limits[0]), axis=1))
         if len(within):
@@ -270,11 +329,15 @@ class LevelSet(Solid):
     def _distance(self, offsets):
         if self._trace is True:
             return self._surface(offsets)[0]
-        away = np.abs(self._traced().distance(offsets + self.center))
+        away = np.abs(self._traced().distance(self._home_period(offsets + self.center)))
         return np.where(self._inside(offsets), -away, away)
 
     def _normal(self, offsets):
-        return self._surface(offsets)[1] if self._trace is True else self._traced().normal(offsets + self.center)
+        return (
+            self._surface(offsets)[1]
+            if self._trace is True
+            else self._traced().normal(self._home_period(offsets + self.center))
+        )
 
     def _traced(self):
         if self._trace is None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 
@@ -69,8 +70,8 @@ class Traced:
         return ((nearest - self.low) / self.pitch).T, np.linalg.norm(points - nearest, axis=1)
 
 
-def leads(onto: Callable, inside: Callable, low, high) -> bool:
-    """Whether Newton's steps along a function's gradient find its surface."""
+def leads(onto: Callable, inside: Callable, low, high, period=None) -> bool:
+    """Whether Newton's steps along a function's gradient find its surface, which repeats if there is a period."""
     from scipy.spatial import cKDTree
 
     nodes, pitch, solid = _grid(low, high, TRIED, 0, inside)
@@ -82,6 +83,8 @@ def leads(onto: Callable, inside: Callable, low, high) -> bool:
     feet = onto(near)
     way = unit(feet - near) * ON * pitch
     off = inside(feet - way) == inside(feet + way)
+    if period is not None:
+        surface = np.concatenate([surface + np.array(step) * period for step in product((-1, 0, 1), repeat=3)])
     away, _ = cKDTree(surface).query(points)
     under = np.linalg.norm(onto(points) - points, axis=1) < 0.5 * (away - np.sqrt(3) * pitch)
     return bool(off.mean() <= MISSED and under.mean() <= UNDER)
