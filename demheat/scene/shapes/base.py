@@ -40,7 +40,8 @@ class Shape(ABC):
     (`nearest`). `Solid` supplies most of it. That is enough for phases, voxels by any rule, links cut at the surface
     and facets of the DEM on it. What a shape may supply besides, or where it has something sharper or faster:
 
-    - `cad`, for finite elements, which cut others out of a lattice; `stored`, for scene files, which hold none without it;
+    - `cad`, for finite elements, which cut others out of a lattice; `stored`, for scene files, which hold none
+      without it;
     - `edges`, if it is not smooth: errors fall slowly beside them, which intervals must know;
     - `pattern` and `facets` of the DEM, where evenly spread points are not the best there are;
     - `contains`, `ball`, `meets`, `volume_in`, `width`, `depth`, `fills_bounds` and `fills_ball`;

@@ -244,8 +244,8 @@ class LevelSet(Solid):
         if off.max() > ALIKE * max(np.abs(values).max(), 1e-300):
             at = tuple(points[np.argmax(off)].tolist())
             raise ValueError(
-                f"LevelSet.function: differs by {off.max():.3g} between {at} and the opposite limit; a periodic one must "
-                "be the same there"
+                f"LevelSet.function: differs by {off.max():.3g} between {at} and the opposite limit; must be the same "
+                "there, if it is periodic"
             )
 
     def _values(self, points):
