@@ -162,13 +162,16 @@ def by_refinement(
         return safety * missing(changes, rule.ratio, rule.order) + rule.also * more
 
     k = conductivity_of(field)
-    half = lacks(_corrected if rule.chance else conductivity_of, _largest, rule.safety)
+    half = lacks(_corrected if rule.chance else conductivity_of, largest, rule.safety)
     half = max(half, least if _by_luck(fields) else min(least, RAISED * half)) + residual * abs(k)
     if k:
         # What inclusions make of the conductivity goes with how much there is of them.
-        off = _unshown([misplaced(each) for each in fields], rule) + fine.rough
+        off = [misplaced(each) for each in fields]
+        # Runs are corrected for what they hold by chance: all that the first holds counts.
+        shown = PLACED * float(np.abs(off[0]).sum()) if rule.chance else unshown(off, rule.ratio, rule.order)
+        off = shown + fine.rough
         half += off * abs(k - float(field.scene.mean_conductivities[0]))
-    flux = lacks(lambda each: each.mean_flux, _largest, rule.safety) + residual * _size(field.mean_flux)
+    flux = lacks(lambda each: each.mean_flux, largest, rule.safety) + residual * _size(field.mean_flux)
     warmth = partial(_level_free, points=points)
     kelvin = lacks(warmth, _spread, rule.temperature_safety) + residual * _span(field, warmth(field))
     if rule.coats and np.any(field.scene.parents()):
@@ -212,13 +215,11 @@ def misplaced(field) -> np.ndarray:
     return np.bincount(kind.ravel(), off[1:]) / own
 
 
-def _unshown(off, rule):
+def unshown(off, ratio, order) -> float:
     """What the first of some runs has misplaced, less what changes between them show already."""
-    if rule.chance:
-        return PLACED * float(np.abs(off[0]).sum())
     if any(len(each) != len(off[0]) for each in off):
         return float(np.abs(off[0]).sum())
-    shown = [missing(np.abs(changes), rule.ratio, rule.order) for changes in np.diff(off, axis=0).T]
+    shown = [missing(np.abs(changes), ratio, order) for changes in np.diff(off, axis=0).T]
     return float(np.maximum(np.abs(off[0]) - shown, 0.0).sum())
 
 
@@ -256,7 +257,8 @@ def missing(changes, ratio, order) -> float:
     return float(np.max(np.asarray(changes) / grown))
 
 
-def _largest(one, other):
+def largest(one, other) -> float:
+    """Change of any component."""
     return float(np.max(np.abs(np.subtract(one, other))))
 
 

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from demheat.error import Estimate
+    from demheat.extrapolation import Extrapolated
 
 # Of the box: points computed to lie on a wall may be so far beyond it.
 ON_WALL = 1e-9
@@ -112,6 +113,8 @@ class Field:
     slack : (2,) tuple of float
         By how much, relatively, the conductivity may be below and above its bounds (`demheat.gate`), as averages of the
         method are known to be off, or as it knows of more than the scene tells, such as cracks.
+    extrapolator : callable (Field) -> Extrapolated, optional
+        See `extrapolated`.
 
     Raises
     ------
@@ -146,6 +149,7 @@ class Field:
     estimator: Callable[[Field], Estimate] | None = None
     elements: Callable[[], tuple[np.ndarray, np.ndarray]] | None = None
     slack: tuple[float, float] = (0.0, 0.0)
+    extrapolator: Callable[[Field], Extrapolated] | None = None
     # Given by the package's front: a field knows nothing of those who store and draw it.
     write: ClassVar[Callable[..., None]]
     plot: ClassVar[Callable[..., Any]]
@@ -200,6 +204,28 @@ class Field:
         if self.estimator is None:
             raise NotImplementedError("Field.error: this method does not know its error")
         return self.estimator(self)
+
+    @cached_property
+    def extrapolated(self) -> Extrapolated:
+        """What the conductivity closes in on as elements get smaller, with an interval, by Richardson's extrapolation.
+
+        Of two coarser runs, which cost a fraction of the solve; errors at points are not made smaller. See
+        `demheat.extrapolation`.
+
+        Raises
+        ------
+        NotImplementedError
+            If nothing is known of how the method closes in, in time, for an image, or where the scene has parts that
+            coarser runs do not tell of.
+        RuntimeError
+            If a coarser run cannot be made.
+        """
+        if self.scene.image is not None or self.time is not None or self.extrapolator is None:
+            raise NotImplementedError(
+                "Field.extrapolated: nothing is known of how this closes in; steady fields of the DEM's cells with "
+                "twins, of finite elements and of the FFT have it, of scenes that are no images"
+            )
+        return self.extrapolator(self)
 
     def heat_through(self, axis: int, position: float) -> float:
         """Heat that crosses a section of the body, W, by the method's own balance.
@@ -278,7 +304,8 @@ class Field:
         A stored field has no temperature or flux at other points, and no error that was not asked for before.
         """
         names = ("scene", "mean_flux", "fractions", "wall_temperature", "wall_heat", "stats", "time", "slack")
-        return _restored, ({name: getattr(self, name) for name in names}, self.samples, self.__dict__.get("error"))
+        kept = {name: self.__dict__[name] for name in ("error", "extrapolated") if name in self.__dict__}
+        return _restored, ({name: getattr(self, name) for name in names}, self.samples, kept)
 
     def __copy__(self):
         """Itself, as it cannot be changed."""
@@ -301,14 +328,16 @@ class _Stored:
         )
 
 
-def _restored(numbers, samples, error):
+def _restored(numbers, samples, kept):
     """The field that was stored."""
     functions = {name: _Stored(name) for name in ("temperature_at", "flux_at")}
-    field = Field(
-        **numbers, **functions, sampler=lambda: samples, through=_Stored("heat_through"), estimator=_Stored("error")
-    )
-    if error is not None:
-        field.__dict__["error"] = error
+    functions |= {
+        "through": _Stored("heat_through"),
+        "estimator": _Stored("error"),
+        "extrapolator": _Stored("extrapolated"),
+    }
+    field = Field(**numbers, **functions, sampler=lambda: samples)
+    field.__dict__.update(kept)
     return field
 
 

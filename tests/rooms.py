@@ -12,7 +12,8 @@ ENGINE = {
     # What all methods share.
     "nouns": (
         (
-            *("demheat.gate", "demheat.error", "demheat.splitting", "demheat.field", "demheat.tensor"),
+            *("demheat.gate", "demheat.error", "demheat.extrapolation", "demheat.splitting"),
+            *("demheat.field", "demheat.tensor"),
             *("demheat.laws", "demheat.method"),
         ),
         ("scene",),

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from demheat.cheapest.loads import Loads
-from demheat.cheapest.ways import HOMES, KNOBS, Way
+from demheat.cheapest.ways import EXTRAPOLATED, HOMES, KNOBS, Way
+from demheat.field import Field
 from demheat.tensor import conductivity_tensor
 from references import bracket
 
@@ -33,19 +34,42 @@ def answer(way: Way, loads: Loads) -> Answer:
         fields = dict(enumerate(module.solve_axes(scenes[0], **way.knobs)))
     else:
         fields = {axis: module.solve(each, **way.knobs) for axis, each in scenes.items()}
-    errors = {axis: each.error for axis, each in fields.items()}
+    found = {axis: _known(each, way.method) for axis, each in fields.items()}
     if loads.diagonal:
-        tensor = np.diag([fields[axis].conductivity for axis in loads.alike])
-        half = np.diag([_farthest(fields[axis].conductivity, errors[axis]) for axis in loads.alike])
-        return Answer(tensor, half, errors[0].how)
+        tensor = np.diag([found[axis].conductivity for axis in loads.alike])
+        half = np.diag([found[axis].half for axis in loads.alike])
+        return Answer(tensor, half, found[0].how)
     tensor = conductivity_tensor([fields[axis] for axis in range(3)])
-    half = np.tile([errors[axis].flux / abs(fields[axis].scene.gradient[axis]) for axis in range(3)], (3, 1))
-    return Answer((tensor + tensor.T) / 2, np.maximum(half, half.T), errors[0].how)
+    slopes = [fields[axis].scene.gradient[axis] for axis in range(3)]
+    # What is extrapolated takes the place of what was found on elements.
+    tensor += np.stack([(fields[j].mean_flux - found[j].mean_flux) / slopes[j] for j in range(3)], axis=1)
+    half = np.tile([found[axis].flux / abs(slopes[axis]) for axis in range(3)], (3, 1))
+    return Answer((tensor + tensor.T) / 2, np.maximum(half, half.T), found[0].how)
 
 
-def _farthest(k, error):
-    """How far an interval reaches from a conductivity, which need not be its middle."""
-    return max(error.upper - k, k - error.lower)
+class _Known(NamedTuple):
+    """What a field says of its conductivity and mean flux, and how far these may be off."""
+
+    conductivity: float
+    half: float
+    mean_flux: np.ndarray
+    flux: float
+    how: str
+
+
+def _known(field: Field, method: str) -> _Known:
+    """By extrapolation where that tells more at less cost, else by the interval about what was found."""
+    if method in EXTRAPOLATED:
+        try:
+            limit = field.extrapolated
+        except (NotImplementedError, RuntimeError):
+            pass
+        else:
+            half = max(limit.upper - limit.conductivity, limit.conductivity - limit.lower)
+            return _Known(limit.conductivity, half, limit.mean_flux, limit.flux, limit.how)
+    error, k = field.error, field.conductivity
+    # An interval need not have the answer in its middle.
+    return _Known(k, max(error.upper - k, k - error.lower), field.mean_flux, error.flux, error.how)
 
 
 def excess(found: Answer, accuracy: float) -> float:

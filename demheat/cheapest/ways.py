@@ -6,11 +6,14 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+import numpy as np
+
 from demheat import dem
 from demheat.cheapest.cost_laws import ON_SPHERE, needed, predicted, work
 from demheat.cheapest.loads import Loads
 from demheat.cheapest.measures import PORE, measures
 from demheat.runtime.extras import lacking
+from demheat.scene.edges import SMOOTH, edge_order
 from demheat.scene.inputs import one_line
 from references import bracket, exact, fem, fft, multipole
 
@@ -31,8 +34,12 @@ TAKES = {
     "fft": ("resistance", "anisotropy", "image"),
     "dem": ("resistance", "dependence", "image", "perfect"),
 }
-# An interval is so many times the error, in the median: what is asked of the laws is the error.
-INTERVAL = 2.5
+# Methods whose answers are extrapolated (`Field.extrapolated`), where their scene lets them: the interval of that is
+# narrower than the one about the answer, and its coarser runs cost less.
+EXTRAPOLATED = ("fem", "fft")
+# An interval is so many times the error, in the median: what is asked of the laws is the error, which is that of the
+# answer itself; about what it is extrapolated to, the interval is so many times that error.
+INTERVAL, ABOUT_LIMIT = 2.5, {"fem": 1.0, "fft": 1.5}
 # Orders with which intervals fall, at least: errors scatter.
 ORDERS = {"fem": 2.5, "fft": 1.0, "dem": 1.8}
 # Edges of elements from one run to the next, and how many times.
@@ -43,8 +50,8 @@ FIRST, COARSER = 3.0, 1.25
 LEAST_SAVED = 0.98
 # Voxels along each axis with which the FFT's rule is that of any finer grid.
 ENOUGH = (32, 32, 32)
-# What coarser runs for the interval cost, of the solve.
-BESIDES = 1.5
+# What coarser runs for the interval cost, with the solve, over the solve; and those of an extrapolation.
+BESIDES, FOR_LIMIT = 1.5, 1.3
 # Parts of an image's voxels along each axis from one run to the next at most; voxels of the block that tells the error.
 MOST_PARTS, BLOCK = 3, 64**3
 
@@ -91,7 +98,8 @@ def finer(way: Way, loads: Loads, missing: float, memory: float) -> Way:
     if cost.bytes > memory:
         return way._replace(refused=f"{told}; narrower ones would need {_gib(cost.bytes)}")
     knobs = {knob: _scaled(value, max(wanted, SMALLEST), power)}
-    return way._replace(knobs=knobs, cpu_s=_all(cost, loads), bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
+    spent = _all(cost, loads, _has_limit(way.method, law, loads))
+    return way._replace(knobs=knobs, cpu_s=spent, bytes=cost.bytes, doubt="", rounds=way.rounds + 1)
 
 
 def _exact(loads, accuracy):
@@ -132,7 +140,8 @@ def _refined(name, loads, accuracy, memory):
     if loads.body.image is not None:
         return on_image(name, loads, memory)
     (knob, power), (law, part) = KNOBS[name], _law(name, loads)
-    value = needed(law, part, accuracy / INTERVAL, sure=False)
+    limit = _has_limit(name, law, loads)
+    value = needed(law, part, accuracy / (ABOUT_LIMIT[name] if limit else INTERVAL), sure=False)
     cost, first = predicted(law, part, value), value
     # Laws of the error may be far off: begin with what costs little, its interval says how far to go from there.
     while predicted(law, part, first).cpu_s > FIRST:
@@ -141,7 +150,7 @@ def _refined(name, loads, accuracy, memory):
             # What is left is paid for each inclusion, whatever the elements.
             break
         first = coarser
-    way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads), cost.bytes), memory)
+    way = _within(Way(name, {knob: first}, cost.error, _all(cost, loads, limit), cost.bytes), memory)
     least = predicted(law, part, first).bytes
     return way._replace(refused=f"needs {_gib(least)} to begin with") if least > memory else way
 
@@ -194,8 +203,16 @@ def _scaled(value, edge, power):
     return value if power > 0 else max(int(value), 1)
 
 
-def _all(cost, loads):
-    return BESIDES * len(loads.parts) * cost.cpu_s
+def _has_limit(name, law, loads):
+    """Whether answers are extrapolated: not beside edges, in coats or on plain voxels."""
+    body = loads.body
+    if name not in EXTRAPOLATED or law == "fft-plain" or body.varies or (name == "fft" and body.resistances.any()):
+        return False
+    return not any(np.any(part.parents()) or edge_order(part) < SMOOTH for part in loads.parts.values())
+
+
+def _all(cost, loads, limit=False):
+    return (FOR_LIMIT if limit else BESIDES) * len(loads.parts) * cost.cpu_s
 
 
 def knobs_of(way) -> str:

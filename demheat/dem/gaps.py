@@ -19,7 +19,7 @@ from demheat.network.bridges import filled, matter
 def reaching(estimate: Callable, field: Field, *, answer: Callable) -> Estimate:
     """An estimate that reaches to what is so if gaps without twins are filled, where that matters."""
     found = estimate(field)
-    if not (_left_out(field) and matter(field.scene)):
+    if not (left_out(field) and matter(field.scene)):
         return found
     other = quietly(lambda change: answer(change=change), filled)
     ends = [k for k in (conductivity_of(field), conductivity_of(other)) if math.isfinite(k)]
@@ -32,9 +32,10 @@ def reaching(estimate: Callable, field: Field, *, answer: Callable) -> Estimate:
     )
 
 
-def _left_out(field):
+def left_out(field) -> bool:
+    """Whether there are gaps without twins."""
     packing = field.stats["packing"]
-    return packing.get("of", packing).get("pairs_left_out", 0) > 0
+    return packing.get("of", packing).get("pairsleft_out", 0) > 0
 
 
 def _apart(field, other):

@@ -17,7 +17,7 @@ from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_check
 from demheat.conduction.transient import check_callables
 from demheat.conduction.transient import evolve as evolve_network
 from demheat.conduction.varying import solve_varying
-from demheat.dem.estimate import check_contrast, estimator_of
+from demheat.dem.estimate import check_contrast, estimator_of, extrapolator_of
 from demheat.dem.gaps import reaching
 from demheat.dem.networks import network_of, networks_of
 from demheat.dem.options import MIB, Particles, check_fits, expected_bytes, expected_unknowns
@@ -249,9 +249,12 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
             solution = solve_checked(network, scene, **how, kept=kept)
         took = spent | {"solve_s": time.perf_counter() - connected}
         answer = partial(_answer, scene, solver=solver, tolerance=tolerance)
-        estimator = partial(reaching, estimator_of(law, wanted, answer), answer=partial(answer, law, wanted))
+        told = {
+            "estimator": partial(reaching, estimator_of(law, wanted, answer), answer=partial(answer, law, wanted)),
+            "extrapolator": extrapolator_of(law, wanted, answer),
+        }
         with stage("field"):
-            field = field_of(as_good(scene), network, solution, stats=took, estimator=estimator)
+            field = field_of(as_good(scene), network, solution, stats=took, **told)
             fields.append(replace(field, scene=scene) if scene.perfect else field)
     return fields
 

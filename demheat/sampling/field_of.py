@@ -16,7 +16,9 @@ from demheat.sampling.reconstruct import Reconstruction
 CONTACTS = 0.5
 
 
-def field_of(scene, network, solution, *, stats, time=None, estimator=None, slack=(0.0, 0.0)) -> Field:
+def field_of(
+    scene, network, solution, *, stats, time=None, estimator=None, slack=(0.0, 0.0), extrapolator=None
+) -> Field:
     """The Field of a solved network."""
     if solution.still is not None:
         network = without_links(network, solution.still)
@@ -41,6 +43,7 @@ def field_of(scene, network, solution, *, stats, time=None, estimator=None, slac
         time=time,
         through=lambda axis, position: heat_through(network, solution, axis, position),
         estimator=estimator,
+        extrapolator=extrapolator,
         slack=slack if network.cells else (CONTACTS, CONTACTS),
     )
 

@@ -14,7 +14,7 @@ from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.scene.narrows import narrows
 from demheat.tensor import axis_loads
-from references.fem.estimate import estimated
+from references.fem.estimate import estimated, extrapolated
 from references.fem.image import solved_image
 from references.fem.lookup import NodalField
 from references.fem.system import solve_loads
@@ -156,8 +156,9 @@ def _answers(scenes, tolerance, **elements):
     kind = "linear" if elements["order"] == 1 else "curved" if elements["curved"] else "straight"
     fields = []
     for scene, each in zip(scenes, solved, strict=True):
-        again = partial(_again, scene, tolerance, elements)
-        fields.append(field_of(scene, mesh, each, tolerance, partial(estimated, again=again, kind=kind)))
+        how = {"again": partial(_again, scene, tolerance, elements), "kind": kind}
+        told = partial(estimated, **how), partial(extrapolated, **how)
+        fields.append(field_of(scene, mesh, each, tolerance, *told))
     return fields
 
 
@@ -167,7 +168,7 @@ def _again(scene, tolerance, elements, **changed):
     return _answers([scene], tolerance, **elements | {"size": size} | changed)[0]
 
 
-def field_of(scene, mesh, solved, tolerance, estimator) -> Field:
+def field_of(scene, mesh, solved, tolerance, estimator, extrapolator=None) -> Field:
     """The Field of nodal temperatures."""
     alone = one_blas_thread()
     solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
@@ -186,6 +187,7 @@ def field_of(scene, mesh, solved, tolerance, estimator) -> Field:
         wall_heat=solved.wall_heat,
         stats=stats,
         estimator=estimator,
+        extrapolator=extrapolator,
         elements=lambda: (mesh.points, mesh.cells),
     )
 

@@ -17,7 +17,7 @@ from demheat.scene.turned import turned as turned_scene
 from demheat.tensor import axis_loads
 from references.fft import cg, eyre_milton
 from references.fft.checks import PRECISIONS, check_grid, check_load, check_scheme, checked, rule_of
-from references.fft.estimate import estimated
+from references.fft.estimate import estimated, extrapolated
 from references.fft.interpolation import Grid, flux_at, samples, temperature_at
 from references.fft.memory import expected
 from references.fft.problem import SolvedGrid
@@ -206,6 +206,7 @@ def _field(scene, grid, units, solution, knobs, said):
     shape = tuple(grid.voxels.phase.shape[a] for a in np.argsort(grid.order))
     found = {"unknowns": solution.unknowns, "iterations": solution.iterations, **solution.errors, **solution.cost}
     asked = {name: value for name, value in knobs._asdict().items() if name not in UNSAID}
+    again = partial(solve, **knobs._asdict())
     return Field(
         scene=scene,
         mean_flux=mean_flux(grid, units, solution),
@@ -216,7 +217,8 @@ def _field(scene, grid, units, solution, knobs, said):
         wall_temperature=scene.wall_temperatures,
         wall_heat=wall_heat(scene, units, solution),
         stats={**found, **asked, **said, "voxels": shape},
-        estimator=partial(estimated, solve=partial(solve, **knobs._asdict())),
+        estimator=partial(estimated, solve=again),
+        extrapolator=partial(extrapolated, solve=again),
     )
 
 
