@@ -1,13 +1,14 @@
-"""Fields as files: for ParaView (.vtp, .vti, .vtu) and for NumPy (.npz).
+"""Fields as files, of every method: for ParaView (.vtp, .vti, .vtu, .xdmf) and for NumPy (.npz).
 
 ======  ==================================================================================================
 suffix  what is in it
 ======  ==================================================================================================
 .vtp    the method's own samples as points: particles, voxels or quadrature points, with the radius of a sphere of their
-        volume; of every method
+        volume
 .vti    temperature, flux and phase on a regular grid: the voxels of a method that has them, else `cells` of them
-        along the longest side, at their middles; of every method
-.vtu    the mesh with the temperature at its nodes; of finite elements
+        along the longest side, at their middles
+.vtu    the mesh with the temperature at its nodes, of finite elements; of others the grid as hexahedra
+.xdmf   the same as plain text, which is some times as long
 .npz    samples, conductivity and what else a field holds, as plain arrays
 ======  ==================================================================================================
 """
@@ -17,24 +18,28 @@ from __future__ import annotations
 import json
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 from demheat.field import Field, check_field
 from demheat.io.vtk import Blocks, put_down
 from demheat.runtime.limits import check_memory
-from demheat.runtime.paths import checked_path, replaced
+from demheat.runtime.paths import check_folder, checked_path, replaced
 from demheat.scene.bodies import inside
 from demheat.scene.inputs import whole
 
-# Tetrahedra of so many nodes, by VTK's number; their order of nodes is VTK's.
-TETRAHEDRA = {4: 10, 10: 24}
+# Elements of so many nodes, by VTK's number and XDMF's name; their order of nodes is that of both.
+VTK = {4: 10, 8: 12, 10: 24}
+XDMF = {4: "Tetrahedron", 8: "Hexahedron", 10: "Tetrahedron_10"}
+# Corners of a hexahedron, along each axis.
+HEXAHEDRON = np.array([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0), (0, 0, 1), (1, 0, 1), (1, 1, 1), (0, 1, 1)])
 # Bytes of a cell of a grid while it is made.
 BYTES = 120
 
 
 def write(field: Field, path, *, cells: int = 64) -> None:
-    """Write into a file for ParaView (.vtp, .vti, .vtu) or NumPy (.npz), see `demheat.io.fields`.
+    """Write into a file for ParaView (.vtp, .vti, .vtu, .xdmf) or NumPy (.npz), see `demheat.io.fields`.
 
     An interrupted write leaves no file, and an old one as it was.
 
@@ -42,28 +47,22 @@ def write(field: Field, path, *, cells: int = 64) -> None:
     ----------
     path : path
     cells : int
-        Of a .vti, along the longest side, where the field has no voxels of its own.
+        Of a grid, along the longest side, where the field has neither mesh nor voxels of its own.
     """
     check_field(field)
-    path = check_target(path, mesh=getattr(field, "elements", None) is not None)
+    path = check_target(path)
     whole("cells", cells, "an integer >= 1", lambda v: v >= 1)
     make = WRITERS[path.suffix.lower()]
     with replaced(path) as part, part.open("xb") as stream:
         make(field, stream, cells)
 
 
-def check_target(path, *, mesh: bool) -> Path:
+def check_target(path) -> Path:
     """The path of a file that a field can be written to, before anything is solved."""
     path = checked_path(path)
     if path.suffix.lower() not in WRITERS:
         raise ValueError(f"path = {str(path)!r}: the suffix must be one of {', '.join(WRITERS)}")
-    if not path.parent.is_dir():
-        raise ValueError(f"path = {str(path)!r}: there is no folder {str(path.parent)!r}")
-    if path.suffix.lower() == ".vtu" and not mesh:
-        raise NotImplementedError(
-            f"path = {str(path)!r}: this field has no mesh; only finite elements around shapes have, of an image they "
-            "are its voxels. Use .vti for a grid, or .vtp for its own points"
-        )
+    check_folder(path)
     return path
 
 
@@ -130,19 +129,69 @@ def _x_first(array, shape):
     return array.reshape(*shape, -1).transpose(2, 1, 0, 3).reshape(array.shape)
 
 
-def _mesh(field, stream, cells):
+class Elements(NamedTuple):
+    """What is put on elements: tetrahedra of a mesh, else hexahedra of a grid."""
+
+    nodes: np.ndarray  # (n, 3) float array, m
+    cells: np.ndarray  # (m, 4, 8 or 10) int array
+    at_nodes: dict  # Arrays by their names
+    in_cells: dict
+
+
+def _elements(field, cells):
+    if getattr(field, "elements", None) is None:
+        shape, data = grid_of(field, cells)
+        return Elements(*_hexahedra(field.scene.size, shape), {}, data)
     nodes, tetrahedra = field.elements()
-    blocks = Blocks()
     middles = nodes[tetrahedra[:, :4]].mean(axis=1)
-    kinds = np.full(len(tetrahedra), TETRAHEDRA[tetrahedra.shape[1]], np.uint8)
-    points = blocks.add("temperature", field.temperature_at(nodes))
-    inner = blocks.add_all({"flux": field.flux_at(middles), "phase": field.scene.phase_at(middles)})
+    inner = {"flux": field.flux_at(middles), "phase": field.scene.phase_at(middles)}
+    return Elements(nodes, tetrahedra, {"temperature": field.temperature_at(nodes)}, inner)
+
+
+def _hexahedra(size, shape):
+    """Nodes and cells of a regular grid, the last axis fastest."""
+    axes = [np.linspace(0.0, side, count + 1) for side, count in zip(size, shape, strict=True)]
+    nodes = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    numbers = np.arange(len(nodes)).reshape([count + 1 for count in shape])
+    step = np.array(numbers.strides) // numbers.itemsize
+    return nodes, numbers[:-1, :-1, :-1].reshape(-1, 1) + HEXAHEDRON @ step
+
+
+def _mesh(field, stream, cells):
+    made, blocks = _elements(field, cells), Blocks()
+    kinds = np.full(len(made.cells), VTK[made.cells.shape[1]], np.uint8)
     parts = (
-        f'<Piece NumberOfPoints="{len(nodes)}" NumberOfCells="{len(tetrahedra)}"><PointData Scalars="temperature">'
-        f"{points}</PointData><CellData>{inner}</CellData><Points>{blocks.add('Points', nodes)}</Points><Cells>"
-        f"{blocks.cells(tetrahedra)}{blocks.add('types', kinds)}</Cells>"
+        f'<Piece NumberOfPoints="{len(made.nodes)}" NumberOfCells="{len(kinds)}">'
+        f"<PointData>{blocks.add_all(made.at_nodes)}</PointData><CellData>{blocks.add_all(made.in_cells)}</CellData>"
+        f"<Points>{blocks.add('Points', made.nodes)}</Points><Cells>"
+        f"{blocks.cells(made.cells)}{blocks.add('types', kinds)}</Cells>"
     )
     put_down(stream, "UnstructuredGrid", parts, blocks.arrays)
+
+
+def _xdmf(field, stream, cells):
+    """XDMF 3 as plain text, which needs no library and no second file (xdmf.org, model and format)."""
+    made = _elements(field, cells)
+    stream.write(b'<?xml version="1.0"?>\n<Xdmf Version="3.0"><Domain><Grid Name="field">\n')
+    kind = f'<Topology TopologyType="{XDMF[made.cells.shape[1]]}" NumberOfElements="{len(made.cells)}">'
+    _item(stream, kind, made.cells, "Topology")
+    _item(stream, '<Geometry GeometryType="XYZ">', made.nodes, "Geometry")
+    for center, arrays in (("Node", made.at_nodes), ("Cell", made.in_cells)):
+        for name, array in arrays.items():
+            rank = "Scalar" if array.ndim == 1 else "Vector"
+            head = f'<Attribute Name="{name}" AttributeType="{rank}" Center="{center}">'
+            _item(stream, head, array, "Attribute")
+    stream.write(b"</Grid></Domain></Xdmf>\n")
+
+
+def _item(stream, head, array, tail):
+    """An array as text between two tags."""
+    whole = array.dtype.kind != "f"
+    sides = " ".join(map(str, array.shape))
+    kind = 'DataType="Int" Precision="8"' if whole else 'DataType="Float" Precision="8"'
+    stream.write(f'{head}<DataItem {kind} Dimensions="{sides}" Format="XML">\n'.encode())
+    np.savetxt(stream, array, fmt="%d" if whole else "%.12g")
+    stream.write(f"</DataItem></{tail}>\n".encode())
 
 
 def _arrays(field, stream, cells):
@@ -161,4 +210,4 @@ def _arrays(field, stream, cells):
     np.savez(stream, **arrays)
 
 
-WRITERS = {".vtp": _points, ".vti": _grid, ".vtu": _mesh, ".npz": _arrays}
+WRITERS = {".vtp": _points, ".vti": _grid, ".vtu": _mesh, ".xdmf": _xdmf, ".npz": _arrays}

@@ -20,6 +20,27 @@ def checked_path(path) -> Path:
     return path
 
 
+def check_folder(path: Path) -> None:
+    """Raise ValueError unless a file can be put where a path says, before there is anything to put there."""
+    if not path.parent.is_dir():
+        raise ValueError(f"path = {str(path)!r}: there is no folder {str(path.parent)!r}")
+    if path.is_dir():
+        raise ValueError(f"path = {str(path)!r}: is a folder; must be the name of a file")
+    if not os.access(path.parent, os.W_OK):
+        raise ValueError(
+            f"path = {str(path)!r}: must lie in a folder that can be written into, not {str(path.parent)!r}"
+        )
+
+
+def output_folder(path) -> Path:
+    """A folder that files can be put into, made if it is not there."""
+    path = checked_path(path)
+    path.mkdir(parents=True, exist_ok=True)
+    if not os.access(path, os.W_OK):
+        raise ValueError(f"{path}: must be a folder that can be written into")
+    return path
+
+
 @contextmanager
 def replaced(path: Path) -> Iterator[Path]:
     """Path of a temporary file that takes the place of `path` at the end, unless an exception comes first.

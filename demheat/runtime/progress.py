@@ -1,4 +1,4 @@
-"""What a long computation says of itself: its stage, the share done, the time left.
+"""What a long computation says of itself: its stage, the share done, the time left, the memory that it holds.
 
 On a terminal one line on standard error, which vanishes when the stage ends; to a hook (`on_progress`) reports. A stage
 that lasts less than two seconds never speaks, and nothing does where standard error is no terminal and no hook is set.
@@ -167,11 +167,21 @@ def _say(thread, current, now):
 
 def line(report: Report) -> str:
     """A report in words, such as "calibration: equations: 40%, 12 s left"."""
-    names = ": ".join((*report.within, report.stage))
+    names, held = ": ".join((*report.within, report.stage)), _held()
     if report.share != report.share:
-        return f"{names}: {report.elapsed:.0f} s"
+        return f"{names}: {report.elapsed:.0f} s{held}"
     left = "" if report.left != report.left else f", {_duration(report.left)} left"
-    return f"{names}: {report.share:.0%}{left}"
+    return f"{names}: {report.share:.0%}{left}{held}"
+
+
+def _held():
+    """Memory that the process holds, if it is much and Linux tells it."""
+    try:
+        with open("/proc/self/statm", encoding="ascii") as file:
+            held = int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except (OSError, ValueError):
+        return ""
+    return f", holds {held / 2**30:.1f} GiB" if held > LARGE else ""
 
 
 def _duration(seconds):

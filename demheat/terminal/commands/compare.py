@@ -16,7 +16,7 @@ import numpy as np
 from demheat.declared import all_methods
 from demheat.io.scenes.write import text_of_scene
 from demheat.runtime.deadline import budget
-from demheat.runtime.paths import replaced
+from demheat.runtime.paths import output_folder, replaced
 from demheat.runtime.rows import each_kept
 from demheat.scene.inputs import one_line
 from demheat.terminal.commands import rows
@@ -39,9 +39,7 @@ def run(file, options) -> int:
     """Compare, print and store; the exit status."""
     chosen = names(options.methods) or (usual(everything=True) if options.all else None)
     wanted = asked(file, chosen, options.knob, default=usual())
-    folder = Path(options.out or OUT)
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{file.path.stem}.csv"
+    path = output_folder(options.out or OUT) / f"{file.path.stem}.csv"
     print(f"{file.path}: {scene_line(file.scene)}", flush=True)
     how = {"interval": not options.no_interval, "force": options.force, "seconds": options.seconds}
     made = compared(file.scene, wanted, path, **how)

@@ -64,7 +64,7 @@ def _options(command, name):
     if several:
         command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
     if name == "solve":
-        command.add_argument("--write", metavar="FILE", help="the field of one method: .vti, .vtp, .vtu or .npz")
+        command.add_argument("--write", metavar="FILE", help="the field of one method: .vti, .vtp, .vtu, .xdmf, .npz")
     if name == "compare":
         command.add_argument("--all", action="store_true", help="methods that are seldom compared, too")
         command.add_argument("--force", action="store_true", help="repeat rows that could be reused")

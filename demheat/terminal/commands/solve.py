@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import sys
 import time
-from pathlib import Path
 
 from demheat.io.fields import check_target
-from demheat.method import SIZE
 from demheat.runtime.deadline import budget
-from demheat.runtime.paths import replaced
+from demheat.runtime.paths import output_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.knobs import asked
 from demheat.terminal.commands.words import costs, interval, names, scene_line
@@ -23,10 +21,8 @@ def run(file, options) -> int:
     for each in wanted if options.write else ():
         if each.method.call == "estimate":
             raise NotImplementedError(f"--write {options.write}: {each.method.name} is a formula and has no field")
-        check_target(options.write, mesh=each.method.resolution is SIZE and file.scene.image is None)
-    folder = Path(options.out) if options.out else None
-    if folder:
-        folder.mkdir(parents=True, exist_ok=True)
+        check_target(options.write)
+    folder = output_folder(options.out) if options.out else None
     print(f"{file.path}: {scene_line(file.scene)}")
     worst, begun = 0, time.monotonic()
     for each in wanted:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import sys
-from pathlib import Path
 
-from demheat.runtime.paths import replaced
+from demheat.runtime.paths import output_folder, replaced
 from demheat.terminal.commands.answers import answered
 from demheat.terminal.commands.compare import OUT
 from demheat.terminal.commands.knobs import asked
@@ -14,10 +13,9 @@ from demheat.terminal.commands.words import names
 
 def run(file, options) -> int:
     """Draw; the exit status."""
-    folder = Path(options.out or OUT)
     # Methods of the file are solved only if they are named: a picture of the scene costs nothing.
     wanted = asked(file, names(options.methods), options.knob, default=()) if options.methods else []
-    folder.mkdir(parents=True, exist_ok=True)
+    folder = output_folder(options.out or OUT)
     _saved(file.scene.plot(), folder / f"{file.path.stem}-scene.png")
     worst = 0
     for each in wanted:

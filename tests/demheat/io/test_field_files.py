@@ -4,6 +4,7 @@ import copy
 import json
 import pickle
 import re
+import xml.etree.ElementTree as ElementTree
 from dataclasses import replace
 
 import numpy as np
@@ -108,6 +109,47 @@ def test_finite_elements_have_their_mesh(tmp_path):
         assert_allclose(read.points[block.data[:, k]], corners / 2, atol=1e-12)
 
 
+def test_without_a_mesh_the_grid_is_written_as_hexahedra(field, tmp_path):
+    field.write(tmp_path / "field.vtu")
+    field.write(tmp_path / "field.xdmf")
+    found, text = arrays(tmp_path / "field.vtu")
+    assert set(found["types"]) == {12} and f'NumberOfCells="{len(field.samples.points)}"' in text
+    corners = found["Points"][found["connectivity"].reshape(-1, 8)]
+    # VTK's order: round the lower face, then the upper one.
+    lower = [(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)]
+    edges = corners.max(axis=1, keepdims=True) - corners.min(axis=1, keepdims=True)
+    order = np.array([*lower, *((x, y, 1) for x, y, _ in lower)])
+    assert_allclose(corners, corners.min(axis=1, keepdims=True) + order * edges, atol=1e-12)
+    assert_allclose(found["temperature"], field.temperature_at(corners.mean(axis=1)), rtol=1e-12)
+    # The same as text, to the twelve digits of it.
+    items = items_of(tmp_path / "field.xdmf")
+    assert np.array_equal(items["Topology"].astype(int), found["connectivity"].reshape(-1, 8))
+    assert_allclose(items["Geometry"], found["Points"], rtol=1e-11, atol=1e-15)
+    for name in ("temperature", "flux", "phase"):
+        assert_allclose(items[name], found[name], rtol=1e-11, atol=1e-11)
+
+
+def items_of(path):
+    """Arrays of an XDMF by their names, or what they are."""
+    (grid,) = ElementTree.parse(path).getroot().iter("Grid")
+    found = {}
+    for each in grid:
+        item = each.find("DataItem")
+        shape = [int(word) for word in item.get("Dimensions").split()]
+        found[each.get("Name") or each.tag] = np.array(item.text.split(), float).reshape(shape)
+    return found
+
+
+def test_a_folder_that_cannot_be_written_into_is_named_with_the_file(field, tmp_path, monkeypatch):
+    monkeypatch.setattr("demheat.runtime.paths.os.access", lambda *_: False)
+    with pytest.raises(ValueError, match=r"path = '.*field.npz': must lie in a folder that can be written into"):
+        field.write(tmp_path / "field.npz")
+    monkeypatch.undo()
+    (tmp_path / "field.npz").mkdir()
+    with pytest.raises(ValueError, match=r"field.npz': is a folder; must be the name of a file"):
+        field.write(tmp_path / "field.npz")
+
+
 def test_arrays_hold_all_numbers(field, tmp_path):
     field.write(tmp_path / "field.npz")
     with np.load(tmp_path / "field.npz", allow_pickle=False) as stored:
@@ -123,9 +165,7 @@ def test_arrays_hold_all_numbers(field, tmp_path):
 
 
 def test_what_cannot_be_written_says_what_can(field, tmp_path):
-    with pytest.raises(NotImplementedError, match=r"this field has no mesh; .* Use .vti for a grid, or .vtp"):
-        field.write(tmp_path / "field.vtu")
-    with pytest.raises(ValueError, match="the suffix must be one of .vtp, .vti, .vtu, .npz"):
+    with pytest.raises(ValueError, match="the suffix must be one of .vtp, .vti, .vtu, .xdmf, .npz"):
         field.write(tmp_path / "field.vtk")
     with pytest.raises(ValueError, match="cells = 0: must be an integer >= 1"):
         field.write(tmp_path / "field.vti", cells=0)

@@ -1,8 +1,10 @@
 """Only here: progress that is silent, said twice, falls, or outlives its stage."""
 
 import io
+import re
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -54,6 +56,17 @@ def until(fulfilled):
     while not fulfilled() and time.monotonic() < end:
         time.sleep(0.005)
     return fulfilled()
+
+
+@pytest.mark.skipif(not Path("/proc/self/statm").exists(), reason="Linux tells it")
+def test_a_line_tells_the_memory_if_it_is_much(monkeypatch):
+    report = progress.Report("cells", 0.5, 3.0, 3.0)
+    monkeypatch.setattr(progress, "LARGE", 2**60)
+    assert progress.line(report) == "cells: 50%, 3 s left"
+    monkeypatch.setattr(progress, "LARGE", 0)
+    # NumPy alone takes some tens of MiB.
+    held = float(re.fullmatch(r"cells: 50%, 3 s left, holds ([\d.]+) GiB", progress.line(report))[1])
+    assert 0.01 < held < 100
 
 
 def test_a_stage_that_says_nothing_is_spoken_for(heard, monkeypatch):

@@ -2,10 +2,9 @@
 
 import csv
 
-import numpy as np
 import pytest
 
-from demheat import Image, Material, Scene, gallery
+from demheat import gallery
 from demheat.io import scenes
 from demheat.terminal.commands import compare, main, solve
 
@@ -76,11 +75,9 @@ def test_effective_without_an_answer(capsys, scene):
 
 def test_what_cannot_be_written_is_said_before_it_is_solved(capsys, scene, tmp_path, monkeypatch):
     monkeypatch.setattr(solve, "answered", lambda *_, **__: pytest.fail("solved"))
-    image = Image(np.random.default_rng(4).choice([0, 3], (4, 5, 6)), 1e-6, {0: Material(1.0), 3: Material(4.0)})
-    scenes.write(Scene.of_image(image, gradient=(0.0, 1.0, 0.0)), tmp_path / "image.toml")
-    for path, method in ((scene, "dem"), (scene, "fft"), (tmp_path / "image.toml", "fem")):
-        status, out, err = run(capsys, "solve", path, "--method", method, "--write", tmp_path / "x.vtu")
-        assert (status, out) == (1, "") and "this field has no mesh; only finite elements around shapes have" in err
+    for name, told in (("x.vtk", "the suffix must be one of"), ("none/x.vti", "there is no folder")):
+        status, out, err = run(capsys, "solve", scene, "--method", "fft", "--write", tmp_path / name)
+        assert (status, out) == (2, "") and told in err
     status, out, err = run(capsys, "solve", scene, "--method", "maxwell", "--write", tmp_path / "x.vti")
     assert (status, out) == (1, "") and "maxwell is a formula and has no field" in err
 
