@@ -14,9 +14,10 @@ from pathlib import Path
 import numpy as np
 
 import benchmark
-from benchmark.parts import label_digest, labels, labels_at, table_of
+from benchmark.parts import labels, labels_at, table_of
 from benchmark.recipes import arrays, dispersions, images, planes, transients
 from benchmark.schema import faults
+from demheat.io.known import label_digest
 
 HOME = Path(benchmark.__file__).parent
 FORMAT = "conduction-benchmark/1"

@@ -1,84 +1,15 @@
-"""Scenes as tables of JSON, and back: all numbers in SI, every inclusion by its own, the matrix the first material."""
+"""Scenes as tables of JSON: all numbers in SI, every inclusion by its own, the matrix the first material."""
 
 from __future__ import annotations
 
-import hashlib
-import math
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 import numpy as np
 
-from demheat.io.images import read_image
-from demheat.io.scenes.scene_table import AXES, LOADS, SHAPES
-from demheat.scene import Image, Material, Scene, UniformSource
+from demheat.io.known import Sine
+from demheat.io.scenes.scene_table import AXES, LOADS
+from demheat.scene import Image, Scene
 from demheat.scene.rotations import IDENTITY
-
-
-@dataclass(frozen=True)
-class Sine:
-    """A temperature that swings: amplitude times sin(2 pi time / period)."""
-
-    amplitude: float  # K or degrees Celsius
-    period: float  # s
-
-    def __call__(self, time):
-        """Temperature at a time."""
-        return self.amplitude * math.sin(2 * math.pi * time / self.period)
-
-
-def scene_of(table: dict, *, image=None) -> Scene:
-    """The scene of a table."""
-    given = table["scene"]
-    materials = [_material(each) for each in given["materials"]]
-    load = {name: given[name] for name in ("gradient", "initial", "domain") if name in given}
-    if "walls" in given:
-        load["walls"] = {name: _load(each) for name, each in given["walls"].items()}
-    if "sources" in given:
-        load["sources"] = [UniformSource(each["power_density"]) for each in given["sources"]]
-    if "voxels" in given:
-        return Scene.of_image(_image(table, materials, image), **load)
-    inclusions = [_shape(each, materials) for each in given["inclusions"]]
-    return Scene(given["size"], materials[0], inclusions, **load)
-
-
-def _material(table):
-    return Material(**{name: value for name, value in table.items() if name != "label"})
-
-
-def _load(table):
-    if set(table) == {"temperature"}:
-        return table["temperature"]
-    if "sine" in table:
-        return Sine(**table["sine"])
-    kind = next(LOADS[each][0] for each in LOADS if each in table)
-    return kind(table["flux"]) if "flux" in table else kind(**table)
-
-
-def _shape(table, materials):
-    values = {name: value for name, value in table.items() if name not in ("shape", "material")}
-    if values.get("axis") in AXES:
-        values["axis"] = AXES.index(values["axis"])
-    return SHAPES[table["shape"]](**values, material=materials[table["material"]])
-
-
-def _image(table, materials, path):
-    given = table["scene"]["voxels"]
-    if path is None:
-        raise ValueError(f"image of {table['name']!r}: not shipped; give the path of its labels: {given['where']}")
-    labels = {each["label"]: material for each, material in zip(table["scene"]["materials"], materials, strict=True)}
-    found = read_image(path, materials=labels, voxel=given["voxel"])
-    digest = label_digest(found.labels)
-    if list(found.shape) != given["shape"] or digest != given["sha256"]:
-        raise ValueError(
-            f"image = {str(path)!r}: shape {found.shape} and SHA-256 {digest} of its labels; must be "
-            f"{tuple(given['shape'])} and {given['sha256']}"
-        )
-    return found
-
-
-def label_digest(labels) -> str:
-    """SHA-256 of labels as bytes, the last index fastest."""
-    return hashlib.sha256(np.ascontiguousarray(labels, dtype=np.uint8).tobytes()).hexdigest()
 
 
 def table_of(scene: Scene) -> dict:

@@ -4,17 +4,18 @@ ABOVE = {
     # Scenes with known answers: what reads them knows the nouns, what made them the witnesses.
     "benchmark.parts": ("demheat.scene", "demheat.io"),
     "benchmark.schema": (),
-    "benchmark": ("demheat.scene", "benchmark.parts"),
+    "benchmark": ("demheat.scene", "demheat.io.known"),
     "benchmark.recipes": (
         "demheat.scene",
         "demheat.addition",
+        "demheat.io.known",
         "demheat.gallery",
         "demheat.referee",
         "references",
         "benchmark",
         "benchmark.recipes",
     ),
-    "benchmark.make": ("benchmark",),
+    "benchmark.make": ("benchmark", "demheat.io.known"),
     "studies.harness": ("demheat", "references", "studies.harness"),
     # Headlines are among what a change is shown by.
     "studies.contents": (),

@@ -7,8 +7,8 @@ from functools import partial
 
 import numpy as np
 
-from benchmark.parts import Sine
 from benchmark.recipes.entries import CUBE, Entry
+from demheat.io.known import Sine
 from demheat.scene import STEFAN_BOLTZMANN, Convection, Flux, Material, Radiation, Scene, UniformSource
 from references.exact import series
 from references.exact.benchmarks import convecting_plate, radiating_end, swinging_end

@@ -7,8 +7,8 @@ import copy
 import numpy as np
 
 import benchmark
-from benchmark.parts import scene_of
 from demheat import referee
+from demheat.io.known import known_of, scene_of
 from studies.harness.cost import measured
 
 # Spheres between walls, with no symmetry.
@@ -20,7 +20,7 @@ AXES = "xyz"
 def solved(scene, way) -> dict:
     """Solve a scene and hold it against what is known."""
     table = benchmark.read(scene)
-    known = benchmark.known_of(table)
+    known = known_of(table)
     answer, cost = measured(way, table)
     row = {"known": known.conductivity, "conductivity": answer.conductivity}
     at_points, asking = measured(_at_points, answer, table, known)

@@ -24,8 +24,8 @@ from typing import NamedTuple
 import numpy as np
 
 import benchmark
-from benchmark.parts import scene_of
 from demheat.declared import load
+from demheat.io.known import known_of, scene_of
 
 REFUSED = 77
 WARM = "laminate-across"
@@ -96,7 +96,7 @@ def _module(method):
 
 
 def _by_module(module, knobs, table):
-    scene, known = scene_of(table), benchmark.known_of(table)
+    scene, known = scene_of(table), known_of(table)
     knobs = _scaled(knobs, scene)
     if known.times is not None:
         if not hasattr(module, "evolve"):

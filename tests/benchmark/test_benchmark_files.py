@@ -10,6 +10,7 @@ import pytest
 import benchmark
 from benchmark import make, parts
 from benchmark.schema import faults
+from demheat.io import known
 
 NAMES = benchmark.names()
 SCHEMA = json.loads((make.HOME / "schema.json").read_text(encoding="utf-8"))
@@ -96,7 +97,7 @@ def test_an_interface_at_the_centre_of_a_voxel_is_refused():
     table = copy.deepcopy(benchmark.read("laminate-across"))
     table["scene"]["inclusions"][0]["stop"] = 0.5 + 0.5 / 32
     with pytest.raises(ValueError, match="passes the centre of a voxel"):
-        make.image(parts.scene_of(table))
+        make.image(known.scene_of(table))
     assert make.image(scene)["counts"] == [16384, 16384]
 
 
@@ -142,5 +143,5 @@ def test_an_image_that_is_not_shipped_is_asked_for_and_checked(tmp_path):
     table = benchmark.read("taufactor-500-x")
     own = {"shape": [2, 3, 4], "voxel": 0.1, "sha256": hashlib.sha256(labels.tobytes()).hexdigest()}
     table["scene"]["voxels"] |= own
-    scene = parts.scene_of(table, image=tmp_path / "labels.npy")
+    scene = known.scene_of(table, image=tmp_path / "labels.npy")
     assert scene.conductivities.tolist() == [0.0, 1.0] and scene.phase_at([[0.15, 0.25, 0.35]]).tolist() == [1]

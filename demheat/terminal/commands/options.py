@@ -12,10 +12,11 @@ COMMANDS = {
     "effective": "the conductivity tensor to an accuracy, by the method that gets there at least cost",
     "recommend": "what `effective` would do, and what each method would cost; nothing is solved",
     "view": "a picture of a scene, or of its field by a method",
+    "judge": "what answers of any program to the benchmark's scenes are worth: errors, intervals, costs, a leaderboard",
 }
 
 OPTIONS = ("--help", "--version", "--method", "--methods", "--knob", "--accuracy", "--no-interval", "--all", "--force")
-OPTIONS = (*OPTIONS, "--out", "--write", "--seconds")
+OPTIONS = (*OPTIONS, "--out", "--write", "--seconds", "--scenes")
 
 
 class Parser(argparse.ArgumentParser):
@@ -39,9 +40,19 @@ def parser(version: str) -> argparse.ArgumentParser:
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=Parser)
     for name, words in COMMANDS.items():
         command = commands.add_parser(name, help=words, description=words, allow_abbrev=False)
-        command.add_argument("scene", metavar="SCENE.toml")
-        _options(command, name)
+        if name == "judge":
+            _of_judge(command)
+        else:
+            command.add_argument("scene", metavar="SCENE.toml")
+            _options(command, name)
     return top
+
+
+def _of_judge(command):
+    command.add_argument("files", metavar="ANSWERS.json", nargs="+", help="of one program each, see docs/benchmark.md")
+    command.add_argument("--accuracy", type=float, metavar="PART", help="to which costs are compared; default: 1e-2")
+    command.add_argument("--scenes", metavar="FOLDER", help="default: benchmark/scenes of the clone")
+    command.add_argument("--out", metavar="FOLDER", help="for the page; default: demheat-out")
 
 
 def _options(command, name):
