@@ -16,16 +16,36 @@ MATERIAL = {
     "heat_capacity": HEAT_CAPACITY,
     "rotation_deg": PLAIN,
     "dependence": TEMPERATURE,
+    "conductivity_at": TEMPERATURE,
 }
+PAIRS = "pairs [temperature, factor], as [[20, 1], [100, 0.8]]"
+VALUES = "pairs [temperature, conductivity], as [[20, 45], [400, 38]], with conductivities > 0"
 
 
 def made_material(table: Table) -> Material:
     """The material of a table."""
     table.only(MATERIAL)
-    conductivity = _conductivity(table)
+    at = table.rows("conductivity_at", (TEMPERATURE, CONDUCTIVITY), VALUES)
+    if at is not None:
+        conductivity, dependence = _followed(table, at)
+    else:
+        conductivity = _conductivity(table)
+        dependence = table.rows("dependence", (TEMPERATURE, PLAIN), PAIRS)
     numbers = {name: table.number(name, MATERIAL[name]) for name in ("density", "heat_capacity")}
-    dependence = table.rows("dependence", (TEMPERATURE, PLAIN), "pairs [temperature, factor], as [[20, 1], [100, 0.8]]")
     return table.made(Material, {"conductivity": conductivity, "dependence": dependence} | numbers)
+
+
+def _followed(table, at):
+    """Conductivity at the first temperature, and factors of it, of a table of conductivities."""
+    key = table.keys["conductivity_at"]
+    for name in ("conductivity", "dependence", "rotation_deg"):
+        other = table.key(name, MATERIAL[name])
+        if other is not None:
+            raise table.error(other, f": {key} tells it; must be left out")
+    if not at or not all(0 < k < math.inf for _, k in at):
+        raise table.error(key, f" = {as_toml(table.values[key])}: must be {VALUES}")
+    first = at[0][1]
+    return first, tuple((temperature, k / first) for temperature, k in at)
 
 
 def _conductivity(table):

@@ -1,4 +1,4 @@
-"""The commands `demheat solve | compare | effective | recommend | view scene.toml`, and `judge answers.json`.
+"""The commands `demheat init | solve | compare | effective | recommend | view scene.toml`, and `judge answers.json`.
 
 Exit status: 0; 1 if a method that was asked for refused or failed; 2 for bad input, which one line on standard error
 names; 130 if interrupted; 141, without a word, if nobody reads what is printed.
@@ -56,7 +56,9 @@ def _done(words):
     try:
         options = parser(__version__).parse_args(words)
         command = import_module(f"demheat.terminal.commands.{options.command}")
-        return command.run(options) if options.command == "judge" else command.run(read_file(options.scene), options)
+        if options.command in ("init", "judge"):
+            return command.run(options)
+        return command.run(read_file(options.scene), options)
     except (NotImplementedError, RuntimeError, MemoryError, ImportError, TimeoutError) as error:
         return _said(error, WITHOUT)
     except (ValueError, OSError) as error:

@@ -7,6 +7,7 @@ import argparse
 from demheat.io.words import nearest
 
 COMMANDS = {
+    "init": "write a scene to begin with, in which comments say what else it may have",
     "solve": "solve a scene by one method or some",
     "compare": "all methods that take a scene in one table, with intervals, costs and bounds",
     "effective": "the conductivity tensor to an accuracy, by the method that gets there at least cost",
@@ -21,6 +22,12 @@ OPTIONS = (*OPTIONS, "--out", "--write", "--seconds", "--scenes")
 
 class Parser(argparse.ArgumentParser):
     """A parser that says what is wrong in one line, with the nearest word that it knows."""
+
+    def format_help(self):
+        """With what is gathered from all of the package only when it is asked for."""
+        from demheat.terminal.commands.helps import told
+
+        return f"{super().format_help()}\n{told(self.prog.partition(' ')[2])}\n"
 
     def error(self, message):
         """Raise ValueError instead of printing how the command is used."""
@@ -42,9 +49,10 @@ def parser(version: str) -> argparse.ArgumentParser:
         command = commands.add_parser(name, help=words, description=words, allow_abbrev=False)
         if name == "judge":
             _of_judge(command)
-        else:
-            command.add_argument("scene", metavar="SCENE.toml")
-            _options(command, name)
+            continue
+        usual = {"nargs": "?", "default": "scene.toml"} if name == "init" else {}
+        command.add_argument("scene", metavar="SCENE.toml", **usual)
+        _options(command, name)
     return top
 
 

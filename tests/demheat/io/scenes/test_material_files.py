@@ -38,6 +38,13 @@ def test_pairs_are_a_dependence(tmp_path):
     assert read(tmp_path, "conductivity = 2\ndependence = [['20 degC', 1], ['100 degC', 0.8]]") == own
 
 
+def test_a_table_of_conductivities_is_a_dependence(tmp_path):
+    own = Material(45.0, dependence=Dependence([(20.0, 1.0), (400.0, 38.0 / 45.0)]))
+    assert read(tmp_path, "conductivity_at_C = [[20, 45], [400, 38]]") == own
+    words = "conductivity_at = [['20 degC', '45 W/(m K)'], ['400 degC', '38000 mW/(m K)']]"
+    assert read(tmp_path, words) == own
+
+
 @pytest.mark.parametrize("load", [{"walls": {"x-": 0.1, "x+": 7.0}}, {"gradient": (1.0, 0.0, 0.0)}])
 def test_what_is_written_is_read_back_to_the_bit(tmp_path, load):
     bent = Material(orthotropic(1, 1 / 3, 1e-3, rotation=(0.1, 2.0, -0.7)), 1000.0, 900.0)
@@ -51,6 +58,13 @@ def test_what_is_written_is_read_back_to_the_bit(tmp_path, load):
     ("text", "line", "words"),
     [
         ("conductivity = [1, 2]", 7, "conductivity = [1, 2]: must be a number, three of them"),
+        ("conductivity_at = [[20, 0]]", 7, "conductivity_at = [[20, 0]]: must be pairs [temperature, conductivity]"),
+        (
+            "conductivity_at = [[20, 1]]\nconductivity = 2",
+            8,
+            "conductivity: conductivity_at tells it; must be left out",
+        ),
+        ("conductivity_at = [['20 degC', '3 mm']]", 7, "unit 'mm' does not fit; must be one like W/(m K)"),
         ("conductivity = 2\nrotation_deg = [0, 0, 30]", 8, "rotation_deg: turns three principal conductivities"),
         ("conductivity = [[1, 0, 0], [0, 2, 5], [0, 5, 3]]", 7, "symmetric positive definite"),
         (

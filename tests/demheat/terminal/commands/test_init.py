@@ -1,0 +1,64 @@
+"""Only here: a first scene that does not run, an example of the help that does not, help without a method."""
+
+import re
+
+import pytest
+
+from demheat.declared import all_methods
+from demheat.io import scenes
+from demheat.terminal.commands import helps, main
+from demheat.terminal.commands.options import COMMANDS
+
+
+def test_every_command_has_an_example_that_works_in_an_empty_folder(capsys, tmp_path, monkeypatch):
+    assert set(helps.EXAMPLES) == set(COMMANDS)
+    # Answers to be judged are of another program.
+    for name, words in {name: each for name, each in helps.EXAMPLES.items() if name != "judge"}.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        monkeypatch.chdir(folder)
+        for line in words.split(" && "):
+            program, *rest = line.split()
+            assert program == "demheat" and main(rest) == 0, capsys.readouterr().err
+        assert capsys.readouterr().out.startswith("written scene.toml")
+
+
+def test_what_comments_offer_is_valid(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert main(["init", "first.toml"]) == 0
+    text = (tmp_path / "first.toml").read_text(encoding="utf-8")
+    assert "demheat solve first.toml" in text and "@" not in text
+    bead = scenes.read("first.toml").inclusions[0]
+    # Keys in comments, each for itself, are known in their tables; words about them stand behind another hash.
+    offered = re.findall(r"^# (\w+ = .*)$", text, re.MULTILINE)
+    assert len(offered) >= 6
+    (tmp_path / "beads.csv").write_text("x_mm,y_mm,z_mm,radius_mm\n0.1,0.1,0.1,0.05\n", encoding="utf-8")
+    for line in offered:
+        if line.startswith(('file = "scan', "voxel", "domain", "material")):
+            continue
+        table = "[[inclusions]]\nmaterial = 'glass'\n" if line.startswith("file") else ""
+        changed = text.replace("# " + line, table + line, 1)
+        if line.startswith("conductivity_at"):
+            changed = re.sub(r"^conductivity = 1.05.*\n", "", changed, flags=re.MULTILINE)
+        (tmp_path / "second.toml").write_text(changed, encoding="utf-8")
+        scene = scenes.read("second.toml")
+        assert scene.inclusions[0].center == bead.center
+
+
+def test_what_is_there_is_not_written_over(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "scene.toml").write_text("mine", encoding="utf-8")
+    assert main(["init"]) == 2
+    assert capsys.readouterr().err == "demheat: scene.toml: is there already; must be another name, or be moved away\n"
+    assert (tmp_path / "scene.toml").read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize("words", [["--help"], ["solve", "--help"]])
+def test_help_lists_all_methods(words, capsys):
+    with pytest.raises(SystemExit):
+        main(words)
+    told = capsys.readouterr().out
+    for name in all_methods():
+        assert re.search(rf"(^| ){re.escape(name)}(,|\n| )", told, re.MULTILINE), name
+    for each in ("m2K_W", ".xdmf", ".nrrd", ".liggghts") if len(words) == 1 else ("voxels=None", "particles=100000"):
+        assert each in told
