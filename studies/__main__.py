@@ -22,7 +22,8 @@ from studies.harness.store import read_rows
 DEFAULT_OUT, STORED = Path("out"), Path("results")
 # Processes on one machine: more is a slip.
 MOST_WORKERS = 1024
-# Seconds that a run waits in all for others to leave the machine to it; a clean run is given hours.
+# Seconds that a run waits in all for others to leave the machine to it; a clean run is given hours, a quick one, whose
+# costs nobody keeps, none.
 PATIENCE = 60
 # Rows with one fault that `check` names; all of them on demand.
 NAMED = 3
@@ -63,8 +64,8 @@ def _parser():
     again.add_argument("--force", action="store_true", help="repeat rows that could be reused")
     words = "also repeat rows that were made on uncommitted changes or in noise, see `check`"
     again.add_argument("--clean", dest="force", action="store_const", const="unsound", help=words)
-    words = f"wait so long, in all, for a quiet machine; default {PATIENCE}"
-    run.add_argument("--wait", metavar="SECONDS", type=_seconds, default=PATIENCE, help=words)
+    words = f"wait so long, in all, for a quiet machine, so that costs count; default {PATIENCE}, with --quick 0"
+    run.add_argument("--wait", metavar="SECONDS", type=_seconds, help=words)
     run.add_argument("--method", metavar="MODULE|PROGRAM", help="rows of a method that is not ours, beside those there")
     where = run.add_mutually_exclusive_group()
     where.add_argument("--scheduler", metavar="ADDRESS", help="make rows on the Dask cluster of tcp://HOST:PORT")
@@ -154,10 +155,11 @@ def _run(arguments):
         knobs["method"] = arguments.method
         runner.guests_of(chosen[0], arguments.method)  # a misspelt one must leave nothing behind
         _beside_stored(chosen[0], arguments.out)
+    patience = (0 if arguments.quick else PATIENCE) if arguments.wait is None else arguments.wait
     with ExitStack() as stack:
         spread = stack.enter_context(spreading(arguments.scheduler, arguments.workers, _say))
         # Rows that are measured side by side would wait for each other.
-        alone = quiet.quietly(stack.enter_context(forking()), seconds=arguments.wait, say=_say)
+        alone = quiet.quietly(stack.enter_context(forking()), seconds=patience, say=_say)
         alone.beside = stack.enter_context(replay.side_by_side())
         knobs |= {"compute": alone, "spread": spread}
         for number, name in enumerate(chosen):

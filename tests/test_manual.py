@@ -64,13 +64,15 @@ def test_tables_are_those_of_the_stored_rows(name):
 @pytest.mark.parametrize("name", PAGES)
 def test_links_lead_somewhere(name):
     targets = re.findall(r"\]\(([^)#:]+)(?:#[\w-]+)?\)", PAGES[name])
-    assert [each for each in targets if not ((DOCS / name).parent / each).exists()] == []
+    gone = [each for each in targets if not ((DOCS / name).parent / each).exists()]
+    assert not gone, f"docs/{name} has links that lead nowhere: {', '.join(gone)}"
 
 
 def test_every_study_is_named():
     from studies.__main__ import study_names
 
-    assert [name for name in study_names() if f"`{name}`" not in PAGES["results.md"]] == []
+    missing = [name for name in study_names() if f"`{name}`" not in PAGES["results.md"]]
+    assert not missing, f"the list of studies in docs/results.md wants a line of {', '.join(missing)}"
 
 
 def test_folders_of_the_package_that_a_page_names_exist():
@@ -80,4 +82,5 @@ def test_folders_of_the_package_that_a_page_names_exist():
         for each in re.findall(r"`((?:demheat|references|studies|tests)/[\w/.]+)`", text)
     }
     # Names of recipes, which a reader makes.
-    assert [each for each in sorted(named) if "mine" not in each and not Path(ROOT, each).exists()] == []
+    gone = [each for each in sorted(named) if "mine" not in each and not Path(ROOT, each).exists()]
+    assert not gone, f"pages name what is not there: {', '.join(gone)}"

@@ -97,7 +97,10 @@ def waiting(seconds, say, *, clock=time.monotonic, sleep=time.sleep):
     def wait(seen):
         nonlocal left
         if seen[1] > NOISY and left > 0:
-            say(f"others use {seen[1]:.0%} of the processors: waiting for at most {left:.0f} s")
+            say(
+                f"others use {seen[1]:.0%} of the processors, and costs measured meanwhile do not count: waiting for "
+                f"at most {left:.0f} s (--wait 0: not at all)"
+            )
             begin = clock()
             while seen[1] > NOISY and clock() - begin < left:
                 sleep(PAUSE)

@@ -117,7 +117,11 @@ def test_every_study_method_law_and_integrator_of_a_quick_row_is_replayed():
             kinds = {("study", name), *((kind, str(case[kind])) for kind in KINDS if case.get(kind))}
             wanted |= kinds
             chosen |= kinds if (name, store.case_key(case)) in CHOSEN else set()
-    assert wanted - chosen == set(), "python tests/tools/replayed.py chooses rows anew"
+    lacking = ", ".join(sorted(f"{kind} {name}" for kind, name in wanted - chosen))
+    assert not lacking, (
+        f"no row is made again of {lacking}: tests/studies/replayed.csv wants a line of a quick row (study, case, "
+        "cpu_s), or python tests/tools/replayed.py, which chooses all of them anew"
+    )
 
 
 def test_every_file_that_makes_numbers_is_executed():
@@ -127,7 +131,8 @@ def test_every_file_that_makes_numbers_is_executed():
     files = [path for home in ("demheat", "references") for path in (provenance.ROOT / home).rglob("*.py")]
     names = {str(path.relative_to(provenance.ROOT)) for path in files if works(path)}
     spared = {name for name in names if any(name == one or name.startswith(f"{one}/") for one in NO_ROWS)}
-    assert names - spared - EXECUTED == set(), "python tests/tools/replayed.py chooses rows anew"
+    idle = ", ".join(sorted(names - spared - EXECUTED))
+    assert not idle, f"no replayed row executes {idle}: NO_ROWS wants the reason, or python tests/tools/replayed.py"
     # No reason is idle.
     assert [one for one in NO_ROWS if not any(name == one or name.startswith(f"{one}/") for name in names)] == []
     assert [name for name in EXECUTED if not (provenance.ROOT / name).exists()] == []

@@ -49,13 +49,16 @@ def test_quick_rows_and_claims(name, folder):
     path = runner.run_study(name, folder, quick=True, say=lambda line: None, compute=_here)
     rows = store.read_rows(path)
     assert len(rows) == sum(map(bool, map(study.QUICK, study.CASES)))
-    assert {key: row["note"] for key, row in rows.items() if row["status"] not in runner.KEPT} == {}
+    lost = [f"{key}: {row['note']}" for key, row in rows.items() if row["status"] not in runner.KEPT]
+    assert not lost, f"rows of {name} that failed: {'; '.join(lost)}"
     stored = store.read_rows(provenance.ROOT / "results" / f"{name}.csv")
     pairs = [(runner.find_case(study, key), stored[key], row) for key, row in rows.items() if not absent(row)]
-    assert [str(each) for case, old, new in pairs for each in moved(name, study, case, old, new)] == []
+    told = [str(each) for case, old, new in pairs for each in moved(name, study, case, old, new)]
+    assert not told, f"results/{name}.csv holds what this code does not give (python -m studies accept): {told}"
     claims, page = table.render(study, path)
     # Claims on costs are not judged: nobody knows what the machine did besides.
-    assert [claim for claim in claims if claim.failed or claim.why not in ("", COSTLY)] == []
+    failed = [f"{c.sentence}: {c.value:.3g}, limit {c.limit}" for c in claims if c.failed or c.why not in ("", COSTLY)]
+    assert not failed, f"claims of {name} that do not hold, or are not judged: {'; '.join(failed)}"
     assert len(claims) > 2 and study.__doc__.splitlines()[0] in page
     assert path.with_suffix(".png").stat().st_size > 10_000  # an empty figure has a tenth of this
 
