@@ -137,7 +137,7 @@ NAMES = [pytest.param(name, marks=pytest.mark.slow) if name in SLOW else name fo
 ASKED = {
     holding_anyhow: "hold whatever the rows are, so that they say nothing: set nearer limits, or make them `notes`",
     without_rows: "hold without any rows, or have no number for a value",
-    far: "have limits of more than three times the value, and `REASONS` does not say why, or with words of no claim, or "
+    far: "have limits of more than three times the value, and `REASONS` does not say why, or by words of no claim or "
     "in less than four words",
     unexplained: "fail, and `FAILS` does not say why; or its words are of none that fails",
 }
