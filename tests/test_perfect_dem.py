@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Scene, Sphere, dem, solve
+from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere, dem, solve
 from demheat.scene.perfect import INFINITE
 from demheat.scene.shapes import Union
 from references.exact import lattice
@@ -61,9 +61,9 @@ def test_the_limit_of_good_conductors(name):
     assert_allclose(perfect.mean_flux, good.mean_flux, rtol=0, atol=2e-5 * np.abs(good.mean_flux).max())
     assert perfect.scene.perfect
     assert perfect.error.lower < perfect.conductivity < perfect.error.upper
-    # Bodies of one unknown: fewer of them, and a contrast that nobody sees.
-    assert perfect.stats["unknowns"] < good.stats["unknowns"]
-    assert perfect.stats["iterations"] < good.stats["iterations"]
+    # Bodies are one unknown each, and good ones, too: a contrast that neither sees.
+    assert perfect.stats["unknowns"] == good.stats["unknowns"]
+    assert perfect.stats["iterations"] <= good.stats["iterations"]
     if not perfect.scene.periodic:
         heat = perfect.wall_heat
         # What goes in comes out, to the solver's tolerance over a hundred wall cells.
@@ -124,17 +124,87 @@ def test_what_spans_is_infinite(scene):
         solve(scene, particles=1000)
 
 
+ONE_BOX = body(Box((0.4, 0.5, 0.5), (0.6, 0.4, 0.4), PERFECT), **X)
+ONE_BALL = body(Sphere(MIDDLE, 0.3, PERFECT), **X)
+ALIKE = {
+    "boxes that touch": (body(*(Box((x, 0.5, 0.5), (0.3, 0.4, 0.4), PERFECT) for x in (0.25, 0.55)), **X), ONE_BOX),
+    "a ball in a ball": (body(Sphere(MIDDLE, 0.3, PERFECT), Sphere(MIDDLE, 0.2, PERFECT), **X), ONE_BALL),
+}
+
+
+@pytest.mark.parametrize("name", ALIKE)
+def test_what_touches_is_one_body(name):
+    found, expected = (solve(scene, particles=1000) for scene in ALIKE[name])
+    # Twins on the surface between move cells beside it: 1e-5 and 2e-5 were found.
+    assert_allclose(found.conductivity, expected.conductivity, rtol=1e-4)
+    assert np.ptp(found.temperature_at([[0.3, 0.5, 0.5], [0.5, 0.5, 0.5], [0.6, 0.5, 0.5]])) < 1e-6
+
+
+@pytest.mark.parametrize("load", [X, Y, CELL, {"gradient": (0.0, 10.0, 0.0)}], ids=["x", "y", "cell x", "cell y"])
+def test_chains_are_the_limit_of_good_ones(load):
+    def chain(k):
+        return body(*(Sphere((0.2 + 0.2 * n, 0.5, 0.5), 0.1, Material(k)) for n in range(3)), **load)
+
+    perfect, good = (solve(chain(k), particles=3000) for k in (math.inf, MATRIX * 1e12))
+    # A contact that is narrow, and a contrast of 1e8 in the one beside 1e12 in the other.
+    assert_allclose(perfect.conductivity, good.conductivity, rtol=1e-6)
+    # Of 10 K; through the contacts heat finds its way at a contrast of 1e8: 6e-4 K were found.
+    assert np.ptp(perfect.temperature_at([[0.2, 0.5, 0.5], [0.4, 0.5, 0.5], [0.6, 0.5, 0.5]])) < 2e-3
+
+
+def test_a_ball_that_touches_a_wall_is_held():
+    field = solve(body(Sphere((0.25, 0.5, 0.5), 0.25, PERFECT), **X), particles=2000)
+    assert_allclose(field.temperature_at([[0.2, 0.5, 0.5], [0.4, 0.5, 0.5]]), 20.0, rtol=0, atol=1e-4)
+    assert_allclose(field.wall_heat["x-"], -field.wall_heat["x+"], rtol=1e-6)
+
+
+SEALED = Scene((1.0, 1.0, 1.0), Material(0.0), [Sphere(MIDDLE, 0.3, PERFECT)], **X)
+LAYERS = Layer(0, 0.0, 0.7, PERFECT), Layer(0, 0.7, 1.0, Material(2.0))
+
+
+@pytest.mark.parametrize(
+    ("scene", "expected"),
+    [
+        (SEALED, 0.0),
+        (Scene((1.0, 1.0, 1.0), Material(0.0), LAYERS, **X), 2.0 / 0.3),
+        (Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(1.0))], **X), 2.5),
+        (Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(0.0))], **X), 0.0),
+        # A pore across the cell beside it: percolating, and half of the section.
+        (Scene((1.0, 1.0, 1.0), Material(0.0), [Box((0.5, 0.25, 0.5), (1.0, 0.5, 1.0), Material(2.0))], **X), 1.0),
+    ],
+    ids=["sealed", "in a pore", "matrix", "cut by a pore", "along a pore"],
+)
+def test_from_zero_to_infinity(scene, expected):
+    """Exact layers; the solver's tolerance."""
+    assert_allclose(solve(scene, particles=1000).conductivity, expected, rtol=1e-7)
+
+
+def test_pores_beside():
+    def scene(k):
+        return body(Sphere((0.27, 0.5, 0.5), 0.2, Material(k)), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X)
+
+    perfect, good = (solve(scene(k), particles=2000) for k in (math.inf, MATRIX * 1e6))
+    assert_allclose(perfect.conductivity, good.conductivity, rtol=2e-5)
+    assert np.isnan(perfect.temperature_at([[0.75, 0.5, 0.5]])[0])
+
+
+def test_convection_beside():
+    def scene(k):
+        return body(Sphere((1.0, 0.5, 0.5), 0.2, Material(k)), walls={"x-": 0.0, "x+": Convection(3.0, 1.0)})
+
+    perfect, good = (solve(scene(k), particles=2000) for k in (math.inf, MATRIX * 1e6))
+    assert_allclose(perfect.wall_heat["x-"], good.wall_heat["x-"], rtol=2e-5)
+
+
 @pytest.mark.parametrize(
     "scene",
     [
-        body(*(Sphere(at, 0.25, PERFECT) for at in SPHERES), **Y),
-        body(Sphere((0.25, 0.5, 0.5), 0.25, PERFECT), **X),
-        body(*(Box((x, 0.5, 0.5), (0.4, 0.4, 0.4), PERFECT) for x in (0.3, 0.7)), **CELL),
-        body(Sphere((0.25, 0.5, 0.5), 0.2, PERFECT), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X),
-        Scene((1.0, 1.0, 1.0), PERFECT, [Layer(0, 0.3, 0.7, Material(1.0))], **X),
-        body(Sphere(MIDDLE, 0.2, PERFECT), walls={"x-": 0.0, "x+": Convection(1.0, 1.0)}),
+        body(Sphere(MIDDLE, 0.2, PERFECT), walls={"x-": 300.0, "x+": Radiation(0.5, 400.0)}),
+        body(
+            Sphere(MIDDLE, 0.2, PERFECT), Sphere((0.1, 0.1, 0.1), 0.05, Material(1.0, dependence=[(0, 1), (1, 2)])), **X
+        ),
     ],
-    ids=["spheres", "a wall", "boxes", "pores", "matrix", "convection"],
+    ids=["radiation", "dependence"],
 )
 def test_what_particles_do_not_know_is_refused(scene):
     with pytest.raises(NotImplementedError) as error:

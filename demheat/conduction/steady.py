@@ -68,7 +68,7 @@ def solve_checked(network, scene, *, solver, tolerance, max_iterations=MOST_ITER
     """The same as `solve_steady` of arguments that were checked before."""
     bodies = components.bodies(network, scene)
     network = network if bodies is None else without_links(network, bodies.still)
-    reached = _reached(network, scene)
+    reached = reached_by(network, scene)
     by_size = "amg" if reached.sum() > AMG_UNKNOWNS else "cg"
     chosen, kept = by_size if solver == "auto" else solver, {} if kept is None else kept
     in_vain = chosen != "cg" and contrast_of(scene) >= HIGHER_FOR_MULTIGRID
@@ -112,7 +112,7 @@ def _first(network, scene, reached, start):
 def imbalance(network, scene, solution) -> float:
     """Residual heat of the particles at given temperatures, over the heat that passes through them, as norms."""
     network = network if solution.still is None else without_links(network, solution.still)
-    reached = _reached(network, scene)
+    reached = reached_by(network, scene)
     x = np.where(reached, np.nan_to_num(solution.temperature) - level_of(scene), 0.0)
     if scene.radiates:
         surface = np.maximum(np.nan_to_num(solution.wall_temperature), COLDEST * hottest(network, scene))
@@ -184,7 +184,7 @@ def check_solver(solver, tolerance):
         raise ValueError(f"tolerance = {tolerance!r}: must lie between 1e-15 and 1e-2")
 
 
-def _reached(network, scene):
+def reached_by(network, scene):
     """Particles tied to a temperature, a wall's or of surroundings, or in a periodic cell to any other particle."""
     if scene.periodic:
         return conducted(network) > 0

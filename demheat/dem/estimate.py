@@ -200,7 +200,7 @@ def check_contrast(scene: Scene, wanted: Particles, tolerance: float, answer: Ca
     that of the middle: a limit of the contrast alone would refuse such scenes.
     """
     number = _number(wanted)
-    if contrast_of(scene) < HIGH_CONTRAST or number <= FEW or scene.perfect:
+    if scene.perfect or contrast_of(scene) < HIGH_CONTRAST or number <= FEW:
         return
     how = {"tolerance": min(LENIENT * tolerance, LOOSEST), "max_iterations": MOST}
     few = _fewer(wanted, FEW)

@@ -9,9 +9,10 @@ from functools import partial
 
 import numpy as np
 
+from demheat.conduction.good import good_bodies, solve_good
 from demheat.conduction.integrators.choose import check_linear
 from demheat.conduction.integrators.march import check_request
-from demheat.conduction.perfect import as_good, check_perfect, solve_perfect
+from demheat.conduction.perfect import check_perfect, solve_perfect
 from demheat.conduction.sources import check_sources, lost_power, source_power, transits
 from demheat.conduction.steady import MOST_ITERATIONS, check_solver, solve_checked
 from demheat.conduction.transient import check_callables
@@ -29,6 +30,7 @@ from demheat.runtime.deadline import budget
 from demheat.runtime.progress import announced, stage
 from demheat.sampling.field_of import field_of
 from demheat.scene import Scene, check_scene
+from demheat.scene.perfect import as_good
 from demheat.tensor import axis_loads
 
 
@@ -98,7 +100,8 @@ def solve(
     NotImplementedError
         For temperatures on walls that meet, or heat exchanged with surroundings, with wall "center" and a law other
         than "laguerre"; for replicas between walls with such a law; for surfaces with a resistance, unless facets lie
-        on them; for contrasts at which a trial with few particles drowns in rounding: mostly from 1e8 or 1e9 on.
+        on them; for contrasts at which a trial with few particles drowns in rounding: from 1e8 or 1e9 on where walls
+        radiate or conductivities follow the temperature.
     RuntimeError
         If the solver does not converge.
     TimeoutError
@@ -241,12 +244,7 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
     how = {"solver": solver, "tolerance": tolerance, "max_iterations": max_iterations}
     for scene, network in zip(scenes, networks, strict=True):
         connected = time.perf_counter()
-        if scene.perfect:
-            solution = solve_perfect(network, scene, **how)
-        elif scene.varies:
-            network, solution = solve_varying(network, scene, **how)
-        else:
-            solution = solve_checked(network, scene, **how, kept=kept)
+        network, shown, solution = _conducting(network, scene, how, kept)
         took = spent | {"solve_s": time.perf_counter() - connected}
         answer = partial(_answer, scene, solver=solver, tolerance=tolerance)
         told = {
@@ -254,9 +252,21 @@ def _fields(scenes, networks, law, wanted, spent, *, solver, tolerance, max_iter
             "extrapolator": extrapolator_of(law, wanted, answer),
         }
         with stage("field"):
-            field = field_of(as_good(scene), network, solution, stats=took, **told)
-            fields.append(replace(field, scene=scene) if scene.perfect else field)
+            field = field_of(shown, network, solution, stats=took, **told)
+            fields.append(field if shown is scene else replace(field, scene=scene))
     return fields
+
+
+def _conducting(network, scene, how, kept):
+    """The network and the scene that a solution is to be read with, and the solution."""
+    if scene.perfect:
+        return solve_perfect(network, scene, **how)
+    if scene.varies:
+        network, solution = solve_varying(network, scene, **how)
+        return network, scene, solution
+    good = None if scene.radiates else good_bodies(network, scene)
+    found = None if good is None else solve_good(network, scene, good, **how)
+    return found or (network, scene, solve_checked(network, scene, **how, kept=kept))
 
 
 def _answer(scene, law, wanted, *, solver, tolerance, max_iterations=MOST_ITERATIONS, change=None):

@@ -1,10 +1,12 @@
-"""Perfect spheres that touch: which are one body, and whether such a body joins two temperatures.
+"""Perfect conductors: what stands for them in numbers, which of them touch, and which join two temperatures.
 
 What touches without a resistance has one temperature, however small the contact: between perfect conductors the heat
 across a gap rises without bound as it closes.
 """
 
 from __future__ import annotations
+
+from dataclasses import fields, replace
 
 import numpy as np
 from scipy.sparse import coo_array
@@ -14,9 +16,51 @@ from demheat.scene.shapes.base import TOUCH
 
 INFINITE = "perfect conductors join two temperatures: the effective conductivity is infinite"
 
+# Conductivity that stands for infinity, of the best of the rest: half of the digits are left for what differs in a body
+# of it, half of them for the flux beside it.
+GOOD = 1e8
+# From foot to foot on two surfaces, to where they meet: faces do in the first rounds, if at all.
+FEET = 50
+
+
+def as_good(scene):
+    """The scene with `GOOD` times the conductivity of the rest in place of infinity."""
+    if not scene.perfect:
+        return scene
+    k = scene.mean_conductivities
+    good = GOOD * (float(k[np.isfinite(k)].max(initial=0.0)) or 1.0)
+    return recast(scene, lambda each: min(each, good))
+
+
+def recast(scene, change):
+    """The scene with other conductivities where materials conduct alike all round."""
+    inclusions = [_shape_as(each, change) for each in scene.inclusions]
+    return replace(scene, matrix=_as(scene.matrix, change), inclusions=inclusions)
+
+
+def _as(material, change):
+    if not material.isotropic or (new := change(material.conductivity)) == material.conductivity:
+        return material
+    return replace(material, conductivity=new)
+
+
+def _shape_as(shape, change):
+    changed = {"material": _as(shape.material, change)}
+    if changed["material"] is shape.material:
+        return shape
+    if "shapes" in {field.name for field in fields(shape)}:
+        changed["shapes"] = [_shape_as(each, change) for each in shape.shapes]
+    return replace(shape, **changed)
+
 
 def touching_spheres(scene) -> tuple[int, int] | None:
-    """Places of two perfect spheres that touch, or of one that touches a held wall, twice; None if all are apart.
+    """Places of two perfect spheres that touch, or of one that touches a held wall, twice; None if all are apart."""
+    found = contacts(scene)
+    return found[0] if found else None
+
+
+def contacts(scene) -> list[tuple[int, int]]:
+    """All pairs as `touching_spheres` has them.
 
     Raises
     ------
@@ -27,16 +71,29 @@ def touching_spheres(scene) -> tuple[int, int] | None:
     ids = [n for n, s in inclusions if s.kind == "sphere" and s.material.perfect and s.resistance == 0]
     ids = np.array(ids, int)
     if not len(ids):
-        return None
+        return []
     centers, radii = (np.array([getattr(scene.inclusions[n], name) for n in ids]) for name in ("center", "radius"))
     one, two, shift = _pairs(centers, radii, scene.period)
     walls = _walls(scene, centers, radii)
     _check_apart(len(ids), one, two, shift, walls, scene)
-    if len(one):
-        return int(ids[one[0]]), int(ids[two[0]])
     # One that a wall halves is its own image there.
     met = [int(ids[sphere]) for sphere, _, halved in walls if not halved]
-    return (met[0], met[0]) if met else None
+    return [*zip(ids[one].tolist(), ids[two].tolist(), strict=True), *zip(met, met, strict=True)]
+
+
+def touch(scene, one: int, two: int, x) -> bool:
+    """Whether two perfect phases touch: one lies in the other, or their surfaces meet where they are near a point."""
+    parents = scene.parents()
+    if parents[max(one, two)] == min(one, two):
+        return True
+    shapes = [scene.inclusions[phase - 1] for phase in (one, two)]
+    if all(shape.kind == "sphere" for shape in shapes):
+        return (min(one, two) - 1, max(one, two) - 1) in contacts(scene)
+    x = np.asarray(x, float)[None]
+    for _ in range(FEET):
+        for shape in shapes:
+            x = x - shape.distance(x, period=scene.period)[:, None] * shape.normal(x, period=scene.period)
+    return bool(abs(shapes[0].distance(x, period=scene.period)[0]) <= TOUCH * max(scene.size))
 
 
 def _pairs(centers, radii, period):

@@ -37,16 +37,20 @@ class Bodies(NamedTuple):
 def find(scene, mesh) -> Bodies:
     """Bodies of a scene on a mesh."""
     solid = scene.mean_conductivities[mesh.phase] > 0
-    piece, count = _pieces(mesh, solid)
     jump = np.array(scene.gradient) * scene.size if scene.periodic else np.zeros(3)
-    body, shift, climbs = _joined(*_seams(scene, mesh, piece), count, jump)
-    node = np.append(body, -1)[piece]
+    node, shift, climbs = gathered(scene, mesh, solid, mesh.pairs, jump)
     element = np.where(solid, node[mesh.cells[:, 0]], -1)
-    shift = np.vstack([shift, np.zeros((1, 3), int)])[piece]
     passing, level = climbs, np.full(len(climbs), np.nan)
     if not scene.periodic:
         passing, level = _at_walls(scene, mesh, node, solid, len(climbs))
     return Bodies(node, element, shift, passing, level)
+
+
+def gathered(scene, mesh, chosen, pairs, jump):
+    """Body of each node of some elements, -1 elsewhere; boxes by which it is moved there; which bodies climb a jump."""
+    piece, count = _pieces(mesh, chosen)
+    body, shift, climbs = _joined(*_seams(scene, mesh, piece, pairs), count, jump)
+    return np.append(body, -1)[piece], np.vstack([shift, np.zeros((1, 3), int)])[piece], climbs
 
 
 def settle(found: Bodies, scene, mesh, temperature) -> None:
@@ -96,9 +100,9 @@ def _pieces(mesh, solid):
     return piece, len(numbers)
 
 
-def _seams(scene, mesh, piece):
+def _seams(scene, mesh, piece, pairs):
     """Pieces that periodic twins join, once each, and boxes from the second's node to the first's."""
-    pairs = mesh.pairs[np.all(piece[mesh.pairs] >= 0, axis=1)]
+    pairs = pairs[np.all(piece[pairs] >= 0, axis=1)]
     boxes = np.rint((mesh.points[pairs[:, 0]] - mesh.points[pairs[:, 1]]) / scene.size).astype(int)
     seams = np.unique(np.column_stack([piece[pairs], boxes]), axis=0)
     return seams[:, :2], seams[:, 2:]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
+from scipy.sparse import coo_matrix, csr_matrix
 from skfem.element import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 from skfem.quadrature import get_quadrature
 from skfem.refdom import RefTet, RefTri
@@ -85,7 +85,7 @@ def assemble_loads(mesh, conductivity, dof, lifts, medium=None):
             parts.append(coo_matrix((matrices.ravel(), (i, j)), shape=(count, count)).tocsr())
     while len(parts) > 1:  # pairs of equal size: each entry is copied log2(blocks) times only
         parts = [parts[i] + parts[i + 1] if i + 1 < len(parts) else parts[i] for i in range(0, len(parts), 2)]
-    return parts[0], list(loads)
+    return parts[0] if parts else csr_matrix((count, count)), list(loads)
 
 
 def _matrices(mesh, ids, rule, conductivity, medium):

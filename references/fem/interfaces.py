@@ -44,3 +44,12 @@ def _parts(mesh):
     tangents = np.einsum("tnx,qnk->tqkx", mesh.points[here], slopes, optimize=True)
     area = np.linalg.norm(np.cross(tangents[..., 0, :], tangents[..., 1, :]), axis=-1) * weights
     return values, area / mesh.faces.resistance[:, None]
+
+
+def passed(mesh, dof, rest) -> np.ndarray:
+    """What passes from each node where a temperature less that of the mean gradient jumps, (n,) float array, W."""
+    values, parts = _parts(mesh)
+    nodes, count = mesh.faces.nodes, len(mesh.points)
+    heat = (parts * ((rest[nodes[:, 0]] - rest[nodes[:, 1]]) @ values.T)) @ values
+    here, there = (np.bincount(dof[side].ravel(), heat.ravel(), count) for side in np.swapaxes(nodes, 0, 1))
+    return here - there

@@ -13,10 +13,12 @@ from demheat.runtime.process_state import one_blas_thread
 from demheat.scene import Scene, check_scene
 from demheat.scene.inputs import finite, whole
 from demheat.scene.narrows import narrows
+from demheat.scene.perfect import as_good
 from demheat.tensor import axis_loads
 from references.fem.estimate import estimated, extrapolated
 from references.fem.image import solved_image
 from references.fem.lookup import NodalField
+from references.fem.perfect import check_perfect
 from references.fem.system import solve_loads
 from references.mesh import make, split
 from references.mesh.sizes import checked_size
@@ -45,8 +47,8 @@ def solve(
     ----------
     scene : Scene
         Spheres and layers, whose surfaces may resist, walls with temperatures, fluxes, convection and radiation or a
-        periodic cell; conductivity 0 is a pore. Or an image, whose voxels are the elements, trilinear hexahedra;
-        `order` and `curved` are of tetrahedra, and `size` below a voxel splits voxels.
+        periodic cell; conductivity 0 is a pore, infinity a perfect conductor. Or an image, whose voxels are the
+        elements, trilinear hexahedra; `order` and `curved` are of tetrahedra, and `size` below a voxel splits voxels.
     order : {1, 2}
         Linear elements (always straight) or quadratic ones.
     size : float, m, optional
@@ -70,8 +72,8 @@ def solve(
     Raises
     ------
     ValueError
-        If an argument is not as described, the load leaves the temperature open, or heat is forced where nothing takes
-        it.
+        If an argument is not as described, the load leaves the temperature open, heat is forced where nothing takes it,
+        or perfect conductors join two temperatures.
     NotImplementedError
         If surfaces of the scene touch, or resist beside pores.
     RuntimeError
@@ -120,10 +122,11 @@ def _solved(scenes, order, size, curved, tolerance):
     finite("tolerance", tolerance, "a number between 0 and 1", lambda v: 0 < v < 1)
     for scene in scenes:
         text = "beside interfaces with a resistance finite elements take no pores"
-        takes = ("resistance", "exchange", "anisotropy", "dependence", "image")
+        takes = ("resistance", "exchange", "anisotropy", "dependence", "image", "perfect")
         scene.require(text, steady=True, pores=not scene.resistances.any(), takes=takes)
         if scene.image is not None:
             scene.require("bricks of an image know one number for each phase", takes=("exchange", "image"))
+        check_perfect(scene)
         if scene.radiates:
             scene.require("finite elements iterate for it or for walls that radiate", takes=(*takes[:3], "image"))
         if scene.image is None and order == 1 and scene.domain == "box":
@@ -171,7 +174,7 @@ def _again(scene, tolerance, elements, **changed):
 def field_of(scene, mesh, solved, tolerance, estimator, extrapolator=None) -> Field:
     """The Field of nodal temperatures."""
     alone = one_blas_thread()
-    solution = NodalField(scene, mesh, solved.temperature, **_cut_off(scene, solved.bodies))
+    solution = NodalField(as_good(scene), mesh, solved.temperature, **_cut_off(scene, solved.bodies))
     mean_flux = alone(solution.mean_flux)()
     alone(_check_rounding)(solution, mean_flux, solved.wall_temperature, tolerance)
     fractions = np.bincount(mesh.phase, mesh.volumes, len(scene.materials)) / scene.volume

@@ -15,7 +15,8 @@ import numpy as np
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import connected_components
 
-from references.fem import components, interfaces
+from demheat.scene.perfect import GOOD, as_good
+from references.fem import components, interfaces, perfect
 from references.fem.elements import assemble, assemble_loads, wall_weights
 from references.fem.medium import Medium
 from references.fem.multigrid import solve_free
@@ -98,33 +99,37 @@ def solve_loads(scenes, mesh, tolerance) -> list[Solved]:
 
 def _solve_linear(scenes, mesh, tolerance, kept, start=None):
     """Of each load; `start` has the temperatures at which all conducts, and from which the solution is improved."""
-    begin = time.perf_counter()
-    conductivity = scenes[0].mean_conductivities[mesh.phase]
+    begin, body = time.perf_counter(), as_good(scenes[0])
+    conductivity = body.mean_conductivities[mesh.phase]
     givens = [given_part(scene, mesh, conductivity > 0) for scene in scenes]
+    joined = [perfect.find(scene, mesh) for scene in scenes]
+    if joined[0] is not None:
+        givens = [perfect.known(*each) for each in zip(joined, scenes, givens, strict=True)]
     dof = twins(len(mesh.points), mesh.pairs)
     pores, found = conductivity == 0, None
     if pores.any():
         found = components.find(scenes[0], mesh)
         conductivity = np.where(found.still, 0.0, conductivity)
-    unit = conductivity.max()
+    passing, unit = conductivity > 0, conductivity.max()
     if unit == 0:
         return [_at_rest(scenes[0], mesh, givens[0], found)]
+    if joined[0] is not None:
+        conductivity, unit = np.where(joined[0].inside, 0.0, conductivity), body.mean_conductivities.max() / GOOD
     lifts = [given.lift for given in givens]
-    matrix, loads = assemble_loads(mesh, conductivity / unit, dof, lifts, _medium(scenes[0], mesh, start))
+    matrix, loads = assemble_loads(mesh, conductivity / unit, dof, lifts, _medium(body, mesh, start))
     if mesh.faces is not None:
-        passed = interfaces.exchange(mesh, dof) / unit
-        matrix = (matrix + passed).tocsr()
-        # The known part jumps where a side only touches a held wall in an edge.
-        loads = [load - passed @ lift if _jumps(mesh, lift) else load for load, lift in zip(loads, lifts, strict=True)]
-    system = _Assembled(matrix, dof, unit, conductivity > 0, pores, found, time.perf_counter() - begin)
-    each = zip(scenes, givens, loads, strict=True)
+        matrix = (matrix + interfaces.exchange(mesh, dof) / unit).tocsr()
+        loads = [load - _jumping(scenes[0], mesh, dof, lift) / unit for load, lift in zip(loads, lifts, strict=True)]
+    system = _Assembled(matrix, dof, unit, passing, pores, found, time.perf_counter() - begin)
+    each = zip(scenes, givens, loads, joined, strict=True)
     return [_solved(*one, mesh, system, tolerance, kept, start) for one in each]
 
 
-def _jumps(mesh, lift):
-    """Whether a known part differs from side to side; in periodic cells, where faces part twins, it does not."""
-    here, there = np.swapaxes(lift[mesh.faces.nodes], 0, 1)
-    return not len(mesh.pairs) and np.any(here != there)
+def _jumping(scene, mesh, dof, lift):
+    """What passes interfaces as the known part differs from side to side: in edges with held walls, at bodies."""
+    rest = lift - mesh.points @ np.array(scene.gradient or np.zeros(3))
+    here, there = np.swapaxes(rest[mesh.faces.nodes], 0, 1)
+    return interfaces.passed(mesh, dof, rest) if np.any(here != there) else 0.0
 
 
 def _medium(scene, mesh, temperature):
@@ -132,23 +137,25 @@ def _medium(scene, mesh, temperature):
     return Medium(scene, mesh, temperature) if scene.anisotropic or temperature is not None else None
 
 
-def _solved(scene, given, load, mesh, system, tolerance, kept, start):
+def _solved(scene, given, load, joined, mesh, system, tolerance, kept, start):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
     begin = time.perf_counter()
     matrix, dof, unit, passing, pores, found, assembly_s = system
     robin, outside = _robin(scene, mesh, passing), scene.imposed_temperatures
     matrix = (matrix + robin.stiffness() / unit).tocsr() if robin.walls else matrix
-    tied = robin.tangent(np.ones(len(load))).diagonal() + robin.stiffness().diagonal() > 0
-    bodies = _bodies(matrix, (given.shares > 0) | tied, pores=found is not None)
+    tied = robin.tangent(np.ones(len(load))).diagonal() + robin.stiffness().diagonal()
+    # What bodies of one temperature leave of matrices and loads.
+    folded = joined.folded if joined is not None else lambda each: each
+    equations, fixed = folded(matrix), folded(given.shares) > 0
+    bodies = _bodies(equations, fixed | (folded(tied) > 0), pores=found is not None)
     imposed = np.zeros(len(load))
     for name, value in scene.wall_fluxes.items():
         imposed += value / unit * given.weights[name]
-    _check_loose(mesh, imposed, bodies)
+    _check_loose(mesh, folded(imposed), bodies)
     if robin.walls:
         # The known part lies on walls that others with surroundings may meet at an edge.
         imposed += (robin.constant(outside, given.level) - robin.stiffness() @ given.lift) / unit
     load += imposed
-    fixed = given.shares > 0
     fixed[bodies.pins] = True
     if robin.radiates:
         body, known = (scene, robin, unit), given.lift + given.level
@@ -157,11 +164,16 @@ def _solved(scene, given, load, mesh, system, tolerance, kept, start):
         before = start - given.level - given.lift
         correction, stats = improved(mesh, matrix, load, fixed, dof, tolerance, start=before, kept=kept)
     else:
-        correction, stats = solve_free(mesh, matrix, load, fixed, dof, tolerance, kept=kept)
+        correction, stats = solve_free(mesh, equations, folded(load), fixed, dof, tolerance, kept=kept)
+    correction = correction if joined is None else joined.fold @ correction
     temperature = given.lift + correction[dof]
     temperature += given.level
     heat = unit * (matrix @ correction - load) - robin.radiated(outside, temperature)
     stats |= {"islands": 0 if found is None else int(np.count_nonzero(~found.passing))}
+    if joined is not None:
+        rest, given_on, more = perfect.spread(joined, mesh, dof, -heat / unit, given.shares > 0, tolerance)
+        temperature, heat = temperature + rest / GOOD, heat + unit * given_on
+        stats["iterations"] += more["iterations"]
     if found is not None:
         components.settle(found, scene, mesh, temperature)
         shift, more = _pore_shift(mesh, pores, temperature - given.level, dof, given, found)

@@ -34,7 +34,7 @@ def make(scene, *, size=None, order=2, curved=True, coarser=1.0):
     check_scene(scene)
     flag("curved", curved)
     # What surfaces resist and phases conduct does not change where they are.
-    takes = ("resistance", "exchange", "anisotropy", "dependence")
+    takes = ("resistance", "exchange", "anisotropy", "dependence", "perfect")
     scene.require("elements are known in a box", domain="box", takes=takes)
     finite("coarser", coarser, "a finite number >= 1", lambda v: v >= 1)
     size = min(coarser * checked_size(scene, size, order), max(scene.size))

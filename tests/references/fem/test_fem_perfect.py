@@ -1,0 +1,136 @@
+"""Only here: perfect conductors by finite elements: exact values, the limit of good ones, bodies that are one."""
+
+import math
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from demheat import Box, Convection, Cylinder, Flux, Layer, Material, Radiation, Scene, Sphere
+from demheat.scene.perfect import INFINITE
+from references import fem
+from references.exact import lattice
+
+MATRIX, MIDDLE, PERFECT = 2.0, (0.5, 0.5, 0.5), Material(math.inf)
+X, Y, CELL = {"walls": {"x-": 20.0, "x+": 30.0}}, {"walls": {"y-": 20.0, "y+": 30.0}}, {"gradient": (10.0, 0.0, 0.0)}
+POINTS = np.random.default_rng(0).random((200, 3))
+
+
+def body(*shapes, matrix=MATRIX, **load):
+    return Scene((1.0, 1.0, 1.0), Material(matrix), list(shapes), **load)
+
+
+@pytest.mark.parametrize("load", [X, CELL], ids=["walls", "cell"])
+@pytest.mark.parametrize(("resistance", "expected"), [(0.2, 1.898010589), (0.0, 3.262566264)])
+def test_a_cubic_array(resistance, expected, load):
+    radius = lattice.radius("sc", 0.4)
+    scene = body(Sphere(MIDDLE, radius, PERFECT, resistance=resistance * radius / MATRIX), **load)
+    # 6e-6 and 4.3e-5 were found at the default size: what these elements lack at contrast 100, too.
+    assert_allclose(fem.solve(scene).conductivity / MATRIX, expected, rtol=1e-4)
+
+
+BODIES = {
+    "sphere": lambda k: body(Sphere(MIDDLE, 0.4, k), **X),
+    "across faces": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k), **CELL),
+    "across faces, film": lambda k: body(Sphere((0.1, 0.9, 0.5), 0.4, k, resistance=0.05), **CELL),
+    "half at a wall": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k), **X),
+    "half at a wall, film": lambda k: body(Sphere((0.0, 0.5, 0.5), 0.3, k, resistance=0.05), **X),
+    "half at a flux": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Flux(5.0)}),
+    "in a fluid": lambda k: body(Sphere((1.0, 0.5, 0.5), 0.3, k), walls={"x-": 20.0, "x+": Convection(3.0, 30.0)}),
+    "fibre across": lambda k: body(Cylinder(MIDDLE, 0.2, (0, 0, 1), k), **CELL),
+    "beside a pore": lambda k: body(
+        Sphere((0.27, 0.5, 0.5), 0.2, k), Sphere((0.75, 0.5, 0.5), 0.2, Material(0.0)), **X
+    ),
+    "shell": lambda k: body(Sphere(MIDDLE, 0.4, k), Sphere(MIDDLE, 0.3, Material(1.0)), **X),
+}
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_the_limit_of_good_conductors(name):
+    """At 1e6 times the matrix's conductivity all is off by some millionths."""
+    perfect, good = (fem.solve(BODIES[name](Material(k)), size=0.12) for k in (math.inf, MATRIX * 1e6))
+    assert_allclose(perfect.mean_flux, good.mean_flux, rtol=0, atol=2e-5 * np.abs(good.mean_flux).max())
+    here, there = perfect.temperature_at(POINTS), good.temperature_at(POINTS)
+    known = np.isfinite(here)
+    assert_array_alike(np.isfinite(there), known)
+    # In a periodic cell the level is free.
+    level = (here - there)[known].mean() if perfect.scene.periodic else 0.0
+    assert_allclose(here[known], (there + level)[known], rtol=0, atol=2e-4)
+    # What the tolerance leaves in a good conductor: 2e-4 of the largest flux was found.
+    most = np.abs(good.flux_at(POINTS)).max()
+    assert_allclose(perfect.flux_at(POINTS), good.flux_at(POINTS), rtol=0, atol=1e-3 * most)
+    for wall in perfect.scene.walls or {}:
+        assert_allclose(perfect.wall_heat[wall], good.wall_heat[wall], rtol=2e-5)
+    assert perfect.scene.perfect
+
+
+def assert_array_alike(one, other):
+    assert np.array_equal(one, other)
+
+
+def test_layers_are_exact_and_one_temperature():
+    field = fem.solve(body(Layer(0, 0.3, 0.7, PERFECT), **X), size=0.2)
+    # The tolerance, and what a contrast of 1e8 adds.
+    assert_allclose(field.conductivity, MATRIX / 0.6, rtol=2e-8)
+    inside = POINTS * (0.3, 1, 1) + (0.35, 0, 0)
+    assert_allclose(field.temperature_at(inside), 25.0, rtol=0, atol=1e-6)
+    # Of 33; temperatures have eight digits for it.
+    assert_allclose(field.flux_at(inside), np.tile(field.mean_flux, (len(inside), 1)), rtol=0, atol=2e-4)
+
+
+def test_bodies_that_films_part():
+    layers = Layer(0, 0.2, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 0.7, PERFECT)
+    for load in (X, CELL):
+        # Half of the matrix, and two films: 1/(.5/2 + .2).
+        assert_allclose(fem.solve(body(*layers, **load), size=0.2).conductivity, 1 / 0.45, rtol=1e-7)
+    whole = Layer(0, 0.0, 0.4, PERFECT, resistance=0.1), Layer(0, 0.4, 1.0, PERFECT)
+    assert_allclose(fem.solve(body(*whole, **X), size=0.2).conductivity, 10.0, rtol=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("scene", "expected"),
+    [
+        (body(Sphere(MIDDLE, 0.3, PERFECT), matrix=0.0, **X), 0.0),
+        (body(Layer(0, 0.0, 0.7, PERFECT), Layer(0, 0.7, 1.0, Material(2.0)), matrix=0.0, **X), 2.0 / 0.3),
+        (body(Layer(0, 0.3, 0.7, Material(1.0)), matrix=math.inf, **X), 2.5),
+        (body(Layer(0, 0.3, 0.7, Material(0.0)), matrix=math.inf, **X), 0.0),
+    ],
+    ids=["sealed", "in a pore", "matrix", "cut by a pore"],
+)
+def test_from_zero_to_infinity(scene, expected):
+    assert_allclose(fem.solve(scene, size=0.2).conductivity, expected, rtol=1e-7)
+
+
+def test_all_axes():
+    fields = fem.solve_axes(body(Sphere((0.1, 0.9, 0.5), 0.3, PERFECT), **CELL), size=0.15)
+    assert_allclose([f.conductivity for f in fields], fields[0].conductivity, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        body(Layer(0, 0.3, 0.7, PERFECT), **Y),
+        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **CELL),
+        body(Cylinder(MIDDLE, 0.2, (1, 0, 0), PERFECT), **X),
+        body(*(Sphere((x, 0.5, 0.5), 0.25, PERFECT) for x in (0.25, 0.75)), **X),
+        body(Sphere(MIDDLE, 0.3, Material(1.0)), matrix=math.inf, **X),
+    ],
+    ids=["layer along", "fibre in a cell", "fibre between walls", "chain", "matrix"],
+)
+def test_what_spans_is_infinite(scene):
+    with pytest.raises(ValueError, match=INFINITE):
+        fem.solve(scene, size=0.2)
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        body(*(Box((x, 0.5, 0.5), (0.4, 0.4, 0.4), PERFECT) for x in (0.3, 0.7)), **CELL),
+        body(Sphere(MIDDLE, 0.2, PERFECT), walls={"x-": 300.0, "x+": Radiation(0.5, 400.0)}),
+    ],
+    ids=["touching", "radiation"],
+)
+def test_what_elements_do_not_know_is_refused(scene):
+    with pytest.raises(NotImplementedError) as error:
+        fem.solve(scene, size=0.2)
+    assert "\n" not in str(error.value)
