@@ -25,10 +25,10 @@ from demheat.runtime.progress import stage
 from demheat.scene.perfect import GOOD, recast
 from demheat.scene.resistances import between
 
-# So many times better than all the rest are good conductors.
-APART = 1e4
-# Rounds at most; each takes off about as many digits of the residual as the contrast has.
-ROUNDS = 12
+# So many times better than all the rest are good conductors. Below it rounds are many where bodies touch in points.
+APART = 1e5
+# Rounds at most, and what each must leave of the last one's residual: mostly it takes off three digits or more.
+ROUNDS, SLOW = 12, 0.3
 
 
 class Bodies(NamedTuple):
@@ -101,7 +101,7 @@ def solve_good(network, scene, bodies, *, solver, tolerance, max_iterations, rou
     reached = reached_by(network, scene)
     parts = _parts(network, scene, reached, bodies)
     chosen = solver if solver != "auto" else "amg" if len(parts.diagonal) > AMG_UNKNOWNS else "cg"
-    y, z, total, kept = _first(network, scene, reached, bodies), np.zeros(len(reached)), 0, {}
+    y, z, total, kept, size = _first(network, scene, reached, bodies), np.zeros(len(reached)), 0, {}, np.inf
     for done in range(1, rounds + 1):
         left = _left(parts, y, z)
         # What passes is known only once the solution nearly is.
@@ -112,9 +112,9 @@ def solve_good(network, scene, bodies, *, solver, tolerance, max_iterations, rou
         heat = _spread(_left(parts, y, z), bodies, parts.inner_diagonal)
         change, count, _ = _solved(kept, "z", parts.inner, parts.inner_diagonal, heat, chosen, *aim)
         z, total = z + change, total + count
-        size, passing = left if rounds == 1 else _norm(_left(parts, y, z)), _passing(parts, y + z)
+        last, size, passing = size, left if rounds == 1 else _norm(_left(parts, y, z)), _passing(parts, y + z)
         size = size / passing if passing > 0 else float(size > 0)
-        if size <= tolerance or total >= max_iterations or done == rounds:
+        if size <= tolerance or total >= max_iterations or size > SLOW * last:
             break
     if not size <= tolerance:
         return None
