@@ -102,7 +102,9 @@ def solve_good(network, scene, bodies, *, solver, tolerance, max_iterations, rou
     parts = _parts(network, scene, reached, bodies)
     chosen = solver if solver != "auto" else "amg" if len(parts.diagonal) > AMG_UNKNOWNS else "cg"
     y, z, total, kept, size = _first(network, scene, reached, bodies), np.zeros(len(reached)), 0, {}, np.inf
-    for done in range(1, rounds + 1):
+    done = 0
+    while done < rounds:
+        done += 1
         left = _left(parts, y, z)
         # What passes is known only once the solution nearly is.
         aim = 0.5 * tolerance * max(_passing(parts, y + z), _norm(left)), max_iterations
