@@ -10,7 +10,6 @@ from method_scenes import METHODS, answered
 from numpy.testing import assert_allclose
 
 from demheat import Cylinder, Image, Laguerre, Layer, Material, Scene, Sphere, damage, evolve, gallery, orthotropic
-from demheat.cheapest import effective, recommend
 from demheat.dem.networks import network_of
 from demheat.gate import hashin_shtrikman, wiener
 from demheat.io import scenes
@@ -114,8 +113,6 @@ def heavy(scene):
 def beside(scene):
     """What is no method of the suite."""
     return {
-        "recommend": lambda: recommend(scene, 0.01),
-        "effective": lambda: effective(scene),
         "bracket": lambda: bracket.solve(scene),
         "voxels": lambda: bracket.voxels.solve(scene, voxels=8),
         "walkers": lambda: walkers.solve(scene),

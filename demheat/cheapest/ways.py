@@ -30,7 +30,7 @@ HOMES = {
 KNOBS = {"fem": ("size", 1.0), "fft": ("voxels", -1.0), "dem": ("particles", -3.0)}
 # What few methods take of a scene: those that are refined.
 TAKES = {
-    "fem": ("resistance", "anisotropy", "dependence", "image"),
+    "fem": ("resistance", "anisotropy", "dependence", "image", "perfect"),
     "fft": ("resistance", "anisotropy", "image"),
     "dem": ("resistance", "dependence", "image", "perfect"),
 }

@@ -122,7 +122,7 @@ def _solve_linear(scenes, mesh, tolerance, kept, start=None):
         loads = [load - _jumping(scenes[0], mesh, dof, lift) / unit for load, lift in zip(loads, lifts, strict=True)]
     system = _Assembled(matrix, dof, unit, passing, pores, found, time.perf_counter() - begin)
     each = zip(scenes, givens, loads, joined, strict=True)
-    return [_solved(*one, mesh, system, tolerance, kept, start) for one in each]
+    return [_solved(one, mesh, system, tolerance, kept, start) for one in each]
 
 
 def _jumping(scene, mesh, dof, lift):
@@ -137,9 +137,9 @@ def _medium(scene, mesh, temperature):
     return Medium(scene, mesh, temperature) if scene.anisotropic or temperature is not None else None
 
 
-def _solved(scene, given, load, joined, mesh, system, tolerance, kept, start):
+def _solved(one, mesh, system, tolerance, kept, start):
     """One load on a matrix; `kept` is what the solver keeps for the next one."""
-    begin = time.perf_counter()
+    begin, (scene, given, load, joined) = time.perf_counter(), one
     matrix, dof, unit, passing, pores, found, assembly_s = system
     robin, outside = _robin(scene, mesh, passing), scene.imposed_temperatures
     matrix = (matrix + robin.stiffness() / unit).tocsr() if robin.walls else matrix
