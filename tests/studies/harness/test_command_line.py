@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from studies.__main__ import main, study_names
+from studies.__main__ import PATIENCE, main, study_names
 
 ROOT = Path(__file__).parents[3]
 
@@ -64,6 +64,21 @@ def test_parameters_called_as_columns_of_every_row_are_refused(tiny, capsys):
     tiny.write('{"name": "third", "load": 1.0}')
     assert main(["run", tiny.name]) == 2
     assert "parameters ['load']" in capsys.readouterr().err and not tiny.out.exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "seconds"), [([], PATIENCE), (["--quick"], 0), (["--quick", "--wait", "5"], 5), (["--wait", "0"], 0)]
+)
+def test_only_costs_that_are_kept_are_waited_for(words, seconds, tiny, monkeypatch):
+    asked = []
+
+    def stopped(compute, *, seconds, say):
+        asked.append(seconds)
+        raise ValueError("no further")
+
+    monkeypatch.setattr("studies.harness.quiet.quietly", stopped)
+    assert main(["run", tiny.name, "--out", str(tiny.out), *words]) == 2
+    assert asked == [seconds]
 
 
 def test_list_names_every_study(capsys):
