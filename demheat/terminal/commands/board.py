@@ -22,7 +22,7 @@ th { background: #f3f3f3; } .number { text-align: right; white-space: nowrap; }
 def page(files: Sequence[Answers], scores: Sequence[Score], accuracy: float) -> str:
     """All of it: a leaderboard of several programs, who is cheapest on each scene, every answer of each."""
     title = "Answers to scenes with known conductivities"
-    body = [f"<h1>{title}</h1>", f"<p>{_who(files)}</p>"]
+    body = [f"<h1>{title}</h1>"]
     if len(files) > 1:
         body += _leaders(scores, accuracy)
     body += _by_scene(scores, accuracy, len(files))
@@ -32,14 +32,6 @@ def page(files: Sequence[Answers], scores: Sequence[Score], accuracy: float) -> 
     head += f"<title>{title}</title><style>{STYLE}</style>"
     return "\n".join(
         ['<!DOCTYPE html>\n<html lang="en">', f"<head>{head}</head>", "<body>", *body, "</body></html>", ""]
-    )
-
-
-def _who(files):
-    return "<br>".join(
-        f"<b>{escape(each.program)}</b> {escape(each.version)}: {escape(each.method or 'method not told')}; costs on "
-        f"{escape(each.machine or 'a machine that is not told')}"
-        for each in files
     )
 
 
@@ -56,8 +48,8 @@ def _leaders(scores, accuracy):
     )
     note = (
         "In the order of the number of scenes, then of the cost: its geometric mean over that of the cheapest program, "
-        "on the scenes that a program knows to the accuracy. Costs are as each file declares them; of different "
-        "machines they cannot be compared."
+        "on the scenes that a program knows to the accuracy. Costs are as each file declares them, or empty; "
+        "of different machines they cannot be compared."
     )
     return ["<h2>Leaderboard</h2>", f'<p class="note">{note}</p>', _table(names, rows)]
 
@@ -81,7 +73,10 @@ def _every(answers, scores):
         + (each.remarks,)
         for each in scores
     ]
-    return [f"<h2>{escape(answers.program)}: every answer</h2>", _table(names, rows)]
+    told = [answers.version and f"Version {answers.version}", answers.method]
+    told += [f"costs on {answers.machine}" if answers.machine else "the machine of its costs is not told"]
+    head = f"<h2>{escape(answers.program)}: every answer</h2>"
+    return [head, f'<p class="note">{escape("; ".join(filter(None, told)))}</p>', _table(names, rows)]
 
 
 def _costs(score):
