@@ -44,8 +44,11 @@ def side_by_side(pairs):
 
 
 def test_no_circle_of_modules_or_folders():
-    assert circle(edges()) == []
-    assert {folder: circle(pairs) for folder, pairs in side_by_side(edges()).items() if circle(pairs)} == {}
+    found = circle(edges())
+    assert not found, f"modules that import each other: {', '.join(found)}"
+    folders = {folder or "the packages": circle(pairs) for folder, pairs in side_by_side(edges()).items()}
+    told = "; ".join(f"in {folder} {', '.join(found)}" for folder, found in folders.items() if found)
+    assert not told, f"folders that import each other: {told}"
 
 
 @pytest.mark.parametrize(

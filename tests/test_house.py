@@ -79,12 +79,13 @@ def test_every_public_kernel_has_a_slow_twin():
         if compiled(function)
     }
     assert len(named) > 50
-    assert sorted(named - twins()) == []
+    alone = sorted(named - twins())
+    assert not alone, f"kernels without a slow twin in a test that is marked `twin`: {', '.join(alone)}"
 
 
 def test_kernels_are_in_modules_of_kernels():
     loose = [f"{path}: {f.name}" for path, tree in OTHERS.items() for f in public(tree) if compiled(f)]
-    assert loose == []
+    assert not loose, f"compiled outside of a module whose name ends in `kernels`: {', '.join(loose)}"
 
 
 def test_python_calls_no_kernel_that_has_no_way_in():
@@ -107,7 +108,8 @@ def test_python_calls_no_kernel_that_has_no_way_in():
 @pytest.mark.parametrize("path", OTHERS, ids=str)
 def test_few_arguments(path):
     functions = (node for node in ast.walk(OTHERS[path]) if isinstance(node, ast.FunctionDef))
-    assert [f.name for f in functions if len(arguments(f)) > MOST_ARGUMENTS] == []
+    many = [f.name for f in functions if len(arguments(f)) > MOST_ARGUMENTS]
+    assert not many, f"{path}: more than {MOST_ARGUMENTS} arguments besides knobs: {', '.join(many)}"
 
 
 def test_knobs_are_spelled():
@@ -119,7 +121,8 @@ def test_knobs_are_spelled():
         # The keywords of a study's `run` are those of its cases.
         if function.args.kwarg and path.parts[0] != "studies"
     }
-    assert hidden == STILL_HIDDEN
+    told = ", ".join(sorted(hidden ^ STILL_HIDDEN))
+    assert not told, f"keywords that are passed on by **, or are no longer and stand in STILL_HIDDEN: {told}"
 
 
 def shown_by_the_manual():
@@ -144,13 +147,14 @@ def test_what_the_manual_shows_describes_its_parameters():
         if len(set(inspect.signature(thing).parameters) - {"self"}) >= 2
         and not re.search("(Parameters|Attributes)\n", thing.__doc__ or "")
     ]
-    assert silent == []
+    assert not silent, f"shown by the manual, without a section Parameters: {', '.join(silent)}"
 
 
 def test_files_are_short():
     """A reader holds one idea at a time; what passes this is split by ideas."""
     lengths = {path: len((ROOT / path).read_text(encoding="utf-8").splitlines()) for path in TREES}
-    assert {str(path): n for path, n in lengths.items() if n > MOST_LINES} == {}
+    long = [f"{path} ({n})" for path, n in lengths.items() if n > MOST_LINES]
+    assert not long, f"files of more than {MOST_LINES} lines: {', '.join(long)}"
 
 
 def test_nothing_that_a_reader_cannot_follow():

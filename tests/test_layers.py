@@ -33,7 +33,8 @@ def refused(name, source, modules=MODULES, is_package=False):
 @pytest.mark.parametrize("name", MODULES)
 def test_layers(name):
     path = MODULES[name]
-    assert refused(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py") == []
+    wrong = refused(name, path.read_text(encoding="utf-8"), is_package=path.name == "__init__.py")
+    assert not wrong, f"{'; '.join(wrong)}: not allowed in its room, see tests/rooms.py and tests/rooms_beside.py"
 
 
 def test_rooms_stand_on_rooms_before_them():
@@ -46,5 +47,7 @@ def test_rooms_stand_on_rooms_before_them():
 
 
 def test_every_module_has_a_room_of_its_own():
-    assert [name for name in MODULES if room_of(name) in FRONTS and name not in FRONTS] == []
-    assert [room for room in LAYERS if not any(below(name, room) for name in MODULES)] == []
+    homeless = [name for name in MODULES if room_of(name) in FRONTS and name not in FRONTS]
+    assert not homeless, f"tests/rooms.py or tests/rooms_beside.py wants a line of {', '.join(homeless)}"
+    empty = [room for room in LAYERS if not any(below(name, room) for name in MODULES)]
+    assert not empty, f"rooms of modules that are not there: {', '.join(empty)}"
