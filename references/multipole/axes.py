@@ -42,7 +42,7 @@ def _swap(order):
 
     For C_l^m has the parity (-1)^(l+m) in z, its real part is even and its imaginary part odd in y.
     """
-    points, weights = _sphere(order)
+    points, weights = sphere_points(order)
     here, there = harmonics(points, order), harmonics(points[:, [0, 2, 1]], order)
     flat = []
     for n in range(order + 1):
@@ -57,7 +57,7 @@ def _swap(order):
     return np.array(flat)
 
 
-def _sphere(order):
+def sphere_points(order):
     """Points on the unit sphere and weights of sum 1 that integrate harmonics up to degree 2 order + 1."""
     z, share = np.polynomial.legendre.leggauss(order + 1)
     turn = 2 * np.pi * (np.arange(2 * order + 2) + 0.5) / (2 * order + 2)

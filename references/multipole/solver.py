@@ -5,7 +5,8 @@ Rayleigh (1892); McPhedran and McKenzie, Proc. R. Soc. A 359 (1978) 45; Sangani 
 is stated, of the linear solve, and where there are many spheres, of what their cells make at each other, below both. A
 scene becomes spheres in `arrangement`, their mirror images in walls included; who makes what at whom is chosen in
 `exchange`: periodic sums of `sums` for all pairs in `translations`, or cells in `fast`; the linear system is in
-`system`, the choice of the order in `truncation`, values at points in `field`; zeta_2 in `third_order`.
+`system`, the choice of the order in `truncation`, pairs that nearly touch in `contacts`, values at points in `field`;
+zeta_2 in `third_order`.
 """
 
 from __future__ import annotations
@@ -48,8 +49,9 @@ def solve(
         Spheres may differ in radius, conductivity and resistance of the surface; they may cross the faces of a
         periodic cell, walls may cut them in halves only.
     order : int, optional
-        Highest degree of the multipoles. By default it is raised until the conductivity is known to `accuracy`. With
-        an order given nothing is refused: `stats["truncation"]` says what error remains.
+        Highest degree of the multipoles. By default it is raised until the conductivity is known to `accuracy`, and
+        where spheres touch, or so nearly that no degree would do, near pairs are solved by all degrees. With an order
+        given nothing is refused: `stats["truncation"]` says what error remains.
     accuracy : float
         Relative, of the mean flux; for order = None.
     tolerance : float, optional
@@ -67,7 +69,9 @@ def solve(
         its `stats`, `truncation` is the relative error of the mean flux that higher degrees would remove, extrapolated
         from the last changes; `remainder` the same as gaps ask for, by which the interval goes; `field_truncation` the
         largest term of the last two degrees in the flux at an interface, over the mean gradient; `smallest_gap` in
-        metres, mirror images included; `convergence` pairs (order, conductivity).
+        metres, mirror images included; `pairs` how many near ones are solved by all degrees, 0 where that need not be;
+        `convergence` pairs (order, conductivity). In gaps of such pairs the flux at points lacks what is beyond the
+        order.
 
     Raises
     ------
@@ -76,7 +80,7 @@ def solve(
     NotImplementedError
         For other walls, layers, nested spheres, spheres cut by a wall beside their centre.
     RuntimeError
-        If the linear solve does not converge, or if the order that the gaps between the spheres ask for is too high.
+        If the linear solve does not converge, or no order that fits into memory is enough for the accuracy.
 
     Examples
     --------
@@ -189,6 +193,7 @@ def _stats(scene, arrangement, history):
         "remainder": remainder(history, smallest_gap(spheres)),
         "field_truncation": field_truncation(spheres, last, gradient),
         "smallest_gap": smallest_gap(spheres) * unit,
+        "pairs": last.pairs,
         "convergence": tuple((solved.order, float(k * solved.mean_flux @ gradient)) for solved in history),
     }
 

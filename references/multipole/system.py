@@ -33,6 +33,7 @@ class Solved(NamedTuple):
     mean_flux: np.ndarray  # (3,) float array, K/length: Over the conductivity of the matrix
     iterations: int
     residual: float  # Relative, recomputed
+    pairs: int = 0  # Of spheres so near that they are solved by all degrees
 
 
 def mirror_signs(spheres, gradient, order):
@@ -74,7 +75,9 @@ def dipoles(spheres, source):
     )
 
 
-def solve_order(spheres, table, gradient, order, *, tolerance, guess=None, threads=1, heard=None) -> Solved:
+def solve_order(
+    spheres, table, gradient, order, *, tolerance, guess=None, threads=1, heard=None, received=received
+) -> Solved:
     """Solve for multipoles up to one degree."""
     n, _ = entries(order)
     count, signs = spheres.count, mirror_signs(spheres, gradient, order)
