@@ -18,10 +18,12 @@ from demheat.version import __version__
 
 BUILD = "from setuptools import build_meta; import sys; print(getattr(build_meta, sys.argv[1])(sys.argv[2]))"
 # Without extras, as `pip install demheat` leaves it: the DEM and closed forms solve, others say what they lack.
-CODE = f"""
+HEAD = f"""
 import sys
 for library in {[each for libraries in EXTRAS.values() for each in libraries]}:
     sys.modules[library] = None
+"""
+CODE = """
 import demheat
 from demheat import gallery
 from references import bracket, exact, fem, fft
@@ -40,6 +42,20 @@ for name in ("benchmark", "studies", "tests"):
         __import__(name)
     except ModuleNotFoundError as error:
         print(error)
+"""
+# And what is missing costs no other method its answer.
+COMMANDS = """
+from demheat import gallery
+from demheat.io import scenes
+from demheat.terminal.commands import main
+
+scenes.write(gallery.sphere_in_cube(5.0), "scene.toml")
+words = "--method fft,dem,exact --knob dem.particles=1000 --knob fft.voxels=8 --no-interval"
+print(main(["compare", "scene.toml", *words.split()]))
+try:
+    main(["solve", "--help"])
+except SystemExit as error:
+    print(error.code)
 """
 
 
@@ -84,18 +100,26 @@ def test_it_has_two_packages_and_their_data(wheel):
     assert wanted - {*names} == set()
 
 
-def test_it_works_alone(wheel, tmp_path):
-    place, empty = tmp_path / "place", tmp_path / "empty"
-    empty.mkdir()
-    words = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(place), str(wheel)]
+@pytest.fixture(scope="module")
+def place(wheel, tmp_path_factory):
+    """Where the wheel is installed."""
+    found = tmp_path_factory.mktemp("place")
+    words = ["-m", "pip", "install", "--quiet", "--no-deps", "--no-index", "--target", str(found), str(wheel)]
     subprocess.run([sys.executable, *words], check=True)
-    # Without the clone, which an editable install puts on the path.
+    return found
+
+
+def _run(code, place, folder):
+    """Lines that a program prints in a folder, without the clone, which an editable install puts on the path."""
     paths = {"PYTHONPATH": f"{place}:{sysconfig.get_path('purelib')}:{sysconfig.get_path('platlib')}"}
-    done = subprocess.run(
-        [sys.executable, "-S", "-c", CODE], cwd=empty, env=_environment() | paths, capture_output=True, text=True
-    )
+    words = [sys.executable, "-S", "-c", HEAD + code]
+    done = subprocess.run(words, cwd=folder, env=_environment() | paths, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    file, values, chosen, *told = done.stdout.splitlines()
+    return done.stdout.splitlines()
+
+
+def test_it_works_alone(place, tmp_path):
+    file, values, chosen, *told = _run(CODE, place, tmp_path)
     assert file.startswith(str(place)) and chosen == "exact exact"
     dem, true = map(float, values.split())
     # 1000 particles err by .2 %.
@@ -107,6 +131,20 @@ def test_it_works_alone(wheel, tmp_path):
         ("references.bracket.voxels", "pyfftw", "fft"),
     ]
     assert told[4:] == [f"No module named '{name}'" for name in ("benchmark", "studies", "tests")]
+
+
+def test_commands_go_on_without_what_is_missing(place, tmp_path):
+    printed = _run(COMMANDS, place, tmp_path)
+    # Its status: one method failed. What follows is help.
+    end = printed.index("1")
+    lines = {line.split()[0]: line for line in printed[:end] if line.split()}
+    assert float(lines["exact"].split()[1]) == pytest.approx(42.6403, rel=1e-5)
+    assert float(lines["dem"].split()[1]) == pytest.approx(42.6403, rel=5e-3)  # 1000 particles
+    needs = "pyfftw, which is not installed: pip install 'demheat[fft]'"
+    assert lines["fft"] == f"fft failed: references.fft needs {needs}"
+    assert "no picture: a picture needs matplotlib" in lines["rows"]
+    told = " ".join(" ".join(printed[end:]).split())
+    assert printed[-1] == "0" and f"not installed: fft needs {needs}" in told
 
 
 def _environment():

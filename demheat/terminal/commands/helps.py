@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import inspect
 from textwrap import fill
 
-from demheat.declared import all_methods, load
+from demheat.declared import all_methods
 from demheat.io.fields import WRITERS
 from demheat.io.images import READERS
 from demheat.io.packings import SUFFIXES
 from demheat.io.scenes import units
 from demheat.io.scenes.spheres import TABLES
 from demheat.io.scenes.units import Quantity
+from demheat.runtime.extras import lacking
 from demheat.terminal.commands.knobs import known
 
 # Each works in an empty folder, but the last in a clone.
@@ -55,8 +55,9 @@ def _all_knobs():
 def _knobs(method):
     """Keywords of a method that are free, with their defaults."""
     free = known(method)
-    parameters = inspect.signature(getattr(load(method.module), method.call)).parameters
-    return ", ".join(f"{name}={parameters[name].default}" for name in parameters if name in free) or "none"
+    if free is None:
+        return f"not installed: {lacking(method.module) or 'it says why when it is asked to solve'}"
+    return ", ".join(f"{name}={default}" for name, default in free.items()) or "none"
 
 
 def _units():

@@ -45,10 +45,15 @@ def asked(file, names, words, *, default) -> list[Asked]:
     return [Asked(all_methods()[name], knobs[name]) for name in chosen]
 
 
-def known(method: Method) -> set[str]:
-    """Keywords of a method that are free: what it fixes is not."""
-    parameters = inspect.signature(getattr(load(method.module), method.call)).parameters.values()
-    return {each.name for each in parameters if each.kind is each.KEYWORD_ONLY} - OBJECTS - set(method.knobs)
+def known(method: Method) -> dict[str, object] | None:
+    """Keywords of a method that are free, what it fixes is not, with their defaults; None where it is not installed."""
+    try:
+        function = getattr(load(method.module), method.call)
+    except ImportError:
+        # Its run says what it lacks, and costs no other method its own.
+        return None
+    free = [each for each in inspect.signature(function).parameters.values() if each.kind is each.KEYWORD_ONLY]
+    return {each.name: each.default for each in free if each.name not in {*OBJECTS, *method.knobs}}
 
 
 def _add(knobs, word):
@@ -59,11 +64,11 @@ def _add(knobs, word):
         raise ValueError(f"--knob {word}: must be like voxels=64 or fft.voxels=64")
     if names and names[0] not in knobs:
         raise ValueError(f"--knob {word}: no method {names[0]!r} is asked for{nearest(names[0], knobs)}")
-    takers = names or [name for name in knobs if knob in known(all_methods()[name])]
+    takers = names or [name for name in knobs if knob in (known(all_methods()[name]) or ())]
     # What fixes it says so.
     takers = takers or [name for name in knobs if knob in all_methods()[name].knobs]
     if not takers:
-        everything = set().union(*(known(all_methods()[name]) for name in knobs))
+        everything = set().union(*(known(all_methods()[name]) or () for name in knobs))
         near = nearest(knob, everything) or f"; must be one of {', '.join(sorted(everything)) or 'none'}"
         raise ValueError(f"--knob {word}: no knob of {', '.join(knobs)}{near}")
     for name in takers:
@@ -76,7 +81,7 @@ def _check(method, knob, error):
     if knob in method.knobs:
         raise error(f"method {method.name!r} is what has {knob} = {method.knobs[knob]!r}; must be left out")
     names = known(method)
-    if knob not in names:
+    if names is not None and knob not in names:
         near = nearest(knob, names) or f"; must be one of {', '.join(sorted(names)) or 'none'}"
         raise error(f"no knob of {method.name}{near}")
 
