@@ -10,7 +10,8 @@ OURS = ("demheat", "references", "benchmark", "studies", "tests")
 # The one home of each library: module prefixes, or the ending of a module's name.
 HOMES = {
     "gmsh": ("references.mesh",),
-    "meshio": ("references.mesh",),
+    # Bodies out of files are for whoever has no mesher, too.
+    "meshio": ("references.mesh", "demheat.io.surfaces"),
     "skfem": ("references.fem",),
     "pyfftw": ("references.fft",),
     # Before a kernel is compiled its threading layer is chosen, by demheat.runtime.threads, and where to keep it.

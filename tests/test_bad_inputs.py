@@ -143,6 +143,7 @@ TABLE = [
     (demheat.Ellipsoid, {"center": (0.5,) * 3, "semi_axes": (0.2,) * 3, "material": OTHER}, {"center": VECTOR, "semi_axes": VECTOR, "material": MATERIAL, "rotation": TURN}),
     (demheat.Torus, {"center": (0.5,) * 3, "radius": 0.3, "tube": 0.1, "axis": (0, 0, 1), "material": OTHER}, {"center": VECTOR, "radius": POSITIVE, "tube": POSITIVE, "axis": VECTOR, "material": MATERIAL}),
     (demheat.HalfSpace, {"point": (0.5,) * 3, "outward": (0, 0, 1), "material": OTHER}, {"point": VECTOR, "outward": VECTOR, "material": MATERIAL}),
+    (demheat.SurfaceMesh, {"vertices": np.eye(4, 3), "triangles": np.array([(0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)]), "material": OTHER}, {"vertices": (None, "a", np.eye(3), np.full((4, 3), np.nan)), "triangles": (None, "a", 1.5, [(0, 1, 9)]), "material": MATERIAL}),
     (demheat.LevelSet, {"function": round_set, "limits": ((0.2,) * 3, (0.8,) * 3), "material": OTHER}, {"function": (None, 1.0, "a"), "limits": (None, "a", 0.5, ((0.2,) * 3,), ((0.8,) * 3, (0.2,) * 3)), "material": MATERIAL}),
     (demheat.Union, {"shapes": (demheat.Sphere((0.5,) * 3, 0.2, OTHER),) * 2, "material": OTHER}, {"shapes": (None, "ab", 0.5, (), (1, 2), (demheat.Sphere((0.5,) * 3, 0.2, OTHER),), (demheat.Layer(0, 0.2, 0.4, OTHER),) * 2), "material": (*MATERIAL, METAL)}),
     (demheat.Flux, {}, {"value": NUMBER}),

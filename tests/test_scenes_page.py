@@ -7,9 +7,10 @@ from contextlib import contextmanager
 import numpy as np
 import pytest
 from blocks import DOCS
+from surface_bodies import ring
 
 from demheat import Convection, Image, Layer, Material, Radiation, Scene, Sphere, evolve, gallery, orthotropic, solve
-from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, Torus, Union
+from demheat.scene import Box, Cylinder, Ellipsoid, HalfSpace, LevelSet, SurfaceMesh, Torus, Union
 from references import bracket, exact, fem, fft, multipole, series
 
 (TABLE,) = re.findall(
@@ -42,6 +43,7 @@ SCENES = {
     "tori": body(Torus(MIDDLE, 0.25, 0.15, (0.0, 1.0, 1.0), G)),
     "half-spaces": body(HalfSpace(MIDDLE, (1.0, 0.5, 0.0), G)),
     "level sets": body(LevelSet(ball, ((0.1,) * 3, (0.9,) * 3), G)),
+    "surface meshes": body(SurfaceMesh(*ring(0.25, 0.2), G)),
     "unions": body(Union([Sphere((0.4, 0.5, 0.5), 0.25, G), Box((0.65, 0.5, 0.5), (0.4, 0.3, 0.3), G)], G)),
     "images": Scene.of_image(Image(np.indices((4, 4, 4)).sum(0) % 2, 0.25, {0: M, 1: G}), walls=PAIR, initial=0.0),
     "pores": body(Sphere(MIDDLE, 0.3, Material(0.0, **HEAVY))),

@@ -23,8 +23,8 @@ CUBE = (12 / 4.5) ** (1 / 3)
 FEWEST = 4
 # Of an edge, how far off its middle the surface is sought, near first.
 SOUGHT = (0.02, 0.08, 0.25)
-# What a phase may lack of its volume, of itself, and of the box: what volumes by so many points may be off.
-LOST, OFF, POINTS = 0.1, 5e-3, 1 << 15
+# What a phase may lack of its volume, as chords of coarse elements do; and of the box, as volumes by points do.
+LOST, OFF, POINTS = 0.25, 5e-3, 1 << 15
 
 
 def make_lattice(scene, *, size, order, curved):

@@ -26,6 +26,7 @@ from demheat.io.scenes.units import (
     TEMPERATURE,
     VELOCITY,
 )
+from demheat.io.surfaces import UNITS, read_surface
 from demheat.io.words import as_toml, nearest
 from demheat.runtime.paths import checked_path
 from demheat.scene import (
@@ -36,6 +37,7 @@ from demheat.scene import (
     MovingCylinder,
     Radiation,
     Scene,
+    SurfaceMesh,
     UniformSource,
     shapes,
 )
@@ -198,13 +200,29 @@ def _inclusions(table, materials, size):
     placed = []
     for each in table.tables("inclusions"):
         place = each.error(None, "").args[0]
-        if "file" in each.values:
+        if each.values.get("shape") == SurfaceMesh.kind:
+            placed.append(Placed(_surface(each, materials), place))
+        elif "file" in each.values:
             default = _material(each, "material", materials, None)
             spheres = spheres_of(each, materials, default, size)
             placed += [Placed(sphere, f"{place}, {where}") for sphere, where in spheres]
         else:
             placed.append(Placed(_parts(each, "shape", SHAPES, materials), place))
     return placed
+
+
+def _surface(table, materials):
+    """A body by the file of its surface."""
+    keys = dict.fromkeys(("shape", "file", "unit", "material"), PLAIN)
+    table.only(keys | {"offset": LENGTH, "resistance": RESISTANCE})
+    material, path = _material(table, "material", materials), table.source.path.parent / table.text("file", ...)
+    unit, offset = table.text("unit", "m", among=tuple(UNITS)), table.vector("offset", LENGTH, (0.0, 0.0, 0.0))
+    resistance = table.number("resistance", RESISTANCE, 0.0)
+    try:
+        return read_surface(path, material, unit=unit, offset=offset, resistance=resistance)
+    except ValueError as error:
+        key = next((name for name in ("offset", "resistance") if f"{name} = " in str(error)), "file")
+        raise table.error(table.keys[key], f" = {as_toml(table.values[table.keys[key]])}: {error}") from None
 
 
 def _parts(table, key, kinds, materials, material=None):

@@ -19,12 +19,13 @@ from demheat.scene.shapes.solid import Solid
 from demheat.scene.shapes.traced import CELLS as FINEST
 from demheat.scene.shapes.traced import Traced, leads, traced, unit
 
-# Of the longest side of its limits: step of the differences that make its gradient, and how near to 0 is on it.
-STEP, ON = 1e-5, 1e-12
+# Of the longest side of its limits: step of the differences that make its gradient, and the step to the surface after
+# which the next one would be less than its square.
+STEP, ON = 1e-5, 1e-6
 # Steps to the surface; rounds of a step along it and back to it; longest step, of the longest side.
 STEPS, ALONG, LONGEST = 12, 6, 0.25
-# Sine of the angle to the normal from which on a nearer point is sought.
-ASIDE = 1e-6
+# Sine of the angle to the normal from which on a nearer point is sought: its square is of the distance.
+ASIDE = 1e-3
 # Points along each side of a face that are looked at; how far opposite ones of a period may differ, of the largest.
 LOOKED_AT, ALIKE = 25, 1e-6
 
@@ -254,7 +255,10 @@ class LevelSet(Solid):
     def _home_period(self, points):
         """Points moved by periods into the limits, if it is periodic."""
         low, high = self._ends()
-        return low + (points - low) % (high - low) if self.periodic else points
+        if not self.periodic:
+            return points
+        turns = np.floor((points - low) / (high - low))
+        return points - turns * (high - low) if turns.any() else points
 
     def _asked(self, points):
         beat("a level set")
@@ -293,9 +297,13 @@ class LevelSet(Solid):
             if not len(going):
                 break
             here = points[going]
-            gradient = self._gradient(here)
+            # Differences to one side: the way need not be exact, the place where it ends is.
+            aside = STEP * longest
+            moved = here[None] + aside * np.concatenate([np.zeros((1, 3)), np.eye(3)])[:, None]
+            value, *ahead = self._values(moved.reshape(-1, 3)).reshape(4, -1)
+            gradient = (np.stack(ahead, axis=1) - value[:, None]) / aside
             square = np.einsum("ij,ij->i", gradient, gradient)
-            step = np.divide(-self._values(here), square, out=np.zeros(len(here)), where=square > 0)[:, None] * gradient
+            step = np.divide(-value, square, out=np.zeros(len(here)), where=square > 0)[:, None] * gradient
             length = np.linalg.norm(step, axis=1)
             step *= np.minimum(1.0, LONGEST * longest / np.maximum(length, 1e-300))[:, None]
             points[going] += step
