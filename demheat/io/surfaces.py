@@ -10,6 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from demheat.io.words import nearest_file
+from demheat.runtime.extras import extra
 from demheat.runtime.paths import checked_path
 from demheat.scene import Material, SurfaceMesh
 from demheat.scene.inputs import chosen, vector
@@ -66,7 +67,8 @@ def read_surface(
 
 def _read(path):
     """Points and triangles of a file."""
-    import meshio
+    with extra("a surface in a file"):
+        import meshio
 
     if not path.is_file():
         raise ValueError(f"{path}: there is no such file{nearest_file(path)}")
