@@ -75,20 +75,23 @@ class Limit(NamedTuple):
 
 
 def by_extrapolation(field, coarser: Callable, rule: Limit, *, residual=0.0, fine=NOTHING) -> Extrapolated:
-    """The limit of a method by coarser runs; `coarser(level)` makes the first and the second.
+    """The limit of a method by coarser runs; `coarser(level)` makes the first and the second, each of one kind or more.
 
-    Warnings of these, whose elements are too large for what the finest resolves, are kept back.
+    Of a size there may be several runs, as two may be close to each other by luck: the first tells the limit, the
+    largest change the interval. Warnings of runs whose elements are too large for what the finest resolves are kept
+    back.
     """
     _check(field, fine)
-    runs = [field, *_coarser(coarser)]
+    sizes = [[field], *_coarser(coarser)]
+    runs = [first for first, *_ in sizes]
     k, flux = [conductivity_of(each) for each in runs], [each.mean_flux for each in runs]
     order = _order(k if math.isfinite(k[0]) else [_along(each, field) for each in flux], rule)
     limit, mean_flux = _limit(k, rule.ratio, order), _limit(flux, rule.ratio, order)
     residual += ROUNDING
-    half = _lacks(k, rule, order) + residual * abs(k[0])
+    half = _lacks(sizes, conductivity_of, rule, order) + residual * abs(k[0])
     made = abs(k[0] - float(field.scene.mean_conductivities[0]))
     half += (unshown([misplaced(each) for each in runs], rule.ratio, rule.slow) + fine.rough) * made
-    off = _lacks(flux, rule, order) + residual * float(np.linalg.norm(flux[0]))
+    off = _lacks(sizes, lambda each: each.mean_flux, rule, order) + residual * float(np.linalg.norm(flux[0]))
     if k[0]:
         off = max(off, half / abs(k[0]) * float(np.linalg.norm(flux[0])))
     return Extrapolated(rule.how, limit, max(limit - half, 0.0), limit + half, mean_flux, off, order, tuple(k))
@@ -115,7 +118,7 @@ def _check(field, fine):
 
 def _coarser(coarser):
     try:
-        return [quietly(coarser, level) for level in (1, 2)]
+        return [quietly(lambda of: list(coarser(of)), level) for level in (1, 2)]
     except ValueError as error:
         raise RuntimeError(f"Field.extrapolated: no coarser runs to go by: {error}") from error
 
@@ -140,12 +143,15 @@ def _limit(values, ratio, order):
     return values[0] + (values[0] - values[1]) / (ratio**order - 1)
 
 
-def _lacks(values, rule, order):
-    """Half of an interval, by changes between runs."""
-    changes = [largest(one, other) for one, other in zip(values[:-1], values[1:], strict=True)]
-    one, other = np.subtract(values[0], values[1]), np.subtract(values[1], values[2])
-    falls = np.sum(one * other) >= rule.ratio ** min(rule.last, rule.slow) * np.sum(one**2)
-    slow = rule.slow if falls else min(rule.slow, rule.last)
-    half = rule.safety * missing(changes, rule.ratio, slow)
+def _lacks(sizes, read, rule, order):
+    """Half of an interval, by the largest changes between runs of one size and the next."""
+    values = [[read(each) for each in runs] for runs in sizes]
+    fine, *coarse = [first for first, *_ in values]
+    changes = [
+        max(largest(one, other) for other in each) for one, each in zip((fine, *coarse), values[1:], strict=False)
+    ]
+    first, second = np.subtract(fine, coarse[0]), np.subtract(*coarse)
+    falls = np.sum(first * second) >= rule.ratio ** min(rule.last, rule.slow) * np.sum(first**2)
+    half = rule.safety * missing(changes, rule.ratio, rule.slow if falls else min(rule.slow, rule.last))
     in_the_end = changes[0] * (1 / (rule.ratio**rule.last - 1) - 1 / (rule.ratio**order - 1))
     return max(half, in_the_end)

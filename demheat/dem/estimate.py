@@ -183,7 +183,8 @@ def _limit(field, *, law, wanted, answer) -> Extrapolated:
         )
 
     def fewer(level):
-        return answer(law, _fewer(wanted, number // round(LIMIT.ratio**3) ** level))
+        for seed in (wanted.seed, wanted.seed + 1)[: 3 - level]:
+            yield answer(law, _fewer(wanted, number // round(LIMIT.ratio**3) ** level, seed))
 
     rule = LIMIT._replace(safety=RESISTED * LIMIT.safety) if field.scene.resistances.any() else LIMIT
     if np.min(_across(field.scene, number), initial=math.inf) < ACROSS:

@@ -63,6 +63,6 @@ def extrapolated(field, again, kind):
         raise NotImplementedError("Field.extrapolated: of finite elements only curved quadratic ones have a limit")
 
     def coarser(level):
-        return again(coarser=LIMIT.ratio**level)
+        yield again(coarser=LIMIT.ratio**level)
 
     return by_extrapolation(field, coarser, LIMIT, residual=field.stats["residual"])

@@ -14,8 +14,9 @@ RULES = {
     "links": Refinement("larger voxels", 2**0.5, 1.0, 1.5, 1.0),
 }
 # Between grids of some ten voxels across a body errors fall with the power 2 by either rule: .4 of them is left (even
-# seeds). In the end they fall with the first. Halves of a grid would see flat faces as it does.
-LIMIT = Limit("larger voxels, extrapolated", 1.8, 2.0, 2.0, 1.5, last=1.0)
+# seeds). In the end they fall with the first, and about spheres near to each other with less on the way. Halves of a
+# grid would see flat faces as it does.
+LIMIT = Limit("larger voxels, extrapolated", 1.8, 2.0, 2.0, 1.5, last=0.75)
 # Order of what surfaces that resist leave: one, but its factor is small and moves with their place in voxels.
 FILMS = 0.5
 # Of images: 28 drawn ones (noise, Gaussian fields, spheres; contrasts .001 to 1000, pores) ask for up to 2.8.
@@ -54,7 +55,7 @@ def extrapolated(field, solve):
         )
 
     def larger(level):
-        return solve(field.scene, voxels=[max(1, round(n / LIMIT.ratio**level)) for n in shape])
+        yield solve(field.scene, voxels=[max(1, round(n / LIMIT.ratio**level)) for n in shape])
 
     fine = Fine(unsure(field.scene, rule, shape))
     return by_extrapolation(field, larger, LIMIT, residual=field.stats["residual"], fine=fine)

@@ -57,8 +57,25 @@ def over(each):
     return half(each) / off(each).abs()
 
 
+def over_plain(each):
+    """Half of the interval about a limit over the error of the answer that it was made of."""
+    middle = 0.5 * (each["low"] + each["high"])
+    before = each.assign(conductivity=each["plain"])
+    found = clear(before)
+    return half(found) / (value_error(found["plain"], middle[found.index])).abs()
+
+
+def gain(each):
+    """Error of a limit over that of the answer that it was made of, where that is known well."""
+    before = clear(each.assign(conductivity=each["plain"]))
+    return off(each).abs()[before.index] / off(before).abs()
+
+
 def title(name):
     """What a method is called in tables."""
+    plain, _, limit = name.partition("-limit")
+    if limit or name.endswith("-limit"):
+        return f"{title(plain)}, extrapolated"
     return methods.all_methods()[name].title if name != "fft" else "FFT, scalar, by itself"
 
 

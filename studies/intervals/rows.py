@@ -56,6 +56,17 @@ def judged(kind: str, seed: int, method: str) -> dict:
     return row
 
 
+def limited(kind: str, seed: int, method: str) -> dict:
+    """What a method's answers close in on, with the interval of that, beside the answer."""
+    share = float(np.random.default_rng([seed, 1]).random())
+    field, _, refusal = answer(lambda: _solve(method, scene_of(kind, seed).scene, share=share, seed=seed))
+    limit, _, none = (None, (), refusal) if refusal is not None else answer(lambda: field.extrapolated)
+    if none is not None:
+        return {"status": "unsupported", "note": " ".join(str(none).split())}
+    row = {"conductivity": limit.conductivity, "plain": field.conductivity, "order": limit.order}
+    return row | {"lower": limit.lower, "upper": limit.upper, "warned": False, "unseen": False}
+
+
 def _solve(method, scene, *, share, seed):
     """By its defaults but for what it spends and the iterations after which it refuses."""
     module = methods.load(method.split("-")[0])

@@ -28,10 +28,15 @@ def made(level, *, order=3.0, off=0.1, scene=PLAIN, **more):
     return SimpleNamespace(scene=scene, time=None, mean_flux=np.array([-5 - wrong, 2 * wrong, 0.0]), **found | more)
 
 
+def coarser(level, **how):
+    """One run of a size."""
+    yield made(level, **how)
+
+
 def limit(rule=RULE, *, scene=PLAIN, fine=None, residual=0.0, first=None, **how):
     field = made(0, scene=scene, **how) if first is None else first
     return by_extrapolation(
-        field, partial(made, scene=scene, **how), rule, residual=residual, **({} if fine is None else {"fine": fine})
+        field, partial(coarser, scene=scene, **how), rule, residual=residual, **({} if fine is None else {"fine": fine})
     )
 
 
@@ -70,12 +75,26 @@ def test_an_order_that_sizes_must_show_is_taken_where_it_is_believed(order, take
 def test_runs_that_turn_show_no_order():
     turned = {1: 5.3, 2: 5.0}
     rule = RULE._replace(shown=(1.5, 3.5))
-    found = by_extrapolation(made(0), lambda level: made(level, conductivity=turned[level]), rule)
+    found = by_extrapolation(made(0), lambda level: coarser(level, conductivity=turned[level]), rule)
     assert found.conductivity == 5.1 and found.order == math.inf
     # The interval counts on what is left in the end: .3 / (2 (2 - 1)) for .3 / (4 (4 - 1)), beside .2 for .2 / 3.
     assert found.upper - 5.1 == pytest.approx(1.5 * 0.2 / 3, rel=1e-9)
-    last = by_extrapolation(made(0), lambda level: made(level, conductivity=turned[level]), rule._replace(last=1.0))
+    last = by_extrapolation(made(0), lambda level: coarser(level, conductivity=turned[level]), rule._replace(last=1.0))
     assert last.upper - 5.1 == pytest.approx(1.5 * 0.2, rel=1e-9)
+
+
+def test_a_run_that_is_close_by_luck_is_told_by_another():
+    def twice(level):
+        yield made(level, conductivity=5.1 if level == 1 else 11.4)
+        if level == 1:
+            yield made(level)
+
+    lucky, told = (by_extrapolation(made(0), of, RULE._replace(slow=1.0, safety=1.0)) for of in (coarser, twice))
+    # The first run tells the limit, the other the change: 5.6 and .7 or, from 5.1 to 11.4, 6.3.
+    assert told.conductivity == 5.1 and lucky.conductivity == pytest.approx(5.0, rel=1e-12)
+    assert told.upper - 5.1 == pytest.approx(6.3 / 2, rel=1e-9)
+    near = by_extrapolation(made(0), lambda level: twice(1), RULE._replace(slow=1.0, safety=1.0))
+    assert near.upper - near.conductivity == pytest.approx(0.7, rel=1e-9)
 
 
 def test_what_is_misplaced_in_all_runs_counts_besides():
