@@ -69,17 +69,23 @@ def _transform(real, modes, shape, ways, scale, threads):
     measured = real.size >= MEASURED_FROM
 
     def worker(blocks, count):
-        planes = {n: _plane_plans(real[:, :n, :, : shape[2]], modes[:, :n], ways, measured) for n in blocks}
+        # Blocks lie one after another, the last one beyond some of the largest: FFTW may count on alignment only if all
+        # of them have it.
+        largest = _misaligned(modes[0, : max(blocks)])
+        loose = {n: largest or _misaligned(modes[0, :n]) for n in blocks}
+        planes = {n: _plane_plans(real[:, :n, :, : shape[2]], modes[:, :n], ways, measured, loose[n]) for n in blocks}
         buffer = pyfftw.zeros_aligned((len(modes), count, modes.shape[1]), modes.dtype)
         return Worker(planes, buffer, _column_plans(buffer, ways, measured))
 
     return Transform(real, modes, scale, shape[2], threads, worker)
 
 
-def _plane_plans(values, modes, ways, measured):
+def _misaligned(block):
+    return block.nbytes % pyfftw.simd_alignment > 0
+
+
+def _plane_plans(values, modes, ways, measured, loose):
     """Plans made on the first block of planes, for any block."""
-    # Blocks lie one after another: FFTW may count on alignment only if all of them have it.
-    loose = modes[0].nbytes % pyfftw.simd_alignment > 0
     knobs = {"axes": (1, 2), "loose": loose, "measured": measured}
     parts = list(zip(values, modes, ways, strict=True))
     forward = [_planned(v, m, direction=way.there, **knobs) for v, m, way in parts]
