@@ -9,6 +9,8 @@ from studies.intervals.means import answers, clear, half, held, off, title
 
 # What is beyond is shown at the edge, %.
 LEAST, MOST = 1e-6, 1e3
+# Panels beside each other.
+COLUMNS = 5
 
 
 def draw(df):
@@ -16,15 +18,22 @@ def draw(df):
     from matplotlib import pyplot
 
     groups = list(clear(answers(df)).groupby("method", sort=False))
-    figure, panels = pyplot.subplots(1, len(groups), figsize=(3.2 * len(groups), 3.8), sharex=True, sharey=True)
-    for axes, (name, rows) in zip(np.atleast_1d(panels), groups, strict=True):
+    lines = -(-len(groups) // COLUMNS)
+    columns = -(-len(groups) // lines)
+    size = (3.2 * columns, 3.8 * lines)
+    figure, panels = pyplot.subplots(lines, columns, figsize=size, sharex=True, sharey=True, squeeze=False)
+    for axes, (name, rows) in zip(panels.flat, groups, strict=False):
         right, x, y = held(rows), *(np.clip(100 * each(rows).abs(), LEAST, MOST) for each in (off, half))
-        style = look(name, linestyle="", markersize=3)
+        style = look(name.removesuffix("-limit"), linestyle="", markersize=3)
         axes.plot(x[right], y[right], **{**style, "label": "holds"})
         axes.plot(x[~right], y[~right], linestyle="", marker="x", color=BLACK, label="misses")
         axes.plot([LEAST, MOST], [LEAST, MOST], color=GREY, linewidth=1)
-        axes.set(xscale="log", yscale="log", xlabel="error, %", title=title(name))
+        axes.set(xscale="log", yscale="log", xlabel="error, %")
+        axes.set_title(title(name), fontsize=10)
         axes.legend(loc="lower right", fontsize=8)
-    np.atleast_1d(panels)[0].set_ylabel("half of the interval, %")
+    for axes in panels.flat[len(groups) :]:
+        axes.set_visible(False)
+    for axes in panels[:, 0]:
+        axes.set_ylabel("half of the interval, %")
     figure.suptitle(f"{len(df[['scene', 'seed']].drop_duplicates())} drawn scenes: where the error is known well")
     return figure

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from demheat import Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, orthotropic, recommend, solve
+from demheat import Box, Ellipsoid, Layer, Material, Scene, Sphere, effective, gallery, orthotropic, recommend, solve
 from demheat.cheapest import answers, cost_laws, ways
 from demheat.cheapest.loads import loads_of
 from demheat.cheapest.measures import measures
@@ -211,3 +211,31 @@ def test_what_methods_take_is_what_they_refuse():
             if kind not in takes:
                 with pytest.raises(NotImplementedError):
                     ways.HOMES[name].solve(OTHERS[scene])
+
+
+def test_what_a_method_closes_in_on_is_taken_where_it_has_such_a_limit():
+    box = Scene((1.0,) * 3, Material(1.0), [Box((0.5,) * 3, (0.4,) * 3, Material(5.0))], gradient=(1.0, 0.0, 0.0))
+    close, plain = (effective(scene, accuracy=5e-2, method="fft") for scene in (CUBE, box))
+    assert (close.how, plain.how) == ("larger voxels, extrapolated", "larger voxels")
+    right = exact.solve(CUBE).conductivity
+    field = fft.solve(loads_of(CUBE).parts[0], voxels=close.knobs["voxels"])
+    assert close.tensor[0, 0] == pytest.approx(field.extrapolated.conductivity, rel=1e-9)
+    assert abs(close.tensor[0, 0] - right) < abs(field.conductivity - right)
+    # Of the DEM the interval about its own answer is narrower.
+    assert effective(CUBE, accuracy=5e-2, method="dem").how == "fewer particles"
+
+
+def test_coarser_runs_of_an_extrapolation_cost_less():
+    def expected(scene, name):
+        return next(way for way in ways.ways(loads_of(scene), 1e-3, 1e12) if way.method == name)
+
+    found = expected(CUBE, "fem")
+    law, part = ways._law("fem", loads_of(CUBE))
+    assert found.cpu_s == pytest.approx(1.3 * cost_laws.predicted(law, part, found.knobs["size"]).cpu_s, rel=0.2)
+    for name, law, yes in (
+        ("fem", "fem", True),
+        ("fft", "fft-links", True),
+        ("fft", "fft-plain", False),
+        ("dem", "dem", False),
+    ):
+        assert ways._has_limit(name, law, loads_of(CUBE)) is yes
