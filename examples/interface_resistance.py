@@ -5,12 +5,12 @@ python examples/interface_resistance.py
 
 from dataclasses import replace
 
-from demheat import gallery, solve
+from demheat import Sphere, gallery, solve
 from references import exact, fem
 
 perfect = gallery.sphere_in_cube(10.0, fraction=0.2)
-(sphere,) = perfect.inclusions
-k, contrast = perfect.matrix.conductivity, 10.0
+(sphere,) = (each for each in perfect.inclusions if isinstance(each, Sphere))
+k, contrast = perfect.conductivities[0], 10.0
 neutral = (contrast - 1) / contrast  # the Kapitza length R k over the radius at which a sphere is as good as matrix
 
 print("R k / a   exact/k      FEM/k      DEM/k")

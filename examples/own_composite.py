@@ -7,12 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from demheat import Material, Scene, gallery, solve
+from demheat import Material, Scene, Sphere, gallery, solve
 from references import bounds, fft, multipole
 
 epoxy, glass, copper = Material(0.195), Material(1.05), Material(400.0)
 # Positions and radii of a ready scene; every fourth bead becomes copper, the others glass.
-beads = gallery.dispersion(24, fraction=0.25, ratio=2.0, gap=0.1, edge=1.0, seed=0).inclusions
+drawn = gallery.dispersion(24, fraction=0.25, ratio=2.0, gap=0.1, edge=1.0, seed=0).inclusions
+beads = [bead for bead in drawn if isinstance(bead, Sphere)]
 beads = [replace(bead, material=copper if number % 4 == 0 else glass) for number, bead in enumerate(beads)]
 scene = Scene((1.0, 1.0, 1.0), epoxy, beads, gradient=(0, 1, 0))
 

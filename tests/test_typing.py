@@ -59,6 +59,8 @@ def examples():
     yield "readme", README.search((ROOT / "README.md").read_text(encoding="utf-8"))[1]
     for page in PAGES:
         yield page.removesuffix(".md"), "\n".join(each.text for each in blocks(page) if each.kind == "python")
+    for path in sorted((ROOT / "examples").glob("*.py")):
+        yield f"script_{path.stem}", path.read_text(encoding="utf-8")
     for name in EXAMPLES:
         parts = doctest.DocTestParser().get_examples(inspect.getdoc(_found(name)) or "")
         yield name.replace(".", "_"), "".join(part.source for part in parts if part.exc_msg is None)

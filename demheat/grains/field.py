@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from itertools import chain
+from os import PathLike
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from demheat.grains.pairs import AtWalls, Pairs
 from demheat.network.base import SIDES, Network
@@ -126,7 +128,7 @@ class GrainField:
         left = np.bincount(pairs.first, self.heat, n) - np.bincount(pairs.second, self.heat, n)
         return left + (0.0 if self.at_walls is None else np.bincount(self.at_walls.grain, self.heat_from_walls, n))
 
-    def write(self, path, *, ids: Sequence[int] | None = None) -> None:
+    def write(self, path: str | PathLike[str], *, ids: ArrayLike | None = None) -> None:
         """Write the pairs and their heat into a file; an interrupted write leaves no file, and an old one as it was.
 
         Parameters
