@@ -45,6 +45,7 @@ NO_ROWS = {
     "demheat/grains/contact_files.py": READ,
     "demheat/terminal/ends.py": READ,
     "demheat/terminal/pictures.py": DRAWN,
+    "demheat/terminal/report": DRAWN,
     "references/mesh/export.py": DRAWN,
     "demheat/scene/beats.py": REFUSED,
     "demheat/renamed.py": RENAMED,

@@ -22,10 +22,11 @@ EXAMPLES = {
     "effective": "demheat init && demheat effective scene.toml --accuracy 1e-2",
     "recommend": "demheat init && demheat recommend scene.toml --accuracy 1e-4",
     "view": "demheat init && demheat view scene.toml --method fft",
+    "report": "demheat init && demheat report scene.toml --methods fft,exact",
     # Answers are of a program of one's own; a clone has those of some.
     "judge": "demheat judge benchmark/answers/fipy.json benchmark/answers/puma.json",
 }
-WITH_KNOBS = ("solve", "compare", "view")
+WITH_KNOBS = ("solve", "compare", "view", "report")
 
 
 def told(command: str) -> str:

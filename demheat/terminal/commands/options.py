@@ -13,6 +13,7 @@ COMMANDS = {
     "effective": "the conductivity tensor to an accuracy, by the method that gets there at least cost",
     "recommend": "what `effective` would do, and what each method would cost; nothing is solved",
     "view": "a picture of a scene, or of its field by a method",
+    "report": "one page of HTML: the scene to turn, fields, answers, what was assumed",
     "judge": "what answers of any program to the benchmark's scenes are worth: errors, intervals, costs, a leaderboard",
 }
 
@@ -64,8 +65,8 @@ def _of_judge(command):
 
 
 def _options(command, name):
-    several = name in ("solve", "compare")
-    if name in ("solve", "compare", "view", "effective"):
+    several = name in ("solve", "compare", "report")
+    if several or name in ("view", "effective"):
         command.add_argument(
             *("--method", "--methods"),
             dest="methods",
@@ -73,14 +74,14 @@ def _options(command, name):
             metavar="NAME",
             help="of a method" + (", again for more, or several with commas" if several else ""),
         )
-    if name in ("solve", "compare", "view"):
+    if several or name == "view":
         command.add_argument("--knob", action="append", default=[], metavar="NAME=VALUE", help="such as voxels=64")
     if name in ("effective", "recommend"):
         command.add_argument("--accuracy", type=float, metavar="PART", help="default: the file's, or 1e-3")
     if several or name == "effective":
         help_ = "that the command may take; what is done by then is told"
         command.add_argument("--seconds", type=float, metavar="SECONDS", help=help_)
-    if several:
+    if name in ("solve", "compare"):
         command.add_argument("--no-interval", action="store_true", help="spare the runs that tell the error")
     if name == "solve":
         command.add_argument("--write", metavar="FILE", help="the field of one method: .vti, .vtp, .vtu, .xdmf, .npz")
@@ -90,3 +91,5 @@ def _options(command, name):
     if name in ("solve", "compare", "view"):
         usual = "none" if name == "solve" else "demheat-out"
         command.add_argument("--out", metavar="FOLDER", help=f"for tables, fields and pictures; default: {usual}")
+    if name == "report":
+        command.add_argument("--out", metavar="FILE.html", help="the page; default: named as the scene")

@@ -26,6 +26,29 @@ def scene_line(scene) -> str:
     return f"{scene.domain} of {sides} {unit}, {inside}, {k} W/(m K), {load}"
 
 
+def assumed(scene) -> list[str]:
+    """What any method takes for granted of a scene, in sentences."""
+    k = scene.mean_conductivities
+    found = ["Steady conduction by Fourier's law: no radiation or convection within the body."]
+    if scene.periodic:
+        found.append("The box is repeated all round, under a mean gradient of the temperature: edges have no effect.")
+    elif len(scene.walls) < 6:
+        found.append(f"Faces other than {', '.join(scene.walls)} are insulated, as mirrors.")
+    if scene.image is not None:
+        found.append(
+            "Each voxel is wholly of its label: stairs for smooth surfaces are an error that no interval holds."
+        )
+    elif scene.inclusions and not scene.resistances.any():
+        found.append("Surfaces between materials let heat pass without a resistance.")
+    if not scene.varies:
+        found.append("Conductivities do not depend on the temperature.")
+    if not scene.anisotropic:
+        found.append("Materials conduct alike in all directions.")
+    if k.min() == 0:
+        found.append("Pores conduct nothing.")
+    return [*found, "An interval is what a method expects of its own error; it knows nothing of errors of the scene."]
+
+
 def interval(found) -> str:
     """Conductivity of an answer with its interval, with as many digits as that tells."""
     if math.isnan(found.conductivity):
