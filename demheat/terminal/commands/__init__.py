@@ -1,4 +1,4 @@
-"""The commands `demheat init | solve | compare | effective | recommend | view | report scene.toml`, `judge answers.json`.
+"""The commands `demheat init | solve | compare | effective | recommend | view | report scene.toml`, and `judge x.json`.
 
 Exit status: 0; 1 if a method that was asked for refused or failed; 2 for bad input, which one line on standard error
 names; 130 if interrupted; 141, without a word, if nobody reads what is printed.
