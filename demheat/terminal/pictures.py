@@ -122,6 +122,16 @@ def plot_comparison(scene, entries, bounds, temperature=None):
     return figure
 
 
+def colours_of(count: int) -> list[str]:
+    """Colours of so many kinds as "#rrggbb", the matrix grey; of too many on a scale."""
+    if count <= len(COLOURS):
+        return list(COLOURS[:count])
+    from matplotlib import colormaps
+    from matplotlib.colors import to_hex
+
+    return [COLOURS[0], *(to_hex(colormaps["viridis"](k / (count - 2))) for k in range(count - 1))]
+
+
 def across_of(scene) -> int:
     """Axis across which a plane shows the load: z, or y if the load is along z."""
     if scene.periodic:

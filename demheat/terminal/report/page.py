@@ -9,6 +9,7 @@ from html import escape
 from pathlib import Path
 from typing import NamedTuple
 
+from demheat.terminal.pictures import colours_of
 from demheat.terminal.report.volume import Kinds, Values
 from demheat.version import __version__
 
@@ -71,17 +72,8 @@ def _data(content):
 
 def _colours(kinds):
     """Colour of each kind, and whether it is shown at first: what is around the others is not."""
-    from demheat.terminal.pictures import COLOURS
-
     count = len(kinds.conductivity)
-    if count <= len(COLOURS):
-        found = COLOURS[:count]
-    else:
-        from matplotlib import colormaps
-        from matplotlib.colors import to_hex
-
-        found = [COLOURS[0], *(to_hex(colormaps["viridis"](k / (count - 2))) for k in range(count - 1))]
-    return [(colour, count == 1 or place > 0) for place, colour in enumerate(found)]
+    return [(colour, count == 1 or place > 0) for place, colour in enumerate(colours_of(count))]
 
 
 def _rgb(colour):
