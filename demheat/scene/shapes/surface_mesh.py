@@ -48,9 +48,10 @@ class SurfaceMesh(Solid):
 
     Examples
     --------
+    >>> import numpy as np
     >>> from demheat import Material, SurfaceMesh
-    >>> corners = [(0.2, 0.2, 0.2), (0.8, 0.2, 0.2), (0.2, 0.8, 0.2), (0.2, 0.2, 0.8)]
-    >>> sides = [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)]
+    >>> corners = np.array([(0.2, 0.2, 0.2), (0.8, 0.2, 0.2), (0.2, 0.8, 0.2), (0.2, 0.2, 0.8)])
+    >>> sides = np.array([(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
     >>> body = SurfaceMesh(corners, sides, Material(5.0))
     >>> print(f"{body.volume:.3f} {body.contains([[0.3, 0.3, 0.3], [0.7, 0.7, 0.7]]).tolist()}")
     0.036 [True, False]
